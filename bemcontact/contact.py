@@ -1,0 +1,372 @@
+"""The waist of the package: a condensed contact problem, and a solution of one.
+
+The boundary-element core makes a `CondensedContact`; the formulations turn it into a `ContactSolution`; neither side
+knows the other. Lengths and stresses are in the user's units throughout.
+"""
+
+import os
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from enum import Enum
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bemcontact.errors import ProblemError
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+FILE_FORMAT = "bemcontact.condensed.1"
+
+
+class Weights(Enum):
+    """How the objective integrates p δ over the contact zone: the J of [SS92] (24)-(26)."""
+
+    TRIBUTARY = "tributary"
+    """Diagonal, the length that belongs to each point: Σ w p is the resultant. The default."""
+    CONSISTENT = "consistent"
+    """∫ h hᵀ ds, (24)-(25): has negative entries, so that objective = 0 certifies nothing."""
+    ELEMENT_LENGTH = "element_length"
+    """Diagonal, the element length once per node, (26) read word for word: makes QP3 indefinite on uniform meshes."""
+
+
+class Status(Enum):
+    """How a solver ended; each value is the sentence that tells what to do."""
+
+    SOLVED = "solved"
+    LOCAL_MINIMUM = "a local minimum whose objective is not zero: not the contact state; try another start or QP3"
+    ITERATION_LIMIT = "stopped at the iteration limit; raise the limit or start from another point"
+    INFEASIBLE = "no pressure satisfies the constraints; check that the load presses the body onto its support"
+    UNBOUNDED = "the objective has no lower bound; use the tributary weights"
+    NUMERICAL_FAILURE = "the solver broke down numerically; check the mesh for very short elements"
+
+
+class ContactScales(NamedTuple):
+    """Typical displacement U [L] and pressure T [p] of a contact problem, by which residuals are divided."""
+
+    displacement: float
+    pressure: float
+
+
+class StiffnessRows(NamedTuple):
+    """K u_n = B p + r, [SS92] (12), as contact stiffness rows: K (n, n) [p/L], B (n, n) [1], r (n,) [p]."""
+
+    K: Array
+    B: Array
+    r: Array
+
+
+class Gauge(NamedTuple):
+    """Compliance and free displacement in the fixed gauge, and the shift (k,), (k, n) of the amplitudes it implies.
+
+    u_n = Δ1 + M p + R a holds before and after for every p in equilibrium, with
+    ``a_before = a_after - shift_load - shift_pressure @ p``.
+    """
+
+    compliance: Array
+    free_displacement: Array
+    shift_load: Array
+    shift_pressure: Array
+
+
+def fix_gauge(
+    compliance: Array, free_displacement: Array, rigid_motions: Array, weights: Array, motion_load: Array
+) -> Gauge:
+    """Remove from M and Δ1 what depends on how the free rigid motions were held while solving.
+
+    With ℓ = J R, P = I - R (ℓᵀR)⁻¹ ℓᵀ and p0 = -R (ℓᵀR)⁻¹ load: M' = P M P and Δ1' = P (Δ1 + M p0).
+
+    Parameters
+    ----------
+    compliance : (n, n) M [L/p]
+    free_displacement : (n,) Δ1 [L]
+    rigid_motions : (n, k) R of full column rank
+    weights : (n,) tributary J [L]
+    motion_load : (k,) work of the applied loads in the free motions
+
+    Returns
+    -------
+    Gauge
+    """
+    M, R = compliance, rigid_motions
+    ell = weights[:, None] * R
+    to_motion = np.linalg.solve(ell.T @ R, ell.T)
+    p0 = -R @ np.linalg.solve(ell.T @ R, motion_load)
+    project = np.eye(len(M)) - R @ to_motion
+    return Gauge(
+        compliance=project @ M @ project,
+        free_displacement=project @ (free_displacement + M @ p0),
+        shift_load=to_motion @ free_displacement,
+        shift_pressure=to_motion @ M,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CondensedContact:
+    """An elastic body condensed to its n contact points: u_n = Δ1 + M p + R a with ℓᵀp = -load, [SS92] (35)-(38).
+
+    A contact point is a pair (zone, node): a node in two zones is two points, with two normals, gaps and pressures.
+    Arrays are read-only. With k = 0 free rigid motions R, a and the load vanish. M and Δ1 are in the gauge of
+    `fix_gauge`. Points are listed zone by zone and, within a zone, run by run in the order of the boundary.
+
+    Parameters
+    ----------
+    points : (n, 2) undeformed positions [L]
+    normals : (n, 2) unit normals of the rigid surface, from the surface into the body
+    zone : (n,) index into `zone_names`
+    run : (n,) number of the unbroken piece of boundary that the point belongs to
+    arc_position : (n,) arc length along that piece [L]
+    run_length : (number of runs,) its perimeter if the run closes on itself, else infinity [L]
+    compliance : (n, n) M, normal displacement per pressure [L/p]
+    free_displacement : (n,) Δ1, normal displacement without contact [L]
+    rigid_motions : (n, k) R, the free rigid motions seen along the normals
+    motion_load : (k,) work of the applied loads in these motions, [p L] for a motion of unit displacement
+    initial_gap : (n,) ε [L]
+    weights : (n,) tributary weights [L]: Σ w p n is the force of the rigid surface
+    consistent_weights : (n, n) ∫ h hᵀ ds [L], or None where no mesh stands behind the problem
+    element_length_weights : (n,) [L], or None likewise
+    motion_names : k descriptions of the free motions, for people
+    notes : what was decided on the way and should be known
+    name, zone_names, units : labels
+    """
+
+    name: str = "unnamed"
+    zone_names: tuple[str, ...] = ("contact",)
+    units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    motion_names: tuple[str, ...] = ()
+    points: Array
+    normals: Array
+    zone: IntArray
+    run: IntArray
+    arc_position: Array
+    run_length: Array
+    compliance: Array
+    free_displacement: Array
+    rigid_motions: Array
+    motion_load: Array
+    initial_gap: Array
+    weights: Array
+    consistent_weights: Array | None = None
+    element_length_weights: Array | None = None
+
+    def __post_init__(self) -> None:
+        """Check shapes, refuse numbers that are not finite, make arrays read-only."""
+        n, k = self.rigid_motions.shape
+        shapes = {
+            "points": (n, 2), "normals": (n, 2), "zone": (n,), "run": (n,), "arc_position": (n,),
+            "compliance": (n, n), "free_displacement": (n,), "motion_load": (k,), "initial_gap": (n,),
+            "weights": (n,), "consistent_weights": (n, n), "element_length_weights": (n,),
+        }  # fmt: skip
+        for key, shape in shapes.items():
+            array = getattr(self, key)
+            if array is None:
+                continue
+            if array.shape != shape:
+                raise ProblemError(f"{key} has shape {array.shape} where {shape} is needed; n = {n}, k = {k}")
+            if not np.isfinite(array).all():
+                raise ProblemError(f"{key} has entries that are not finite numbers")
+        if not (self.weights > 0).all():
+            raise ProblemError(f"weights must be positive; the smallest is {self.weights.min():.3g}")
+        for item in fields(self):
+            if isinstance(array := getattr(self, item.name), np.ndarray):
+                frozen = array.copy()
+                frozen.setflags(write=False)
+                object.__setattr__(self, item.name, frozen)
+
+    @classmethod
+    def from_compliance(
+        cls,
+        compliance: ArrayLike,
+        offset: ArrayLike,
+        weights: ArrayLike | None = None,
+        *,
+        rigid_motions: ArrayLike | None = None,
+        motion_load: ArrayLike | None = None,
+        name: str = "unnamed",
+    ) -> Self:
+        """State a contact problem by numbers alone: gap = q + M p + R a >= 0, p >= 0, p·gap = 0, ℓᵀp = -load.
+
+        Parameters
+        ----------
+        compliance : (n, n) M
+        offset : (n,) q = ε + Δ1, the gap without contact
+        weights : (n,) positive tributary weights, default ones
+        rigid_motions : (n, k) R, default none
+        motion_load : (k,) load, needed with `rigid_motions`
+        name : label
+
+        Returns
+        -------
+        CondensedContact
+            Points lie on the x axis, one unit apart; the gauge is fixed, `initial_gap` is `offset`.
+        """
+        M = np.array(compliance, float, ndmin=2)
+        q = np.array(offset, float, ndmin=1)
+        n = len(q)
+        J = np.ones(n) if weights is None else np.array(weights, float)
+        R = np.zeros((n, 0)) if rigid_motions is None else np.array(rigid_motions, float).reshape(n, -1)
+        load = np.zeros(R.shape[1]) if motion_load is None else np.array(motion_load, float, ndmin=1)
+        gauge = fix_gauge(M, np.zeros(n), R, J, load)
+        return cls(
+            name=name,
+            motion_names=tuple(f"motion {j + 1}" for j in range(R.shape[1])),
+            points=np.column_stack([np.arange(n, dtype=float), np.zeros(n)]),
+            normals=np.tile([0.0, 1.0], (n, 1)),
+            zone=np.zeros(n, int),
+            run=np.zeros(n, int),
+            arc_position=np.arange(n, dtype=float),
+            run_length=np.array([np.inf]),
+            compliance=gauge.compliance,
+            free_displacement=gauge.free_displacement,
+            rigid_motions=R,
+            motion_load=load,
+            initial_gap=q,
+            weights=J,
+        )
+
+    @property
+    def size(self) -> int:
+        """Number n of contact points."""
+        return len(self.initial_gap)
+
+    @property
+    def free_motions(self) -> int:
+        """Number k of rigid motions that contact alone holds."""
+        return self.rigid_motions.shape[1]
+
+    @cached_property
+    def offset(self) -> Array:
+        """q = ε + Δ1 (n,) [L], the gap at p = 0, a = 0."""
+        return self.initial_gap + self.free_displacement
+
+    @cached_property
+    def equilibrium(self) -> Array:
+        """ℓ = J R (n, k) with the tributary weights: equilibrium is ℓᵀp = -load."""
+        return self.weights[:, None] * self.rigid_motions
+
+    @cached_property
+    def balancing_pressure(self) -> Array:
+        """p0 = -R (ℓᵀR)⁻¹ load (n,) [p]: the pressure of least weighted square in equilibrium, of either sign."""
+        R = self.rigid_motions
+        return -R @ np.linalg.solve(self.equilibrium.T @ R, self.motion_load)
+
+    @cached_property
+    def scales(self) -> ContactScales:
+        """U = max|ε + Δ1| and T = U/‖M‖∞, widened so that the balancing pressure of a free body counts too."""
+        norm = float(np.abs(self.compliance).sum(axis=1).max(initial=0.0))
+        pressure = float(np.abs(self.balancing_pressure).max(initial=0.0))
+        displacement = max(float(np.abs(self.offset).max(initial=0.0)), norm * pressure)
+        if norm > 0:
+            pressure = displacement / norm
+        return ContactScales(displacement or 1.0, pressure or 1.0)
+
+    @cached_property
+    def stiffness_rows(self) -> StiffnessRows:
+        """K u_n = B p + r, (12), with K = S, B = I, r = S Δ1 + V load; [S, V] the top of [[M, R], [ℓᵀ, 0]]⁻¹."""
+        n, k = self.rigid_motions.shape
+        U, T = self.scales
+        bordered = np.block([[self.compliance * (T / U), self.rigid_motions], [self._unit_rows.T, np.zeros((k, k))]])
+        inverse = np.linalg.inv(bordered)
+        S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / self._row_scale
+        return StiffnessRows(S, np.eye(n), S @ self.free_displacement + V @ self.motion_load)
+
+    @cached_property
+    def _row_scale(self) -> Array:
+        """Largest entry of each equilibrium row."""
+        return np.abs(self.equilibrium).max(axis=0, initial=0.0)
+
+    @property
+    def _unit_rows(self) -> Array:
+        return self.equilibrium / self._row_scale
+
+    def gap(self, pressure: Array, rigid_amplitudes: Array) -> Array:
+        """δ = ε + Δ1 + M p + R a, (n,) [L], from p (n,) [p] and a (k,)."""
+        return self.offset + self.compliance @ pressure + self.rigid_motions @ rigid_amplitudes
+
+    def weight_matrix(self, weights: Weights) -> Array:
+        """The J (n, n) [L] of the objective; `ProblemError` where the problem does not carry these weights."""
+        match weights:
+            case Weights.TRIBUTARY:
+                return np.diag(self.weights)
+            case Weights.CONSISTENT:
+                J = self.consistent_weights
+            case Weights.ELEMENT_LENGTH:
+                J = None if self.element_length_weights is None else np.diag(self.element_length_weights)
+        if J is None:
+            raise ProblemError(f"the condensed problem carries no {weights.value} weights; use tributary ones")
+        return J
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write all of it as one ``.npz`` file, whole or not at all."""
+        path = Path(path)
+        arrays = {
+            item.name: np.array(sorted(value.items())) if isinstance(value, Mapping) else np.array(value)
+            for item in fields(self)
+            if (value := getattr(self, item.name)) is not None
+        }
+        descriptor, temporary = tempfile.mkstemp(dir=path.parent, suffix=".npz")
+        try:
+            with os.fdopen(descriptor, "wb") as stream:
+                np.savez_compressed(stream, format=np.array(FILE_FORMAT), **arrays)
+            os.replace(temporary, path)
+        except BaseException:
+            os.unlink(temporary)
+            raise
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read what `save` wrote; `ProblemError` if the file is something else."""
+        try:
+            with np.load(path, allow_pickle=False) as data:
+                stored = {key: data[key] for key in data.files}
+        except (OSError, ValueError) as error:
+            raise ProblemError(f"{path}: not a readable .npz file ({error})") from error
+        if str(stored.pop("format", "")) != FILE_FORMAT:
+            raise ProblemError(f"{path}: not a condensed contact problem of format {FILE_FORMAT}; write it again")
+        texts = {key: tuple(map(str, stored.pop(key))) for key in ("zone_names", "notes", "motion_names")}
+        units = {str(key): str(label) for key, label in stored.pop("units").reshape(-1, 2)}
+        return cls(name=str(stored.pop("name")), units=units, **texts, **stored)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactSolution:
+    """What a formulation found; nothing in it is believed until `bemcontact.assessment` has recomputed it.
+
+    Parameters
+    ----------
+    formulation : name of the statement that was solved
+    solver : name of the program that solved it
+    status : how it ended
+    pressure : (n,) p [p]
+    displacement : (n,) u_n [L], the solver's own (it need not satisfy the equations)
+    rigid_amplitudes : (k,) a
+    iterations : of the solver, as it counts them
+    polished : whether the active-set step after the solver improved the result and was kept
+    smallest_eigenvalue : of the scaled Hessian on the equilibrium space, where the formulation looked at it
+    notes : what a person should know
+    """
+
+    formulation: str
+    solver: str
+    status: Status
+    pressure: Array
+    displacement: Array
+    rigid_amplitudes: Array
+    iterations: int
+    polished: bool = False
+    smallest_eigenvalue: float | None = None
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        for item in fields(self):
+            if isinstance(array := getattr(self, item.name), np.ndarray):
+                frozen = array.copy()
+                frozen.setflags(write=False)
+                object.__setattr__(self, item.name, frozen)
