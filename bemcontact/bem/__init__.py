@@ -1,0 +1,1 @@
+"""The boundary-element core: a `Problem` in, a `CondensedContact` out; plane elastostatics, quadratic elements."""
