@@ -1,0 +1,315 @@
+"""A body condensed to its contact points: u_n = Δ1 + M p + R a with ℓᵀp = -load, [SS92] (11)-(15), (35)-(38).
+
+Generalised to bodies that contact alone holds: the singular system is bordered by its free rigid motions, and
+equilibrium itself is taken exactly, ℓ = J R, load = work of the applied loads in the free motions.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack
+from scipy.optimize import nnls
+
+from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
+from bemcontact.bem.contact_points import ContactPoints, contact_points
+from bemcontact.bem.mesh import Mesh, build
+from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
+from bemcontact.bem.system import System
+from bemcontact.bem.volume_loads import ParticularSolution, particular_solution
+from bemcontact.contact import CondensedContact, Gauge, fix_gauge
+from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.problem.problem import Problem
+
+Array = NDArray[np.float64]
+
+UNSEEN = 1e-9
+"""Largest normal displacement, relative to the motion's own, of a rigid motion that no contact point sees."""
+BALANCED = 1e-9
+"""Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as none."""
+SINGULAR = 1e-15
+"""Reciprocal condition number below which the system counts as singular."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Body:
+    """A problem on its mesh, before any integral: what is known, where contact may be, how it may move rigidly.
+
+    Parameters
+    ----------
+    problem, mesh, values, points, particular : the stages up to here
+    motions : all rigid motions that the conditions leave free
+    seen : those of them, or combinations, that move contact points along the rigid normals
+    unseen : the others, that no contact point sees
+    """
+
+    problem: Problem
+    mesh: Mesh
+    values: BoundaryValues
+    points: ContactPoints
+    particular: ParticularSolution
+    motions: RigidMotions
+    seen: RigidMotions
+    unseen: RigidMotions
+
+    def motion_load(self, motions: RigidMotions) -> Array:
+        """Work (k,) of the applied loads in rigid motions [p L], with tributary weights as everywhere in equilibrium."""
+        forces = self.mesh.tributary[..., None] * self.values.traction
+        at = self.mesh.nodes[self.mesh.elements]
+        return motions.work(at, forces) + motions.work_of(self.particular.force, self.particular.moment)
+
+    @cached_property
+    def load_magnitude(self) -> float:
+        """Sum of the magnitudes of all loads [p L]."""
+        forces = self.mesh.tributary[..., None] * self.values.traction
+        return float(np.hypot(forces[..., 0], forces[..., 1]).sum() + np.hypot(*self.particular.force))
+
+    def normal_motion(self, motions: RigidMotions) -> Array:
+        """R (n, k): rigid motions seen along the rigid normals at the contact points."""
+        return _along_normals(self.points, motions)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was decided and should be known."""
+        return tuple(
+            f"the {motion} is seen by no contact point and loaded by nothing: the body is pinned against it"
+            for motion in self.unseen.describe()
+        )
+
+
+def body_of(problem: Problem) -> Body:
+    """Mesh a problem, spread its conditions, and find out whether contact can hold it.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    ProblemError
+        If the loads pull the body off its support, move it in a way that no contact resists, or do not press it on.
+    """
+    mesh = build(problem)
+    values = boundary_values(problem, mesh)
+    points = contact_points(problem, mesh, values)
+    motions = free_rigid_motions(mesh.nodes, values.displacement_given)
+    seen, unseen = _split_by_contact(points, motions)
+    body = Body(
+        problem=problem, mesh=mesh, values=values, points=points, motions=motions, seen=seen, unseen=unseen,
+        particular=particular_solution(problem.loads, problem.material, mesh),
+    )  # fmt: skip
+    _check_unseen(body)
+    _check_support(body)
+    return body
+
+
+def _along_normals(points: ContactPoints, motions: RigidMotions) -> Array:
+    return np.einsum("nx,nxk->nk", points.normals, motions.displacement(points.mesh.nodes[points.node]))
+
+
+def _split_by_contact(points: ContactPoints, motions: RigidMotions) -> tuple[RigidMotions, RigidMotions]:
+    """Separate motions that contact points see from those that none sees."""
+    R = _along_normals(points, motions)
+    _, values, vectors = np.linalg.svd(np.vstack([R, np.zeros((len(motions), len(motions)))]))
+    unseen = values <= UNSEEN * np.sqrt(len(points))
+    return motions.combined(vectors[~unseen].T).reduced(), motions.combined(vectors[unseen].T).reduced()
+
+
+def _check_unseen(body: Body) -> None:
+    """Refuse a load that works on a motion which no contact sees."""
+    work = body.motion_load(body.unseen)
+    for motion, done in zip(body.unseen.describe(), work, strict=True):
+        if abs(done) > BALANCED * body.load_magnitude:
+            raise ProblemError(
+                f"nothing holds the body against the {motion}, and the loads act along it (resultant {done:.6g}); "
+                "prescribe a displacement that holds it, or balance the loads"
+            )
+
+
+def _check_support(body: Body) -> None:
+    """Refuse loads that no pressure p >= 0 can balance, and bodies that nothing presses on."""
+    if len(body.seen) == 0:
+        return
+    ell = body.points.tributary[:, None] * body.normal_motion(body.seen)
+    load = body.motion_load(body.seen)
+    if abs(load).max() <= BALANCED * body.load_magnitude:
+        if not _can_clamp(ell):
+            words = " and the ".join(body.seen.describe())
+            raise ProblemError(
+                f"only contact holds the body against the {words}, but no load presses it onto its support, "
+                "so that its position is not determined; apply a load, or prescribe a displacement"
+            )
+        return
+    columns = ell.T / abs(ell).max(axis=1)
+    pressures, residual = nnls(columns, -load / abs(load).max())
+    if residual > BALANCED:
+        pull = body.seen.combined((columns @ pressures + load / abs(load).max())[:, None])
+        raise ProblemError(
+            f"the load pulls the body off its support: it drives the {pull.describe()[0]}, which no contact resists; "
+            "turn the load around, or prescribe a displacement that holds the body"
+        )
+
+
+def _can_clamp(ell: Array) -> bool:
+    """Whether some pressure p >= 0 other than zero is in equilibrium by itself, as in a body between two walls."""
+    columns = np.vstack([ell.T / abs(ell).max(), np.ones(len(ell))])
+    _, residual = nnls(columns, np.append(np.zeros(ell.shape[1]), 1.0))
+    return residual <= BALANCED
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Condensation:
+    """A condensed body, and what it takes to find the whole boundary again from a pressure.
+
+    Parameters
+    ----------
+    body : Body
+    system : System
+    response : (unknowns + border, 1 + n) solution for the loads alone and for unit pressures, dimensionless
+    contact : CondensedContact
+    gauge : Gauge
+    """
+
+    body: Body
+    system: System
+    response: Array
+    contact: CondensedContact
+    gauge: Gauge
+
+
+def condense(body: Body) -> Condensation:
+    """Eliminate everything but the contact points.
+
+    Parameters
+    ----------
+    body : Body
+
+    Returns
+    -------
+    Condensation
+
+    Raises
+    ------
+    SingularSystemError
+        If the equations of the body have no unique solution in floating-point arithmetic.
+    """
+    system = System(
+        mesh=body.mesh, material=body.problem.material, values=body.values, points=body.points,
+        particular=body.particular, motions=body.motions,
+    )  # fmt: skip
+    response = solve(system)
+    points = body.points
+    observed = _observe(system, response)
+    prescribed = np.sum(points.normals * body.values.displacement[points.node], axis=1)
+    gauge = fix_gauge(
+        compliance=observed[:, 1:] * (system.length / system.stress),
+        free_displacement=observed[:, 0] * system.length + prescribed,
+        rigid_motions=body.normal_motion(body.seen),
+        weights=points.tributary,
+        motion_load=body.motion_load(body.seen),
+    )
+    contact = CondensedContact(
+        name=body.problem.name,
+        zone_names=tuple(body.problem.contact_zones),
+        units={"length": body.problem.units.length, "force": body.problem.units.force},
+        notes=body.notes,
+        motion_names=body.seen.describe(),
+        points=body.mesh.nodes[points.node],
+        normals=points.normals,
+        zone=points.zone,
+        run=points.run,
+        arc_position=points.arc_position,
+        run_length=points.run_length,
+        compliance=gauge.compliance,
+        free_displacement=gauge.free_displacement,
+        rigid_motions=body.normal_motion(body.seen),
+        motion_load=body.motion_load(body.seen),
+        initial_gap=points.gap,
+        weights=points.tributary,
+        consistent_weights=points.consistent,
+        element_length_weights=points.element_length,
+    )
+    return Condensation(body=body, system=system, response=response, contact=contact, gauge=gauge)
+
+
+def _observe(system: System, response: Array) -> Array:
+    """Normal displacement (n, 1 + n) at the contact points due to the unknowns, over L0."""
+    points = system.points
+    result = np.zeros((len(points), response.shape[1]))
+    for normal, column in zip(points.normals.T, system.unknowns.displacement[points.node].T, strict=True):
+        free = column >= 0
+        result[free] += normal[free, None] * response[column[free]]
+    return result
+
+
+def assemble(system: System) -> tuple[Array, Array, float]:
+    """Set up the bordered matrix (in Fortran order, to be factorised in place), the right sides, and the 1-norm.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    matrix : (size, size)
+    right : (size, 1 + n)
+    norm : largest column sum
+    """
+    unknowns = system.unknowns.size
+    matrix = np.zeros((system.size, system.size), order="F")
+    right = np.zeros((system.size, 1 + len(system.points)), order="F")
+    sums = np.zeros(unknowns)
+    for block in system.influence.blocks(system.equations.collocation):
+        for rows in system.rows(block):
+            matrix[rows.index, :unknowns] = rows.left
+            right[rows.index] = rows.right
+            sums += abs(rows.left).sum(axis=0)
+    matrix[:unknowns, unknowns:] = system.border
+    matrix[unknowns:, :unknowns] = system.null_vectors.T
+    return matrix, right, float(sums.max())
+
+
+def solve(system: System) -> Array:
+    """Solve for the loads and for unit pressures: LU in place, then one step of refinement on rows computed anew.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    (size, 1 + n)
+
+    Raises
+    ------
+    SingularSystemError
+    """
+    matrix, right, norm = assemble(system)
+    factors, pivots, info = lapack.dgetrf(matrix, overwrite_a=True)
+    reciprocal = lapack.dgecon(factors, norm)[0] if info == 0 else 0.0
+    if reciprocal < SINGULAR:
+        raise SingularSystemError(
+            "the equations of the body have no unique solution (reciprocal condition number "
+            f"{reciprocal:.1e}); look for coincident edges, or elements of very different length side by side"
+        )
+    response, _ = lapack.dgetrs(factors, pivots, right)
+    correction, _ = lapack.dgetrs(factors, pivots, residual(system, response), overwrite_b=True)
+    return response + correction
+
+
+def residual(system: System, response: Array) -> Array:
+    """Right sides less matrix times response, (size, 1 + n), from rows computed anew: no second matrix is kept."""
+    unknowns = system.unknowns.size
+    z, s = response[:unknowns], response[unknowns:]
+    result = np.zeros_like(response, order="F")
+    for block in system.influence.blocks(system.equations.collocation):
+        for rows in system.rows(block):
+            result[rows.index] = rows.right - rows.left @ z
+    result[:unknowns] -= system.border @ s
+    result[unknowns:] = -system.null_vectors.T @ z
+    return result

@@ -1,0 +1,194 @@
+"""The contact points of a mesh: pairs (zone, node) with gap, normal, and the weights that belong to them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.bem import quadrature, shape_functions
+from bemcontact.bem.boundary_values import BoundaryValues
+from bemcontact.bem.mesh import Mesh
+from bemcontact.errors import Complaint, ProblemError
+from bemcontact.problem.problem import Problem
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+PARALLEL = 1e-9
+"""Sine of the angle below which the rigid normal lies along a prescribed axis."""
+ARC_ORDER = 12
+"""Gauss points for arc lengths and the consistent weights."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactPoints:
+    """Candidates for contact, zone by zone, run by run, along the boundary.
+
+    A node whose motion along the rigid normal is prescribed by a condition is no candidate; its pressure is zero.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    node : (n,) node of each point
+    zone : (n,) number of its zone
+    run : (n,) number of the unbroken piece of boundary it is on
+    arc_position : (n,) arc length along that piece [L]
+    run_length : (runs,) perimeter of a piece that closes on itself, else infinity [L]
+    normals : (n, 2) of the rigid surface, into the body
+    gap : (n,) ε [L]
+    element, local, point : (q,) the (element, local node) pairs that carry the pressure of each point
+    """
+
+    mesh: Mesh
+    node: IntArray
+    zone: IntArray
+    run: IntArray
+    arc_position: Array
+    run_length: Array
+    normals: Array
+    gap: Array
+    element: IntArray
+    local: IntArray
+    point: IntArray
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self.node)
+
+    @cached_property
+    def tributary(self) -> Array:
+        """(n,) [L]: Σ over elements of (1/3, 4/3, 1/3) |dx/dξ|."""
+        return np.bincount(self.point, self.mesh.tributary[self.element, self.local], len(self))
+
+    @cached_property
+    def element_length(self) -> Array:
+        """(n,) [L]: length of the element, the mean of the two where a node has two; [SS92] (26) read word for word."""
+        lengths = element_lengths(self.mesh)[self.element]
+        return np.bincount(self.point, lengths, len(self)) / np.bincount(self.point, minlength=len(self))
+
+    @cached_property
+    def consistent(self) -> Array:
+        """(n, n) [L]: Σ over elements of ∫ h hᵀ |dx/dξ| dξ, [SS92] (24)-(25)."""
+        xi, weights = quadrature.gauss_legendre(ARC_ORDER)
+        N, dN = shape_functions.values(xi), shape_functions.derivatives(xi)
+        tangents = np.einsum("gk,mkx->mgx", dN, self.mesh.nodes[self.mesh.elements])
+        jacobian = np.hypot(tangents[..., 0], tangents[..., 1])
+        local = np.einsum("gk,gl,mg,g->mkl", N, N, jacobian, weights)
+        J = np.zeros((len(self), len(self)))
+        for element in np.unique(self.element):
+            at = self.element == element
+            k, i = self.local[at], self.point[at]
+            J[np.ix_(i, i)] += local[element][np.ix_(k, k)]
+        return J
+
+
+def element_lengths(mesh: Mesh) -> Array:
+    """Arc length (m,) [L] of each element."""
+    return _half_lengths(mesh).sum(axis=1)
+
+
+def _half_lengths(mesh: Mesh) -> Array:
+    """Arc length (m, 2) [L] of the first and the second half of each element."""
+    xi, weights = quadrature.gauss_legendre(ARC_ORDER)
+    halves = []
+    for shift in (-0.5, 0.5):
+        dN = shape_functions.derivatives(xi / 2 + shift)
+        tangents = np.einsum("gk,mkx->mgx", dN, mesh.nodes[mesh.elements])
+        halves.append(np.hypot(tangents[..., 0], tangents[..., 1]) @ weights / 2)
+    return np.column_stack(halves)
+
+
+def contact_points(problem: Problem, mesh: Mesh, values: BoundaryValues) -> ContactPoints:
+    """List the contact points of all zones.
+
+    Raises
+    ------
+    ProblemError
+        If conditions prescribe the normal motion of every node of a zone.
+    """
+    halves = _half_lengths(mesh)
+    pieces: list[_Piece] = []
+    for number, (name, zone) in enumerate(problem.contact_zones.items()):
+        in_zone = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in zone.edges])
+        added = []
+        for elements, closed in _runs(mesh, in_zone):
+            nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
+            gap, normals = zone.surface.closest(mesh.nodes[nodes])
+            free = ~_held_along(normals, values.displacement_given[nodes])
+            length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
+            added.append(_Piece(number, elements, length, nodes[free], arc[free], normals[free], gap[free]))
+        if not any(len(piece.nodes) for piece in added):
+            message = "conditions prescribe the normal motion of every node of this zone; nothing is left to touch"
+            raise ProblemError(Complaint(path=("contact_zones", name, "edges"), message=message))
+        pieces += added
+    return _joined(mesh, pieces)
+
+
+class _Piece(NamedTuple):
+    """One run: its zone, elements and length, and its points."""
+
+    zone: int
+    elements: IntArray
+    length: float
+    nodes: IntArray
+    arc: Array
+    normals: Array
+    gap: Array
+
+
+def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
+    """String all runs together and find the (element, local node) pairs of every point."""
+    sizes = [len(piece.nodes) for piece in pieces]
+    elements, points = [], []
+    for first, piece in zip(np.cumsum([0, *sizes]), pieces, strict=False):
+        point_of = np.full(len(mesh.nodes), -1)
+        point_of[piece.nodes] = first + np.arange(len(piece.nodes))
+        elements.append(np.repeat(piece.elements, 3))
+        points.append(point_of[mesh.elements[piece.elements]].ravel())
+    point = np.concatenate(points)
+    used = point >= 0
+    return ContactPoints(
+        mesh=mesh,
+        node=np.concatenate([piece.nodes for piece in pieces]),
+        zone=np.repeat([piece.zone for piece in pieces], sizes),
+        run=np.repeat(np.arange(len(pieces)), sizes),
+        arc_position=np.concatenate([piece.arc for piece in pieces]),
+        run_length=np.array([piece.length for piece in pieces]),
+        normals=np.concatenate([piece.normals for piece in pieces]),
+        gap=np.concatenate([piece.gap for piece in pieces]),
+        element=np.concatenate(elements)[used],
+        local=np.tile(np.arange(3), len(point) // 3)[used],
+        point=point[used],
+    )
+
+
+def _runs(mesh: Mesh, in_zone: NDArray[np.bool_]) -> Iterator[tuple[IntArray, bool]]:
+    """Unbroken pieces of a zone: their elements in order, and whether the piece closes on itself."""
+    after = mesh.elements[:, 2] // 2
+    before = mesh.before
+    left = in_zone.copy()
+    starts = [*np.flatnonzero(in_zone & ~in_zone[before]), *np.flatnonzero(in_zone)]
+    for start in starts:
+        if not left[start]:
+            continue
+        run, element = [], start
+        while left[element]:
+            left[element] = False
+            run.append(element)
+            element = after[element]
+        yield np.array(run), bool(element == start)
+
+
+def _nodes_along(mesh: Mesh, halves: Array, elements: IntArray, *, closed: bool) -> tuple[IntArray, Array]:
+    """Nodes of a run in order, and the arc length up to each."""
+    nodes = np.append(mesh.elements[elements, :2].ravel(), mesh.elements[elements[-1], 2])
+    arc = np.append(0.0, np.cumsum(halves[elements].ravel()))
+    return (nodes[:-1], arc[:-1]) if closed else (nodes, arc)
+
+
+def _held_along(normals: Array, given: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether prescribed displacements (n, 2) span the normal."""
+    return ((abs(normals) <= PARALLEL) | given).all(axis=1)

@@ -1,0 +1,111 @@
+"""The boundary in quadratic elements."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.bem import shape_functions
+from bemcontact.problem.problem import Problem
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mesh:
+    """Three-noded elements on closed loops, the body on the left of each element's direction.
+
+    Node 2e is the start and node 2e + 1 the middle of element e: N = 2m.
+    Displacement belongs to a node; traction to an (element, local node) pair, so that it may jump.
+
+    Parameters
+    ----------
+    nodes : (N, 2) [L]
+    elements : (m, 3) nodes [start, middle, end] of each element, loop by loop
+    edge : (m,) index into `edge_names`
+    edge_names : names of the edges
+    """
+
+    nodes: Array
+    elements: IntArray
+    edge: IntArray
+    edge_names: tuple[str, ...]
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Number of unknowns, two for each node."""
+        return 2 * len(self.nodes)
+
+    @property
+    def before(self) -> IntArray:
+        """(m,) the element that ends where each element starts."""
+        before = np.empty(len(self.elements), int)
+        before[self.elements[:, 2] // 2] = np.arange(len(self.elements))
+        return before
+
+    @cached_property
+    def center(self) -> Array:
+        """Middle (2,) of the bounding box [L]."""
+        return (self.nodes.min(axis=0) + self.nodes.max(axis=0)) / 2
+
+    @cached_property
+    def size(self) -> float:
+        """Diameter of the bounding box [L]."""
+        return float(np.hypot(*np.ptp(self.nodes, axis=0)))
+
+    @cached_property
+    def tangents(self) -> Array:
+        """dx/dξ (m, 3, 2) [L] at each (element, local node)."""
+        derivatives = shape_functions.derivatives(shape_functions.NODES)
+        return np.einsum("lk,mkx->mlx", derivatives, self.nodes[self.elements])
+
+    @cached_property
+    def jacobians(self) -> Array:
+        """|dx/dξ| (m, 3) [L] at each (element, local node)."""
+        return np.hypot(self.tangents[..., 0], self.tangents[..., 1])
+
+    @cached_property
+    def normals(self) -> Array:
+        """Unit normals (m, 3, 2) out of the body at each (element, local node)."""
+        rotated = np.stack([self.tangents[..., 1], -self.tangents[..., 0]], axis=-1)
+        return rotated / self.jacobians[..., None]
+
+    @cached_property
+    def tributary(self) -> Array:
+        """Length (m, 3) [L] that belongs to each (element, local node): (1/3, 4/3, 1/3) |dx/dξ|."""
+        return shape_functions.INTEGRALS * self.jacobians
+
+
+def build(problem: Problem) -> Mesh:
+    """Divide every edge into its elements; middle nodes halve the arc length of an element.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    Mesh
+    """
+    nodes, elements, edge_of = [], [], []
+    for loop in problem.boundary.loops:
+        first = sum(map(len, nodes))
+        for edge in loop:
+            ends = edge.breakpoints(problem.mesh.refine)
+            fractions = np.empty(2 * len(ends) - 2)
+            fractions[0::2] = ends[:-1]
+            fractions[1::2] = (ends[:-1] + ends[1:]) / 2
+            nodes.append(edge.points(fractions))
+            edge_of += [edge.name] * (len(ends) - 1)
+        last = sum(map(len, nodes))
+        starts = np.arange(first, last, 2)
+        elements.append(np.column_stack([starts, starts + 1, np.append(starts[1:], first)]))
+    names = tuple(dict.fromkeys(edge_of))
+    return Mesh(
+        nodes=np.vstack(nodes),
+        elements=np.vstack(elements),
+        edge=np.array([names.index(name) for name in edge_of]),
+        edge_names=names,
+    )

@@ -1,0 +1,91 @@
+"""From a contact pressure back to displacement and traction on the whole boundary."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.bem.condense import Condensation
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BoundaryState:
+    """Displacement and traction on the boundary, element by element; traction may jump between elements.
+
+    Parameters
+    ----------
+    points : (m, 3, 2) nodes of each element [L]
+    displacement : (m, 3, 2) [L]
+    traction : (m, 3, 2) force on the body per undeformed length [p]
+    edge : (m,) index into `edge_names`
+    edge_names : names of the edges
+    force_balance : resultant of all forces on the body (and of their moments, over the radius), relative to the sum of
+        their magnitudes
+    equilibrium_slack : how far the discrete equations are from equilibrium, relative to the loads; tells of the mesh
+    """
+
+    points: Array
+    displacement: Array
+    traction: Array
+    edge: IntArray
+    edge_names: tuple[str, ...]
+    force_balance: float
+    equilibrium_slack: float
+
+
+def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:
+    """Recover the boundary from pressure and rigid amplitudes of a contact solution.
+
+    Parameters
+    ----------
+    condensation : Condensation
+    pressure : (n,) p [p]
+    rigid_amplitudes : (k,) a [L], in the fixed gauge of the condensed problem
+
+    Returns
+    -------
+    BoundaryState
+    """
+    body, system = condensation.body, condensation.system
+    mesh, gauge = body.mesh, condensation.gauge
+    scaled = np.append(1.0, pressure / system.stress)
+    z = condensation.response @ scaled
+    amplitudes = rigid_amplitudes - gauge.shift_load - gauge.shift_pressure @ pressure
+
+    displacement, traction = system.fields(z)
+    displacement += body.seen.displacement(mesh.nodes) @ amplitudes
+    points = body.points
+    traction[points.element, points.local] += pressure[points.point, None] * points.normals[points.point]
+    return BoundaryState(
+        points=mesh.nodes[mesh.elements],
+        displacement=displacement[mesh.elements],
+        traction=traction,
+        edge=mesh.edge,
+        edge_names=mesh.edge_names,
+        force_balance=_force_balance(condensation, traction),
+        equilibrium_slack=_slack(condensation, scaled),
+    )
+
+
+def _force_balance(condensation: Condensation, traction: Array) -> float:
+    """Resultant force and moment of everything that acts on the body, over the sum of the magnitudes."""
+    body = condensation.body
+    mesh, motions = body.mesh, body.motions
+    every = type(motions)(coefficients=np.eye(3), center=motions.center, radius=motions.radius)
+    forces = mesh.tributary[..., None] * traction
+    volume = body.particular
+    resultant = every.work(mesh.nodes[mesh.elements], forces) + every.work_of(volume.force, volume.moment)
+    magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + np.hypot(*volume.force)
+    return float(abs(resultant).max() / magnitude) if magnitude > 0 else 0.0
+
+
+def _slack(condensation: Condensation, scaled: Array) -> float:
+    """Border unknowns of the solution over the sum of what loads and pressures put there each by themselves."""
+    slack = condensation.response[condensation.system.unknowns.size :]
+    if len(slack) == 0:
+        return 0.0
+    total = abs(slack) @ abs(scaled)
+    return float(abs(slack @ scaled).max() / total.max()) if total.max() > 0 else 0.0

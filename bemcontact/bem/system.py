@@ -1,0 +1,307 @@
+"""The linear system of a body: conditions put into F u = G t, unknown columns only, [SS92] (9)-(10).
+
+Unknown are the displacements that no condition prescribes and the tractions where one does. Contact pressures and
+all that is prescribed stand on the right: A z = b + Σ_i p_i b_i. Displacement is never rotated at contact nodes: the
+normal displacement is observed, u_n = n·u, which is (8) read backwards and lets a node belong to two zones.
+
+Within this module lengths are over L0 and stresses over the shear modulus (see `influence`).
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from bemcontact.bem import shape_functions
+from bemcontact.bem.boundary_values import BoundaryValues
+from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.influence import Block, Collocation, Influence
+from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.rigid_motions import RigidMotions
+from bemcontact.bem.volume_loads import ParticularSolution
+from bemcontact.problem.material import Material
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+OFFSET = 2 / 3
+"""|ξ| of the collocation points inside the two elements at a node where both prescribe the displacement."""
+STRAIGHT = 1e-8
+"""Sine of the angle between two elements below which traction is continuous between them."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Unknowns:
+    """Columns of the system: x displacements, y displacements, then tractions.
+
+    Traction is continuous where an edge goes on straight. It may jump where two edges meet, and also where two curved
+    elements do, because the normal of the quadratic elements jumps there.
+
+    Parameters
+    ----------
+    displacement : (N, 2) column, -1 where prescribed
+    traction : (m, 3, 2) column, -1 where given
+    size : number of columns
+    """
+
+    displacement: IntArray
+    traction: IntArray
+    size: int
+
+
+def number_unknowns(mesh: Mesh, values: BoundaryValues) -> Unknowns:
+    """Give every unknown its column."""
+    free = ~values.displacement_given
+    displacement = np.full(free.shape, -1)
+    displacement.T[free.T] = np.arange(free.sum())
+    traction = np.full((*mesh.elements.shape, 2), -1)
+    count = int(free.sum())
+    smooth = _continues_straight(mesh)
+    for axis in range(2):
+        sought = np.flatnonzero(values.traction_unknown[:, axis])
+        own = np.arange(3 * len(mesh.elements)).reshape(-1, 3)
+        own[smooth, 0] = own[mesh.before[smooth], 2]
+        slots, index = np.unique(own[sought], return_inverse=True)
+        traction[sought, :, axis] = count + index.reshape(-1, 3)
+        count += len(slots)
+    return Unknowns(displacement=displacement, traction=traction, size=count)
+
+
+def _continues_straight(mesh: Mesh) -> NDArray[np.bool_]:
+    """Whether each element (m,) goes on in the direction of the one before it, on the same edge."""
+    before = mesh.before
+    turn = np.sum(mesh.normals[before, 2] * mesh.tangents[:, 0], axis=1) / mesh.jacobians[:, 0]
+    return (mesh.edge == mesh.edge[before]) & (abs(turn) < STRAIGHT)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Equations:
+    """Rows of the system: x equations of the collocation points, then y equations.
+
+    Parameters
+    ----------
+    collocation : Collocation
+    row : (c, 2) row of the equation of each point along each axis, -1 for none
+    """
+
+    collocation: Collocation
+    row: IntArray
+
+
+def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: NDArray[np.complex128]) -> Equations:
+    """Put collocation points at the nodes, or inside both elements where a node has two unknown tractions.
+
+    A node has one equation along each axis for its one unknown there. Where two elements meet with an unknown traction
+    each along an axis, the equation along that axis is written at ξ = 2/3 of the element before and at ξ = -2/3 of
+    the element after instead.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    unknowns : Unknowns
+    nodes : (N,) as x + iy, in the lengths of the system
+
+    Returns
+    -------
+    Equations
+    """
+    m, before = len(mesh.elements), mesh.before
+    element = np.arange(m)
+    ends, starts = unknowns.traction[before, 2], unknowns.traction[element, 0]
+    double = (ends >= 0) & (starts >= 0) & (ends != starts)  # (m, 2), at the start node of each element
+
+    wanted = np.ones((2 * m, 2), bool)
+    wanted[0::2] = ~double
+    at_nodes = np.flatnonzero(wanted.any(axis=1))
+    split = np.flatnonzero(double.any(axis=1))
+    on_split = np.column_stack([before[split], split]).ravel()
+    local_split = np.tile([OFFSET, -OFFSET], len(split))
+    shapes = shape_functions.values(local_split)
+    base = np.repeat(nodes[2 * split], 2)
+    offset = np.sum(shapes * (nodes[mesh.elements[on_split]] - base[:, None]), axis=1)
+
+    is_corner = at_nodes % 2 == 0
+    corner = np.where(is_corner, at_nodes // 2, -1)
+    number = np.arange(len(at_nodes))
+    collocation = Collocation(
+        base=np.concatenate([nodes[at_nodes], base]),
+        offset=np.concatenate([np.zeros(len(at_nodes)), offset]),
+        on_point=np.concatenate([number, number[is_corner], len(at_nodes) + np.arange(2 * len(split))]),
+        on_element=np.concatenate([at_nodes // 2, before[corner[is_corner]], on_split]),
+        on_local=np.concatenate([np.where(is_corner, -1.0, 0.0), np.ones(is_corner.sum()), local_split]),
+        corner=np.concatenate([corner, np.full(2 * len(split), -1)]),
+    )
+    active = np.concatenate([wanted[at_nodes], np.repeat(double[split], 2, axis=0)])
+    row = np.full(active.shape, -1)
+    row.T[active.T] = np.arange(active.sum())
+    return Equations(collocation=collocation, row=row)
+
+
+class Rows(NamedTuple):
+    """Some rows of the system: A (q, unknowns), and b and the b_i side by side (q, 1 + n)."""
+
+    index: slice
+    left: Array
+    right: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class System:
+    """A z + W s = b + Σ_i p_i b_i, Vᵀ z = 0: the equations of a body with k rigid motions that its conditions leave free.
+
+    V are the free motions, right null vectors of A; W the same motions at the collocation points. The slack s measures
+    by how much the discrete equations and equilibrium disagree; it vanishes as the mesh is refined.
+
+    Parameters
+    ----------
+    mesh, material, values, points, particular, motions : what the body is and what is known of it
+    """
+
+    mesh: Mesh
+    material: Material
+    values: BoundaryValues
+    points: ContactPoints
+    particular: ParticularSolution
+    motions: RigidMotions
+
+    @cached_property
+    def influence(self) -> Influence:
+        """The integrals, for those columns of G that something multiplies."""
+        needed = (self.unknowns.traction >= 0).any(axis=(1, 2)) | self._known_traction.any(axis=(1, 2))
+        needed[self.points.element] = True
+        return Influence(
+            mesh=self.mesh,
+            poisson_ratio=self.material.effective_poisson_ratio,
+            traction_elements=np.flatnonzero(needed),
+        )
+
+    @cached_property
+    def unknowns(self) -> Unknowns:
+        """The columns."""
+        return number_unknowns(self.mesh, self.values)
+
+    @cached_property
+    def equations(self) -> Equations:
+        """The rows."""
+        return place_equations(self.mesh, self.unknowns, self.influence.nodes)
+
+    @property
+    def size(self) -> int:
+        """Number of rows and columns, those of the border included."""
+        return self.unknowns.size + len(self.motions)
+
+    @property
+    def length(self) -> float:
+        """L0 [L]."""
+        return self.influence.length
+
+    @property
+    def stress(self) -> float:
+        """The shear modulus [p]."""
+        return self.material.shear_modulus
+
+    @cached_property
+    def _known_traction(self) -> Array:
+        """What G multiplies on the right (m, 3, 2): prescribed traction less that of the particular solution."""
+        return (self.values.traction - self.particular.traction) / self.stress
+
+    @cached_property
+    def _known_displacement(self) -> Array:
+        """What F multiplies on the right (N, 2), with the sign it has on the left."""
+        return (self.values.displacement - self.particular.displacement) / self.length
+
+    @cached_property
+    def _jacobians(self) -> Array:
+        """|dx/dξ| (e, 3) on the elements of `influence.traction_elements`, over L0."""
+        return self.mesh.jacobians[self.influence.traction_elements] / self.length
+
+    @cached_property
+    def _unit_tractions(self) -> list[sparse.csr_array]:
+        """Traction times Jacobian (3e, unknowns) along each axis for unit unknowns."""
+        columns = self.unknowns.traction[self.influence.traction_elements]
+        return [self._incidence(columns[..., axis], np.ones(self.unknowns.size)) for axis in range(2)]
+
+    @cached_property
+    def _unit_pressures(self) -> list[sparse.csr_array]:
+        """Traction times Jacobian (3e, n) along each axis for unit pressures: t = p n."""
+        columns = np.full(self.mesh.elements.shape, -1)
+        columns[self.points.element, self.points.local] = self.points.point
+        return [self._incidence(columns[self.influence.traction_elements], n) for n in self.points.normals.T]
+
+    def _incidence(self, columns: IntArray, factors: Array) -> sparse.csr_array:
+        """Jacobian times the factor of its column, at each (element, local node) that has a column (e, 3)."""
+        at = np.flatnonzero(columns.ravel() >= 0)
+        column = columns.ravel()[at]
+        values = self._jacobians.ravel()[at] * factors[column]
+        return sparse.csr_array((values, (at, column)), shape=(columns.size, len(factors)))
+
+    def rows(self, block: Block) -> Iterator[Rows]:
+        """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations.
+
+        Yields
+        ------
+        Rows
+        """
+        G_xx, G_xy, G_yy = (G.reshape(len(G), -1) for G in (block.G_xx, block.G_xy, block.G_yy))
+        for axis, F, G in ((0, (block.F_xx, block.F_xy), (G_xx, G_xy)), (1, (block.F_yx, block.F_yy), (G_xy, G_yy))):
+            index = self.equations.row[block.rows, axis]
+            used = index >= 0
+            if used.any():
+                first = int(index[used][0])
+                F, G = ([part if used.all() else part[used] for part in parts] for parts in (F, G))
+                yield Rows(slice(first, first + int(used.sum())), self._left(F, G), self._right(F, G))
+
+    def _left(self, F: Sequence[Array], G: Sequence[Array]) -> Array:
+        """Columns of the unknowns (q, unknowns) from those of x and y displacement and traction."""
+        A = np.empty((len(F[0]), self.unknowns.size))
+        first = 0
+        for part, column in zip(F, self.unknowns.displacement.T, strict=True):
+            free = np.flatnonzero(column >= 0)
+            A[:, first : first + len(free)] = part if len(free) == len(column) else part[:, free]
+            first += len(free)
+        if first < self.unknowns.size:
+            A[:, first:] = -sum(_times(g, unit[:, first:]) for g, unit in zip(G, self._unit_tractions, strict=True))
+        return A
+
+    def _right(self, F: Sequence[Array], G: Sequence[Array]) -> Array:
+        """The right sides b, b_i (q, 1 + n)."""
+        known = self._known_traction[self.influence.traction_elements] * self._jacobians[..., None]
+        b = sum(g @ t for g, t in zip(G, known.reshape(-1, 2).T, strict=True))
+        b -= sum(f @ u for f, u in zip(F, self._known_displacement.T, strict=True))
+        return np.column_stack([b, sum(_times(g, unit) for g, unit in zip(G, self._unit_pressures, strict=True))])
+
+    @cached_property
+    def null_vectors(self) -> Array:
+        """V (unknowns, k): the free motions as columns of unknowns."""
+        V = np.zeros((self.unknowns.size, len(self.motions)))
+        used = self.unknowns.displacement >= 0
+        V[self.unknowns.displacement[used]] = self.motions.displacement(self.mesh.nodes)[used]
+        return V
+
+    @cached_property
+    def border(self) -> Array:
+        """W (unknowns, k): the free motions at the collocation points, as rows of equations."""
+        points = self.equations.collocation.points * self.length
+        at = np.column_stack([points.real, points.imag]) + self.mesh.center
+        W = np.zeros((self.unknowns.size, len(self.motions)))
+        used = self.equations.row >= 0
+        W[self.equations.row[used]] = self.motions.displacement(at)[used]
+        return W
+
+    def fields(self, z: Array) -> tuple[Array, Array]:
+        """Displacement (N, 2) [L] and traction (m, 3, 2) [p] of unknowns z and all that is prescribed, less pressures."""
+        displacement, traction = self.values.displacement.copy(), self.values.traction.copy()
+        sought = self.unknowns.displacement >= 0
+        displacement[sought] = z[self.unknowns.displacement[sought]] * self.length
+        sought = self.unknowns.traction >= 0
+        traction[sought] = z[self.unknowns.traction[sought]] * self.stress
+        return displacement, traction
+
+
+def _times(dense: Array, matrix: sparse.csr_array) -> Array:
+    """Dense times sparse."""
+    return np.asarray((matrix.T @ dense.T).T)
