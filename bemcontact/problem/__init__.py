@@ -1,0 +1,35 @@
+"""What is asked: the body, what acts on it, and the rigid surfaces that it may touch; frozen, checked, no numerics."""
+
+from bemcontact.problem.boundary import Boundary
+from bemcontact.problem.conditions import AxisFields, Condition, Field
+from bemcontact.problem.curves import Edge
+from bemcontact.problem.geometry import Arc, EllipseArc, Grading, Line
+from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
+from bemcontact.problem.material import Material
+from bemcontact.problem.problem import ContactZone, MeshDensity, Problem, Units
+from bemcontact.problem.rigid_surface import Circle, Closest, Plane, Polyline
+
+__all__ = [
+    "Arc",
+    "AxisFields",
+    "Boundary",
+    "Centrifugal",
+    "Circle",
+    "Closest",
+    "Condition",
+    "ContactZone",
+    "Edge",
+    "EllipseArc",
+    "Field",
+    "Grading",
+    "Gravity",
+    "Line",
+    "Loads",
+    "Material",
+    "MeshDensity",
+    "Plane",
+    "Polyline",
+    "Problem",
+    "Temperature",
+    "Units",
+]

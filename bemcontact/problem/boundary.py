@@ -1,0 +1,170 @@
+"""The outline of the body: closed loops of named edges, the outer one anticlockwise, holes clockwise."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+from math import dist
+from typing import Self
+
+import numpy as np
+from pydantic import model_validator
+
+from bemcontact.errors import Complaint, Path, ProblemError, dotted
+from bemcontact.problem.curves import CircularArc, Edge
+from bemcontact.problem.geometry import AnyEdge, Arc, StatedLoop
+from bemcontact.problem.loops import loop_complaints
+from bemcontact.problem.stated import Point, Stated, validation_error
+
+RADIUS_TOLERANCE = 1e-6
+"""Relative difference of the two radii of an arc given by its ends: coordinates are written with a few digits."""
+JOINT_TOLERANCE = 1e-9
+"""Distance of two edge ends, over the size of the body, below which they are one point."""
+
+
+class Boundary(Stated):
+    """The outline of the body.
+
+    Raises
+    ------
+    ProblemError
+        If a loop is open, crosses itself or another one, runs the wrong way round, or an edge has no length.
+    """
+
+    outer: StatedLoop
+    """The edges of the outer loop, anticlockwise: the body is on the left."""
+    holes: tuple[StatedLoop, ...] = ()
+    """The loops of edges around each hole, clockwise: the body is on the left."""
+
+    @model_validator(mode="after")
+    def _bounds_a_body(self) -> Self:
+        """Refuse loops that bound no body; a later check needs what an earlier one makes sure of."""
+        stated = [*zip(self.loop_paths, self.stated_loops, strict=True)]
+        complaints = [
+            *_doubled_names(stated),
+            *(complaint for path, loop in stated for complaint in _unknown_joints(path, loop)),
+        ]
+        if not complaints:
+            complaints = [complaint for path, loop in stated for complaint in _ill_joined(path, loop, self.size)]
+        if not complaints:
+            complaints = loop_complaints(self.loops, self.loop_paths)
+        if complaints:
+            raise validation_error("Boundary", complaints)
+        return self
+
+    @property
+    def stated_loops(self) -> tuple[tuple[AnyEdge, ...], ...]:
+        """All loops as they were written, the outer one first."""
+        return (self.outer, *self.holes)
+
+    @property
+    def loop_paths(self) -> tuple[Path, ...]:
+        """Path of keys from here to each loop."""
+        return (("outer",), *(("holes", i) for i in range(len(self.holes))))
+
+    @cached_property
+    def loops(self) -> tuple[tuple[Edge, ...], ...]:
+        """All loops with both ends of their edges known, the outer one first."""
+        return tuple(_joined(loop) for loop in self.stated_loops)
+
+    @property
+    def edges(self) -> tuple[Edge, ...]:
+        """All edges, loop by loop."""
+        return tuple(edge for loop in self.loops for edge in loop)
+
+    @cached_property
+    def size(self) -> float:
+        """Diameter of the bounding box [L]."""
+        points = np.vstack([edge.polyline() for edge in self.edges])
+        return float(np.hypot(*np.ptp(points, axis=0)))
+
+
+def _doubled_names(loops: Iterable[tuple[Path, Sequence[AnyEdge]]]) -> Iterator[Complaint]:
+    """Find edges that share a name."""
+    first: dict[str, Path] = {}
+    for path, loop in loops:
+        for i, edge in enumerate(loop):
+            if edge.name in first:
+                message = f"the name '{edge.name}' is taken by {dotted(first[edge.name])}; give each edge its own"
+                yield Complaint(path=(*path, i, "name"), message=message)
+            first.setdefault(edge.name, (*path, i))
+
+
+def _unknown_joints(path: Path, loop: Sequence[AnyEdge]) -> Iterator[Complaint]:
+    """Find joints where neither edge says where it is."""
+    for i, edge in enumerate(loop):
+        before = loop[i - 1]
+        if before.own_ends()[1] is None and edge.own_ends()[0] is None:
+            message = f"neither the start of '{edge.name}' nor the end of '{before.name}' before it is given; give one"
+            yield Complaint(path=(*path, i), message=message)
+
+
+def _ill_joined(path: Path, loop: Sequence[AnyEdge], size: float) -> Iterator[Complaint]:
+    """Find gaps between edges, edges without length, and arcs whose ends are not on one circle."""
+    for i, (edge, joined) in enumerate(zip(loop, _joined(loop), strict=True)):
+        before, start = loop[i - 1], edge.own_ends()[0]
+        end = before.own_ends()[1]
+        if start and end and dist(start, end) > JOINT_TOLERANCE * size:
+            yield Complaint(path=(*path, i, *_start_key(edge)), message=_gap(edge, before, start, end))
+        elif joined.length <= JOINT_TOLERANCE * size:
+            yield Complaint(path=(*path, i), message=f"'{edge.name}' has no length; {_way_out_of_no_length(edge)}")
+        elif isinstance(joined.curve, CircularArc):
+            first, last = joined.curve.radii
+            if abs(first - last) > RADIUS_TOLERANCE * max(first, last):
+                distances = f"the start is {first:.9g} from the center, but the end {last:.9g}"
+                message = f"'{edge.name}' is no circular arc: {distances}; correct one point or the center"
+                yield Complaint(path=(*path, i), message=message)
+
+
+def _gap(edge: AnyEdge, before: AnyEdge, start: Point, end: Point) -> str:
+    """Say how far an edge begins from where the one before ends."""
+    where = f"'{edge.name}' starts at {_written(start)}, but '{before.name}' before it ends at {_written(end)}"
+    way_out = "leave the start out to join them" if edge.states_points() else "correct one of them"
+    if not edge.states_points() and before.states_points():
+        way_out = f"leave the end of '{before.name}' out to join them"
+    return f"the loop is open: {where}, {dist(start, end):.6g} away; {way_out}"
+
+
+def _start_key(edge: AnyEdge) -> Path:
+    """Key that says where an edge starts."""
+    return ("start",) if edge.states_points() else ("angles",)
+
+
+def _way_out_of_no_length(edge: AnyEdge) -> str:
+    if isinstance(edge, Arc):
+        return "for a full circle give radius and angles: [0, 360]"
+    return "its ends are the same point"
+
+
+def _written(point: Point) -> str:
+    return f"({point[0]:.9g}, {point[1]:.9g})"
+
+
+def _joint(before: AnyEdge, edge: AnyEdge) -> Point:
+    """Where two edges meet; coordinates that were written win over computed ones."""
+    end, start = before.own_ends()[1], edge.own_ends()[0]
+    if start is None or (end is not None and before.states_points()):
+        start = end
+    if start is None:
+        raise ProblemError(f"nothing says where '{before.name}' ends and '{edge.name}' begins")
+    return start
+
+
+def _joined(loop: Sequence[AnyEdge]) -> tuple[Edge, ...]:
+    """Give each edge of a loop its two ends."""
+    joints = [_joint(loop[i - 1], edge) for i, edge in enumerate(loop)]
+    edges = []
+    for i, edge in enumerate(loop):
+        start, end = joints[i], joints[(i + 1) % len(loop)]
+        ratio, towards = (edge.grading.ratio, edge.grading.towards) if edge.grading else (1.0, "start")
+        curve = edge.curve(start, end)
+        edges.append(
+            Edge(
+                name=edge.name,
+                curve=curve,
+                start=start,
+                end=end,
+                elements=edge.elements,
+                ratio=ratio,
+                towards=towards,
+            )
+        )
+    return tuple(edges)

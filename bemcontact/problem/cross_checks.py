@@ -1,0 +1,139 @@
+"""Checks of the parts of a problem against each other: names that must exist, and geometry that must fit."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import degrees, radians
+
+import numpy as np
+
+from bemcontact.errors import Complaint, Path
+from bemcontact.problem.boundary import Boundary
+from bemcontact.problem.curves import Edge
+from bemcontact.problem.geometry import MOST_ELEMENTS
+from bemcontact.problem.rigid_surface import Circle, Plane, Polyline
+from bemcontact.problem.stated import KeyComplaint, unknown_word
+
+LARGEST_TURNING = radians(60)
+"""Largest angle by which a quadratic element may turn: beyond it the element strays visibly from its arc."""
+
+ALONG = 0.5
+"""Cosine between two normals above which they point the same way, for an edge that should face its surface."""
+
+
+def name_complaints(
+    edges: Sequence[str], conditions: Iterable[str], zones: Mapping[str, Sequence[str]]
+) -> list[Complaint]:
+    """Check that conditions and contact zones refer to edges that there are, and share none.
+
+    Parameters
+    ----------
+    edges : names of all edges
+    conditions : names of the edges with a condition
+    zones : names of the edges of each contact zone
+    """
+    complaints: list[Complaint] = []
+    for name in conditions:
+        if name not in edges:
+            complaints.append(KeyComplaint(path=("conditions", name), message=unknown_word("edge", name, edges)))
+    zone_of: dict[str, str] = {}
+    for zone, members in zones.items():
+        for i, name in enumerate(members):
+            path = ("contact_zones", zone, "edges", i)
+            if name not in edges:
+                complaints.append(Complaint(path=path, message=unknown_word("edge", name, edges)))
+            elif name in zone_of:
+                complaints.append(Complaint(path=path, message=_twice(name, zone_of[name], zone)))
+            zone_of.setdefault(name, zone)
+    for name in conditions:
+        if name in zone_of:
+            message = f"edge '{name}' is in the contact zone '{zone_of[name]}' and can carry no condition; remove one"
+            complaints.append(KeyComplaint(path=("conditions", name), message=message))
+    return complaints
+
+
+def _twice(edge: str, first: str, second: str) -> str:
+    if first == second:
+        return f"edge '{edge}' is listed twice in the zone; list it once"
+    return f"edge '{edge}' is in the contact zone '{first}' already; an edge can touch one surface only"
+
+
+def mesh_complaints(boundary: Boundary, refine: int) -> list[Complaint]:
+    """Check that elements are neither too many for a dense matrix, nor too few for the curves.
+
+    Parameters
+    ----------
+    boundary : with the elements of each edge
+    refine : number of parts into which each of them is cut
+    """
+    total = refine * sum(edge.elements for edge in boundary.edges)
+    if total > MOST_ELEMENTS:
+        message = f"{total} elements are more than a dense matrix can hold; take at most {MOST_ELEMENTS}"
+        return [Complaint(path=("mesh", "refine") if refine > 1 else ("boundary",), message=message)]
+    return [
+        Complaint(path=(*path, "elements"), message=_turns_too_much(edge, refine))
+        for edge, path in _placed_edges(boundary)
+        if edge.turning(refine) > LARGEST_TURNING * (1 + 1e-9)
+    ]
+
+
+def _placed_edges(boundary: Boundary) -> Iterator[tuple[Edge, Path]]:
+    """List all edges with their paths in the problem."""
+    for path, loop in zip(boundary.loop_paths, boundary.loops, strict=True):
+        for i, edge in enumerate(loop):
+            yield edge, ("boundary", *path, i)
+
+
+def _turns_too_much(edge: Edge, refine: int) -> str:
+    """Say by how much one element turns, and how many elements there should be."""
+    limit = f"{degrees(LARGEST_TURNING):.0f}"
+    found = f"too few elements for the bend: one of '{edge.name}' turns by {degrees(edge.turning(refine)):.0f} degrees"
+    for elements in range(edge.elements + 1, edge.elements + 200):
+        if replace(edge, elements=elements).turning(refine) <= LARGEST_TURNING * (1 + 1e-9):
+            return f"{found}, more than {limit}; give it {elements} elements or more"
+    return f"{found}, more than {limit}; give it more elements, and grade them towards the bend"
+
+
+def facing_complaints(
+    boundary: Boundary, zones: Mapping[str, tuple[Plane | Circle | Polyline, Sequence[str]]]
+) -> list[Complaint]:
+    """Check that the normal of each rigid surface points into the body, where they are closest to each other.
+
+    Parameters
+    ----------
+    boundary : with the edges of the zones
+    zones : surface and names of the edges of each contact zone
+    """
+    edges = {edge.name: edge for edge in boundary.edges}
+    complaints = []
+    for zone, (surface, names) in zones.items():
+        facing = [_facing(edges[name], surface) for name in names]
+        _, cosine, name = min((*closest, name) for closest, name in zip(facing, names, strict=True))
+        if cosine > ALONG:
+            message = _faces_away(name, surface)
+            complaints.append(Complaint(path=("contact_zones", zone, "surface"), message=message))
+    return complaints
+
+
+def _facing(edge: Edge, surface: Plane | Circle | Polyline) -> tuple[float, float]:
+    """Least distance of an edge from a surface, and the cosine between its outward and the surface's normal there."""
+    fractions = np.linspace(0, 1, 8 * edge.elements + 1)
+    direction = edge.directions(fractions)
+    outward = np.column_stack([direction[:, 1], -direction[:, 0]])
+    gap, normals = surface.closest(edge.points(fractions))
+    cosine = np.einsum("ki,ki->k", normals, outward)
+    closest = np.argmin(np.abs(gap))
+    return float(np.abs(gap[closest])), float(cosine[closest])
+
+
+def _faces_away(edge: str, surface: Plane | Circle | Polyline) -> str:
+    """Say how the surface is to be turned round."""
+    match surface:
+        case Plane():
+            x, y = surface.normal
+            way_out = f"turn the normal round: [{0 - x:g}, {0 - y:g}]"
+        case Circle():
+            way_out = f"is the body {'inside' if surface.body == 'outside' else 'outside'} the circle?"
+        case Polyline():
+            way_out = "list its points in the opposite order, so that the body is on their left"
+    rule = "the rigid surface's normal must point from the surface into the body"
+    return f"{rule}, but at '{edge}' it points out of it; {way_out}"

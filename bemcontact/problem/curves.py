@@ -1,0 +1,255 @@
+"""The curves of a boundary once all their ends are known: length, points and directions by fraction of arc length."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import atan2, cos, degrees, fsum, hypot, pi, radians, sin
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ellipeinc
+
+Array = NDArray[np.float64]
+Pair = tuple[float, float]
+
+
+class Curve(Protocol):
+    """A plane curve, run through at constant speed."""
+
+    @property
+    def length(self) -> float:
+        """Arc length [L]."""
+        ...
+
+    def at(self, fractions: Array) -> Array:
+        """Points (k, 2) at fractions (k,) of the arc length."""
+        ...
+
+    def tangent_angle(self, fractions: Array) -> Array:
+        """Angle (k,) of the direction of travel to the x axis in radians, continuous along the curve."""
+        ...
+
+    def polyline(self) -> Array:
+        """Points (k, 2) from start to end between which the curve is as good as straight."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Segment:
+    """The straight line from start to end."""
+
+    start: Pair
+    end: Pair
+
+    @property
+    def length(self) -> float:
+        """Arc length [L]."""
+        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+
+    def at(self, fractions: Array) -> Array:
+        """Points (k, 2) at fractions (k,) of the arc length."""
+        start, end = np.array(self.start), np.array(self.end)
+        return start + fractions[:, None] * (end - start)
+
+    def tangent_angle(self, fractions: Array) -> Array:
+        """Angle (k,) of the direction of travel to the x axis in radians."""
+        return np.full(len(fractions), atan2(self.end[1] - self.start[1], self.end[0] - self.start[0]))
+
+    def polyline(self) -> Array:
+        """Both ends (2, 2)."""
+        return np.array([self.start, self.end])
+
+
+@dataclass(frozen=True, kw_only=True)
+class CircularArc:
+    """center + r (cos θ, sin θ) with θ from start_angle over sweep, in radians, anticlockwise if sweep > 0.
+
+    `radii` are r at both ends: equal, or as equal as the coordinates of the ends were written.
+    """
+
+    center: Pair
+    radii: Pair
+    start_angle: float
+    sweep: float
+
+    @property
+    def length(self) -> float:
+        """Arc length [L]."""
+        return abs(self.sweep) * (self.radii[0] + self.radii[1]) / 2
+
+    def at(self, fractions: Array) -> Array:
+        """Points (k, 2) at fractions (k,) of the arc length."""
+        theta = self.start_angle + fractions * self.sweep
+        radius = self.radii[0] + fractions * (self.radii[1] - self.radii[0])
+        return np.array(self.center) + radius[:, None] * np.column_stack([np.cos(theta), np.sin(theta)])
+
+    def tangent_angle(self, fractions: Array) -> Array:
+        """Angle (k,) of the direction of travel to the x axis in radians, continuous along the arc."""
+        return self.start_angle + fractions * self.sweep + np.copysign(pi / 2, self.sweep)
+
+    def polyline(self) -> Array:
+        """Points (k, 2) about one degree apart: the chords stray from the arc by 4e-5 of the radius."""
+        return self.at(np.linspace(0, 1, _chords(self.sweep) + 1))
+
+
+@dataclass(frozen=True, kw_only=True)
+class EllipticArc:
+    """center + rotation · (a cos t, b sin t), t from start_angle over sweep: eccentric angles in radians."""
+
+    center: Pair
+    semi_axes: Pair
+    rotation: float
+    start_angle: float
+    sweep: float
+
+    @property
+    def length(self) -> float:
+        """Arc length [L], by the incomplete elliptic integral of the second kind."""
+        first, last = self._arc_length(self.start_angle + np.array([0.0, self.sweep]))
+        return float(abs(last - first))
+
+    def at(self, fractions: Array) -> Array:
+        """Points (k, 2) at fractions (k,) of the arc length."""
+        return self._at_eccentric_angle(self._eccentric_angle(fractions))
+
+    def tangent_angle(self, fractions: Array) -> Array:
+        """Angle (k,) of the direction of travel to the x axis in radians, continuous along the arc."""
+        a, b = self.semi_axes
+        t = self._eccentric_angle(fractions)
+        # The polar angle of the normal (b cos t, a sin t) never strays from t by a quarter turn.
+        stray = np.arctan2((a - b) * np.sin(t) * np.cos(t), b * np.cos(t) ** 2 + a * np.sin(t) ** 2)
+        return t + stray + self.rotation + np.copysign(pi / 2, self.sweep)
+
+    def polyline(self) -> Array:
+        """Points (k, 2) about one degree of eccentric angle apart."""
+        return self._at_eccentric_angle(self.start_angle + np.linspace(0, 1, _chords(self.sweep) + 1) * self.sweep)
+
+    def _at_eccentric_angle(self, t: Array) -> Array:
+        """Points (k, 2) at eccentric angles t (k,)."""
+        a, b = self.semi_axes
+        x, y = a * np.cos(t), b * np.sin(t)
+        c, s = cos(self.rotation), sin(self.rotation)
+        return np.array(self.center) + np.column_stack([c * x - s * y, s * x + c * y])
+
+    def _arc_length(self, t: Array) -> Array:
+        """Arc length from a fixed point to eccentric angle t, written so that the parameter m is in [0, 1)."""
+        a, b = self.semi_axes
+        if a > b:
+            return a * ellipeinc(t - pi / 2, 1 - (b / a) ** 2)
+        return b * ellipeinc(t, 1 - (a / b) ** 2)
+
+    def _speed(self, t: Array) -> Array:
+        return np.hypot(self.semi_axes[0] * np.sin(t), self.semi_axes[1] * np.cos(t))
+
+    def _eccentric_angle(self, fractions: Array) -> Array:
+        """Invert the arc length by Newton's method, by bisection where a step would leave the bracket."""
+        ends = self.start_angle + np.array([0.0, self.sweep])
+        low, high = np.full(len(fractions), ends.min()), np.full(len(fractions), ends.max())
+        first, last = self._arc_length(ends)
+        wanted = first + fractions * (last - first)
+        t = self.start_angle + fractions * self.sweep
+        for _ in range(60):
+            excess = self._arc_length(t) - wanted
+            low, high = np.where(excess < 0, t, low), np.where(excess > 0, t, high)
+            step = t - excess / self._speed(t)
+            t_next = np.where((step >= low) & (step <= high), step, (low + high) / 2)
+            if np.all(np.abs(t_next - t) <= 4e-16 * (1 + np.abs(t))):
+                break
+            t = t_next
+        return t
+
+
+@dataclass(frozen=True, kw_only=True)
+class Edge:
+    """A named piece of a boundary with both ends known, and how it is divided into elements.
+
+    Parameters
+    ----------
+    name : name of the edge
+    curve : its shape
+    start, end : ends [L]; the very same numbers as the neighbours have
+    elements : number of elements
+    ratio : longest over shortest element, in geometric progression
+    towards : where the short elements are: "start", "end", or "both"
+    """
+
+    name: str
+    curve: Curve
+    start: Pair
+    end: Pair
+    elements: int
+    ratio: float = 1.0
+    towards: str = "start"
+
+    @property
+    def length(self) -> float:
+        """Arc length [L]."""
+        return self.curve.length
+
+    def points(self, fractions: Array) -> Array:
+        """Points (k, 2) [L] at fractions (k,) in [0, 1] of the arc length; exactly the ends at 0 and 1."""
+        fractions = np.asarray(fractions, float)
+        points = self.curve.at(fractions)
+        points[fractions == 0] = self.start
+        points[fractions == 1] = self.end
+        return points
+
+    def directions(self, fractions: Array) -> Array:
+        """Unit tangents (k, 2) at fractions (k,); the body is on their left, its outward normal is (d_y, -d_x)."""
+        angle = self.curve.tangent_angle(np.asarray(fractions, float))
+        return np.column_stack([np.cos(angle), np.sin(angle)])
+
+    @cached_property
+    def _coarse_breakpoints(self) -> Array:
+        lengths = graded_lengths(self.elements, self.ratio, self.towards)
+        breakpoints = np.concatenate([[0.0], np.cumsum(lengths)])
+        breakpoints[-1] = 1.0
+        return breakpoints
+
+    def breakpoints(self, refine: int = 1) -> Array:
+        """Fractions (elements · refine + 1,) of the element ends, each stated element cut into `refine` equal parts."""
+        coarse = self._coarse_breakpoints
+        parts = np.arange(refine) / refine
+        fine = coarse[:-1, None] + np.diff(coarse)[:, None] * parts
+        return np.append(fine.ravel(), 1.0)
+
+    def turning(self, refine: int = 1) -> float:
+        """Largest angle in radians by which one element turns."""
+        return float(np.abs(np.diff(self.curve.tangent_angle(self.breakpoints(refine)))).max())
+
+    def polyline(self) -> Array:
+        """Points (k, 2) from start to end between which the edge is as good as straight."""
+        points = self.curve.polyline()
+        points[0], points[-1] = self.start, self.end
+        return points
+
+
+def graded_lengths(elements: int, ratio: float, towards: str) -> Array:
+    """Lengths (elements,) of sum 1 in geometric progression, longest : shortest = ratio.
+
+    Parameters
+    ----------
+    elements : number of elements, at least 1
+    ratio : longest over shortest
+    towards : end of the short elements: "start", "end", or "both"
+    """
+    place = np.arange(elements)
+    if towards == "end":
+        place = place[::-1]
+    if towards == "both":
+        place = np.minimum(place, place[::-1])
+    lengths = ratio ** (place / max(place.max(), 1))
+    return lengths / fsum(lengths)
+
+
+def _chords(sweep: float) -> int:
+    """Number of chords for an arc of this sweep in radians, of which none exceeds a degree."""
+    return int(degrees(abs(sweep))) + 1
+
+
+def unit_vector(angle: float) -> Pair:
+    """(cos, sin) of an angle in degrees, without round-off at right angles."""
+    quarter, rest = divmod(angle, 90.0)
+    if rest == 0:
+        return [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][int(quarter) % 4]
+    return cos(radians(angle)), sin(radians(angle))

@@ -1,0 +1,193 @@
+"""Edges as they are written: a line, an arc of a circle or of an ellipse, with its number of elements."""
+
+from math import atan2, hypot, pi, radians
+from typing import Annotated, Literal, Self
+
+from pydantic import ConfigDict, Field, WrapValidator, model_validator
+
+from bemcontact.problem.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
+from bemcontact.problem.stated import (
+    Count,
+    Flag,
+    Name,
+    Number,
+    Point,
+    Stated,
+    complain,
+    kind_chooser,
+    require_kind,
+)
+
+MOST_ELEMENTS = 10_000
+"""On one boundary; the dense matrix of so many quadratic elements takes 13 gigabytes."""
+
+
+class Grading(Stated):
+    """Element lengths in geometric progression along an edge."""
+
+    ratio: Annotated[Number, Field(ge=1, le=1e6)]
+    """The ratio of the longest element to the shortest, such as 4."""
+    towards: Literal["start", "end", "both"]
+    """The end of the edge with the short elements: start, end, or both."""
+
+
+class _StatedEdge(Stated):
+    """What every edge states, whatever its shape."""
+
+    name: Name
+    """The name of the edge, by which conditions and contact zones refer to it."""
+    elements: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)]
+    """The number of boundary elements along the edge, such as elements: 8."""
+    grading: Grading | None = None
+    """Grading of the element lengths; equal lengths if left out."""
+
+
+class Line(_StatedEdge):
+    """A straight edge. An end that is left out is where the neighbouring edge begins or ends."""
+
+    kind: Literal["line"] = "line"
+    """The shape of the edge: line, arc, or ellipse."""
+    start: Point | None = None
+    """The first point [x, y]."""
+    end: Point | None = None
+    """The last point [x, y]."""
+
+    def own_ends(self) -> tuple[Point | None, Point | None]:
+        """Both ends as far as this edge knows them by itself."""
+        return self.start, self.end
+
+    def states_points(self) -> bool:
+        """Tell that the ends are written as coordinates, and not computed from angles."""
+        return True
+
+    def curve(self, start: Point, end: Point) -> Curve:
+        """Make the curve between two points."""
+        return Segment(start=start, end=end)
+
+
+class Arc(_StatedEdge):
+    """A circular edge: a centre, and either radius and angles, or start, end and the sense of rotation."""
+
+    model_config = ConfigDict(json_schema_extra=require_kind)
+
+    kind: Literal["arc"] = "arc"
+    """The shape of the edge: line, arc, or ellipse."""
+    center: Point
+    """The centre [x, y]."""
+    radius: Annotated[Number, Field(gt=0)] | None = None
+    """The radius, together with angles."""
+    angles: Point | None = None
+    """Polar angles [first, last] in degrees; anticlockwise if the last is the larger."""
+    start: Point | None = None
+    """The first point [x, y], if the arc is given by its ends; left out, it is where the edge before ends."""
+    end: Point | None = None
+    """The last point [x, y], if the arc is given by its ends; left out, it is where the next edge begins."""
+    clockwise: Flag = False
+    """Whether an arc given by its ends runs clockwise."""
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Self:
+        """Refuse a mixture of the two forms."""
+        by_angles, by_points = "radius and angles", "start, end and clockwise"
+        if (self.radius is None) != (self.angles is None):
+            given, missing = ("angles", "radius") if self.radius is None else ("radius", "angles")
+            raise complain(f"an arc with {given} needs {missing} too; or give {by_points} instead")
+        if self.angles is not None:
+            if self.start is not None or self.end is not None or self.clockwise:
+                raise complain(f"give either {by_angles}, or {by_points}, not both")
+            _check_sweep(self.angles)
+        return self
+
+    def own_ends(self) -> tuple[Point | None, Point | None]:
+        """Both ends as far as this edge knows them by itself."""
+        if self.radius is None or self.angles is None:
+            return self.start, self.end
+        first, last = (_moved(self.center, self.radius, unit_vector(angle)) for angle in self.angles)
+        return first, last
+
+    def states_points(self) -> bool:
+        """Tell whether the ends are written as coordinates."""
+        return self.angles is None
+
+    def curve(self, start: Point, end: Point) -> Curve:
+        """Make the curve; an arc that is given by its ends takes them from here."""
+        if self.radius is not None and self.angles is not None:
+            first, last = map(radians, self.angles)
+            return CircularArc(
+                center=self.center, radii=(self.radius, self.radius), start_angle=first, sweep=last - first
+            )
+        (x, y), (x0, y0), (x1, y1) = self.center, start, end
+        first, last = atan2(y0 - y, x0 - x), atan2(y1 - y, x1 - x)
+        sweep = -((first - last) % (2 * pi)) if self.clockwise else (last - first) % (2 * pi)
+        radii = hypot(x0 - x, y0 - y), hypot(x1 - x, y1 - y)
+        return CircularArc(center=self.center, radii=radii, start_angle=first, sweep=sweep)
+
+
+class EllipseArc(_StatedEdge):
+    """A piece of an ellipse: center + rotated (a cos t, b sin t)."""
+
+    model_config = ConfigDict(json_schema_extra=require_kind)
+
+    kind: Literal["ellipse"] = "ellipse"
+    """The shape of the edge: line, arc, or ellipse."""
+    center: Point
+    """The centre [x, y]."""
+    semi_axes: Point
+    """The half-lengths [a, b] of the axes."""
+    angles: Point
+    """Eccentric angles t [first, last] in degrees; anticlockwise if the last is the larger."""
+    rotation: Number = 0.0
+    """Angle in degrees from the x axis to the axis a."""
+
+    @model_validator(mode="after")
+    def _sound(self) -> Self:
+        """Refuse axes without length and more than a full turn."""
+        if min(self.semi_axes) <= 0:
+            raise complain(f"semi_axes must be greater than 0, found {list(self.semi_axes)}")
+        _check_sweep(self.angles)
+        return self
+
+    def own_ends(self) -> tuple[Point | None, Point | None]:
+        """Both ends, from the angles."""
+        (a, b), (c, s) = self.semi_axes, unit_vector(self.rotation)
+        ends = []
+        for x, y in map(unit_vector, self.angles):
+            ends.append((self.center[0] + c * a * x - s * b * y, self.center[1] + s * a * x + c * b * y))
+        return ends[0], ends[1]
+
+    def states_points(self) -> bool:
+        """Tell that the ends are computed from angles."""
+        return False
+
+    def curve(self, start: Point, end: Point) -> Curve:
+        """Make the curve; its ends follow from the angles."""
+        first, last = map(radians, self.angles)
+        return EllipticArc(
+            center=self.center,
+            semi_axes=self.semi_axes,
+            rotation=radians(self.rotation),
+            start_angle=first,
+            sweep=last - first,
+        )
+
+
+def _check_sweep(angles: Point) -> None:
+    """Refuse an arc of no length, or of more than a full turn."""
+    sweep = abs(angles[1] - angles[0])
+    if not 0 < sweep <= 360:
+        raise complain(f"angles must differ by more than 0 and at most 360 degrees; found {list(angles)}")
+
+
+def _moved(center: Point, distance: float, direction: Point) -> Point:
+    return center[0] + distance * direction[0], center[1] + distance * direction[1]
+
+
+AnyEdge = Line | Arc | EllipseArc
+"""An edge of any shape."""
+StatedEdge = Annotated[
+    AnyEdge,
+    WrapValidator(kind_chooser("an edge", {"line": Line, "arc": Arc, "ellipse": EllipseArc}, default="line")),
+]
+"""An edge as it is written; `kind` says which."""
+StatedLoop = Annotated[tuple[StatedEdge, ...], Field(min_length=1)]
+"""Edges in order, each of which begins where the one before ends, the last closing the loop."""

@@ -1,0 +1,135 @@
+"""Rigid surfaces: signed distance and unit normal, from the surface into the body, at any point of the plane."""
+
+from itertools import pairwise
+from typing import Annotated, Literal, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Field, WrapValidator, model_validator
+
+from bemcontact.problem.stated import Number, Point, Stated, complain, kind_chooser, require_kind
+
+Array = NDArray[np.float64]
+
+
+class Closest(NamedTuple):
+    """Gap (k,) [L] along the unit normals (k, 2), which point from the surface into the body; negative inside it.
+
+    The foot of a point x on the surface is x - gap · normal.
+    """
+
+    gap: Array
+    normals: Array
+
+
+class Plane(Stated):
+    """A straight surface without end."""
+
+    model_config = ConfigDict(json_schema_extra=require_kind)
+
+    kind: Literal["plane"] = "plane"
+    """The shape of the surface: plane, circle, or polyline."""
+    point: Point
+    """Any point [x, y] of the surface."""
+    normal: Point
+    """The direction [x, y] from the surface into the body, of any length."""
+
+    @model_validator(mode="after")
+    def _directed(self) -> Self:
+        """Refuse a normal without direction."""
+        if not np.hypot(*self.normal) > 0:
+            raise complain("the normal [0, 0] has no direction; let it point from the surface into the body")
+        return self
+
+    @property
+    def unit_normal(self) -> Point:
+        """The normal, of length 1."""
+        length = float(np.hypot(*self.normal))
+        return self.normal[0] / length, self.normal[1] / length
+
+    def closest(self, points: Array) -> Closest:
+        """Gap and normal at points (k, 2) [L]."""
+        normal = np.array(self.unit_normal)
+        offset = np.asarray(points, float) - np.array(self.point)
+        return Closest(offset @ normal, np.tile(normal, (len(offset), 1)))
+
+
+class Circle(Stated):
+    """A rigid disc with the body outside, or a rigid hole with the body inside."""
+
+    model_config = ConfigDict(json_schema_extra=require_kind)
+
+    kind: Literal["circle"] = "circle"
+    """The shape of the surface: plane, circle, or polyline."""
+    center: Point
+    """The centre [x, y]."""
+    radius: Annotated[Number, Field(gt=0)]
+    """The radius."""
+    body: Literal["outside", "inside"]
+    """The side of the circle on which the body is: outside or inside."""
+
+    def closest(self, points: Array) -> Closest:
+        """Gap and normal at points (k, 2) [L]."""
+        offset = np.asarray(points, float) - np.array(self.center)
+        side = 1.0 if self.body == "outside" else -1.0
+        return Closest(side * (np.hypot(*offset.T) - self.radius), side * _unit(offset, np.array([0.0, 1.0])))
+
+
+class Polyline(Stated):
+    """Straight pieces from point to point, the first and the last going on without end, the body on the left."""
+
+    model_config = ConfigDict(json_schema_extra=require_kind)
+
+    kind: Literal["polyline"] = "polyline"
+    """The shape of the surface: plane, circle, or polyline."""
+    points: Annotated[tuple[Point, ...], Field(min_length=2)]
+    """The corners [x, y] in order; the body is on the left of one who walks along them."""
+
+    @model_validator(mode="after")
+    def _simple(self) -> Self:
+        """Refuse points that repeat and pieces that fold back on the one before."""
+        sides = np.diff(np.array(self.points), axis=0)
+        for i, side in enumerate(sides):
+            if not np.hypot(*side) > 0:
+                raise complain(f"points {i} and {i + 1} are the same: {list(self.points[i])}; leave one out")
+        for i, (side, after) in enumerate(pairwise(sides)):
+            if side @ after <= -(1 - 1e-12) * np.hypot(*side) * np.hypot(*after):
+                raise complain(f"the line folds back on itself at point {i + 1}: {list(self.points[i + 1])}")
+        return self
+
+    def closest(self, points: Array) -> Closest:
+        """Gap and normal at points (k, 2) [L], of the nearest piece; beyond a corner the normal is radial from it."""
+        points, corners = np.asarray(points, float), np.array(self.points)
+        sides = np.diff(corners, axis=0)
+        lengths = np.hypot(*sides.T)
+        directions = sides / lengths[:, None]
+        lefts = np.column_stack([-directions[:, 1], directions[:, 0]])
+        along = np.einsum("ksi,si->ks", points[:, None] - corners[:-1], directions)
+        low, high = np.zeros(len(sides)), lengths.copy()
+        low[0], high[-1] = -np.inf, np.inf
+        held = np.clip(along, low, high)
+        feet = corners[:-1] + held[:, :, None] * directions
+        nearest = np.argmin(np.hypot(*np.moveaxis(points[:, None] - feet, 2, 0)), axis=1)
+        rows = np.arange(len(points))
+        corner = nearest + (along > high)[rows, nearest]
+        at_corner = (held != along)[rows, nearest]
+        before, after = lefts[np.clip(corner - 1, 0, len(sides) - 1)], lefts[np.clip(corner, 0, len(sides) - 1)]
+        offset = points - feet[rows, nearest]
+        side = np.where(np.einsum("ki,ki->k", offset, before + after) < 0, -1.0, 1.0)
+        radial = _unit(side[:, None] * offset, before + after)
+        normals = np.where(at_corner[:, None], radial, lefts[nearest])
+        return Closest(np.einsum("ki,ki->k", offset, normals), normals)
+
+
+def _unit(vectors: Array, otherwise: Array) -> Array:
+    """Unit vectors along vectors (k, 2); along `otherwise` where they vanish."""
+    length = np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
+    vectors = np.where(length > 0, vectors, otherwise)
+    return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
+
+
+RigidSurface = Annotated[
+    Plane | Circle | Polyline,
+    WrapValidator(kind_chooser("a rigid surface", {"plane": Plane, "circle": Circle, "polyline": Polyline})),
+]
+"""The surface that the body may touch; `kind` says which."""

@@ -1,0 +1,185 @@
+"""Curves against closed forms, and the division of edges into elements."""
+
+from itertools import pairwise
+from math import cos, hypot, pi, radians, sin
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bemcontact.problem.curves import CircularArc, Edge, EllipticArc, Segment, graded_lengths, unit_vector
+
+FRACTIONS = np.linspace(0, 1, 41)
+CURVES = {
+    "segment": Segment(start=(1.0, 2.0), end=(4.0, 6.0)),
+    "arc": CircularArc(center=(1.0, -1.0), radii=(8.0, 8.0), start_angle=radians(-90), sweep=radians(70)),
+    "clockwise arc": CircularArc(center=(0.0, 0.0), radii=(2.0, 2.0), start_angle=0.4, sweep=-5.0),
+    "flat ellipse": EllipticArc(center=(0.0, 0.0), semi_axes=(3.0, 0.3), rotation=0.0, start_angle=0.0, sweep=pi / 2),
+    "upright ellipse": EllipticArc(center=(2.0, 1.0), semi_axes=(0.5, 2.0), rotation=0.7, start_angle=3.0, sweep=-4.0),
+    "full ellipse": EllipticArc(center=(0.0, 0.0), semi_axes=(3.0, 2.0), rotation=0.0, start_angle=0.0, sweep=2 * pi),
+    "needle": EllipticArc(center=(0.0, 0.0), semi_axes=(1.0, 1e-3), rotation=0.0, start_angle=-1.0, sweep=5.0),
+}
+ELLIPSES = [name for name, curve in CURVES.items() if isinstance(curve, EllipticArc)]
+
+
+def elliptic_length(curve, first, last):
+    """∫ |d(a cos t, b sin t)| by adaptive quadrature in 30 digits, cut where a needle bends."""
+    a, b = curve.semi_axes
+    first, last = sorted((first, last))
+    cuts = [first, *(k * pi / 2 for k in range(-20, 21) if first < k * pi / 2 < last), last]
+    with mpmath.workdps(30):
+        return float(mpmath.quad(lambda t: mpmath.hypot(a * mpmath.sin(t), b * mpmath.cos(t)), cuts))
+
+
+def edge_on(curve, elements=4, ratio=1.0, towards="start"):
+    ends = curve.at(np.array([0.0, 1.0]))
+    return Edge(
+        name="edge",
+        curve=curve,
+        start=tuple(ends[0]),
+        end=tuple(ends[1]),
+        elements=elements,
+        ratio=ratio,
+        towards=towards,
+    )
+
+
+def test_lengths_of_line_and_arc_are_closed_forms():
+    assert CURVES["segment"].length == 5
+    assert CURVES["arc"].length == pytest.approx(8 * radians(70), rel=1e-15)
+    assert CURVES["clockwise arc"].length == pytest.approx(10, rel=1e-15)
+
+
+@pytest.mark.parametrize("name", ELLIPSES)
+def test_length_of_an_ellipse_agrees_with_quadrature(name):
+    curve = CURVES[name]
+    expected = elliptic_length(curve, curve.start_angle, curve.start_angle + curve.sweep)
+    assert curve.length == pytest.approx(expected, rel=1e-14)
+
+
+def test_ellipse_with_equal_axes_is_a_circle():
+    ellipse = EllipticArc(center=(1.0, 2.0), semi_axes=(3.0, 3.0), rotation=0.3, start_angle=0.2, sweep=1.9)
+    circle = CircularArc(center=(1.0, 2.0), radii=(3.0, 3.0), start_angle=0.5, sweep=1.9)
+    np.testing.assert_allclose(ellipse.at(FRACTIONS), circle.at(FRACTIONS), rtol=0, atol=4e-15)
+    np.testing.assert_allclose(ellipse.tangent_angle(FRACTIONS), circle.tangent_angle(FRACTIONS), rtol=1e-14)
+
+
+@pytest.mark.parametrize("name", ["arc", "clockwise arc"])
+def test_points_of_an_arc_are_on_its_circle(name):
+    curve = CURVES[name]
+    radius = np.hypot(*(curve.at(FRACTIONS) - np.array(curve.center)).T)
+    np.testing.assert_allclose(radius, curve.radii[0], rtol=1e-15)
+
+
+@pytest.mark.parametrize("name", ELLIPSES)
+def test_points_of_an_ellipse_satisfy_its_equation(name):
+    curve = CURVES[name]
+    c, s = cos(curve.rotation), sin(curve.rotation)
+    x, y = (curve.at(FRACTIONS) - np.array(curve.center)).T
+    along, across = (c * x + s * y) / curve.semi_axes[0], (c * y - s * x) / curve.semi_axes[1]
+    np.testing.assert_allclose(along**2 + across**2, 1, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ELLIPSES)
+def test_equal_fractions_of_an_ellipse_are_equal_arc_lengths(name):
+    curve = CURVES[name]
+    c, s = cos(curve.rotation), sin(curve.rotation)
+    x, y = (curve.at(np.linspace(0, 1, 8)) - np.array(curve.center)).T
+    t = np.arctan2((c * y - s * x) / curve.semi_axes[1], (c * x + s * y) / curve.semi_axes[0])
+    t = np.unwrap(t, discont=pi)
+    if np.sign(t[-1] - t[0]) != np.sign(curve.sweep):
+        pytest.fail("the eccentric angle runs the wrong way")
+    lengths = [elliptic_length(curve, *pair) for pair in pairwise(t)]
+    np.testing.assert_allclose(lengths, curve.length / 7, rtol=1e-11)
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_tangent_is_the_derivative_by_arc_length(name):
+    curve = CURVES[name]
+    step = 1e-6
+    slope = (curve.at(FRACTIONS[1:-1] + step) - curve.at(FRACTIONS[1:-1] - step)) / (2 * step * curve.length)
+    angle = curve.tangent_angle(FRACTIONS[1:-1])
+    # Central differences: the error is step² κ² / 6 of a curve that bends with curvature κ (length 1), plus round-off.
+    tolerance = 0.3 if name == "needle" else 1e-7
+    np.testing.assert_allclose(slope, np.column_stack([np.cos(angle), np.sin(angle)]), rtol=0, atol=tolerance)
+    assert np.all(np.diff(curve.tangent_angle(FRACTIONS)) * getattr(curve, "sweep", 0) >= 0)
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_polyline_keeps_to_the_curve_and_has_its_ends(name):
+    curve = CURVES[name]
+    edge = edge_on(curve)
+    line = edge.polyline()
+    assert tuple(line[0]) == edge.start
+    assert tuple(line[-1]) == edge.end
+    side = np.diff(line, axis=0)
+    offset = curve.at(FRACTIONS)[:, None] - line[:-1]
+    along = np.clip(np.einsum("ksi,si->ks", offset, side) / np.sum(side**2, axis=1), 0, 1)
+    stray = np.hypot(*np.moveaxis(offset - along[:, :, None] * side, 2, 0)).min(axis=1)
+    # The sagitta of one degree, 1 - cos 0.5°, times the radius; an ellipse is a circle stretched at most that far.
+    radius = max(getattr(curve, "radii", getattr(curve, "semi_axes", (0.0,))))
+    assert stray.max() <= (1 - cos(radians(0.5))) * radius + 1e-14
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_ends_of_an_edge_are_exactly_the_given_numbers(name):
+    edge = edge_on(CURVES[name])
+    points = edge.points(np.array([0.0, 0.5, 1.0]))
+    assert tuple(points[0]) == edge.start
+    assert tuple(points[2]) == edge.end
+
+
+def test_directions_are_unit_vectors_with_the_body_on_the_left():
+    directions = edge_on(CURVES["arc"]).directions(np.array([0.0]))
+    np.testing.assert_allclose(directions, [[1, 0]], atol=1e-15)
+
+
+@given(st.integers(1, 40), st.floats(1, 1e3), st.sampled_from(["start", "end", "both"]))
+def test_graded_lengths_fill_the_edge_with_the_stated_ratio(elements, ratio, towards):
+    lengths = graded_lengths(elements, ratio, towards)
+    assert lengths.sum() == pytest.approx(1, rel=1e-14)
+    places = (elements + 1) // 2 if towards == "both" else elements
+    assert lengths.max() / lengths.min() == pytest.approx(ratio if places > 1 else 1, rel=1e-12)
+    if towards == "start":
+        assert np.all(np.diff(lengths) >= 0)
+    if towards == "both":
+        np.testing.assert_array_equal(lengths, lengths[::-1])
+    if towards == "end":
+        np.testing.assert_array_equal(lengths, graded_lengths(elements, ratio, "start")[::-1])
+    if towards != "both" and elements > 2:
+        quotients = lengths[1:] / lengths[:-1]
+        np.testing.assert_allclose(quotients, quotients[0], rtol=1e-12)
+
+
+@given(st.integers(1, 20), st.integers(1, 7), st.floats(1, 100), st.sampled_from(["start", "end", "both"]))
+def test_refined_breakpoints_contain_the_coarse_ones(elements, refine, ratio, towards):
+    edge = edge_on(CURVES["segment"], elements, ratio, towards)
+    coarse, fine = edge.breakpoints(), edge.breakpoints(refine)
+    assert len(fine) == elements * refine + 1
+    np.testing.assert_array_equal(fine[::refine], coarse)
+    assert fine[0] == 0
+    assert fine[-1] == 1
+    parts = np.diff(fine).reshape(elements, refine)
+    np.testing.assert_allclose(parts, np.diff(coarse)[:, None] / refine * np.ones(refine), rtol=1e-11)
+
+
+def test_turning_is_the_largest_angle_of_an_element():
+    assert edge_on(CURVES["segment"]).turning() == 0
+    assert edge_on(CURVES["arc"], 7).turning() == pytest.approx(radians(10), rel=1e-12)
+    assert edge_on(CURVES["arc"], 7).turning(5) == pytest.approx(radians(2), rel=1e-12)
+    one = edge_on(CURVES["flat ellipse"], 1)
+    assert one.turning() == pytest.approx(pi / 2, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("angle", "expected"), [(0, (1, 0)), (90, (0, 1)), (-90, (0, -1)), (540, (-1, 0)), (-360, (1, 0))]
+)
+def test_unit_vectors_at_right_angles_are_exact(angle, expected):
+    assert unit_vector(angle) == expected
+
+
+@given(st.floats(-720, 720))
+def test_unit_vectors_have_length_one(angle):
+    assert hypot(*unit_vector(angle)) == pytest.approx(1, rel=1e-15)

@@ -1,0 +1,41 @@
+"""Material: moduli by their definitions, and the range of Poisson's ratio."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bemcontact.errors import ProblemError
+from bemcontact.problem import Material
+
+
+@given(st.floats(1e-6, 1e9), st.floats(-0.99, 0.49))
+def test_plane_stress_is_plane_strain_with_another_ratio_and_modulus(young_modulus, poisson_ratio):
+    sheet = Material(young_modulus=young_modulus, poisson_ratio=poisson_ratio, state="plane_stress")
+    thick = Material(young_modulus=young_modulus, poisson_ratio=poisson_ratio)
+    assert sheet.shear_modulus == thick.shear_modulus
+    assert thick.effective_poisson_ratio == poisson_ratio
+    # Strain per uniaxial stress: (1 - ν'²)/E' of the equivalent thick body, with E' = 2G(1 + ν'), is 1/E of the sheet.
+    nu = sheet.effective_poisson_ratio
+    assert (1 - nu**2) / (2 * sheet.shear_modulus * (1 + nu)) == pytest.approx(1 / young_modulus, rel=1e-12)
+
+
+@pytest.mark.parametrize("poisson_ratio", [-1, 0.6, 1, -2])
+def test_ratio_beyond_positive_energy_is_refused(poisson_ratio):
+    for state in ("plane_strain", "plane_stress"):
+        with pytest.raises(ProblemError, match=f"greater than -1 and less than 0.5, found {poisson_ratio:g}"):
+            Material(young_modulus=1, poisson_ratio=poisson_ratio, state=state)
+
+
+def test_incompressible_material_is_for_sheets_only():
+    assert Material(young_modulus=1, poisson_ratio=0.5, state="plane_stress").effective_poisson_ratio == 0.5 / 1.5
+    with pytest.raises(ProblemError, match=r"take 0\.499, or state: plane_stress"):
+        Material(young_modulus=1, poisson_ratio=0.5)
+
+
+def test_all_complaints_come_together():
+    with pytest.raises(ProblemError) as caught:
+        Material(young_modulus=-1, poisson_ratio="0.3")
+    assert [str(complaint) for complaint in caught.value.complaints] == [
+        "young_modulus: must be greater than 0, found -1",
+        "poisson_ratio: expected a number, found the text '0.3'; leave the quotes out",
+    ]

@@ -1,0 +1,114 @@
+"""A problem as a whole: made in Python, changed value by value, and refused with every complaint at once."""
+
+import pytest
+
+from bemcontact.errors import ProblemError
+from bemcontact.problem import Arc, Boundary, Condition, ContactZone, Field, Line, Material, Plane, Problem, Units
+from bemcontact.problem.problem import MeshDensity
+
+
+def parts():
+    """A quarter disc that stands on a plane, in Python objects."""
+    return {
+        "name": "quarter disc",
+        "material": Material(young_modulus=1000, poisson_ratio=0.3),
+        "boundary": Boundary(
+            outer=[
+                Arc(name="arc", center=(0, 8), radius=8, angles=(-90, 0), elements=6),
+                Line(name="top", elements=4),
+                Line(name="axis", start=(0, 8), elements=5),
+            ]
+        ),
+        "conditions": {"top": Condition(pressure=Field(constant=50))},
+        "contact_zones": {"foot": ContactZone(edges=["arc"], surface=Plane(point=(0, 0), normal=(0, 1)))},
+    }
+
+
+def complaints(**changes):
+    with pytest.raises(ProblemError) as caught:
+        Problem(**{**parts(), **changes})
+    return [str(complaint) for complaint in caught.value.complaints]
+
+
+def test_problem_of_objects_is_the_problem_of_its_data():
+    problem = Problem(**parts())
+    assert Problem(**problem.model_dump()) == problem
+    assert Problem.model_validate_json(problem.model_dump_json()) == problem
+
+
+def test_edges_are_found_by_name():
+    problem = Problem(**parts())
+    assert problem.edge("top").start == (8, 8)
+    with pytest.raises(ProblemError, match="boundary: unknown edge 'tap'; did you mean 'top'"):
+        problem.edge("tap")
+
+
+def test_stress_has_a_label_if_force_and_length_have():
+    assert Units(length="cm", force="kN").stress == "kN/cm²"
+    assert Units(length="cm").stress == ""
+
+
+def test_refining_multiplies():
+    problem = Problem(**parts()).refined(2).refined(3)
+    assert problem.mesh == MeshDensity(refine=6)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "found"),
+    [
+        ("material.young_modulus", 2e6, lambda problem: problem.material.young_modulus),
+        ("boundary.outer[1].elements", 9, lambda problem: problem.edge("top").elements),
+        ("boundary.outer.axis.elements", 9, lambda problem: problem.edge("axis").elements),
+        ("units.length", "mm", lambda problem: problem.units.length),
+        ("conditions.axis", Condition(pressure=Field(x=1)), lambda problem: problem.conditions["axis"]),
+    ],
+)
+def test_with_value_makes_a_new_problem(path, value, found):
+    problem = Problem(**parts())
+    assert found(problem.with_value(path, value)) == value
+    assert problem == Problem(**parts())
+
+
+def test_with_value_checks_anew():
+    with pytest.raises(ProblemError, match=r"^material\.poisson_ratio: must be greater than -1 and less than 0\.5"):
+        Problem(**parts()).with_value("material.poisson_ratio", 0.7)
+    with pytest.raises(ProblemError, match="is not a key path"):
+        Problem(**parts()).with_value("a..b", 1)
+
+
+def test_names_are_checked_in_a_problem_that_has_ill_parts():
+    boundary = parts()["boundary"].model_dump()
+    first, second = complaints(boundary=boundary, material={"young_modulus": 1}, conditions={"tip": {"pressure": 1}})
+    assert first.startswith("material.poisson_ratio: missing; give the ratio")
+    assert second == "conditions.tip: unknown edge 'tip'; did you mean 'top'?"
+
+
+def test_zone_lists_an_edge_once():
+    zone = ContactZone(edges=["arc", "arc"], surface=Plane(point=(0, 0), normal=(0, 1)))
+    assert complaints(contact_zones={"foot": zone}) == [
+        "contact_zones.foot.edges[1]: edge 'arc' is listed twice in the zone; list it once"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("surface", "way_out"),
+    [
+        ({"kind": "plane", "point": [0, 0], "normal": [0, -2]}, "turn the normal round: [0, 2]"),
+        ({"kind": "circle", "center": [0, -9], "radius": 9, "body": "inside"}, "is the body outside the circle?"),
+        ({"kind": "circle", "center": [0, 20], "radius": 20, "body": "outside"}, "is the body inside the circle?"),
+        ({"kind": "polyline", "points": [[1, 0], [-1, 0]]}, "list its points in the opposite order"),
+    ],
+)
+def test_surface_that_faces_away_is_refused_with_the_way_out(surface, way_out):
+    zone = {"edges": ["arc"], "surface": surface}
+    [complaint] = complaints(contact_zones={"foot": zone})
+    assert complaint.startswith(
+        "contact_zones.foot.surface: the rigid surface's normal must point from the surface into"
+    )
+    assert way_out in complaint
+
+
+@pytest.mark.parametrize("data", [None, 3, [], "block"])
+def test_what_is_no_mapping_is_refused(data):
+    with pytest.raises(ProblemError, match="expected a mapping with the keys name, description"):
+        Problem.model_validate(data)

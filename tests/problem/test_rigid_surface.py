@@ -1,0 +1,139 @@
+"""Rigid surfaces: the gap is the signed distance along the normal, whatever the shape."""
+
+from itertools import pairwise
+from math import cos, hypot, sin, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bemcontact.errors import ProblemError
+from bemcontact.problem import Circle, Plane, Polyline
+
+COORDINATE = st.floats(-10, 10)
+POINT = st.tuples(COORDINATE, COORDINATE)
+ANGLE = st.floats(0, 6.28)
+RIDGE = Polyline(points=((-3, -1), (-1, 0), (1, 0), (2, -2)))
+"""Walked from left to right: the body is above, the rigid corners are convex."""
+VALLEY = Polyline(points=((-3, 2), (-1, 0), (1, 0), (2, 3)))
+"""Walked from left to right: the body is above, the rigid corners are hollow."""
+SURFACES = [
+    Plane(point=(1, 2), normal=(0.3, -4)),
+    Circle(center=(1, -1), radius=2, body="outside"),
+    Circle(center=(1, -1), radius=2, body="inside"),
+    RIDGE,
+    VALLEY,
+]
+
+
+def closest(surface, point):
+    gap, normals = surface.closest(np.array([point], float))
+    return gap[0], normals[0]
+
+
+def distance_to_polyline(line, point):
+    """Least distance to the pieces, the outer two without end, by a formula of its own for each."""
+    corners = np.array(line.points, float)
+    corners[0] += 1e3 * (corners[0] - corners[1])
+    corners[-1] += 1e3 * (corners[-1] - corners[-2])
+    distances = []
+    for a, b in pairwise(corners):
+        t = min(max((np.array(point) - a) @ (b - a) / ((b - a) @ (b - a)), 0), 1)
+        distances.append(hypot(*(np.array(point) - a - t * (b - a))))
+    return min(distances)
+
+
+@given(st.sampled_from(SURFACES), POINT)
+def test_normals_are_unit_vectors_and_the_foot_is_on_the_surface(surface, point):
+    gap, normal = closest(surface, point)
+    foot = np.array(point) - gap * normal
+    assert np.hypot(*normal) == pytest.approx(1, rel=1e-14)
+    assert closest(surface, foot)[0] == pytest.approx(0, abs=1e-13)
+    assert (np.array(point) - foot) @ normal == pytest.approx(gap, abs=1e-13)
+
+
+@given(st.sampled_from([SURFACES[0], SURFACES[1], RIDGE]), POINT, st.floats(0, 5))
+def test_moving_off_a_convex_surface_opens_the_gap_by_the_way(surface, point, way):
+    gap, normal = closest(surface, point)
+    if gap < 0:
+        point, gap = np.array(point) - gap * normal, 0
+        normal = closest(surface, point)[1]
+    assert closest(surface, np.array(point) + way * normal)[0] == pytest.approx(gap + way, abs=1e-12)
+
+
+@given(ANGLE, st.floats(0.1, 5), st.floats(-1, 1))
+def test_moving_inside_a_rigid_hole_changes_the_gap_by_the_way_up_to_its_center(angle, radius, share):
+    hole = Circle(center=(1, -1), radius=2, body="inside")
+    start = np.array([1 + radius * cos(angle), -1 + radius * sin(angle)])
+    gap, normal = closest(hole, start)
+    assert closest(hole, start + share * radius * normal)[0] == pytest.approx(gap + share * radius, abs=1e-13)
+
+
+@given(POINT, ANGLE, COORDINATE, st.floats(0.01, 100))
+def test_gap_of_a_plane_changes_by_the_way_in_both_directions(point, angle, way, length):
+    plane = Plane(point=(1, 2), normal=(length * cos(angle), length * sin(angle)))
+    gap, normal = closest(plane, point)
+    assert closest(plane, np.array(point) + way * normal)[0] == pytest.approx(gap + way, abs=1e-13)
+    np.testing.assert_allclose(normal, [cos(angle), sin(angle)], atol=1e-15)
+
+
+@given(POINT, st.sampled_from([RIDGE, VALLEY]))
+def test_gap_of_a_polyline_is_the_least_distance(point, line):
+    assert abs(closest(line, point)[0]) == pytest.approx(distance_to_polyline(line, point), abs=1e-12)
+
+
+@given(POINT)
+def test_polyline_walked_the_other_way_has_the_body_on_the_other_side(point):
+    gap, normal = closest(RIDGE, point)
+    other_gap, other_normal = closest(Polyline(points=RIDGE.points[::-1]), point)
+    assert other_gap == pytest.approx(-gap, abs=1e-14)
+    if abs(gap) > 1e-6:
+        np.testing.assert_allclose(abs(normal @ other_normal), 1, rtol=1e-9)
+
+
+@given(POINT, ANGLE)
+def test_polyline_of_one_piece_is_a_plane(point, angle):
+    line = Polyline(points=((1, 2), (1 + cos(angle), 2 + sin(angle))))
+    plane = Plane(point=(1, 2), normal=(-sin(angle), cos(angle)))
+    assert closest(line, point)[0] == pytest.approx(closest(plane, point)[0], abs=1e-13)
+
+
+def test_normal_beyond_a_convex_corner_is_radial():
+    gap, normal = closest(RIDGE, (1.25, 0.5))
+    assert gap == pytest.approx(sqrt(0.25**2 + 0.5**2), rel=1e-15)
+    np.testing.assert_allclose(normal, np.array([0.25, 0.5]) / gap, rtol=1e-15)
+
+
+def test_corner_itself_has_a_normal_between_those_of_its_pieces():
+    gap, normal = closest(RIDGE, (1, 0))
+    assert gap == 0
+    assert normal[1] > 0
+    assert np.hypot(*normal) == pytest.approx(1, rel=1e-15)
+
+
+def test_center_of_a_circle_has_a_normal_too():
+    gap, normal = closest(Circle(center=(1, 1), radius=3, body="inside"), (1, 1))
+    assert gap == 3
+    assert np.hypot(*normal) == 1
+
+
+@pytest.mark.parametrize(
+    ("surface", "keys", "words"),
+    [
+        (Plane, {"point": (0, 0), "normal": (0, 0)}, "has no direction"),
+        (Circle, {"center": (0, 0), "radius": -1, "body": "inside"}, "radius: must be greater than 0, found -1"),
+        (
+            Circle,
+            {"center": (0, 0), "radius": 1, "body": "above"},
+            "expected 'outside' or 'inside', found the text 'abo",
+        ),
+        (Polyline, {"points": [(0, 0)]}, "points: expected at least 2 in the list, found a list of 1"),
+        (Polyline, {"points": [(0, 0), (0, 0)]}, "points 0 and 1 are the same"),
+        (Polyline, {"points": [(0, 0), (2, 0), (1, 0)]}, "folds back on itself at point 1"),
+    ],
+)
+def test_surfaces_without_a_side_are_refused(surface, keys, words):
+    with pytest.raises(ProblemError) as caught:
+        surface(**keys)
+    assert words in str(caught.value)
