@@ -1,0 +1,329 @@
+"""From a YAML file to a `Problem`; every complaint names file, line, column and the path of keys.
+
+YAML is read as its version 1.2 has it: ``2e6`` is a number, ``no`` and ``on`` are texts, and a key stands once.
+"""
+
+import os
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import yaml
+
+from bemcontact.errors import Complaint, Path, ProblemError, SpecError
+from bemcontact.problem import Problem
+from bemcontact.problem.key_path import existing_path, parsed_path, with_entry
+from bemcontact.problem.stated import KeyComplaint, described
+from bemcontact.text_file import place_after, text_of
+
+_REQUIRED = ", ".join(key for key, item in Problem.model_fields.items() if item.is_required())
+_TAG = "tag:yaml.org,2002:"
+_PLAIN_SCALARS = {
+    f"{_TAG}null": re.compile(r"~|null|Null|NULL|"),
+    f"{_TAG}bool": re.compile(r"true|True|TRUE|false|False|FALSE"),
+    f"{_TAG}int": re.compile(r"[-+]?[0-9]{1,300}|0o[0-7]{1,300}|0x[0-9a-fA-F]{1,200}"),
+    f"{_TAG}float": re.compile(
+        r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)"
+    ),
+    f"{_TAG}merge": re.compile("<<"),
+}
+_READERS: dict[str, Callable[[str], Any]] = {
+    f"{_TAG}str": str,
+    f"{_TAG}null": lambda _: None,
+    f"{_TAG}bool": lambda text: {"true": True, "false": False}[text.lower()],
+    f"{_TAG}int": lambda text: int(text, {"0o": 8, "0x": 16}.get(text[:2], 10)),
+    f"{_TAG}float": lambda text: float(re.sub(r"\.(?=inf|nan)", "", text.lower())),
+}
+_HINTS = {
+    "found character '\\t'": "YAML indents with spaces; replace the tab",
+    "mapping values are not allowed": "a colon inside a text needs quotes around the text; else check the indentation",
+    "could not find expected ':'": "a key needs a colon and a space after it",
+    "expected <block end>": "check the indentation of this line and the lines above",
+    "found undefined alias": "an alias *name needs an anchor &name before it",
+    "found another document": "put one problem into one file",
+    "found unexpected end of stream": "a quote or bracket is not closed",
+    "expected ',' or": "a bracket is not closed, or a comma is missing",
+}
+"""What usually is wrong where the parser says so."""
+
+
+def load(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Problem:
+    """Read a problem from a YAML file.
+
+    Parameters
+    ----------
+    path : the file, in UTF-8 (or UTF-16 with a byte order mark)
+    overrides : changes such as ``material.young_modulus=2e6``, made before anything is checked
+
+    Returns
+    -------
+    Problem
+
+    Raises
+    ------
+    SpecError
+        If there is no such file, or it states no problem: a line ``file:line:column: key.path: message`` for each
+        complaint.
+    """
+    return loads(text_of(path), os.fspath(path), overrides)
+
+
+def loads(text: str, name: str = "<string>", overrides: Sequence[str] = ()) -> Problem:
+    """Read a problem from a text, as `load` does from a file.
+
+    Parameters
+    ----------
+    text : YAML
+    name : what to call the text in complaints
+    overrides : changes such as ``material.young_modulus=2e6``, made before anything is checked
+
+    Returns
+    -------
+    Problem
+
+    Raises
+    ------
+    SpecError
+        A line ``name:line:column: key.path: message`` for each complaint.
+    """
+    document = _parsed(text, name)
+    _check_mapping(document, name)
+    for override in overrides:
+        document = _overridden(document, override)
+    return _stated(document)
+
+
+def schema() -> dict[str, Any]:
+    """Make the JSON Schema (draft 2020-12) of a spec, which editors use to complete and check."""
+    stated = Problem.model_json_schema()
+    for definition in (stated, *stated["$defs"].values()):
+        definition["description"] = definition["description"].partition("\n\n")[0]
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **stated}
+
+
+@dataclass(frozen=True, order=True)
+class _Mark:
+    """A place in a text, or an override; `text` begins the complaint."""
+
+    line: int
+    column: int
+    text: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Place:
+    """Where a complaint about a value points to, and where one about its key does."""
+
+    value: _Mark
+    key: _Mark
+    scalar: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Document:
+    """Plain data, the place of each value by its path, and what was found wrong while reading."""
+
+    data: Any
+    places: dict[Path, _Place]
+    findings: tuple[tuple[_Mark, str], ...] = ()
+
+
+class _Loader(yaml.SafeLoader):
+    """PyYAML's parser with the plain scalars of YAML 1.2: no sexagesimals, dates, underscores, yes and no."""
+
+    def resolve(self, kind: type[yaml.Node], value: Any, implicit: Any) -> str:
+        """Say which tag a node has that bears none."""
+        if kind is yaml.ScalarNode and implicit[0]:
+            return next((tag for tag, pattern in _PLAIN_SCALARS.items() if pattern.fullmatch(value)), f"{_TAG}str")
+        return super().resolve(kind, value, implicit)
+
+
+def _parsed(text: str, name: str) -> _Document:
+    """Read YAML into plain data with places; `SpecError` if it is not YAML."""
+    try:
+        loader = _Loader(text)
+    except yaml.reader.ReaderError as error:
+        place = place_after(text[: error.position], name)
+        raise SpecError(f"{place}: the character {chr(error.character)!r} is not allowed in YAML") from None
+    try:
+        node = loader.get_single_node()
+    except yaml.MarkedYAMLError as error:
+        raise SpecError(_not_yaml(error, name)) from None
+    except RecursionError:
+        raise SpecError(f"{name}:1:1: nested too deeply to be read") from None
+    except (ValueError, OverflowError) as error:
+        mark = _marked(loader.get_mark(), name)
+        raise SpecError(f"{mark.text}: not YAML: an escape that means no character ({error})") from None
+    if node is None:
+        return _Document(data=None, places={})
+    tree = _Tree(name)
+    data = tree.value(node, (), None)
+    return _Document(data=data, places=tree.places, findings=tuple(tree.findings))
+
+
+def _marked(mark: yaml.Mark, name: str) -> _Mark:
+    """Count lines and columns from 1, as editors do."""
+    return _Mark(mark.line + 1, mark.column + 1, f"{name}:{mark.line + 1}:{mark.column + 1}")
+
+
+def _not_yaml(error: yaml.MarkedYAMLError, name: str) -> str:
+    """Put an error of the parser into a line, with what usually is the cause."""
+    mark = error.problem_mark or error.context_mark
+    where = _marked(mark, name).text if mark else f"{name}:1:1"
+    what = error.problem or error.context or "cannot be read"
+    if error.context and error.context_mark:
+        what += f", {error.context} from line {error.context_mark.line + 1} on"
+    hint = next((hint for words, hint in _HINTS.items() if words in str(error.problem)), "")
+    return f"{where}: not YAML: {what}{'; ' * bool(hint)}{hint}"
+
+
+class _Tree:
+    """Walks through the nodes of a document and gathers places and findings."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.places: dict[Path, _Place] = {}
+        self.findings: list[tuple[_Mark, str]] = []
+        self._above: list[yaml.Node] = []
+
+    def value(self, node: yaml.Node, path: Path, key: yaml.Node | None) -> Any:
+        """Make plain data of a node and all below it."""
+        mark = self._mark(node)
+        key_mark = self._mark(key) if key else mark
+        scalar = isinstance(node, yaml.ScalarNode)
+        inline = scalar or (isinstance(node, yaml.CollectionNode) and node.flow_style)
+        self.places[path] = _Place(value=mark if inline else key_mark, key=key_mark, scalar=scalar)
+        if any(node is above for above in self._above):
+            self._find(mark, path, "an alias inside its own anchor has no end; write the value out")
+            return None
+        self._above.append(node)
+        try:
+            return self._content(node, path)
+        finally:
+            self._above.pop()
+
+    def _content(self, node: yaml.Node, path: Path) -> Any:
+        """Make plain data of what a node contains."""
+        match node:
+            case yaml.MappingNode(tag=tag) if tag == f"{_TAG}map":
+                return self._mapping(node, path)
+            case yaml.SequenceNode(tag=tag) if tag == f"{_TAG}seq":
+                return [self.value(entry, (*path, i), None) for i, entry in enumerate(node.value)]
+            case yaml.ScalarNode(tag=tag) if tag in _READERS:
+                try:
+                    return _READERS[tag](node.value)
+                except (ValueError, KeyError):
+                    self._find(
+                        self._mark(node), path, f"{described(node.value)} is not what its tag says; leave it out"
+                    )
+                    return None
+        message = f"the tag {node.tag.replace(_TAG, '!!')} has no meaning here; leave it out"
+        self._find(self._mark(node), path, message)
+        return None
+
+    def _mapping(self, node: yaml.MappingNode, path: Path) -> dict[str, Any]:
+        """Make a dictionary; of equal keys the first counts, and merged ones come last."""
+        data: dict[str, Any] = {}
+        lines: dict[str, int] = {}
+        merged: list[yaml.Node] = []
+        for key, value in node.value:
+            mark = self._mark(key)
+            if key.tag == f"{_TAG}merge":
+                merged += value.value if isinstance(value, yaml.SequenceNode) else [value]
+            elif key.tag != f"{_TAG}str":
+                found = f"'{key.value}'" if isinstance(key, yaml.ScalarNode) else "a list or a mapping"
+                self._find(mark, path, f"a key must be a text, found {found}; write it in quotes")
+            elif key.value in data:
+                message = f"the key stands twice, first in line {lines[key.value]}; keep one"
+                self._find(mark, (*path, key.value), message)
+            else:
+                data[key.value] = self.value(value, (*path, key.value), key)
+                lines[key.value] = mark.line
+        return self._with_merged(data, merged, path)
+
+    def _with_merged(self, data: dict[str, Any], merged: list[yaml.Node], path: Path) -> dict[str, Any]:
+        """Add the keys that ``<<`` brings along, where they are not given."""
+        for node in merged:
+            if not isinstance(node, yaml.MappingNode):
+                self._find(self._mark(node), path, "<< takes an alias of a mapping, or a list of such")
+                continue
+            kept = self.places.copy()
+            more = self.value(node, path, None)
+            self.places |= kept
+            data = {**(more or {}), **data}
+        return data
+
+    def _mark(self, node: yaml.Node) -> _Mark:
+        return _marked(node.start_mark, self.name)
+
+    def _find(self, mark: _Mark, path: Path, message: str) -> None:
+        self.findings.append((mark, str(Complaint(path=path, message=message))))
+
+
+def _overridden(document: _Document, override: str) -> _Document:
+    """Replace or add one value, as ``key.path=value`` says."""
+    start = f"--set {override}"
+    keys, equals, text = override.partition("=")
+    if not equals:
+        raise SpecError(f"{start}: there is no '='; write key.path=value")
+    try:
+        path = existing_path(document.data, parsed_path(keys.strip()))
+    except ProblemError as error:
+        raise SpecError("\n".join(f"{start}: {complaint}" for complaint in error.complaints)) from None
+    mark = _Mark(0, 0, start)
+    try:
+        entry = _parsed(text, start)
+    except SpecError as error:
+        raise SpecError(f"{start}: {str(error).removeprefix(start).partition(': ')[2]}") from None
+    kept = {other: place for other, place in document.places.items() if other[: len(path)] != path}
+    added = {
+        (*path, *below): _Place(value=mark, key=mark, scalar=place.scalar) for below, place in entry.places.items()
+    }
+    return _Document(
+        data=with_entry(document.data, path, entry.data),
+        places={**kept, **added},
+        findings=(*document.findings, *((mark, message) for _, message in entry.findings)),
+    )
+
+
+def _stated(document: _Document) -> Problem:
+    """Make the problem, or gather all complaints in the order of the text."""
+    found = [*document.findings]
+    try:
+        problem = Problem(**document.data)
+    except ProblemError as error:
+        found += [_located(complaint, document.places) for complaint in error.complaints]
+    else:
+        if not found:
+            return problem
+    raise SpecError(_lines(found))
+
+
+def _located(complaint: Complaint, places: dict[Path, _Place]) -> tuple[_Mark, str]:
+    """Find the place of a complaint, or of the nearest thing above that stands in the text."""
+    path = complaint.path
+    while path not in places:
+        path = path[:-1]
+    place = places[path]
+    if place.scalar:  # its entries exist in the model only: a number that is a field, a name that is a list of one
+        complaint = replace(complaint, path=path)
+    is_key = isinstance(complaint, KeyComplaint) and path == complaint.path
+    return (place.key if is_key else place.value), str(complaint)
+
+
+def _check_mapping(document: _Document, name: str) -> None:
+    """Refuse a document that is empty, or no mapping."""
+    if isinstance(document.data, dict):
+        return
+    needs = f"a spec is a mapping with at least {_REQUIRED}"
+    if document.findings:
+        raise SpecError(_lines(document.findings))
+    if document.data is None:
+        raise SpecError(f"{name}:1:1: there is nothing in it; {needs}")
+    raise SpecError(f"{document.places[()].value.text}: {needs}; found {described(document.data)}")
+
+
+def _lines(findings: Iterable[tuple[_Mark, str]]) -> str:
+    """Write findings in the order of the text, a line each."""
+    return "\n".join(f"{mark.text}: {message}" for mark, message in sorted(findings))
