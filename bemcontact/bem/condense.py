@@ -14,6 +14,7 @@ from scipy.optimize import nnls
 
 from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
 from bemcontact.bem.contact_points import ContactPoints, contact_points
+from bemcontact.bem.influence import Block
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.system import System
@@ -247,8 +248,8 @@ def _observe(system: System, response: Array) -> Array:
     return result
 
 
-def assemble(system: System) -> tuple[Array, Array, float]:
-    """Set up the bordered matrix (in Fortran order, to be factorised in place), the right sides, and the 1-norm.
+def assemble(system: System) -> tuple[Array, Array]:
+    """Set up the bordered matrix (in Fortran order, to be factorised in place) and the right sides.
 
     Parameters
     ----------
@@ -258,20 +259,24 @@ def assemble(system: System) -> tuple[Array, Array, float]:
     -------
     matrix : (size, size)
     right : (size, 1 + n)
-    norm : largest column sum
     """
     unknowns = system.unknowns.size
     matrix = np.zeros((system.size, system.size), order="F")
+    transposed = matrix.T
     right = np.zeros((system.size, 1 + len(system.points)), order="F")
-    sums = np.zeros(unknowns)
-    for block in system.influence.blocks(system.equations.collocation):
+
+    def place(block: Block) -> None:
         for rows in system.rows(block):
-            matrix[rows.index, :unknowns] = rows.left
-            right[rows.index] = rows.right
-            sums += abs(rows.left).sum(axis=0)
+            first = 0
+            for part in rows.left:
+                transposed[first : first + len(part), rows.index] = part
+                first += len(part)
+            right[rows.index] = rows.right.T
+
+    system.influence.each_block(system.equations.collocation, place)
     matrix[:unknowns, unknowns:] = system.border
     matrix[unknowns:, :unknowns] = system.null_vectors.T
-    return matrix, right, float(sums.max())
+    return matrix, right
 
 
 def solve(system: System) -> Array:
@@ -289,7 +294,8 @@ def solve(system: System) -> Array:
     ------
     SingularSystemError
     """
-    matrix, right, norm = assemble(system)
+    matrix, right = assemble(system)
+    norm = lapack.dlange("1", matrix)
     factors, pivots, info = lapack.dgetrf(matrix, overwrite_a=True)
     reciprocal = lapack.dgecon(factors, norm)[0] if info == 0 else 0.0
     if reciprocal < SINGULAR:
@@ -306,10 +312,18 @@ def residual(system: System, response: Array) -> Array:
     """Right sides less matrix times response, (size, 1 + n), from rows computed anew: no second matrix is kept."""
     unknowns = system.unknowns.size
     z, s = response[:unknowns], response[unknowns:]
+    zT = z.T
     result = np.zeros_like(response, order="F")
-    for block in system.influence.blocks(system.equations.collocation):
+
+    def place(block: Block) -> None:
         for rows in system.rows(block):
-            result[rows.index] = rows.right - rows.left @ z
+            first = 0
+            for part in rows.left:
+                rows.right[:] -= zT[:, first : first + len(part)] @ part
+                first += len(part)
+            result[rows.index] = rows.right.T
+
+    system.influence.each_block(system.equations.collocation, place)
     result[:unknowns] -= system.border @ s
     result[unknowns:] = -system.null_vectors.T @ z
     return result

@@ -167,7 +167,7 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
 
 def _runs(mesh: Mesh, in_zone: NDArray[np.bool_]) -> Iterator[tuple[IntArray, bool]]:
     """Unbroken pieces of a zone: their elements in order, and whether the piece closes on itself."""
-    after = mesh.elements[:, 2] // 2
+    after = mesh.elements[:, 2]
     before = mesh.before
     left = in_zone.copy()
     starts = [*np.flatnonzero(in_zone & ~in_zone[before]), *np.flatnonzero(in_zone)]

@@ -7,16 +7,18 @@ Lengths here are dimensionless, over L0 = 2 diameters of the body, which also ke
 scale; stresses are over the shear modulus.
 """
 
-from collections.abc import Iterator
+import itertools
+import os
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.bem import kernels, quadrature, shape_functions
-from bemcontact.bem.kernels import Integrals, RealFields
+from bemcontact.bem import kernels, quadrature
+from bemcontact.bem.kernels import Components, GaussRule, Integrals
 from bemcontact.bem.mesh import Mesh
 
 Array = NDArray[np.float64]
@@ -26,7 +28,7 @@ ComplexArray = NDArray[np.complex128]
 ROWS_PER_BLOCK = 64
 LARGEST_BLOCK = 400_000
 """Pairs of one block of rows: bounds its memory to about 100 MB."""
-CACHE_SIZE = 24_000
+CACHE_SIZE = 16_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements far from a block of points share a rule."""
@@ -62,37 +64,21 @@ class Collocation:
         return self.base + self.offset
 
 
-class Block(NamedTuple):
-    """Some rows of F and G: x and y equations of `rows`, by components.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Block:
+    """Some rows of F and G: the x and y equations of the R collocation points `rows`, which the last axis counts.
 
-    F_xx, … (R, N) multiply nodal displacement; G_xx, … (R, e, 3) multiply traction times Jacobian at the local nodes
-    of the elements that `Influence` was asked for.
+    Parameters
+    ----------
+    rows : which points
+    F : (4, N, R) by components in the order of `kernels.T_ORDER`; multiplies displacement at the nodes
+    G : (3, 3, e, R) by components in the order of `kernels.U_ORDER`; multiplies traction times Jacobian at the three
+        local nodes of the elements that `Influence` was asked for
     """
 
     rows: slice
-    F_xx: Array
-    F_xy: Array
-    F_yx: Array
-    F_yy: Array
-    G_xx: Array
-    G_xy: Array
-    G_yy: Array
-
-
-class _Fields(NamedTuple):
-    """Integrals of one block in real form: T (4, R, m, 3), U (3, R, e, 3)."""
-
-    T: Array
-    U: Array
-
-
-class _Rule(NamedTuple):
-    """A Gauss rule on all elements: N_k (n, 3), weights times N_k (n, 3), ζ and dζ/dξ (m, n)."""
-
-    shapes: Array
-    weighted_shapes: Array
-    points: ComplexArray
-    tangents: ComplexArray
+    F: Array
+    G: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -134,42 +120,71 @@ class Influence:
         return slot
 
     @cached_property
-    def _rules(self) -> list["_Rule"]:
-        """One for each tier."""
+    def _factors(self) -> kernels.Factors:
+        return kernels.factors(self.poisson_ratio)
+
+    @cached_property
+    def _rules(self) -> list[tuple[GaussRule, ComplexArray, ComplexArray]]:
+        """For each tier: the rule, ζ (n, m) and dζ/dξ (n, m) at its Gauss points."""
         rules = []
         for order in quadrature.ORDERS:
-            xi, weights = quadrature.gauss_legendre(int(order))
-            N, dN = shape_functions.values(xi), shape_functions.derivatives(xi)
-            rules.append(_Rule(N, weights[:, None] * N, self.element_nodes @ N.T, self.element_nodes @ dN.T))
+            rule = kernels.gauss_rule(int(order), self._factors)
+            rules.append((rule, rule.shapes.T @ self.element_nodes.T, rule.derivatives.T @ self.element_nodes.T))
         return rules
 
-    def blocks(self, collocation: Collocation) -> Iterator[Block]:
-        """Rows of F and G for all points, a block at a time.
+    def each_block(self, collocation: Collocation, use: Callable[[Block], None]) -> None:
+        """Compute rows of F and G for all points and hand them on, block by block, on all processors.
 
-        Yields
-        ------
-        Block
+        Parameters
+        ----------
+        collocation : Collocation
+        use : called once for each block, from several threads and in any order; must not keep the block
         """
         step = max(8, min(ROWS_PER_BLOCK, LARGEST_BLOCK // len(self.mesh.elements)))
-        for first in range(0, len(collocation), step):
-            rows = slice(first, min(first + step, len(collocation)))
-            yield self._combine(rows, self._fields(collocation, rows), collocation)
+        blocks = [slice(first, min(first + step, len(collocation))) for first in range(0, len(collocation), step)]
+        if len(blocks) <= 2:
+            for rows in blocks:
+                use(self.block(collocation, rows))
+            return
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            for _ in pool.map(lambda rows: use(self.block(collocation, rows)), blocks):
+                pass
 
-    def _fields(self, collocation: Collocation, rows: slice) -> _Fields:
-        """Integrals between the points of a block and all elements."""
+    def block(self, collocation: Collocation, rows: slice) -> Block:
+        """Rows of F and G for the points `rows`.
+
+        Parameters
+        ----------
+        collocation : Collocation
+        rows : neighbouring points
+
+        Returns
+        -------
+        Block
+        """
         z = collocation.points[rows]
-        m, e = len(self.mesh.elements), len(self.traction_elements)
-        fields = _Fields(np.empty((4, len(z), m, 3)), np.empty((3, len(z), e, 3)))
+        block = Block(
+            rows=rows,
+            F=np.zeros((4, len(self.nodes), len(z))),
+            G=np.empty((3, 3, len(self.traction_elements), len(z))),
+        )
         tiers = quadrature.tier(self._block_rho(z))
         shared = tiers < quadrature.tier(np.array(SHARED_RULE_RHO))
-        for tier in np.unique(tiers[shared]):
-            for elements, with_U in self._split(np.flatnonzero(shared & (tiers == tier))):
-                self._far(fields, z, int(tier), elements, with_U=with_U)
-        if not shared.all():
-            point, element = (x.ravel() for x in np.meshgrid(np.arange(len(z)), np.flatnonzero(~shared), indexing="ij"))
-            self._near(fields, collocation, rows, point, element)
-        self._on_elements(fields, collocation, rows)
-        return fields
+        for run in self._runs(np.where(shared, tiers, -1)):
+            if shared[run.start]:
+                self._far(block, z, int(tiers[run.start]), run)
+        point, element = (x.ravel() for x in np.meshgrid(np.arange(len(z)), np.flatnonzero(~shared), indexing="ij"))
+        self._near(block, collocation, point, element)
+        self._on_elements(block, collocation)
+        self._turn_corners(block, collocation)
+        return block
+
+    def _runs(self, kind: IntArray) -> Iterator[slice]:
+        """Successive elements of one kind which all have a place in `traction_elements`, or all have none."""
+        key = np.column_stack([kind, self._slot >= 0])
+        ends = np.flatnonzero((np.diff(key, axis=0) != 0).any(axis=1)) + 1
+        for first, last in itertools.pairwise([0, *ends.tolist(), len(kind)]):
+            yield slice(first, last)
 
     def _block_rho(self, z: ComplexArray) -> Array:
         """Lower bound (m,) of ρ between each element and any point of the block.
@@ -182,92 +197,81 @@ class Influence:
         r = 2 * distance / (abs(c1) + np.sqrt(abs(c1) ** 2 + 4 * abs(c2) * distance))
         return np.where(r > 1, r + np.sqrt(np.maximum(r * r - 1, 0)), 1.0)
 
-    def _split(self, elements: IntArray) -> Iterator[tuple[IntArray, bool]]:
-        """Elements whose traction is wanted, and the others."""
-        wanted = self._slot[elements] >= 0
-        for flag in (True, False):
-            if (part := elements[wanted == flag]).size:
-                yield part, flag
-
-    def _far(self, fields: _Fields, z: ComplexArray, tier: int, elements: IntArray, *, with_U: bool) -> None:
-        """Every point of the block with every one of `elements`, by one Gauss rule."""
-        rule = self._rules[tier]
-        step = max(1, CACHE_SIZE // (len(z) * len(rule.shapes)))
-        x, y = z.real[:, None, None].copy(), z.imag[:, None, None].copy()
-        for first in range(0, len(elements), step):
-            part = elements[first : first + step]
-            at, along = rule.points[part], rule.tangents[part]
+    def _far(self, block: Block, z: ComplexArray, tier: int, run: slice) -> None:
+        """Every point of the block with every element of a run, by one Gauss rule, a cacheful at a time."""
+        rule, zeta, tangent = self._rules[tier]
+        step = max(1, CACHE_SIZE // (len(z) * len(zeta)))
+        for first in range(run.start, run.stop, step):
+            part = slice(first, min(first + step, run.stop))
+            at, along = zeta[:, part, None], tangent[:, part, None]
             result = kernels.regular(
-                at.real - x, at.imag - y, along.real.copy(), along.imag.copy(), rule.weighted_shapes, with_U=with_U
-            )
-            self._store(fields, (slice(None), _as_slice(part)), (slice(None), _as_slice(self._slot[part])), result)
+                at.real - z.real, at.imag - z.imag, along.real, along.imag, rule, self._factors,
+                with_U=bool(self._slot[first] >= 0),
+            )  # fmt: skip
+            m = len(self.mesh.elements)
+            for F, T in zip(block.F, result.T, strict=True):
+                F[part] += T[0]
+                F[m + part.start : m + part.stop] = T[1]
+                F[_successive(self.mesh.elements[part, 2])] += T[2]
+            if result.U is not None:
+                slot = int(self._slot[first])
+                block.G[:, :, slot : slot + part.stop - part.start] = result.U
 
-    def _near(
-        self, fields: _Fields, collocation: Collocation, rows: slice, point: IntArray, element: IntArray
-    ) -> None:
+    def _near(self, block: Block, collocation: Collocation, point: IntArray, element: IntArray) -> None:
         """Pairs (point, element), each by the rule that its own root asks for."""
-        base, offset = collocation.base[rows][point, None], collocation.offset[rows][point, None]
+        apart = ~self._pairs_on_elements(block, collocation, point, element)
+        point, element = point[apart], element[apart]
+        base, offset = (x[block.rows][point, None] for x in (collocation.base, collocation.offset))
         tau = (self.element_nodes[element] - base) - offset
-        off = abs(tau).min(axis=1) > 0
-        tau, point, element = tau[off], point[off], element[off]
         root = kernels.nearest_root(tau)
         tiers = quadrature.tier(quadrature.bernstein_parameter(root.r))
         for tier in np.unique(tiers):
             at = np.flatnonzero(tiers == tier)
             if tier < len(quadrature.ORDERS):
-                rule = self._rules[tier]
-                to, along = tau[at] @ rule.shapes.T, rule.tangents[element[at]]
+                rule, _, tangent = self._rules[tier]
+                to, along = rule.shapes.T @ tau[at].T, tangent[:, element[at]]
                 result = kernels.regular(
-                    to.real, to.imag, along.real, along.imag, rule.weighted_shapes, with_U=True
+                    to.real.copy(), to.imag.copy(), along.real, along.imag, rule, self._factors, with_U=True
                 )
             else:
                 part = kernels.Root(root.r[at], root.minus[at], root.plus[at])
-                result = _real(kernels.near_singular(tau[at], part, with_U=True))
-            self._store_pairs(fields, point[at], element[at], result)
+                result = kernels.components(kernels.near_singular(tau[at], part), self._factors)
+            self._add_pairs(block, point[at], element[at], result)
 
-    def _on_elements(self, fields: _Fields, collocation: Collocation, rows: slice) -> None:
+    def _pairs_on_elements(
+        self, block: Block, collocation: Collocation, point: IntArray, element: IntArray
+    ) -> NDArray[np.bool_]:
+        """Which pairs have their point on their element."""
+        on = _within(collocation.on_point, block.rows)
+        count = len(self.mesh.elements)
+        known = (collocation.on_point[on] - block.rows.start) * count + collocation.on_element[on]
+        return np.isin(point * count + element, known)
+
+    def _on_elements(self, block: Block, collocation: Collocation) -> None:
         """Pairs whose point lies on the element."""
-        on = (collocation.on_point >= rows.start) & (collocation.on_point < rows.stop)
-        element = collocation.on_element[on]
-        result = kernels.singular(self.element_nodes[element], collocation.on_local[on], with_U=True)
-        self._store_pairs(fields, collocation.on_point[on] - rows.start, element, _real(result))
+        on = np.flatnonzero(_within(collocation.on_point, block.rows))
+        element, local = collocation.on_element[on], collocation.on_local[on]
+        integrals = kernels.singular(self.element_nodes[element], local)
+        for some in (local == 1, local != 1):  # the two elements at a node add to the same entry
+            part = kernels.components(Integrals(*(integral[some] for integral in integrals)), self._factors)
+            self._add_pairs(block, collocation.on_point[on[some]] - block.rows.start, element[some], part)
 
-    def _store_pairs(self, fields: _Fields, point: IntArray, element: IntArray, result: RealFields) -> None:
+    def _turn_corners(self, block: Block, collocation: Collocation) -> None:
+        """The free term at nodes between two elements."""
+        corner = collocation.corner[block.rows]
+        row = np.flatnonzero(corner >= 0)
+        for diagonal in range(2):
+            block.F[diagonal, corner[row], row] += self._factors.normal * self._corner_angles[corner[row]]
+
+    def _add_pairs(self, block: Block, point: IntArray, element: IntArray, result: Components) -> None:
+        """Add the integrals of pairs, no two of which share both point and element."""
+        for F, T in zip(block.F, result.T, strict=True):
+            for k in range(3):
+                F[self.mesh.elements[element, k], point] += T[k]
         slot = self._slot[element]
         wanted = slot >= 0
-        if result.log is not None and result.cos is not None and result.sin is not None:
-            result = result._replace(log=result.log[wanted], cos=result.cos[wanted], sin=result.sin[wanted])
-        self._store(fields, (point, element), (point[wanted], slot[wanted]), result)
-
-    @staticmethod
-    def _store(fields: _Fields, at: tuple, at_U: tuple, result: RealFields) -> None:
-        for field, values in zip(fields.T, result[:4], strict=True):
-            field[at] = values
-        if result.log is not None:
-            for field, values in zip(fields.U, result[4:], strict=True):
-                field[at_U] = values
-
-    def _combine(self, rows: slice, fields: _Fields, collocation: Collocation) -> Block:
-        """Collect elements into nodes and put the scalar integrals together to F and G."""
-        tangential, normal, cos, sin = map(self._to_nodes, fields.T)
-        corner = np.flatnonzero(collocation.corner[rows] >= 0)
-        normal[corner, collocation.corner[rows][corner] * 2] += self._corner_angles[collocation.corner[rows][corner]]
-        kappa = 3 - 4 * self.poisson_ratio
-        c = 1 / (8 * np.pi * (1 - self.poisson_ratio))
-        normal *= -c * (kappa + 1)
-        tangential *= c * (kappa - 1)
-        cos *= 2 * c
-        sin *= 2 * c
-        log, turn_cos, turn_sin = fields.U
-        log *= -c * kappa
-        log += c / 2 * shape_functions.INTEGRALS
-        turn_cos *= c / 2
-        turn_sin *= c / 2
-        return Block(
-            rows,
-            F_xx=normal - cos, F_xy=-tangential - sin, F_yx=tangential - sin, F_yy=normal + cos,
-            G_xx=log + turn_cos, G_xy=turn_sin, G_yy=log - turn_cos,
-        )  # fmt: skip
+        if result.U is not None:
+            block.G[:, :, slot[wanted], point[wanted]] = result.U[..., wanted]
 
     @cached_property
     def _corner_angles(self) -> Array:
@@ -275,24 +279,13 @@ class Influence:
         tangents = self.mesh.tangents[..., 0] + 1j * self.mesh.tangents[..., 1]
         return kernels.corner_term(tangents[self.mesh.before, 2], tangents[:, 0]).imag
 
-    def _to_nodes(self, field: Array) -> Array:
-        """Sum (R, m, 3) over the elements at each node: (R, N)."""
-        result = np.empty((len(field), len(self.nodes)))
-        result[:, 0::2] = field[:, :, 0]
-        result[:, 1::2] = field[:, :, 1]
-        result[:, self.mesh.elements[:, 2]] += field[:, :, 2]
-        return result
+
+def _within(index: IntArray, rows: slice) -> NDArray[np.bool_]:
+    return (index >= rows.start) & (index < rows.stop)
 
 
-def _as_slice(index: IntArray) -> IntArray | slice:
-    """Use a slice where the indices follow each other, which NumPy copies several times faster."""
-    if len(index) and index[-1] - index[0] == len(index) - 1:
+def _successive(index: IntArray) -> IntArray | slice:
+    """A slice where indices follow each other, which NumPy adds several times faster."""
+    if (np.diff(index) == 1).all():
         return slice(int(index[0]), int(index[-1]) + 1)
     return index
-
-
-def _real(integrals: Integrals) -> RealFields:
-    A, B, L, M = integrals
-    skew = B / 2j
-    U = (L, M.real, M.imag) if L is not None and M is not None else (None, None, None)
-    return RealFields(A.real, A.imag, skew.real, skew.imag, *U)

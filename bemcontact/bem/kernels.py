@@ -22,7 +22,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.bem.quadrature import bernstein_parameter, gauss_legendre
-from bemcontact.bem.shape_functions import DERIVATIVE_MONOMIALS, MONOMIALS, NODES
+from bemcontact.bem.shape_functions import (
+    DERIVATIVE_MONOMIALS,
+    INTEGRALS,
+    MONOMIALS,
+    NODES,
+    derivatives,
+    values,
+)
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -35,65 +42,141 @@ SMOOTH_RHO = 2.0
 
 
 class Integrals(NamedTuple):
-    """A, B, L, M for a set of (point, element) pairs, each (..., 3); L and M are None where only F is wanted."""
+    """A, B, L, M for a set of p (point, element) pairs, each (p, 3)."""
 
     A: ComplexArray
     B: ComplexArray
-    L: Array | None
-    M: ComplexArray | None
+    L: Array
+    M: ComplexArray
 
 
-class RealFields(NamedTuple):
-    """The same in real form, as the blocks of assembly want it, each (..., 3).
+class Components(NamedTuple):
+    """The integrals of T and U by components: T (4, 3, …) in the order of `T_ORDER`, U (3, 3, …) likewise, or None.
 
-    A = tangential + i normal; B = -2 (skew_cos + i skew_sin) / i; M = cos + i sin; log = L.
+    The second axis counts the local nodes, the others are those of the pairs.
     """
 
-    tangential: Array
-    normal: Array
-    skew_cos: Array
-    skew_sin: Array
-    log: Array | None
-    cos: Array | None
-    sin: Array | None
+    T: Array
+    U: Array | None
 
 
-def regular(dx: Array, dy: Array, tx: Array, ty: Array, shapes: Array, *, with_U: bool) -> RealFields:
+T_ORDER = ((0, 0), (1, 1), (0, 1), (1, 0))
+"""Equation and displacement component of each entry of T."""
+U_ORDER = ((0, 0), (1, 1), (0, 1))
+"""The same of U, which is symmetric."""
+
+
+class Factors(NamedTuple):
+    """What multiplies the integrals, with κ = 3 - 4ν, c = 1/(8π(1-ν)), stresses over the shear modulus.
+
+    T_xx, T_yy = normal Im A ∓ skew Re S, T_xy, T_yx = ∓tangential Re A - skew Im S with B = 2i S;
+    U_xx, U_yy = -log L + turn (w ± Re M), U_xy = turn Im M.
+    """
+
+    normal: float
+    tangential: float
+    skew: float
+    log: float
+    turn: float
+
+
+def factors(poisson_ratio: float) -> Factors:
+    """Factors for an effective Poisson ratio of plane strain."""
+    c, kappa = 1 / (8 * np.pi * (1 - poisson_ratio)), 3 - 4 * poisson_ratio
+    return Factors(normal=-c * (kappa + 1), tangential=c * (kappa - 1), skew=2 * c, log=c * kappa, turn=c / 2)
+
+
+def components(integrals: Integrals, factor: Factors) -> Components:
+    """Turn complex integrals (p, 3) into components, T (4, 3, p) and U (3, 3, p)."""
+    A, B, L, M = (part.T for part in integrals)
+    n, t = factor.normal * A.imag, factor.tangential * A.real
+    cos, sin = factor.skew * (B / 2j).real, factor.skew * (B / 2j).imag
+    log, turn = factor.turn * INTEGRALS[:, None] - factor.log * L, factor.turn * M
+    T = np.array([n - cos, n + cos, -t - sin, t - sin])
+    return Components(T, np.array([log + turn.real, log - turn.real, turn.imag]))
+
+
+class GaussRule(NamedTuple):
+    """A Gauss rule with n points, and the matrices by which it sums the integrands of `regular`.
+
+    shapes, derivatives : (3, n) N_k and dN_k/dξ
+    T_diagonal, T_cross : (6, 2n) for [Re S, Im A] and [Im S, Re A]
+    U_diagonal, U_cross : (6, 2n) for [ln|τ|², Re τ/conj τ] and (3, n) for Im τ/conj τ, halved
+    """
+
+    shapes: Array
+    derivatives: Array
+    T_diagonal: Array
+    T_cross: Array
+    U_diagonal: Array
+    U_cross: Array
+
+
+def gauss_rule(order: int, factor: Factors) -> GaussRule:
+    """Prepare a rule of so many points."""
+    xi, weights = gauss_legendre(order)
+    shapes = values(xi).T
+    S = shapes * weights
+    normal, tangential, skew = factor.normal * S, factor.tangential * S, factor.skew * S
+    log, turn = factor.log / 2 * S, factor.turn * S
+    return GaussRule(
+        shapes=shapes,
+        derivatives=derivatives(xi).T,
+        T_diagonal=np.block([[-skew, normal], [skew, normal]]),
+        T_cross=np.block([[-2 * skew, -tangential], [-2 * skew, tangential]]),
+        U_diagonal=np.block([[-log, turn], [-log, -turn]]),
+        U_cross=2 * turn,
+    )
+
+
+def regular(
+    dx: Array, dy: Array, tx: Array, ty: Array, rule: GaussRule, factor: Factors, *, with_U: bool
+) -> Components:
     """Gauss's rule, for pairs whose root is far enough away.
 
     Parameters
     ----------
-    dx, dy : (..., n) τ at the Gauss points
-    tx, ty : (..., n) dζ/dξ there, broadcast against `dx`
-    shapes : (n, 3) Gauss weights times N_k
+    dx, dy : (n, …) τ at the Gauss points; overwritten
+    tx, ty : (n, …) dζ/dξ there, broadcast against `dx`
+    rule : with n points
+    factor : Factors
     with_U : whether the integrals of U are wanted
 
     Returns
     -------
-    RealFields
+    Components
     """
-    inverse = dx * dx
-    yy = dy * dy
-    cos = inverse - yy
-    inverse += yy
-    log = np.log(inverse) if with_U else None
-    np.reciprocal(inverse, out=inverse)
-    cos *= inverse
-    sin = dx * dy
-    sin *= inverse
-    sin *= 2
-    tangential = dx * tx
-    product = dy * ty
+    n, *pairs = dx.shape
+    log, cos, normal, sin, tangential, inverse, product = fields = np.empty((7, *dx.shape))
+    np.multiply(dx, tx, out=tangential)
+    np.multiply(dy, ty, out=product)
     tangential += product
-    tangential *= inverse
-    normal = dx * ty
+    np.multiply(dx, ty, out=normal)
     np.multiply(dy, tx, out=product)
     normal -= product
-    normal *= inverse
-    U = (log @ (0.5 * shapes), cos @ shapes, sin @ shapes) if log is not None else (None, None, None)
+    np.multiply(dx, dy, out=sin)
+    dx *= dx
+    dy *= dy
+    np.add(dx, dy, out=inverse)
+    np.subtract(dx, dy, out=cos)
+    if with_U:
+        np.log(inverse, out=log)
+    np.reciprocal(inverse, out=inverse)
+    fields[1:5] *= inverse
+    rows = fields.reshape(7 * n, -1)
+    U = None
+    if with_U:
+        U = np.empty((9, rows.shape[1]))
+        np.matmul(rule.U_diagonal, rows[: 2 * n], out=U[:6])
+        np.matmul(rule.U_cross, rows[3 * n : 4 * n], out=U[6:])
+        U[:6] += factor.turn * np.tile(INTEGRALS, 2)[:, None]
+        U = U.reshape(3, 3, *pairs)
     cos *= normal
     sin *= normal
-    return RealFields(tangential @ shapes, normal @ shapes, cos @ shapes, sin @ shapes, *U)
+    T = np.empty((12, rows.shape[1]))
+    np.matmul(rule.T_diagonal, rows[n : 3 * n], out=T[:6])
+    np.matmul(rule.T_cross, rows[3 * n : 5 * n], out=T[6:])
+    return Components(T.reshape(4, 3, *pairs), U)
 
 
 def element_coefficients(nodes: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
@@ -132,14 +215,13 @@ def nearest_root(tau: ComplexArray) -> Root:
     return Root(start + step, (start - 1) + step, (start + 1) + step)
 
 
-def near_singular(tau: ComplexArray, root: Root, *, with_U: bool) -> Integrals:
+def near_singular(tau: ComplexArray, root: Root) -> Integrals:
     """Pairs whose point is near the element but not on it.
 
     Parameters
     ----------
     tau : (p, 3) ζ - z at the element nodes
     root : as from `nearest_root`
-    with_U : whether the integrals of U are wanted
 
     Returns
     -------
@@ -147,10 +229,10 @@ def near_singular(tau: ComplexArray, root: Root, *, with_U: bool) -> Integrals:
     """
     log_ratio = np.log(root.minus / root.plus)
     ends = tau[:, [0, 2]]
-    return _with_root_split_off(tau, root, log_ratio, ends / ends.conj(), with_U=with_U)
+    return _with_root_split_off(tau, root, log_ratio, ends / ends.conj())
 
 
-def singular(nodes: ComplexArray, local: Array, *, with_U: bool) -> Integrals:
+def singular(nodes: ComplexArray, local: Array) -> Integrals:
     """Pairs whose point lies on the element, at local coordinate ξ0; one-sided limits from outside the body.
 
     At an end of the element A_k of the node there diverges like ln|τ|; that part cancels against the neighbour's and
@@ -160,7 +242,6 @@ def singular(nodes: ComplexArray, local: Array, *, with_U: bool) -> Integrals:
     ----------
     nodes : (p, 3) element nodes
     local : (p,) ξ0 of the collocation point
-    with_U : whether the integrals of U are wanted
 
     Returns
     -------
@@ -177,7 +258,7 @@ def singular(nodes: ComplexArray, local: Array, *, with_U: bool) -> Integrals:
     tau[local == -1, 0] = 0
     tau[local == 1, 1] = 0
     turn = np.divide(tau, tau.conj(), out=np.zeros_like(tau), where=tau != 0)
-    return _with_root_split_off(nodes, root, log_ratio, turn, with_U=with_U)
+    return _with_root_split_off(nodes, root, log_ratio, turn)
 
 
 def corner_term(before: ComplexArray, after: ComplexArray) -> ComplexArray:
@@ -185,9 +266,7 @@ def corner_term(before: ComplexArray, after: ComplexArray) -> ComplexArray:
     return -1j * np.mod(np.angle(-before) - np.angle(after), 2 * np.pi)
 
 
-def _with_root_split_off(
-    nodes: ComplexArray, root: Root, log_ratio: ComplexArray, end_turn: ComplexArray, *, with_U: bool
-) -> Integrals:
+def _with_root_split_off(nodes: ComplexArray, root: Root, log_ratio: ComplexArray, end_turn: ComplexArray) -> Integrals:
     """A, B, L, M from the root, ∫ dξ/(ξ - r), and τ / conj τ at both ends (zero where τ vanishes)."""
     _, c1, c2 = element_coefficients(nodes)
     r = root.r
@@ -206,8 +285,6 @@ def _with_root_split_off(
     B = -moments @ DERIVATIVE_MONOMIALS.T
     B[:, 0] -= end_turn[:, 0]
     B[:, 2] += end_turn[:, 1]
-    if not with_U:
-        return Integrals(A, B, None, None)
     L = (_log_moments(root) + (weights * np.log(abs(smooth))) @ powers.T) @ MONOMIALS.T
     return Integrals(A, B, L, moments @ MONOMIALS.T)
 

@@ -1,5 +1,6 @@
 """The boundary in quadratic elements."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,7 +18,7 @@ IntArray = NDArray[np.int64]
 class Mesh:
     """Three-noded elements on closed loops, the body on the left of each element's direction.
 
-    Node 2e is the start and node 2e + 1 the middle of element e: N = 2m.
+    Node e is the start and node m + e the middle of element e: N = 2m.
     Displacement belongs to a node; traction to an (element, local node) pair, so that it may jump.
 
     Parameters
@@ -42,7 +43,7 @@ class Mesh:
     def before(self) -> IntArray:
         """(m,) the element that ends where each element starts."""
         before = np.empty(len(self.elements), int)
-        before[self.elements[:, 2] // 2] = np.arange(len(self.elements))
+        before[self.elements[:, 2]] = np.arange(len(self.elements))
         return before
 
     @cached_property
@@ -89,23 +90,36 @@ def build(problem: Problem) -> Mesh:
     -------
     Mesh
     """
-    nodes, elements, edge_of = [], [], []
+    starts, middles, after, edge_of = [], [], [], []
     for loop in problem.boundary.loops:
-        first = sum(map(len, nodes))
+        first = len(edge_of)
         for edge in loop:
             ends = edge.breakpoints(problem.mesh.refine)
-            fractions = np.empty(2 * len(ends) - 2)
-            fractions[0::2] = ends[:-1]
-            fractions[1::2] = (ends[:-1] + ends[1:]) / 2
-            nodes.append(edge.points(fractions))
+            starts.append(edge.points(ends[:-1]))
+            middles.append(edge.points((ends[:-1] + ends[1:]) / 2))
             edge_of += [edge.name] * (len(ends) - 1)
-        last = sum(map(len, nodes))
-        starts = np.arange(first, last, 2)
-        elements.append(np.column_stack([starts, starts + 1, np.append(starts[1:], first)]))
+        after += [*range(first + 1, len(edge_of)), first]
+    return connected(np.vstack(starts), np.vstack(middles), np.array(after), edge_of)
+
+
+def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[str]) -> Mesh:
+    """Make a mesh from its elements.
+
+    Parameters
+    ----------
+    starts, middles : (m, 2) start and middle node of each element [L]
+    after : (m,) the element that begins where each element ends
+    edge_of : m names of edges
+
+    Returns
+    -------
+    Mesh
+    """
+    m = len(starts)
     names = tuple(dict.fromkeys(edge_of))
     return Mesh(
-        nodes=np.vstack(nodes),
-        elements=np.vstack(elements),
+        nodes=np.vstack([starts, middles]),
+        elements=np.column_stack([np.arange(m), m + np.arange(m), after]),
         edge=np.array([names.index(name) for name in edge_of]),
         edge_names=names,
     )

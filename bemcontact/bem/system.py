@@ -115,23 +115,23 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: NDArray[np.complex128
     double = (ends >= 0) & (starts >= 0) & (ends != starts)  # (m, 2), at the start node of each element
 
     wanted = np.ones((2 * m, 2), bool)
-    wanted[0::2] = ~double
+    wanted[:m] = ~double
     at_nodes = np.flatnonzero(wanted.any(axis=1))
     split = np.flatnonzero(double.any(axis=1))
     on_split = np.column_stack([before[split], split]).ravel()
     local_split = np.tile([OFFSET, -OFFSET], len(split))
     shapes = shape_functions.values(local_split)
-    base = np.repeat(nodes[2 * split], 2)
+    base = np.repeat(nodes[split], 2)
     offset = np.sum(shapes * (nodes[mesh.elements[on_split]] - base[:, None]), axis=1)
 
-    is_corner = at_nodes % 2 == 0
-    corner = np.where(is_corner, at_nodes // 2, -1)
+    is_corner = at_nodes < m
+    corner = np.where(is_corner, at_nodes, -1)
     number = np.arange(len(at_nodes))
     collocation = Collocation(
         base=np.concatenate([nodes[at_nodes], base]),
         offset=np.concatenate([np.zeros(len(at_nodes)), offset]),
         on_point=np.concatenate([number, number[is_corner], len(at_nodes) + np.arange(2 * len(split))]),
-        on_element=np.concatenate([at_nodes // 2, before[corner[is_corner]], on_split]),
+        on_element=np.concatenate([at_nodes % m, before[corner[is_corner]], on_split]),
         on_local=np.concatenate([np.where(is_corner, -1.0, 0.0), np.ones(is_corner.sum()), local_split]),
         corner=np.concatenate([corner, np.full(2 * len(split), -1)]),
     )
@@ -141,11 +141,22 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: NDArray[np.complex128
     return Equations(collocation=collocation, row=row)
 
 
+class _Carried(NamedTuple):
+    """Columns of G that belong to some unknowns: rows `at` of G transposed, to be summed by a sparse matrix."""
+
+    at: IntArray
+    matrix: sparse.csr_array
+
+    def times(self, G: Array) -> Array:
+        """Columns of the unknowns (…, q) from G transposed (3e, q)."""
+        return self.matrix @ G[self.at]
+
+
 class Rows(NamedTuple):
-    """Some rows of the system: A (q, unknowns), and b and the b_i side by side (q, 1 + n)."""
+    """Some rows of the system, transposed: pieces (…, q) of A one below the other, and b and the b_i (1 + n, q)."""
 
     index: slice
-    left: Array
+    left: list[Array]
     right: Array
 
 
@@ -220,24 +231,25 @@ class System:
         return self.mesh.jacobians[self.influence.traction_elements] / self.length
 
     @cached_property
-    def _unit_tractions(self) -> list[sparse.csr_array]:
-        """Traction times Jacobian (3e, unknowns) along each axis for unit unknowns."""
+    def _unit_tractions(self) -> list[_Carried]:
+        """Traction times Jacobian along each axis for unit unknown tractions."""
+        first = int((self.unknowns.displacement >= 0).sum())
         columns = self.unknowns.traction[self.influence.traction_elements]
-        return [self._incidence(columns[..., axis], np.ones(self.unknowns.size)) for axis in range(2)]
+        return [self._carried(columns[..., axis] - first, np.ones(self.unknowns.size - first)) for axis in range(2)]
 
     @cached_property
-    def _unit_pressures(self) -> list[sparse.csr_array]:
-        """Traction times Jacobian (3e, n) along each axis for unit pressures: t = p n."""
+    def _unit_pressures(self) -> list[_Carried]:
+        """Traction times Jacobian along each axis for unit pressures: t = p n."""
         columns = np.full(self.mesh.elements.shape, -1)
         columns[self.points.element, self.points.local] = self.points.point
-        return [self._incidence(columns[self.influence.traction_elements], n) for n in self.points.normals.T]
+        return [self._carried(columns[self.influence.traction_elements], n) for n in self.points.normals.T]
 
-    def _incidence(self, columns: IntArray, factors: Array) -> sparse.csr_array:
-        """Jacobian times the factor of its column, at each (element, local node) that has a column (e, 3)."""
-        at = np.flatnonzero(columns.ravel() >= 0)
-        column = columns.ravel()[at]
-        values = self._jacobians.ravel()[at] * factors[column]
-        return sparse.csr_array((values, (at, column)), shape=(columns.size, len(factors)))
+    def _carried(self, columns: IntArray, factors: Array) -> _Carried:
+        """Jacobian times the factor of its column, at each (local node, element) that has a column, given as (e, 3)."""
+        at = np.flatnonzero(columns.T.ravel() >= 0)
+        column = columns.T.ravel()[at]
+        values = self._jacobians.T.ravel()[at] * factors[column]
+        return _Carried(at, sparse.csr_array((values, (column, np.arange(len(at)))), shape=(len(factors), len(at))))
 
     def rows(self, block: Block) -> Iterator[Rows]:
         """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations.
@@ -246,33 +258,32 @@ class System:
         ------
         Rows
         """
-        G_xx, G_xy, G_yy = (G.reshape(len(G), -1) for G in (block.G_xx, block.G_xy, block.G_yy))
-        for axis, F, G in ((0, (block.F_xx, block.F_xy), (G_xx, G_xy)), (1, (block.F_yx, block.F_yy), (G_xy, G_yy))):
+        F_xx, F_yy, F_xy, F_yx = block.F
+        G_xx, G_yy, G_xy = block.G.reshape(3, -1, block.G.shape[-1])
+        for axis, F, G in ((0, (F_xx, F_xy), (G_xx, G_xy)), (1, (F_yx, F_yy), (G_xy, G_yy))):
             index = self.equations.row[block.rows, axis]
             used = index >= 0
-            if used.any():
-                first = int(index[used][0])
-                F, G = ([part if used.all() else part[used] for part in parts] for parts in (F, G))
-                yield Rows(slice(first, first + int(used.sum())), self._left(F, G), self._right(F, G))
+            if not used.any():
+                continue
+            if not used.all():
+                F, G = ([part[:, used] for part in parts] for parts in (F, G))
+            first = int(index[used][0])
+            yield Rows(slice(first, first + int(used.sum())), [*self._left(F, G)], self._right(F, G))
 
-    def _left(self, F: Sequence[Array], G: Sequence[Array]) -> Array:
-        """Columns of the unknowns (q, unknowns) from those of x and y displacement and traction."""
-        A = np.empty((len(F[0]), self.unknowns.size))
-        first = 0
+    def _left(self, F: Sequence[Array], G: Sequence[Array]) -> Iterator[Array]:
+        """Columns of the unknowns: x displacements, y displacements, tractions."""
         for part, column in zip(F, self.unknowns.displacement.T, strict=True):
-            free = np.flatnonzero(column >= 0)
-            A[:, first : first + len(free)] = part if len(free) == len(column) else part[:, free]
-            first += len(free)
-        if first < self.unknowns.size:
-            A[:, first:] = -sum(_times(g, unit[:, first:]) for g, unit in zip(G, self._unit_tractions, strict=True))
-        return A
+            free = column >= 0
+            yield part if free.all() else part[free]
+        if self.values.traction_unknown.any():
+            yield -sum(unit.times(g) for g, unit in zip(G, self._unit_tractions, strict=True))
 
     def _right(self, F: Sequence[Array], G: Sequence[Array]) -> Array:
-        """The right sides b, b_i (q, 1 + n)."""
+        """The right sides b, b_i (1 + n, q)."""
         known = self._known_traction[self.influence.traction_elements] * self._jacobians[..., None]
-        b = sum(g @ t for g, t in zip(G, known.reshape(-1, 2).T, strict=True))
-        b -= sum(f @ u for f, u in zip(F, self._known_displacement.T, strict=True))
-        return np.column_stack([b, sum(_times(g, unit) for g, unit in zip(G, self._unit_pressures, strict=True))])
+        b = sum(t @ g for g, t in zip(G, known.transpose(2, 1, 0).reshape(2, -1), strict=True))
+        b -= sum(u @ f for f, u in zip(F, self._known_displacement.T, strict=True))
+        return np.vstack([b, sum(unit.times(g) for g, unit in zip(G, self._unit_pressures, strict=True))])
 
     @cached_property
     def null_vectors(self) -> Array:
@@ -300,8 +311,3 @@ class System:
         sought = self.unknowns.traction >= 0
         traction[sought] = z[self.unknowns.traction[sought]] * self.stress
         return displacement, traction
-
-
-def _times(dense: Array, matrix: sparse.csr_array) -> Array:
-    """Dense times sparse."""
-    return np.asarray((matrix.T @ dense.T).T)

@@ -1,0 +1,112 @@
+"""Meshes and boundary-value problems without contact, for tests of the boundary-element core alone."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from bemcontact.bem.boundary_values import BoundaryValues
+from bemcontact.bem.condense import solve
+from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.mesh import Mesh, connected
+from bemcontact.bem.rigid_motions import free_rigid_motions
+from bemcontact.bem.system import System
+from bemcontact.bem.volume_loads import particular_solution
+from bemcontact.problem.loads import Loads
+from bemcontact.problem.material import Material
+
+Curve = Callable[[np.ndarray], np.ndarray]
+
+
+def segment(start: Sequence[float], end: Sequence[float]) -> Curve:
+    return lambda s: np.outer(1 - s, start) + np.outer(s, end)
+
+
+def arc(center: Sequence[float], radius: float, first: float, last: float) -> Curve:
+    """A circular arc between two angles in degrees."""
+
+    def at(s: np.ndarray) -> np.ndarray:
+        angle = np.radians(first + s * (last - first))
+        return center + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+    return at
+
+
+def mesh_of(*loops: Sequence[tuple[str, Curve, Sequence[float]]]) -> Mesh:
+    """Mesh closed loops of edges (name, curve, fractions of the element ends from 0 to 1)."""
+    starts, middles, after, edges = [], [], [], []
+    for loop in loops:
+        first = len(edges)
+        for name, curve, ends in loop:
+            ends = np.asarray(ends, float)
+            starts.append(curve(ends[:-1]))
+            middles.append(curve((ends[:-1] + ends[1:]) / 2))
+            edges += [name] * (len(ends) - 1)
+        after += [*range(first + 1, len(edges)), first]
+    return connected(np.vstack(starts), np.vstack(middles), np.array(after), edges)
+
+
+def rectangle(width: float, height: float, along: Sequence[float], across: Sequence[float]) -> list:
+    """The four edges bottom, right, top, left, anticlockwise from the origin."""
+    w, h = width, height
+    return [
+        ("bottom", segment((0, 0), (w, 0)), along),
+        ("right", segment((w, 0), (w, h)), across),
+        ("top", segment((w, h), (0, h)), along),
+        ("left", segment((0, h), (0, 0)), across),
+    ]
+
+
+def even(count: int) -> np.ndarray:
+    return np.linspace(0, 1, count + 1)
+
+
+def no_points(mesh: Mesh) -> ContactPoints:
+    none, numbers = np.zeros(0), np.zeros(0, int)
+    return ContactPoints(
+        mesh=mesh, node=numbers, zone=numbers, run=numbers, arc_position=none, run_length=none,
+        normals=np.zeros((0, 2)), gap=none, element=numbers, local=numbers, point=numbers,
+    )  # fmt: skip
+
+
+def values_of(
+    mesh: Mesh,
+    fixed: dict[str, str],
+    displacement: Callable[[np.ndarray], np.ndarray],
+    traction: Callable[[np.ndarray, np.ndarray], np.ndarray],
+) -> BoundaryValues:
+    """Prescribe a known field: displacement along the axes `fixed` names for an edge ("x", "y", "xy"), else traction."""
+    given = np.zeros((len(mesh.nodes), 2), bool)
+    unknown = np.zeros((len(mesh.elements), 2), bool)
+    for name, axes in fixed.items():
+        on = np.flatnonzero(mesh.edge == mesh.edge_names.index(name))
+        for axis in ("xy".index(letter) for letter in axes):
+            unknown[on, axis] = True
+            given[np.unique(mesh.elements[on]), axis] = True
+    t = traction(mesh.nodes[mesh.elements], mesh.normals)
+    return BoundaryValues(
+        displacement_given=given,
+        displacement=np.where(given, displacement(mesh.nodes), 0),
+        traction_unknown=unknown,
+        traction=np.where(unknown[:, None, :], 0, t),
+    )
+
+
+def solved(
+    mesh: Mesh, material: Material, values: BoundaryValues, loads: Loads | None = None
+) -> tuple[np.ndarray, np.ndarray, System]:
+    """Displacement (N, 2) and traction (m, 3, 2) of a body without contact, and its system."""
+    system = System(
+        mesh=mesh, material=material, values=values, points=no_points(mesh),
+        particular=particular_solution(loads or Loads(), material, mesh),
+        motions=free_rigid_motions(mesh.nodes, values.displacement_given),
+    )  # fmt: skip
+    displacement, traction = system.fields(solve(system)[:, 0])
+    return displacement, traction, system
+
+
+def without_rigid_motion(mesh: Mesh, difference: np.ndarray) -> np.ndarray:
+    """Take the best-fitting rigid motion out of nodal displacements."""
+    every = free_rigid_motions(mesh.nodes, np.zeros((len(mesh.nodes), 2), bool))
+    rows = every.displacement(mesh.nodes).reshape(-1, 3)
+    fitted, *_ = np.linalg.lstsq(rows, difference.ravel(), rcond=None)
+    return difference - (rows @ fitted).reshape(-1, 2)
