@@ -1,0 +1,45 @@
+"""Frictionless contact of elastic bodies with rigid surfaces: boundary elements, quadratic programs, a certificate.
+
+>>> import bemcontact
+>>> problem = bemcontact.load("models/cylinder_on_plane.yaml")  # doctest: +SKIP
+>>> result = bemcontact.solve(problem)  # doctest: +SKIP
+>>> result.certified, result.footprint.peak.pressure  # doctest: +SKIP
+"""
+
+from importlib import import_module
+from typing import Any
+
+_HOMES = {
+    "load": "bemcontact.spec",
+    "schema": "bemcontact.spec",
+    "condense": "bemcontact.analysis",
+    "solve": "bemcontact.analysis",
+    "Result": "bemcontact.analysis",
+    "Problem": "bemcontact.problem.problem",
+    "CondensedContact": "bemcontact.contact",
+    "ContactSolution": "bemcontact.contact",
+    "Status": "bemcontact.contact",
+    "Weights": "bemcontact.contact",
+    "BemContactError": "bemcontact.errors",
+    "SpecError": "bemcontact.errors",
+    "ProblemError": "bemcontact.errors",
+    "SingularSystemError": "bemcontact.errors",
+    "NotConvexError": "bemcontact.errors",
+    "SolverError": "bemcontact.errors",
+}
+
+__all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used, so that ``bemcontact --help`` needs no numerics."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'bemcontact' has no attribute '{name}'")
+    value = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """List the public names."""
+    return sorted(_HOMES)
