@@ -1,0 +1,298 @@
+"""The command line: arguments, progress, exit status, nothing more.
+
+The numerical half of the package is imported inside the commands, so that ``bemcontact --help`` answers at once.
+"""
+
+import json
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from enum import StrEnum
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+from rich.console import Console, RenderableType
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.text import Text
+
+from bemcontact.errors import BemContactError, NotConvexError, ProblemError, SpecError
+
+UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+STANDARD_OUTPUT = Path("-")
+PATIENCE = 1.0
+"""Seconds of work after which a person is told what is going on."""
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+class Formulation(StrEnum):
+    """Statements of the contact problem that can be solved."""
+
+    QP3 = "qp3"
+    COMPLEMENTARITY = "complementarity"
+
+
+class WeightsOption(StrEnum):
+    """Names of `bemcontact.contact.Weights`, known without importing it."""
+
+    TRIBUTARY = "tributary"
+    CONSISTENT = "consistent"
+    ELEMENT_LENGTH = "element_length"
+
+
+SpecArgument = Annotated[Path, typer.Argument(metavar="SPEC", help="Problem to read, a YAML file.", show_default=False)]
+RefineOption = Annotated[int, typer.Option(min=1, metavar="K", help="Split each element into K equal parts.")]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY.PATH=VALUE",
+        help="Replace one value of the spec before it is checked; repeatable.",
+        show_default=False,
+    ),
+]
+FigureOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Draw a picture; FILE ends in .png, .svg or .pdf.", show_default=False),
+]
+
+
+def main() -> None:
+    """Run the command line; the entry point of the ``bemcontact`` program."""
+    app()
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        try:
+            typer.echo(f"bemcontact {version('bemcontact')}")
+        except PackageNotFoundError:
+            typer.echo("bemcontact, running from a source tree that is not installed")
+        raise typer.Exit()
+
+
+@app.callback()
+def bemcontact(
+    show_version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """Frictionless contact of an elastic body with rigid surfaces: plane boundary elements, quadratic programming.
+
+    Write the problem as a YAML file (see models/), look at it with check, solve it with solve.
+
+    Exit status: 0 certified solution, 1 a result that is not one, 2 bad input.
+
+    [bold]Examples[/bold]
+      bemcontact check models/cylinder_on_plane.yaml --figure problem.png
+      bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
+    """
+
+
+@app.command()
+def check(
+    spec: SpecArgument,
+    figure: FigureOption = None,
+    refine: RefineOption = 1,
+    overrides: SetOption = None,
+) -> None:
+    """Validate a spec and say what is seen in it: edges, contact zones, mesh, loads, and what holds the body.
+
+    Nothing is solved, but a body that nothing holds, or that its load pulls off its support, is found out.
+
+    [bold]Examples[/bold]
+      bemcontact check models/cylinder_on_plane.yaml
+      bemcontact check models/cylinder_on_plane.yaml --figure problem.svg
+      bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
+    """
+    with _told(), _busy("checking"):
+        _claim(spec, {"--figure": figure})
+        from bemcontact import spec as spec_file
+        from bemcontact.bem.condense import body_of
+        from bemcontact.report import text
+
+        body = body_of(spec_file.load(spec, overrides or ()).refined(refine))
+        if figure:
+            from bemcontact.report import figures
+
+            figures.save(figures.figure_of_problem(body.problem, body.mesh), figure)
+    _show(text.problem_summary(body))
+
+
+@app.command()
+def solve(
+    spec: SpecArgument,
+    formulation: Annotated[Formulation, typer.Option(help="Statement of the contact problem.")] = Formulation.QP3,
+    weights: Annotated[WeightsOption, typer.Option(help="Weights of the objective.")] = WeightsOption.TRIBUTARY,
+    refine: RefineOption = 1,
+    overrides: SetOption = None,
+    figure: FigureOption = None,
+    json_file: Annotated[
+        Path | None,
+        typer.Option("--json", metavar="FILE", help="Write all results; - for standard output.", show_default=False),
+    ] = None,
+) -> None:
+    """Find the contact pressure, judge it, and say it in a short table.
+
+    Pressures are per UNDEFORMED length. The exit status is 0 only if the solution is certified.
+
+    [bold]Examples[/bold]
+      bemcontact solve models/cylinder_on_plane.yaml
+      bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
+      bemcontact solve models/cylinder_on_plane.yaml --refine 3
+      bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
+      bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
+    """
+    with _told(), _busy("solving"):
+        _claim(spec, {"--figure": figure, "--json": None if json_file == STANDARD_OUTPUT else json_file})
+        from bemcontact import analysis
+        from bemcontact import spec as spec_file
+        from bemcontact.report import output, text
+
+        problem = spec_file.load(spec, overrides or ()).refined(refine)
+        result = analysis.solve(problem, formulation=formulation.value, weights=weights.value)
+        if figure:
+            from bemcontact.report import figures
+
+            figures.save(figures.figure_of_result(result), figure)
+        if json_file and json_file != STANDARD_OUTPUT:
+            with output.whole_file(json_file) as temporary:
+                temporary.write_text(result.to_json(indent=2) + "\n", encoding="utf-8")
+    if json_file == STANDARD_OUTPUT:
+        typer.echo(result.to_json(indent=2))
+        if not result.certified:
+            _tell("not certified: ", text.verdict(result))
+    else:
+        _show(text.result_summary(result))
+    raise typer.Exit(0 if result.certified else UNCERTIFIED)
+
+
+@app.command()
+def condense(
+    spec: SpecArgument,
+    out: Annotated[Path, typer.Option(metavar="FILE.npz", help="Where to write.", show_default=False)],
+    refine: RefineOption = 1,
+    overrides: SetOption = None,
+) -> None:
+    """Reduce a body to its contact points and save compliance, gaps and weights as one .npz file.
+
+    Read it with bemcontact.CondensedContact.load(FILE) and hand it to bemcontact.solve.
+
+    [bold]Examples[/bold]
+      bemcontact condense models/cylinder_on_plane.yaml --out cylinder.npz
+      bemcontact condense models/cylinder_on_plane.yaml --refine 2 --out fine.npz
+    """
+    with _told(), _busy("condensing"):
+        _claim(spec, {"--out": out})
+        from bemcontact import analysis
+        from bemcontact import spec as spec_file
+        from bemcontact.report import output, text
+
+        condensed = analysis.condense(spec_file.load(spec, overrides or ()).refined(refine))
+        with output.whole_file(out) as temporary:
+            condensed.save(temporary)
+    _show(text.condensed_summary(condensed, out))
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of a spec, which editors use to check and complete.
+
+    [bold]Examples[/bold]
+      bemcontact schema > bemcontact.schema.json
+    """
+    with _told():
+        from bemcontact import spec
+
+        typer.echo(json.dumps(spec.schema(), indent=2, ensure_ascii=False))
+
+
+def _claim(spec: Path, outputs: Mapping[str, Path | None]) -> None:
+    """Refuse files (by option) that cannot be written, or that would overwrite another, before any work is done."""
+    from bemcontact.report import output
+
+    claimed = {spec.resolve(): "the spec itself"}
+    for option, path in outputs.items():
+        if path is None:
+            continue
+        if path.resolve() in claimed:
+            _refuse(f"{option} {path} would overwrite {claimed[path.resolve()]}; name another file")
+        claimed[path.resolve()] = f"the file of {option}"
+        try:
+            if option == "--figure":
+                from bemcontact.report import figures
+
+                figures.ensure_known_format(path)
+            output.ensure_writable(path)
+        except (OSError, ValueError) as error:
+            _refuse(f"{option}: {error}")
+
+
+def _show(renderable: RenderableType) -> None:
+    """Print for a person on standard output."""
+    Console(highlight=False, markup=False, emoji=False).print(renderable)
+
+
+def _tell(head: str, message: str, style: str = "bold red") -> None:
+    """Say one thing on standard error: never markup, never folded, so that paths stay whole."""
+    printable = "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in message)
+    Console(stderr=True, highlight=False, markup=False, emoji=False).print(
+        Text.assemble((head, style), printable), soft_wrap=True
+    )
+
+
+def _refuse(message: str) -> NoReturn:
+    """Say what is wrong with the input and end."""
+    _tell("error: ", message)
+    raise typer.Exit(BAD_INPUT)
+
+
+@contextmanager
+def _told() -> Iterator[None]:
+    """Turn all that can go wrong on purpose into one text on standard error and an exit status."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise typer.Exit(INTERRUPTED) from None
+    except BrokenPipeError:
+        raise
+    except (SpecError, ProblemError, NotConvexError) as error:
+        _refuse(str(error))
+    except OSError as error:
+        _refuse(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+    except BemContactError as error:
+        _tell("failed: ", str(error))
+        raise typer.Exit(UNCERTIFIED) from error
+    except MemoryError as error:
+        _tell("failed: ", "not enough memory for so many elements; take a smaller --refine")
+        raise typer.Exit(UNCERTIFIED) from error
+
+
+@contextmanager
+def _busy(what: str) -> Iterator[None]:
+    """Show what is going on and for how long, on a terminal and only once it lasts."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield
+        return
+    columns = (SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn())
+    progress = Progress(*columns, console=console, transient=True)
+    progress.add_task(what, total=None)
+    timer = threading.Timer(PATIENCE, progress.start)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+        timer.join()
+        if progress.live.is_started:
+            progress.stop()

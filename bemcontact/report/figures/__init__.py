@@ -1,0 +1,20 @@
+"""Pictures of a problem and of its result; the only room that knows matplotlib.
+
+Each ``draw_...`` function draws into axes that it is given; each ``figure_of_...`` composes a page of them.
+"""
+
+from bemcontact.report.figures.page import FORMATS, ensure_known_format, save
+from bemcontact.report.figures.problem import draw_problem, figure_of_problem
+from bemcontact.report.figures.result import draw_deformed, draw_gap, draw_pressure, figure_of_result
+
+__all__ = [
+    "FORMATS",
+    "draw_deformed",
+    "draw_gap",
+    "draw_pressure",
+    "draw_problem",
+    "ensure_known_format",
+    "figure_of_problem",
+    "figure_of_result",
+    "save",
+]

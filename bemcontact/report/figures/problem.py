@@ -1,0 +1,206 @@
+"""The picture of what is asked: geometry, mesh, conditions, loads, rigid surfaces."""
+
+import re
+from collections.abc import Iterator
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+from numpy.typing import NDArray
+
+from bemcontact.bem import shape_functions
+from bemcontact.bem.mesh import Mesh
+from bemcontact.problem import AxisFields, Circle, Condition, Edge, Field, Plane, Polyline, Problem
+from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, draw_rollers, place_names
+from bemcontact.report.figures.page import BLACK, BLUE, BODY, GREEN, GREY, VERMILION, frame_plan, new_page, plain
+from bemcontact.report.text import prescribed
+
+Array = NDArray[np.float64]
+
+ROLES = {"may touch": VERMILION, "held": BLUE, "loaded": GREEN, "free": BLACK}
+"""What an edge is for, and its colour."""
+FREE = Condition(traction=AxisFields(x=Field(constant=0.0)))
+"""What an edge without a condition means."""
+
+
+def figure_of_problem(problem: Problem, mesh: Mesh) -> Figure:
+    """Compose a page with geometry, mesh, conditions and rigid surfaces."""
+    low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
+    width, height = (high - low) / (high - low).max()
+    figure = new_page(3.0 + 7.0 * max(width, 0.5), 1.8 + 7.0 * max(height, 0.3))
+    axes = figure.add_subplot()
+    axes.set_title(plain(problem.name), loc="left", fontweight="bold")
+    draw_problem(axes, problem, mesh)
+    return figure
+
+
+def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
+    """Draw the body with its mesh, conditions and rigid surfaces, each edge with its name and what it is told.
+
+    Parameters
+    ----------
+    axes : to draw into; limits and aspect are set
+    problem : what is asked
+    mesh : of this problem
+    """
+    _fill_body(axes, problem)
+    _draw_mesh(axes, problem, mesh)
+    outline = [edge.points(np.linspace(0, 1, 60)) for edge in problem.boundary.edges]
+    marks = [*_draw_supports(axes, problem), *_draw_loads(axes, problem), *_draw_surfaces(axes, problem)]
+    drawn = np.concatenate([*outline, *marks])
+    frame_plan(axes, drawn, problem.units.length)
+    _draw_legend(axes, problem)
+    place_names(axes, [_name(problem, edge) for edge in problem.boundary.edges], drawn)
+
+
+def role(problem: Problem, edge: str) -> str:
+    """Say what an edge is for: one of `ROLES`."""
+    if any(edge in zone.edges for zone in problem.contact_zones.values()):
+        return "may touch"
+    condition = problem.conditions.get(edge)
+    if condition is None:
+        return "free"
+    return "held" if condition.displacement.given else "loaded"
+
+
+def _fill_body(axes: Axes, problem: Problem) -> None:
+    """Fill the body; holes run the other way round and so stay empty."""
+    loops = [np.concatenate([edge.polyline() for edge in loop]) for loop in problem.boundary.loops]
+    path = Path.make_compound_path(*(Path(loop, closed=True) for loop in loops))
+    axes.add_patch(PathPatch(path, facecolor=BODY, edgecolor="none", zorder=0))
+
+
+def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
+    """Draw elements in the colour of their edge's role, with large dots at their ends and small ones between."""
+    corners = mesh.nodes[mesh.elements]
+    colours = [ROLES[role(problem, mesh.edge_names[edge])] for edge in mesh.edge]
+    curves = shape_functions.values(np.linspace(-1, 1, 9)) @ corners
+    axes.add_collection(LineCollection(list(curves), colors=colours, linewidths=2.2, zorder=3))
+    for nodes, diameter in ((corners[:, 0], 4.5), (corners[:, 1], 2.5)):
+        axes.scatter(*nodes.T, s=diameter**2, c="white", edgecolors=colours, linewidths=0.9, zorder=4)
+
+
+def _spread(edge: Edge, size: float, spots: int) -> tuple[Array, Array]:
+    """Choose points (k, 2) on an edge for symbols, about `spots` over the body's size, and the outward normals."""
+    count = int(np.clip(round(spots * edge.length / size), 2, spots))
+    fractions = (np.arange(count) + 0.5) / count
+    return edge.points(fractions), _outward(edge, fractions)
+
+
+def _outward(edge: Edge, fractions: Array) -> Array:
+    directions = edge.directions(fractions)
+    return np.column_stack([directions[:, 1], -directions[:, 0]])
+
+
+def _draw_supports(axes: Axes, problem: Problem) -> Iterator[Array]:
+    """Draw a clamp as ground and one held axis as rollers that point along it."""
+    size = problem.boundary.size
+    for edge in problem.boundary.edges:
+        held = problem.conditions.get(edge.name, FREE).displacement
+        if len(held.given) == 2:
+            fractions = np.linspace(0, 1, 61)
+            yield draw_ground(axes, edge.points(fractions), -_outward(edge, fractions), 0.025 * size, BLUE)
+            continue
+        points, normals = _spread(edge, size, 8)
+        for axis in held.given:
+            column = "xy".index(axis)
+            away = np.zeros_like(normals)
+            away[:, column] = np.where(normals[:, column] > -0.01, 1.0, -1.0)
+            yield draw_rollers(axes, points, away, 0.02 * size, BLUE)
+
+
+def _draw_loads(axes: Axes, problem: Problem) -> Iterator[Array]:
+    """Draw prescribed tractions as arrows to one scale; they end on the body if they push, start there if they pull."""
+    size = problem.boundary.size
+    loads = [(*_spread(edge, size, 20), edge.name) for edge in problem.boundary.edges]
+    tractions = [_traction(problem, name, points, normals) for points, normals, name in loads]
+    largest = max(float(np.hypot(*traction.T).max()) for traction in tractions)
+    for (points, normals, _), traction in zip(loads, tractions, strict=True):
+        if traction.any():
+            arrows = traction * (0.1 * size / largest)
+            pulls = (traction * normals).sum(axis=1, keepdims=True) > 0
+            yield draw_arrows(axes, np.where(pulls, points, points - arrows), arrows, GREEN)
+
+
+def _draw_surfaces(axes: Axes, problem: Problem) -> Iterator[Array]:
+    """Draw the rigid surfaces with their normals, as far as they face the body."""
+    size = problem.boundary.size
+    for zone in problem.contact_zones.values():
+        edges = [problem.edge(name) for name in zone.edges]
+        facing = np.concatenate([edge.points(np.linspace(0, 1, 60)) for edge in edges])
+        points, normals = _surface_line(zone.surface, facing, size)
+        yield draw_ground(axes, points, normals, 0.03 * size, GREY)
+        middle = facing[len(facing) // 2][None]
+        gap, normal = zone.surface.closest(middle)
+        yield draw_arrows(axes, middle - gap[:, None] * normal, 0.09 * size * normal, GREY)
+
+
+def _surface_line(surface: Plane | Circle | Polyline, facing: Array, size: float) -> tuple[Array, Array]:
+    """Points (k, 2) of a rigid surface, in order, and its unit normals there."""
+    match surface:
+        case Plane():
+            normal = np.array(surface.unit_normal)
+            along = np.array([normal[1], -normal[0]])
+            s = (facing - surface.point) @ along
+            points = surface.point + np.outer([s.min() - 0.12 * size, s.max() + 0.12 * size], along)
+            return points, np.tile(normal, (2, 1))
+        case Circle():
+            radial = facing - surface.center
+            middle = radial.mean(axis=0)
+            turn = np.arctan2(middle[0] * radial[:, 1] - middle[1] * radial[:, 0], radial @ middle)
+            reach = (
+                np.pi if surface.radius < size / 2 else min(np.abs(turn).max() + 0.12 * size / surface.radius, np.pi)
+            )
+            angle = np.arctan2(middle[1], middle[0]) + np.linspace(-reach, reach, 181)
+            outward = np.column_stack([np.cos(angle), np.sin(angle)])
+            return surface.center + surface.radius * outward, outward if surface.body == "outside" else -outward
+        case Polyline():
+            points = np.array(surface.points)
+            first, last = points[1] - points[0], points[-1] - points[-2]
+            points[0] -= 0.12 * size * first / np.hypot(*first)
+            points[-1] += 0.12 * size * last / np.hypot(*last)
+            ends = np.stack([points[:-1], points[1:]], axis=1)
+            tangents = (ends[:, 1] - ends[:, 0]) / np.hypot(*(ends[:, 1] - ends[:, 0]).T)[:, None]
+            normals = np.column_stack([-tangents[:, 1], tangents[:, 0]])
+            return ends.reshape(-1, 2), np.repeat(normals, 2, axis=0)
+
+
+def _traction(problem: Problem, edge: str, points: Array, normals: Array) -> Array:
+    """Prescribed traction (k, 2) at points of an edge with these outward normals."""
+    condition = problem.conditions.get(edge, FREE)
+    if condition.pressure is not None:
+        return -condition.pressure.at(points)[:, None] * normals
+    fields = (condition.traction.x, condition.traction.y)
+    return np.column_stack([field.at(points) if field else np.zeros(len(points)) for field in fields])
+
+
+def _name(problem: Problem, edge: Edge) -> Name:
+    """Prepare the text at an edge: its name, and what is prescribed there."""
+    fractions = np.array([0.5, 0.4, 0.6, 0.25, 0.75, 0.12, 0.88])
+    anchors, outward = edge.points(fractions), _outward(edge, fractions)
+    return Name(
+        text="\n".join(_symbols(plain(line)) for line in (edge.name, *prescribed(problem, edge))),
+        colour=ROLES[role(problem, edge.name)],
+        anchors=np.concatenate([anchors, anchors]),
+        directions=np.concatenate([-outward, outward]),
+    )
+
+
+def _symbols(text: str) -> str:
+    """Set u_x, u_y, t_x, t_y as mathematics."""
+    return re.sub(r"^([ut]_[xy]) =", r"$\1$ =", text)
+
+
+def _draw_legend(axes: Axes, problem: Problem) -> None:
+    """Explain the colours that occur, and the loads that stand at no edge."""
+    occurring = {role(problem, edge.name) for edge in problem.boundary.edges}
+    handles = [Line2D([], [], color=c, linewidth=2.5, label=name) for name, c in ROLES.items() if name in occurring]
+    handles.append(Line2D([], [], color=GREY, linewidth=1.3, label="rigid surface, normal"))
+    for load in ("gravity", "centrifugal", "temperature"):
+        if getattr(problem.loads, load) is not None:
+            handles.append(Line2D([], [], linestyle="none", marker="$+$", color=BLACK, label=load))
+    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)

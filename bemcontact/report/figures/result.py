@@ -1,0 +1,200 @@
+"""The picture of an answer: pressure and gap along the contact zones, the deformed shape."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+from numpy.typing import NDArray
+
+from bemcontact.analysis import Result
+from bemcontact.bem import shape_functions
+from bemcontact.bem.recovery import BoundaryState
+from bemcontact.contact import CondensedContact
+from bemcontact.report.figures.marks import draw_ground
+from bemcontact.report.figures.page import (
+    BLACK,
+    BLUE,
+    BODY,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    frame_plan,
+    labelled,
+    new_page,
+    plain,
+)
+from bemcontact.report.text import number, units_of, with_unit
+
+Array = NDArray[np.float64]
+
+PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
+VISIBLE = 0.05
+"""Share of the body's size at which the largest displacement can be seen well; smaller ones are magnified."""
+
+NEAR = 0.15
+"""Share of the body's size up to which a magnified gap is shown."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece:
+    """An unbroken piece of boundary in one contact zone: its points in order, and how it is drawn."""
+
+    label: str
+    colour: str
+    index: NDArray[np.int64]
+
+
+def figure_of_result(result: Result) -> Figure:
+    """Compose a page with pressure, gap and, where the body is known, its deformed shape."""
+    width, height = _extent(result.boundary) if result.boundary else (0.0, 0.0)
+    wide = width > 1.6 * height
+    figure = new_page(12 if result.boundary else 7, 7)
+    grid = figure.add_gridspec(2, 2 if result.boundary else 1)
+    pressure = figure.add_subplot(grid[0, 0])
+    gap = figure.add_subplot(grid[0, 1] if wide else grid[1, 0], sharex=pressure)
+    draw_pressure(pressure, result)
+    draw_gap(gap, result)
+    if result.boundary:
+        draw_deformed(figure.add_subplot(grid[1, :] if wide else grid[:, 1]), result)
+    verdict = "certified" if result.certified else "NOT certified"
+    title = f"{plain(result.contact.name)}: {result.solution.formulation}, {verdict}"
+    figure.suptitle(title, x=0.01, ha="left", fontweight="bold", color=BLACK if result.certified else VERMILION)
+    return figure
+
+
+def draw_pressure(axes: Axes, result: Result) -> None:
+    """Draw the contact pressure, per undeformed length, over the distance along each contact zone."""
+    pressure, contact = result.solution.pressure, result.contact
+    _draw_along(axes, result, pressure)
+    axes.set_ylabel(labelled("pressure", units_of(contact).stress) + "\nper undeformed length")
+    axes.set_ylim(top=1.18 * float(pressure.max(initial=0.0)) or 1.0)
+    peak = result.footprint.peak
+    if peak is not None:
+        nearest = int(np.argmin(np.hypot(*(contact.points - np.array(peak.at)).T)))
+        s = float(contact.arc_position[nearest])
+        low, high = axes.get_xlim()
+        side = "left" if s < low + 0.15 * (high - low) else "right" if s > high - 0.15 * (high - low) else "center"
+        text = f"peak {with_unit(number(peak.pressure), plain(units_of(contact).stress))}"
+        axes.annotate(text, (s, peak.pressure), xytext=(0, 7), textcoords="offset points", ha=side, color=BLACK)
+
+
+def draw_gap(axes: Axes, result: Result) -> None:
+    """Draw the gap over the distance along each contact zone."""
+    _draw_along(axes, result, _gap(result))
+    axes.set_ylabel(labelled("gap", units_of(result.contact).length))
+
+
+def draw_deformed(axes: Axes, result: Result) -> None:
+    """Draw the boundary before and after, and the rigid surfaces where contact is possible.
+
+    Displacements and initial gaps are magnified by one factor, which is stated: so the gap that is seen is the gap
+    that was found, times that factor.
+
+    Parameters
+    ----------
+    axes : to draw into; limits and aspect are set
+    result : with its `boundary`
+
+    Raises
+    ------
+    ValueError
+        If the result has no boundary, as one of a condensed problem.
+    """
+    state = result.boundary
+    if state is None:
+        raise ValueError("the result of a condensed problem has no boundary to draw")
+    factor = _magnification(state)
+    xi = np.linspace(-1, 1, 9)
+    before = shape_functions.values(xi) @ state.points
+    after = shape_functions.values(xi) @ (state.points + factor * state.displacement)
+    axes.add_collection(LineCollection(list(before), colors=GREY, linewidths=0.9, linestyles="dashed", zorder=2))
+    axes.add_collection(LineCollection(list(after), colors=BLACK, linewidths=1.8, zorder=3))
+    outline = [Path(loop.reshape(-1, 2), closed=True) for loop in _loops(state, after)]
+    axes.add_patch(PathPatch(Path.make_compound_path(*outline), facecolor=BODY, edgecolor="none", zorder=0))
+    covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
+    size = float(np.hypot(*_extent(state)))
+    for feet, normals in _ground(result, factor, NEAR * size):
+        covered.append(draw_ground(axes, feet, normals, 0.025 * size, GREY))
+    unit = units_of(result.contact).length
+    frame_plan(axes, np.concatenate(covered), unit)
+    largest = f"{float(np.hypot(*state.displacement.reshape(-1, 2).T).max()):.3g} {plain(unit)}".strip()
+    scale = "to scale" if factor == 1 else f"displacements and gaps × {factor:g}"
+    axes.set_title(f"deformed shape, {scale}; largest displacement {largest}", loc="left", fontsize=10)
+
+
+def _extent(state: BoundaryState) -> tuple[float, float]:
+    """Width and height of the body."""
+    width, height = np.ptp(state.points.reshape(-1, 2), axis=0)
+    return float(width), float(height)
+
+
+def _loops(state: BoundaryState, curves: Array) -> list[Array]:
+    """Split curves (m, 9, 2) where one loop of elements ends and the next begins."""
+    breaks = (state.points[1:, 0] != state.points[:-1, 2]).any(axis=1)
+    return np.split(curves, np.flatnonzero(breaks) + 1)
+
+
+def _ground(result: Result, factor: float, near: float) -> Iterator[tuple[Array, Array]]:
+    """Stretches (j, 2) of rigid surface, with normals, so near to the deformed body that they can be shown."""
+    contact = result.contact
+    feet = contact.points - factor * contact.initial_gap[:, None] * contact.normals
+    shown = factor * _gap(result) <= near
+    for piece in _pieces(contact):
+        for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
+            if shown[stretch[0]] and len(stretch) > 1:
+                yield feet[stretch], contact.normals[stretch]
+
+
+def _magnification(state: BoundaryState) -> float:
+    """Choose 1, 2 or 5 times a power of ten so that the largest displacement can be seen."""
+    largest = float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
+    size = float(np.hypot(*_extent(state)))
+    if largest == 0 or largest >= VISIBLE * size / 2:
+        return 1.0
+    wanted = VISIBLE * size / largest
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step for step in (1, 2, 5) if step * power <= wanted) * power)
+
+
+def _pieces(contact: CondensedContact) -> Iterator[Piece]:
+    """List the unbroken pieces of all contact zones."""
+    for order, run in enumerate(np.unique(contact.run)):
+        index = np.flatnonzero(contact.run == run)
+        index = index[np.argsort(contact.arc_position[index], kind="stable")]
+        zone = int(contact.zone[index[0]])
+        label = plain(contact.zone_names[zone])
+        if len(np.unique(contact.run[contact.zone == zone])) > 1:
+            label += f" ({contact.points[index[0], 0]:.3g}, {contact.points[index[0], 1]:.3g}) on"
+        yield Piece(label=label, colour=PIECE_COLOURS[order % len(PIECE_COLOURS)], index=index)
+
+
+def _draw_along(axes: Axes, result: Result, values: Array) -> None:
+    """Draw values (n,) along each piece, with full dots where there is contact and empty ones where it is open."""
+    contact, touching = result.contact, result.solution.pressure > 0
+    axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
+    for piece in _pieces(contact):
+        s = contact.arc_position[piece.index]
+        axes.plot(s, values[piece.index], color=piece.colour, linewidth=1.5, zorder=2, label=piece.label)
+        axes.fill_between(s, values[piece.index], color=piece.colour, alpha=0.12, linewidth=0, zorder=1)
+        faces = np.where(touching[piece.index], piece.colour, "white")
+        axes.scatter(s, values[piece.index], s=18, c=faces, edgecolors=piece.colour, linewidths=1.0, zorder=3)
+    colours = {contact.zone_names[int(contact.zone[piece.index[0]])]: piece.colour for piece in _pieces(contact)}
+    for interval in result.footprint.intervals:
+        axes.hlines(0, interval.start_arc, interval.end_arc, color=colours[interval.zone], linewidth=4, zorder=2)
+    axes.set_xlabel(labelled("distance along the contact zone", units_of(result.contact).length))
+    axes.spines[["top", "right"]].set_visible(False)
+    if contact.run.max(initial=0) > 0:
+        axes.legend(frameon=False, title="zone")
+
+
+def _gap(result: Result) -> Array:
+    """Gap (n,) recomputed from the pressure."""
+    return result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes)

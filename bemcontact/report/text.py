@@ -1,0 +1,264 @@
+"""Numbers to words and tables, for people.
+
+The functions that return a renderable are for `rich`; all text of a user goes into them as plain text, never as markup.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from bemcontact.analysis import Result
+from bemcontact.bem.condense import Body
+from bemcontact.contact import CondensedContact, Status
+from bemcontact.problem import Circle, Edge, Field, Plane, Polyline, Problem, Units
+
+NEGLIGIBLE = 1e-9
+"""Share of the largest component below which a component of a vector is written as zero."""
+
+FEW = 5
+"""Points with pressure below which a contact is poorly resolved: two quadratic elements."""
+
+
+def number(value: float) -> str:
+    """Write a number with five figures: 183.33, 2.1e+05."""
+    return f"{value:.5g}" if value else "0"
+
+
+def vector(components: tuple[float, float], unit: str = "") -> str:
+    """Write a point or a force: (2.7685, 0.48) cm."""
+    largest = max(map(abs, components))
+    x, y = (number(value if abs(value) > NEGLIGIBLE * largest else 0.0) for value in components)
+    return with_unit(f"({x}, {y})", unit)
+
+
+def with_unit(text: str, unit: str) -> str:
+    """Put the unit, if there is one, behind a number that is not zero."""
+    return f"{text} {unit}" if unit and text != "0" else text
+
+
+def units_of(contact: CondensedContact) -> Units:
+    """Read the labels of the units back from a condensed problem."""
+    return Units(length=contact.units.get("length", ""), force=contact.units.get("force", ""))
+
+
+def per_thickness(units: Units) -> str:
+    """Label of a force on a body of unit thickness: kN/cm."""
+    return f"{units.force}/{units.length}" if units.force and units.length else ""
+
+
+def field_on(field: Field, edge: Edge, unit: str = "") -> str:
+    """Write the value of a field on an edge, or from where to where it goes: 50.625 kN/cm²; 3 … 5 N/mm²."""
+    values = field.at(edge.points(np.linspace(0, 1, 41)))
+    low, high = float(values.min()), float(values.max())
+    return with_unit(number(low) if np.isclose(low, high) else f"{number(low)} … {number(high)}", unit)
+
+
+def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
+    """Say what an edge is told: ``u_x = 0``, ``t_y = -3.6 kN/cm²``, ``pressure 3 N/mm²``, ``may touch in foot``."""
+    yield from (f"may touch in {name}" for name, zone in problem.contact_zones.items() if edge.name in zone.edges)
+    condition = problem.conditions.get(edge.name)
+    if condition is None:
+        return
+    for symbol, fields, unit in (
+        ("u", condition.displacement, problem.units.length),
+        ("t", condition.traction, problem.units.stress),
+    ):
+        for axis, field in (("x", fields.x), ("y", fields.y)):
+            if field is not None:
+                yield f"{symbol}_{axis} = {field_on(field, edge, unit)}"
+    if condition.pressure is not None:
+        yield f"pressure {field_on(condition.pressure, edge, problem.units.stress)}"
+
+
+def surface_in_words(surface: Plane | Circle | Polyline) -> str:
+    """Say what a rigid surface is."""
+    match surface:
+        case Plane():
+            return f"plane through {vector(surface.point)}, normal {vector(surface.unit_normal)}"
+        case Circle():
+            return f"circle about {vector(surface.center)}, radius {number(surface.radius)}, body {surface.body}"
+        case Polyline():
+            first, last = vector(surface.points[0]), vector(surface.points[-1])
+            return f"polyline of {len(surface.points)} points from {first} to {last}"
+
+
+def verdict(result: Result) -> str:
+    """Say in words whether the answer is proved, and what to do where it is not."""
+    ending = "" if result.solution.status is Status.SOLVED else f"The solver: {result.solution.status.value}. "
+    return ending + result.certificate.words
+
+
+def problem_summary(body: Body) -> RenderableType:
+    """Tell what is seen in a problem: edges, zones, mesh, loads, what holds the body, remarks.
+
+    Parameters
+    ----------
+    body : the problem on its mesh
+
+    Returns
+    -------
+    RenderableType
+        For `rich`; no wider than 100 columns where the names are not.
+    """
+    problem, mesh = body.problem, body.mesh
+    material, units = problem.material, problem.units
+    modulus = with_unit(number(material.young_modulus), units.stress)
+    facts = _facts()
+    _add(facts, "Material", f"E = {modulus}, ν = {number(material.poisson_ratio)}, {material.state.replace('_', ' ')}")
+    _add(facts, "Mesh", f"{len(mesh.elements)} elements, {len(mesh.nodes)} nodes, {len(body.points)} contact points")
+    _add(facts, "Degrees of freedom", f"{mesh.degrees_of_freedom}")
+    _add(facts, "Total load", f"{vector(_total_load(body), per_thickness(units))}, reactions not counted")
+    _add(facts, "Held by conditions", "all rigid motions" if not len(body.motions) else "all but those below")
+    for motion in body.seen.describe():
+        _add(facts, "Held by contact", motion)
+    for note in body.notes:
+        _add(facts, "Note", note)
+    return Group(Text(problem.name, "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)
+
+
+def result_summary(result: Result) -> RenderableType:
+    """Tell what was found: where the body touches, how hard, how well the equations hold, and how sure that is.
+
+    Returns
+    -------
+    RenderableType
+        For `rich`; no wider than 100 columns where the names are not.
+    """
+    found, units = result.footprint, units_of(result.contact)
+    length, stress = units.length, units.stress
+    facts = _facts()
+    if not found.intervals:
+        _add(facts, "Contact", "nowhere")
+    for interval in found.intervals:
+        span = f"{vector(interval.start)} to {vector(interval.end, length)}"
+        along = with_unit(number(interval.end_arc - interval.start_arc), length)
+        _add(facts, "Contact", f"{interval.zone}: {span}, {along} long")
+    if found.peak:
+        at = vector(found.peak.at, length)
+        _add(facts, "Peak pressure", f"{with_unit(number(found.peak.pressure), stress)} at {at}; per UNDEFORMED length")
+    _add(
+        facts, "Resultant", f"{vector(found.resultant.force, per_thickness(units))}, of the rigid surfaces on the body"
+    )
+    _add(facts, "Residuals", _residuals(result))
+    _add(facts, "Certificate", _proof(result))
+    for note in (*result.contact.notes, *result.solution.notes, *_coarse(result)):
+        _add(facts, "Note", note)
+    style = "bold green" if result.certified else "bold red"
+    word = "certified" if result.certified else "NOT certified"
+    facts.add_row(Text("Verdict", "bold"), Text.assemble((word, style), ". ", verdict(result)))
+    return Group(Text(result.contact.name, "bold"), Text(_how(result), "dim"), "", facts)
+
+
+def condensed_summary(condensed: CondensedContact, path: Path) -> RenderableType:
+    """Tell what was condensed, and where it was written."""
+    facts = _facts()
+    _add(facts, "Contact points", f"{condensed.size} in {', '.join(condensed.zone_names)}")
+    _add(facts, "Rigid motions", _held(condensed))
+    _add(facts, "Written", str(path))
+    for note in condensed.notes:
+        _add(facts, "Note", note)
+    return Group(Text(condensed.name, "bold"), "", facts)
+
+
+def _facts() -> Table:
+    """Make a list of facts: what, and how much."""
+    facts = Table.grid(padding=(0, 2))
+    facts.add_column(no_wrap=True)
+    facts.add_column(overflow="fold", max_width=76)
+    return facts
+
+
+def _add(facts: Table, what: str, how_much: str) -> None:
+    facts.add_row(Text(what, "cyan"), Text(how_much))
+
+
+def _table(*columns: str) -> Table:
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="cyan", pad_edge=False)
+    for column in columns:
+        table.add_column(column, justify="right" if column in {"length", "elements", "points"} else "left")
+    return table
+
+
+def _edge_table(problem: Problem) -> Table:
+    """List the edges, loop by loop."""
+    table = _table("edge", "kind", "length", "elements", "condition")
+    boundary = problem.boundary
+    for number_of_loop, (stated, loop) in enumerate(zip(boundary.stated_loops, boundary.loops, strict=True)):
+        if number_of_loop:
+            table.add_row(Text(f"hole {number_of_loop}", "italic"))
+        for shape, edge in zip(stated, loop, strict=True):
+            length = with_unit(number(edge.length), problem.units.length)
+            elements = f"{edge.elements * problem.mesh.refine}"
+            told = ", ".join(prescribed(problem, edge)) or "free"
+            table.add_row(*map(Text, (edge.name, shape.kind, length, elements, told)))
+    return table
+
+
+def _zone_table(body: Body) -> Table:
+    """List the contact zones."""
+    table = _table("contact zone", "edges", "points", "smallest gap", "rigid surface")
+    for index, (name, zone) in enumerate(body.problem.contact_zones.items()):
+        gap = body.points.gap[body.points.zone == index]
+        smallest = with_unit(number(float(gap.min())), body.problem.units.length)
+        edges, surface = ", ".join(zone.edges), surface_in_words(zone.surface)
+        table.add_row(*map(Text, (name, edges, f"{len(gap)}", smallest, surface)))
+    return table
+
+
+def _total_load(body: Body) -> tuple[float, float]:
+    """Resultant of the prescribed tractions and of the body forces."""
+    tractions = np.einsum("ml,mlx->x", body.mesh.tributary, body.values.traction)
+    x, y = tractions + body.particular.force
+    return float(x), float(y)
+
+
+def _held(condensed: CondensedContact) -> str:
+    """Say which rigid motions contact alone holds."""
+    if not condensed.free_motions:
+        return "all held by conditions"
+    return f"held by contact alone: {', '.join(condensed.motion_names)}"
+
+
+def _coarse(result: Result) -> Iterator[str]:
+    """Warn of a mesh that cannot show how the pressure runs, which no certificate of the discrete problem tells."""
+    carrying = int((result.solution.pressure > 0).sum())
+    if 0 < carrying < FEW:
+        points = "1 contact point carries" if carrying == 1 else f"{carrying} contact points carry"
+        yield f"only {points} pressure, so that the peak depends on the mesh; take more elements there"
+
+
+def _residuals(result: Result) -> str:
+    """List the residuals, each free of units."""
+    left = result.residuals
+    values = {
+        "penetration": left.penetration,
+        "tension": left.tension,
+        "complementarity": left.complementarity,
+        "equilibrium": left.equilibrium,
+        "force balance": left.force_balance,
+    }
+    return ", ".join(f"{name} {value + 0.0:.1e}" for name, value in values.items() if value is not None)
+
+
+def _proof(result: Result) -> str:
+    """Write what kind of certificate there is, and the numbers that it rests on."""
+    certificate = result.certificate
+    parts = [certificate.kind.value]
+    if certificate.relative_error_bound is not None:
+        parts.append(f"pressure within {certificate.relative_error_bound:.1e} of the peak")
+    if certificate.smallest_eigenvalue is not None:
+        parts.append(f"smallest eigenvalue {certificate.smallest_eigenvalue:.1e}")
+    return ", ".join(parts)
+
+
+def _how(result: Result) -> str:
+    """Say which statement was solved, by what, on what."""
+    solution = result.solution
+    polished = ", polished" if solution.polished else ""
+    freedom = "" if result.degrees_of_freedom is None else f"{result.degrees_of_freedom} degrees of freedom, "
+    size = f"{freedom}{result.contact.size} contact points"
+    return f"{solution.formulation} by {solution.solver}{polished}; {size}, {sum(result.seconds.values()):.2g} s"

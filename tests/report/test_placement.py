@@ -1,0 +1,29 @@
+"""Labels go where they cover least."""
+
+import numpy as np
+import pytest
+
+from bemcontact.report.placement import Box, centred, crowd, least_crowded, overlap
+
+NOTHING = np.zeros((0, 2))
+
+
+def test_overlap_is_the_common_area():
+    a = Box(0, 0, 4, 2)
+    assert overlap(a, Box(3, 1, 9, 9)) == 1
+    assert overlap(a, Box(4, 0, 5, 2)) == 0
+    assert overlap(a, a) == 8
+    assert centred(np.array([2.0, 1.0]), (4, 2)) == a
+
+
+def test_crowd_counts_drawn_points_and_covered_area():
+    ink = np.array([[1.0, 1.0], [2.0, 1.0], [9.0, 9.0]])
+    assert crowd(Box(0, 0, 4, 2), [], ink) == 2
+    assert crowd(Box(0, 0, 4, 2), [Box(0, 0, 2, 2)], NOTHING) == pytest.approx(5)
+
+
+def test_the_first_free_place_wins():
+    centers = np.array([[0.0, 0.0], [10.0, 0.0], [20.0, 0.0]])
+    assert least_crowded(centers, (4, 2), [], NOTHING) == 0
+    assert least_crowded(centers, (4, 2), [Box(-1, -1, 1, 1)], NOTHING) == 1
+    assert least_crowded(centers, (4, 2), [Box(-1, -1, 1, 1)], np.array([[10.0, 0.5]])) == 2

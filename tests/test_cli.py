@@ -1,0 +1,367 @@
+"""The command line: what it prints where, exit statuses, files that appear whole or not at all."""
+
+import dataclasses
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+import bemcontact
+from bemcontact import analysis, cli, spec
+from bemcontact.assessment.certificate import CertificateKind
+from bemcontact.contact import CondensedContact, Weights
+from bemcontact.errors import NotConvexError, SingularSystemError
+from bemcontact.formulations import FORMULATIONS
+
+BLOCK = """\
+name: block on a table
+units: {length: mm, force: N}
+material:
+  young_modulus: 210e3
+  poisson_ratio: 0.3
+boundary:
+  outer:
+    - {name: bottom, start: [0, 0], elements: 4}
+    - {name: right, start: [40, 0], elements: 2}
+    - {name: top, start: [40, 20], elements: 4}
+    - {name: left, start: [0, 20], elements: 2}
+conditions:
+  left: {displacement: {x: 0}}
+  top: {pressure: 3}
+contact_zones:
+  foot:
+    edges: bottom
+    surface: {kind: plane, point: [0, 0], normal: [0, 1]}
+"""
+"""Its contact pressure is 3 everywhere: uniform compression satisfies all equations."""
+
+
+@pytest.fixture
+def block(tmp_path: Path) -> Path:
+    path = tmp_path / "block.yaml"
+    path.write_text(BLOCK, encoding="utf-8")
+    return path
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(cli.app, [str(argument) for argument in arguments])
+
+
+def in_a_process(*arguments: object, code: str = "", **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run the program as a user's shell would; `code` is run after it."""
+    script = f"import sys\nfrom bemcontact.cli import main\ntry:\n    main()\nfinally:\n    {code or 'pass'}"
+    root = str(Path(bemcontact.__file__).parents[1])
+    return subprocess.run(
+        [sys.executable, "-c", script, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        env={**os.environ, "PYTHONPATH": root, "OPENBLAS_NUM_THREADS": "1", **environment},
+    )
+
+
+@pytest.mark.parametrize("arguments", [(), ("--help",), ("solve", "--help"), ("--version",)])
+def test_help_answers_without_the_numerical_half(arguments: tuple[str, ...]):
+    slow = "numpy", "scipy", "cvxpy", "matplotlib", "yaml"
+    answer = in_a_process(*arguments, code=f"print([m for m in {slow} if m in sys.modules], file=sys.stderr)")
+    assert answer.stderr == "[]\n"
+    assert "bemcontact" in answer.stdout
+
+
+@pytest.mark.parametrize("command", ["check", "solve", "condense", "schema"])
+def test_help_of_each_command_teaches_by_examples(command: str):
+    answer = run(command, "--help")
+    assert answer.exit_code == 0
+    assert "Examples" in answer.stdout
+    assert f"bemcontact {command}" in answer.stdout
+
+
+def test_version_is_said():
+    answer = run("--version")
+    assert answer.exit_code == 0
+    assert answer.stdout.startswith("bemcontact")
+
+
+def test_options_name_the_weights_and_formulations_of_the_library():
+    assert [*cli.WeightsOption] == [weights.value for weights in Weights]
+    assert [*cli.Formulation] == [*FORMULATIONS]
+
+
+def test_solve_says_it_in_a_short_table(block: Path):
+    answer = run("solve", block)
+    assert answer.exit_code == 0, answer.stderr
+    assert answer.stderr == ""
+    assert "UNDEFORMED" in answer.stdout.upper()
+    assert "certified" in answer.stdout
+    assert "N/mm²" in answer.stdout
+    assert max(map(len, answer.stdout.splitlines())) <= 100
+
+
+@pytest.mark.parametrize("formulation", ["qp3", "complementarity"])
+def test_json_on_standard_output_is_all_that_is_there(block: Path, formulation: str):
+    answer = run("solve", block, "--json", "-", "--formulation", formulation)
+    found = json.loads(answer.stdout)
+    assert answer.exit_code == 0
+    assert answer.stderr == ""
+    assert found["certified"] is True
+    assert found["formulation"] == formulation
+    assert found["pressure"] == pytest.approx([3.0] * 9, rel=1e-9)  # uniform compression
+    assert found["resultant"] == pytest.approx([0.0, 120.0], rel=1e-9, abs=1e-9)  # 3 N/mm² on 40 mm
+
+
+KEYS = {
+    "name", "formulation", "status", "certified", "units", "dof", "contact_nodes", "free_rigid_motions", "nodes",
+    "normals", "zone", "pressure", "gap", "normal_displacement", "resultant", "intervals", "peak", "objective",
+    "residuals", "certificate", "boundary", "seconds", "version",
+}  # fmt: skip
+
+
+def test_json_file_has_the_documented_keys(block: Path, tmp_path: Path):
+    answer = run("solve", block, "--json", tmp_path / "out.json")
+    found = json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))
+    assert answer.exit_code == 0
+    assert "certified" in answer.stdout
+    assert found.keys() >= KEYS
+    assert {"penetration", "tension", "complementarity", "equilibrium", "force_balance"} <= found["residuals"].keys()
+    assert {"points", "displacement", "traction"} <= found["boundary"].keys()
+    assert {"pressure", "at"} <= found["peak"].keys()
+    assert all({"zone", "start", "end"} <= interval.keys() for interval in found["intervals"])
+
+
+def test_set_and_refine_change_the_problem(block: Path):
+    answer = run("solve", block, "--json", "-", "--refine", 2, "--set", "conditions.top.pressure=6")
+    found = json.loads(answer.stdout)
+    assert found["pressure"] == pytest.approx([6.0] * 17, rel=1e-9)  # twice the load, twice the elements
+
+
+def test_check_says_what_it_sees(block: Path):
+    answer = run("check", block, "--set", "boundary.outer[0].elements=5")
+    assert answer.exit_code == 0, answer.stderr
+    for word in ("bottom", "right", "top", "left", "foot", "plane", "pressure", "translation", "contact"):
+        assert word in answer.stdout
+    assert "13 elements, 26 nodes, 11 contact points" in answer.stdout  # two nodes for each element
+    assert re.search(r"Degrees of freedom +52\b", answer.stdout)
+    assert "(0, -120) N/mm" in answer.stdout  # 3 N/mm² down on 40 mm
+    assert max(map(len, answer.stdout.splitlines())) <= 100
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+@pytest.mark.parametrize("command", ["check", "solve"])
+def test_figures_are_written_by_their_ending(block: Path, tmp_path: Path, command: str, ending: str):
+    figure = tmp_path / f"figure.{ending}"
+    answer = run(command, block, "--figure", figure)
+    assert answer.exit_code == 0, answer.stderr
+    magic = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
+    assert figure.read_bytes().startswith(magic[ending])
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["block.yaml", figure.name]
+
+
+def test_condense_writes_what_solve_reads(block: Path, tmp_path: Path):
+    out = tmp_path / "block.npz"
+    answer = run("condense", block, "--out", out)
+    assert answer.exit_code == 0, answer.stderr
+    result = analysis.solve(CondensedContact.load(out))
+    assert result.certified
+    assert result.solution.pressure == pytest.approx([3.0] * 9, rel=1e-9)
+
+
+def test_schema_is_json_schema():
+    answer = run("schema")
+    assert answer.exit_code == 0
+    found = json.loads(answer.stdout)
+    assert "2020-12" in found["$schema"]
+    assert {"material", "boundary", "contact_zones"} <= found["properties"].keys()
+
+
+def test_a_result_without_certificate_ends_with_status_1(block: Path, monkeypatch: pytest.MonkeyPatch):
+    result = analysis.solve(spec.load(block))
+    certificate = dataclasses.replace(result.certificate, kind=CertificateKind.LOCAL, words="Another may exist.")
+    monkeypatch.setattr(analysis, "solve", lambda *_, **__: dataclasses.replace(result, certificate=certificate))
+    table = run("solve", block)
+    assert table.exit_code == 1
+    assert "NOT certified. Another may exist." in table.stdout
+    pure = run("solve", block, "--json", "-")
+    assert pure.exit_code == 1
+    assert json.loads(pure.stdout)["certified"] is False
+    assert pure.stderr == "not certified: Another may exist.\n"
+
+
+def test_a_program_that_is_not_convex_ends_with_status_2(block: Path, monkeypatch: pytest.MonkeyPatch):
+    def not_convex(*_: object, **__: object) -> None:
+        raise NotConvexError("smallest eigenvalue -0.5", smallest_eigenvalue=-0.5)
+
+    monkeypatch.setattr(analysis, "solve", not_convex)
+    assert_refused(run("solve", block), "smallest eigenvalue -0.5")
+
+
+def test_a_solver_that_breaks_down_ends_with_status_1(block: Path, monkeypatch: pytest.MonkeyPatch):
+    def breaks_down(*_: object, **__: object) -> None:
+        raise SingularSystemError("the system is singular")
+
+    monkeypatch.setattr(analysis, "solve", breaks_down)
+    answer = run("solve", block)
+    assert (answer.exit_code, answer.stdout, answer.stderr) == (1, "", "failed: the system is singular\n")
+
+
+def test_an_interrupt_ends_quietly(block: Path, monkeypatch: pytest.MonkeyPatch):
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(analysis, "solve", interrupted)
+    answer = run("solve", block)
+    assert (answer.exit_code, answer.output) == (130, "")
+
+
+BROKEN = {
+    "wrong key": ("young_modulus", "youngs_modulus", "young_modulus"),
+    "wrong type": ("poisson_ratio: 0.3", "poisson_ratio: steel", "poisson_ratio"),
+    "duplicate key": ("  poisson_ratio: 0.3\n", "  poisson_ratio: 0.3\n  poisson_ratio: 0.2\n", "poisson_ratio"),
+    "open loop": ("start: [40, 0]", "start: [40, 0], end: [40, 19]", "open"),
+    "crossing loop": ("start: [40, 20]", "start: [20, -10]", "cross"),
+    "clockwise loop": (BLOCK.split("conditions")[0], BLOCK.split("conditions")[0].replace("[40", "[-40"), "order"),
+    "unknown edge in a condition": ("  top: {pressure", "  topp: {pressure", "top"),
+    "unknown edge in a zone": ("edges: bottom", "edges: botom", "bottom"),
+    "contact edge with a load": ("  top: {pressure: 3}", "  bottom: {pressure: 3}", "bottom"),
+    "ν too large": ("poisson_ratio: 0.3", "poisson_ratio: 0.6", "0.5"),
+    "E zero": ("young_modulus: 210e3", "young_modulus: 0", "young_modulus"),
+    "no elements": (", elements: 4}", "}", "elements"),
+    "fractional elements": ("elements: 4", "elements: 4.5", "4.5"),
+    "pulled off its support": ("pressure: 3", "pressure: -3", "off|away|lift|pull"),
+    "held by nothing": ("left: {displacement: {x: 0}}", "left: {traction: {x: 1}}", "h[oe]ld|resist"),
+    "empty condition": ("{pressure: 3}", "{}", "states nothing"),
+    "normal away from the body": ("normal: [0, 1]", "normal: [0, -1]", "normal"),
+    "unknown kind": ("kind: plane", "kind: plain", "plane"),
+    "infinite number": ("pressure: 3", "pressure: .inf", "finite"),
+    "not YAML": ("boundary:\n", "boundary: [\n", "yaml|YAML"),
+}  # fmt: skip
+
+
+def assert_refused(answer: Result, pattern: str) -> None:
+    assert answer.exit_code == 2
+    assert answer.stdout == ""
+    assert "Traceback" not in answer.stderr
+    assert len(answer.stderr.splitlines()) == 1, answer.stderr
+    assert answer.stderr.startswith("error: ")
+    assert re.search(pattern, answer.stderr)
+
+
+@pytest.mark.parametrize(("old", "new", "pattern"), BROKEN.values(), ids=BROKEN)
+def test_a_broken_spec_is_one_clear_error(block: Path, old: str, new: str, pattern: str):
+    text = BLOCK.replace(old, new, 1)
+    assert text != BLOCK
+    block.write_text(text, encoding="utf-8")
+    assert_refused(run("solve", block), pattern)
+
+
+@pytest.mark.parametrize("text", ["", "# nothing\n", "- 1\n", "just words\n", "\t- x: y: z\n", "\x00"])
+def test_a_file_that_is_no_spec_is_one_clear_error(block: Path, text: str):
+    block.write_text(text, encoding="utf-8")
+    assert_refused(run("solve", block), "block.yaml")
+
+
+def test_no_contact_zone_is_one_clear_error(block: Path):
+    block.write_text(BLOCK[: BLOCK.index("contact_zones")], encoding="utf-8")
+    assert_refused(run("solve", block), "contact_zones|contact zone")
+
+
+def test_errors_name_file_line_and_column(block: Path):
+    block.write_text(BLOCK.replace("210e3", "-1"), encoding="utf-8")
+    line = BLOCK[: BLOCK.index("210e3")].count("\n") + 1
+    column = len("  young_modulus: ") + 1
+    assert_refused(run("check", block), re.escape(f"{block}:{line}:{column}: material.young_modulus: "))
+
+
+@pytest.mark.parametrize("setting", ["material.young_modulus=-1", "material.young=1", "no equals sign", "a..b=1"])
+def test_a_bad_setting_is_one_clear_error(block: Path, setting: str):
+    assert_refused(run("solve", block, "--set", setting), "--set")
+
+
+def test_a_missing_file_is_one_clear_error(tmp_path: Path):
+    assert_refused(run("solve", tmp_path / "none.yaml"), "none.yaml")
+    assert_refused(run("solve", tmp_path), re.escape(tmp_path.name))
+
+
+def test_text_of_a_user_is_never_read_as_markup(tmp_path: Path):
+    path = tmp_path / "[red]a[bold].yaml"
+    path.write_text(BLOCK.replace("kind: plane", "kind: '[/bold]plane'"), encoding="utf-8")
+    answer = run("solve", path)
+    assert_refused(answer, re.escape("[/bold]plane"))
+    assert str(path) in answer.stderr
+
+
+def test_names_of_a_user_are_never_read_as_markup(block: Path):
+    block.write_text(BLOCK.replace("block on a table", "'a :smile: $x$ block'").replace("foot", "foot $y_"))
+    for command in ("solve", "check"):
+        answer = run(command, block, "--figure", block.with_suffix(".png"))
+        assert answer.exit_code == 0, answer.stderr
+        assert "a :smile: $x$ block" in answer.stdout
+        assert "foot $y_" in answer.stdout
+
+
+OUTPUTS = [
+    ("solve", "--figure", "f.png"),
+    ("solve", "--json", "f.json"),
+    ("condense", "--out", "f.npz"),
+    ("check", "--figure", "f.svg"),
+]
+
+
+@pytest.mark.parametrize(("command", "option", "name"), OUTPUTS)
+def test_a_file_that_cannot_be_written_is_found_out_before_any_work(
+    block: Path, command: str, option: str, name: str, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(analysis, "solve", None)
+    monkeypatch.setattr(analysis, "condense", None)
+    assert_refused(run(command, block, option, block.parent / "nowhere" / name), "nowhere")
+    (block.parent / name).mkdir()
+    assert_refused(run(command, block, option, block.parent / name), "is a directory")
+    (block.parent / name).rmdir()
+    os.mkfifo(block.parent / name)
+    assert_refused(run(command, block, option, block.parent / name), "not an ordinary file")
+
+
+def test_an_unknown_figure_format_lists_the_known_ones(block: Path):
+    assert_refused(run("solve", block, "--figure", block.with_suffix(".bmp")), r"\.png, \.svg, \.pdf")
+
+
+def test_no_file_overwrites_another(block: Path):
+    assert_refused(run("solve", block, "--json", block), "overwrite the spec")
+    figure = block.with_suffix(".svg")
+    assert_refused(run("solve", block, "--json", figure, "--figure", figure), "overwrite the file of --figure")
+    assert block.read_text(encoding="utf-8") == BLOCK
+
+
+@pytest.mark.parametrize("option", [("--refine", "0"), ("--formulation", "qp9"), ("--weights", "x"), ("--nonsense",)])
+def test_bad_options_end_with_status_2(block: Path, option: tuple[str, ...]):
+    answer = run("solve", block, *option)
+    assert answer.exit_code == 2
+    assert "Traceback" not in answer.stderr
+
+
+def test_a_closed_pipe_is_no_traceback(block: Path):
+    root = str(Path(bemcontact.__file__).parents[1])
+    program = f"{sys.executable} -c 'from bemcontact.cli import main; main()'"
+    for command in ("schema", f"solve {block} --json -", "--help"):
+        answer = subprocess.run(
+            ["bash", "-c", f"{program} {command} | head -c 1"],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=True,
+            env={**os.environ, "PYTHONPATH": root},
+        )
+        assert answer.stderr == ""
+
+
+def test_no_color_is_respected(block: Path):
+    coloured = in_a_process("check", block, FORCE_COLOR="1", NO_COLOR="")
+    plain = in_a_process("check", block, FORCE_COLOR="1", NO_COLOR="1")
+    colour = re.compile(r"\x1b\[[0-9;]*3[0-9]")
+    assert colour.search(coloured.stdout)
+    assert not colour.search(plain.stdout)

@@ -1,0 +1,68 @@
+"""What the README shows is run: its spec, its library call, its commands, and its test command in CI."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import bemcontact
+from bemcontact import cli
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def shown(language: str) -> list[str]:
+    """Fenced blocks of one language."""
+    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+
+
+@pytest.fixture
+def block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (spec,) = shown("yaml")
+    path = tmp_path / "block.yaml"
+    path.write_text(spec, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return path
+
+
+def test_the_spec_has_the_answer_that_is_told(block: Path):
+    result = bemcontact.solve(bemcontact.load(block))
+    assert result.certified
+    assert result.solution.pressure == pytest.approx(3.0, rel=1e-9)  # uniform compression
+    assert result.footprint.resultant.force == pytest.approx((0.0, 3.0 * 40.0), abs=1e-8)
+
+
+def test_the_library_call_runs(block: Path, capsys: pytest.CaptureFixture[str]):
+    (call,) = shown("python")
+    exec(compile(call, "README.md", "exec"), {})
+    peak, force, *pressures = capsys.readouterr().out.split("\n")
+    assert float(peak) == pytest.approx(3.0, rel=1e-9)
+    assert "120" in force or "119.99" in force
+    assert [float(number) for number in re.findall(r"[\d.]+", " ".join(pressures))] == pytest.approx([3.0] * 17)
+
+
+def test_the_commands_run(block: Path):
+    commands = re.findall(r"^    (bemcontact .*?)(?: {2,}.*)?$", README, flags=re.MULTILINE)
+    assert len(commands) >= 6
+    for command in commands:
+        words = shlex.split(command.split("|")[0].split(">")[0])[1:]
+        answer = CliRunner().invoke(cli.app, words)
+        assert answer.exit_code == 0, (command, answer.stderr)
+
+
+def test_shell_commands_name_what_exists():
+    solve, test = (command.strip() for command in shown("sh"))
+    assert (ROOT / solve.split()[-1]).is_file()
+    assert 'bemcontact = "bemcontact.cli:main"' in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    assert f"\n{test}\n" in (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+
+
+def test_references_that_the_code_cites_are_listed():
+    listed = set(re.findall(r"^- \[(\w+)\]", README, flags=re.MULTILINE))
+    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "bemcontact").rglob("*.py")]
+    cited = {key for text in sources for key in re.findall(r"\[([A-Z][A-Za-z]{1,5}\d\d)\]", text)}
+    assert cited <= listed
+    assert "SS92" in cited
