@@ -5,13 +5,13 @@ knows the other. Lengths and stresses are in the user's units throughout.
 """
 
 import os
-import tempfile
+import uuid
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from enum import Enum
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -242,7 +242,7 @@ class CondensedContact:
 
     @cached_property
     def offset(self) -> Array:
-        """q = ε + Δ1 (n,) [L], the gap at p = 0, a = 0."""
+        """The gap q = ε + Δ1 (n,) [L] at p = 0, a = 0."""
         return self.initial_gap + self.free_displacement
 
     @cached_property
@@ -272,7 +272,7 @@ class CondensedContact:
         n, k = self.rigid_motions.shape
         U, T = self.scales
         bordered = np.block([[self.compliance * (T / U), self.rigid_motions], [self._unit_rows.T, np.zeros((k, k))]])
-        inverse = np.linalg.inv(bordered)
+        inverse = np.linalg.inv(bordered).astype(float)
         S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / self._row_scale
         return StiffnessRows(S, np.eye(n), S @ self.free_displacement + V @ self.motion_load)
 
@@ -305,19 +305,18 @@ class CondensedContact:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write all of it as one ``.npz`` file, whole or not at all."""
         path = Path(path)
-        arrays = {
-            item.name: np.array(sorted(value.items())) if isinstance(value, Mapping) else np.array(value)
-            for item in fields(self)
-            if (value := getattr(self, item.name)) is not None
-        }
-        descriptor, temporary = tempfile.mkstemp(dir=path.parent, suffix=".npz")
+        arrays: dict[str, Any] = {"format": np.array(FILE_FORMAT)}
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if value is not None:
+                arrays[item.name] = np.array(sorted(value.items())) if isinstance(value, Mapping) else np.array(value)
+        beside = path.with_name(f".{path.name}.{uuid.uuid4().hex}")
         try:
-            with os.fdopen(descriptor, "wb") as stream:
-                np.savez_compressed(stream, format=np.array(FILE_FORMAT), **arrays)
-            os.replace(temporary, path)
-        except BaseException:
-            os.unlink(temporary)
-            raise
+            with open(beside, "xb") as stream:
+                np.savez_compressed(stream, **arrays)
+            os.replace(beside, path)
+        finally:
+            beside.unlink(missing_ok=True)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 Path = tuple[str | int, ...]
-"""Keys and list positions that lead from the top of a spec to a value, such as ``("conditions", "top", "pressure")``."""
+"""Keys and list positions from the top of a spec to a value, such as ``("conditions", "top", "pressure")``."""
 
 
 @dataclass(frozen=True, kw_only=True)

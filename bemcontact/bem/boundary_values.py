@@ -26,7 +26,7 @@ class BoundaryValues:
     ----------
     displacement_given : (N, 2) whether a displacement component is prescribed at a node
     displacement : (N, 2) its value [L]
-    traction_unknown : (m, 2) whether an element's edge prescribes displacement along an axis, so that traction is sought
+    traction_unknown : (m, 2) whether the edge of an element prescribes displacement along an axis: traction is sought
     traction : (m, 3, 2) prescribed traction [p]
     """
 

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack
+from scipy.linalg import get_lapack_funcs
 from scipy.optimize import nnls
 
 from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
@@ -55,7 +55,7 @@ class Body:
     unseen: RigidMotions
 
     def motion_load(self, motions: RigidMotions) -> Array:
-        """Work (k,) of the applied loads in rigid motions [p L], with tributary weights as everywhere in equilibrium."""
+        """Work (k,) of the applied loads in rigid motions [p L], with tributary weights as in all of equilibrium."""
         forces = self.mesh.tributary[..., None] * self.values.traction
         at = self.mesh.nodes[self.mesh.elements]
         return motions.work(at, forces) + motions.work_of(self.particular.force, self.particular.moment)
@@ -269,9 +269,9 @@ def assemble(system: System) -> tuple[Array, Array]:
         for rows in system.rows(block):
             first = 0
             for part in rows.left:
-                transposed[first : first + len(part), rows.index] = part
+                transposed[first : first + len(part), rows.at] = part
                 first += len(part)
-            right[rows.index] = rows.right.T
+            right[rows.at] = rows.right.T
 
     system.influence.each_block(system.equations.collocation, place)
     matrix[:unknowns, unknowns:] = system.border
@@ -294,17 +294,18 @@ def solve(system: System) -> Array:
     ------
     SingularSystemError
     """
+    lange, getrf, gecon, getrs = get_lapack_funcs(("lange", "getrf", "gecon", "getrs"), dtype=float)
     matrix, right = assemble(system)
-    norm = lapack.dlange("1", matrix)
-    factors, pivots, info = lapack.dgetrf(matrix, overwrite_a=True)
-    reciprocal = lapack.dgecon(factors, norm)[0] if info == 0 else 0.0
+    norm = lange("1", matrix)
+    factors, pivots, info = getrf(matrix, overwrite_a=True)
+    reciprocal = gecon(factors, norm)[0] if info == 0 else 0.0
     if reciprocal < SINGULAR:
         raise SingularSystemError(
             "the equations of the body have no unique solution (reciprocal condition number "
             f"{reciprocal:.1e}); look for coincident edges, or elements of very different length side by side"
         )
-    response, _ = lapack.dgetrs(factors, pivots, right)
-    correction, _ = lapack.dgetrs(factors, pivots, residual(system, response), overwrite_b=True)
+    response, _ = getrs(factors, pivots, right)
+    correction, _ = getrs(factors, pivots, residual(system, response), overwrite_b=True)
     return response + correction
 
 
@@ -312,16 +313,15 @@ def residual(system: System, response: Array) -> Array:
     """Right sides less matrix times response, (size, 1 + n), from rows computed anew: no second matrix is kept."""
     unknowns = system.unknowns.size
     z, s = response[:unknowns], response[unknowns:]
-    zT = z.T
     result = np.zeros_like(response, order="F")
 
     def place(block: Block) -> None:
         for rows in system.rows(block):
             first = 0
             for part in rows.left:
-                rows.right[:] -= zT[:, first : first + len(part)] @ part
+                rows.right[:] -= z[first : first + len(part)].T @ part
                 first += len(part)
-            result[rows.index] = rows.right.T
+            result[rows.at] = rows.right.T
 
     system.influence.each_block(system.equations.collocation, place)
     result[:unknowns] -= system.border @ s

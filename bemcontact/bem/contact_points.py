@@ -61,7 +61,7 @@ class ContactPoints:
     @cached_property
     def tributary(self) -> Array:
         """(n,) [L]: Σ over elements of (1/3, 4/3, 1/3) |dx/dξ|."""
-        return np.bincount(self.point, self.mesh.tributary[self.element, self.local], len(self))
+        return np.bincount(self.point, self.mesh.tributary[self.element, self.local], len(self)).astype(float)
 
     @cached_property
     def element_length(self) -> Array:
@@ -191,4 +191,4 @@ def _nodes_along(mesh: Mesh, halves: Array, elements: IntArray, *, closed: bool)
 
 def _held_along(normals: Array, given: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Whether prescribed displacements (n, 2) span the normal."""
-    return ((abs(normals) <= PARALLEL) | given).all(axis=1)
+    return np.all((abs(normals) <= PARALLEL) | given, axis=1)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.bem import kernels, quadrature
-from bemcontact.bem.kernels import Components, GaussRule, Integrals
+from bemcontact.bem.kernels import Components, GaussRule
 from bemcontact.bem.mesh import Mesh
 
 Array = NDArray[np.float64]
@@ -60,7 +60,7 @@ class Collocation:
 
     @property
     def points(self) -> ComplexArray:
-        """z (c,) as x + iy, over L0."""
+        """The points z (c,) as x + iy, over L0."""
         return self.base + self.offset
 
 
@@ -253,7 +253,7 @@ class Influence:
         element, local = collocation.on_element[on], collocation.on_local[on]
         integrals = kernels.singular(self.element_nodes[element], local)
         for some in (local == 1, local != 1):  # the two elements at a node add to the same entry
-            part = kernels.components(Integrals(*(integral[some] for integral in integrals)), self._factors)
+            part = kernels.components(integrals.only(some), self._factors)
             self._add_pairs(block, collocation.on_point[on[some]] - block.rows.start, element[some], part)
 
     def _turn_corners(self, block: Block, collocation: Collocation) -> None:

@@ -49,6 +49,10 @@ class Integrals(NamedTuple):
     L: Array
     M: ComplexArray
 
+    def only(self, some: NDArray[np.bool_]) -> "Integrals":
+        """Those of some of the pairs."""
+        return Integrals(self.A[some], self.B[some], self.L[some], self.M[some])
+
 
 class Components(NamedTuple):
     """The integrals of T and U by components: T (4, 3, …) in the order of `T_ORDER`, U (3, 3, …) likewise, or None.
@@ -88,7 +92,7 @@ def factors(poisson_ratio: float) -> Factors:
 
 def components(integrals: Integrals, factor: Factors) -> Components:
     """Turn complex integrals (p, 3) into components, T (4, 3, p) and U (3, 3, p)."""
-    A, B, L, M = (part.T for part in integrals)
+    A, B, L, M = integrals.A.T, integrals.B.T, integrals.L.T, integrals.M.T
     n, t = factor.normal * A.imag, factor.tangential * A.real
     cos, sin = factor.skew * (B / 2j).real, factor.skew * (B / 2j).imag
     log, turn = factor.turn * INTEGRALS[:, None] - factor.log * L, factor.turn * M
@@ -147,7 +151,8 @@ def regular(
     Components
     """
     n, *pairs = dx.shape
-    log, cos, normal, sin, tangential, inverse, product = fields = np.empty((7, *dx.shape))
+    fields = np.empty((7, *dx.shape))
+    log, cos, normal, sin, tangential, inverse, product = (np.asarray(field) for field in fields)
     np.multiply(dx, tx, out=tangential)
     np.multiply(dy, ty, out=product)
     tangential += product
@@ -248,7 +253,8 @@ def singular(nodes: ComplexArray, local: Array) -> Integrals:
     Integrals
     """
     _, c1, c2 = element_coefficients(nodes)
-    root = Root(local + 0j, local - 1 + 0j, local + 1 + 0j)
+    r = local.astype(complex)
+    root = Root(r, r - 1, r + 1)
     at_end = abs(local) == 1
     inside = np.where(at_end, 0.0, local)
     interior = np.log((1 - inside) / (1 + inside)) - 1j * np.pi

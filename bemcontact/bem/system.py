@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from bemcontact.bem import shape_functions
+from bemcontact.bem import kernels, shape_functions
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.influence import Block, Collocation, Influence
@@ -129,7 +129,7 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: NDArray[np.complex128
     number = np.arange(len(at_nodes))
     collocation = Collocation(
         base=np.concatenate([nodes[at_nodes], base]),
-        offset=np.concatenate([np.zeros(len(at_nodes)), offset]),
+        offset=np.concatenate([np.zeros(len(at_nodes), complex), offset]),
         on_point=np.concatenate([number, number[is_corner], len(at_nodes) + np.arange(2 * len(split))]),
         on_element=np.concatenate([at_nodes % m, before[corner[is_corner]], on_split]),
         on_local=np.concatenate([np.where(is_corner, -1.0, 0.0), np.ones(is_corner.sum()), local_split]),
@@ -137,7 +137,7 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: NDArray[np.complex128
     )
     active = np.concatenate([wanted[at_nodes], np.repeat(double[split], 2, axis=0)])
     row = np.full(active.shape, -1)
-    row.T[active.T] = np.arange(active.sum())
+    row.T[active.T] = np.arange(np.count_nonzero(active))
     return Equations(collocation=collocation, row=row)
 
 
@@ -155,17 +155,18 @@ class _Carried(NamedTuple):
 class Rows(NamedTuple):
     """Some rows of the system, transposed: pieces (…, q) of A one below the other, and b and the b_i (1 + n, q)."""
 
-    index: slice
+    at: slice
     left: list[Array]
     right: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class System:
-    """A z + W s = b + Σ_i p_i b_i, Vᵀ z = 0: the equations of a body with k rigid motions that its conditions leave free.
+    """The equations of a body, A z + W s = b + Σ_i p_i b_i and Vᵀ z = 0.
 
-    V are the free motions, right null vectors of A; W the same motions at the collocation points. The slack s measures
-    by how much the discrete equations and equilibrium disagree; it vanishes as the mesh is refined.
+    V are the k rigid motions that the conditions leave free, right null vectors of A; W the same motions at the
+    collocation points. The slack s measures by how much the discrete equations and equilibrium disagree; it vanishes
+    as the mesh is refined.
 
     Parameters
     ----------
@@ -182,7 +183,8 @@ class System:
     @cached_property
     def influence(self) -> Influence:
         """The integrals, for those columns of G that something multiplies."""
-        needed = (self.unknowns.traction >= 0).any(axis=(1, 2)) | self._known_traction.any(axis=(1, 2))
+        needed: NDArray[np.bool_] = np.any(self.unknowns.traction >= 0, axis=(1, 2))
+        needed |= np.any(self._known_traction != 0, axis=(1, 2))
         needed[self.points.element] = True
         return Influence(
             mesh=self.mesh,
@@ -258,17 +260,18 @@ class System:
         ------
         Rows
         """
-        F_xx, F_yy, F_xy, F_yx = block.F
-        G_xx, G_yy, G_xy = block.G.reshape(3, -1, block.G.shape[-1])
-        for axis, F, G in ((0, (F_xx, F_xy), (G_xx, G_xy)), (1, (F_yx, F_yy), (G_xy, G_yy))):
+        F = dict(zip(kernels.T_ORDER, block.F, strict=True))
+        G = dict(zip(kernels.U_ORDER, block.G.reshape(3, -1, block.G.shape[-1]), strict=True))
+        for axis in range(2):
+            f, g = [F[axis, 0], F[axis, 1]], [G[0, axis], G[axis, 1]]
             index = self.equations.row[block.rows, axis]
             used = index >= 0
             if not used.any():
                 continue
             if not used.all():
-                F, G = ([part[:, used] for part in parts] for parts in (F, G))
+                f, g = ([part[:, used] for part in parts] for parts in (f, g))
             first = int(index[used][0])
-            yield Rows(slice(first, first + int(used.sum())), [*self._left(F, G)], self._right(F, G))
+            yield Rows(slice(first, first + int(used.sum())), [*self._left(f, g)], self._right(f, g))
 
     def _left(self, F: Sequence[Array], G: Sequence[Array]) -> Iterator[Array]:
         """Columns of the unknowns: x displacements, y displacements, tractions."""
@@ -276,14 +279,16 @@ class System:
             free = column >= 0
             yield part if free.all() else part[free]
         if self.values.traction_unknown.any():
-            yield -sum(unit.times(g) for g, unit in zip(G, self._unit_tractions, strict=True))
+            x, y = self._unit_tractions
+            yield -(x.times(G[0]) + y.times(G[1]))
 
     def _right(self, F: Sequence[Array], G: Sequence[Array]) -> Array:
         """The right sides b, b_i (1 + n, q)."""
         known = self._known_traction[self.influence.traction_elements] * self._jacobians[..., None]
-        b = sum(t @ g for g, t in zip(G, known.transpose(2, 1, 0).reshape(2, -1), strict=True))
-        b -= sum(u @ f for f, u in zip(F, self._known_displacement.T, strict=True))
-        return np.vstack([b, sum(unit.times(g) for g, unit in zip(G, self._unit_pressures, strict=True))])
+        t, u = known.transpose(2, 1, 0).reshape(2, -1), self._known_displacement.T
+        b = t[0] @ G[0] + t[1] @ G[1] - u[0] @ F[0] - u[1] @ F[1]
+        x, y = self._unit_pressures
+        return np.vstack([b, x.times(G[0]) + y.times(G[1])])
 
     @cached_property
     def null_vectors(self) -> Array:
@@ -304,7 +309,7 @@ class System:
         return W
 
     def fields(self, z: Array) -> tuple[Array, Array]:
-        """Displacement (N, 2) [L] and traction (m, 3, 2) [p] of unknowns z and all that is prescribed, less pressures."""
+        """Displacement (N, 2) [L] and traction (m, 3, 2) [p] of unknowns z and all prescribed ones, less pressures."""
         displacement, traction = self.values.displacement.copy(), self.values.traction.copy()
         sought = self.unknowns.displacement >= 0
         displacement[sought] = z[self.unknowns.displacement[sought]] * self.length

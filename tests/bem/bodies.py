@@ -74,7 +74,7 @@ def values_of(
     displacement: Callable[[np.ndarray], np.ndarray],
     traction: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> BoundaryValues:
-    """Prescribe a known field: displacement along the axes `fixed` names for an edge ("x", "y", "xy"), else traction."""
+    """Prescribe a known field: displacement along the axes ("x", "y", "xy") in `fixed` of an edge, else traction."""
     given = np.zeros((len(mesh.nodes), 2), bool)
     unknown = np.zeros((len(mesh.elements), 2), bool)
     for name, axes in fixed.items():
