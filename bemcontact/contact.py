@@ -272,7 +272,7 @@ class CondensedContact:
         n, k = self.rigid_motions.shape
         U, T = self.scales
         bordered = np.block([[self.compliance * (T / U), self.rigid_motions], [self._unit_rows.T, np.zeros((k, k))]])
-        inverse = np.linalg.inv(bordered).astype(float)
+        inverse = np.linalg.inv(bordered.T).T.astype(float)  # accurate as a left inverse, which is how K is used
         S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / self._row_scale
         return StiffnessRows(S, np.eye(n), S @ self.free_displacement + V @ self.motion_load)
 

@@ -31,7 +31,7 @@ LARGEST_BLOCK = 400_000
 CACHE_SIZE = 16_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
 SHARED_RULE_RHO = 4.0
-"""Bernstein parameter from which the elements far from a block of points share a rule."""
+"""Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -168,12 +168,11 @@ class Influence:
             F=np.zeros((4, len(self.nodes), len(z))),
             G=np.empty((3, 3, len(self.traction_elements), len(z))),
         )
-        tiers = quadrature.tier(self._block_rho(z))
-        shared = tiers < quadrature.tier(np.array(SHARED_RULE_RHO))
-        for run in self._runs(np.where(shared, tiers, -1)):
-            if shared[run.start]:
+        tiers, far = self._far_tiers(z)
+        for run in self._runs(np.where(far, tiers, -1)):
+            if far[run.start]:
                 self._far(block, z, int(tiers[run.start]), run)
-        point, element = (x.ravel() for x in np.meshgrid(np.arange(len(z)), np.flatnonzero(~shared), indexing="ij"))
+        point, element = (x.ravel() for x in np.meshgrid(np.arange(len(z)), np.flatnonzero(~far), indexing="ij"))
         self._near(block, collocation, point, element)
         self._on_elements(block, collocation)
         self._turn_corners(block, collocation)
@@ -186,33 +185,33 @@ class Influence:
         for first, last in itertools.pairwise([0, *ends.tolist(), len(kind)]):
             yield slice(first, last)
 
-    def _block_rho(self, z: ComplexArray) -> Array:
-        """Lower bound (m,) of ρ between each element and any point of the block.
+    def _far_tiers(self, z: ComplexArray) -> tuple[IntArray, NDArray[np.bool_]]:
+        """The rule (m,) that each element may share for all points of a block, and whether it is far from the block.
 
         |z - c0| = |c1 r + c2 r²| bounds |r| from below, and ρ >= |r| + sqrt(|r|² - 1).
         """
         c0, c1, c2 = kernels.element_coefficients(self.element_nodes)
         middle = (z[0] + z[-1]) / 2
-        distance = np.maximum(abs(c0 - middle) - abs(z - middle).max(), 0)
+        radius = abs(z - middle).max()
+        distance = np.maximum(abs(c0 - middle) - radius, 0)
         r = 2 * distance / (abs(c1) + np.sqrt(abs(c1) ** 2 + 4 * abs(c2) * distance))
-        return np.where(r > 1, r + np.sqrt(np.maximum(r * r - 1, 0)), 1.0)
+        rho = np.where(r > 1, r + np.sqrt(np.maximum(r * r - 1, 0)), 1.0)
+        return quadrature.tier(rho), (rho > SHARED_RULE_RHO) & (distance > radius)
 
     def _far(self, block: Block, z: ComplexArray, tier: int, run: slice) -> None:
         """Every point of the block with every element of a run, by one Gauss rule, a cacheful at a time."""
         rule, zeta, tangent = self._rules[tier]
+        middle, m = (z[0] + z[-1]) / 2, len(self.mesh.elements)
         step = max(1, CACHE_SIZE // (len(z) * len(zeta)))
         for first in range(run.start, run.stop, step):
             part = slice(first, min(first + step, run.stop))
-            at, along = zeta[:, part, None], tangent[:, part, None]
-            result = kernels.regular(
-                at.real - z.real, at.imag - z.imag, along.real, along.imag, rule, self._factors,
-                with_U=bool(self._slot[first] >= 0),
-            )  # fmt: skip
-            m = len(self.mesh.elements)
+            integrands = kernels.block_numerators(zeta[:, part] - middle, tangent[:, part], z - middle)
+            result = kernels.regular(integrands, rule, self._factors, with_U=bool(self._slot[first] >= 0))
+            ends = _successive(self.mesh.elements[part, 2])
             for F, T in zip(block.F, result.T, strict=True):
                 F[part] += T[0]
                 F[m + part.start : m + part.stop] = T[1]
-                F[_successive(self.mesh.elements[part, 2])] += T[2]
+                F[ends] += T[2]
             if result.U is not None:
                 slot = int(self._slot[first])
                 block.G[:, :, slot : slot + part.stop - part.start] = result.U
@@ -229,10 +228,8 @@ class Influence:
             at = np.flatnonzero(tiers == tier)
             if tier < len(quadrature.ORDERS):
                 rule, _, tangent = self._rules[tier]
-                to, along = rule.shapes.T @ tau[at].T, tangent[:, element[at]]
-                result = kernels.regular(
-                    to.real.copy(), to.imag.copy(), along.real, along.imag, rule, self._factors, with_U=True
-                )
+                integrands = kernels.numerators(rule.shapes.T @ tau[at].T, tangent[:, element[at]])
+                result = kernels.regular(integrands, rule, self._factors, with_U=True)
             else:
                 part = kernels.Root(root.r[at], root.minus[at], root.plus[at])
                 result = kernels.components(kernels.near_singular(tau[at], part), self._factors)

@@ -105,7 +105,7 @@ class GaussRule(NamedTuple):
 
     shapes, derivatives : (3, n) N_k and dN_k/dξ
     T_diagonal, T_cross : (6, 2n) for [Re S, Im A] and [Im S, Re A]
-    U_diagonal, U_cross : (6, 2n) for [ln|τ|², Re τ/conj τ] and (3, n) for Im τ/conj τ, halved
+    U_diagonal, U_cross : (6, 2n) for [ln|τ|², Re τ/conj τ] and (3, n) for Im τ/conj τ
     """
 
     shapes: Array
@@ -127,21 +127,41 @@ def gauss_rule(order: int, factor: Factors) -> GaussRule:
         shapes=shapes,
         derivatives=derivatives(xi).T,
         T_diagonal=np.block([[-skew, normal], [skew, normal]]),
-        T_cross=np.block([[-2 * skew, -tangential], [-2 * skew, tangential]]),
+        T_cross=np.block([[-skew, -tangential], [-skew, tangential]]),
         U_diagonal=np.block([[-log, turn], [-log, -turn]]),
-        U_cross=2 * turn,
+        U_cross=turn,
     )
 
 
-def regular(
-    dx: Array, dy: Array, tx: Array, ty: Array, rule: GaussRule, factor: Factors, *, with_U: bool
-) -> Components:
+def numerators(tau: ComplexArray, tangent: ComplexArray) -> Array:
+    """|τ|², Re τ², Im(conj(τ) ζ'), Im τ², Re(conj(τ) ζ') (5, n, p) at Gauss points τ, ζ' (n, p) of p pairs."""
+    square, along = tau * tau, tau.conj() * tangent
+    return np.stack([(tau * tau.conj()).real, square.real, along.imag, square.imag, along.real])
+
+
+def block_numerators(zeta: ComplexArray, tangent: ComplexArray, z: ComplexArray) -> Array:
+    """The same (5, n, e, R) for every pair of e elements, ζ, ζ' (n, e), and R points z, as a product of matrices.
+
+    All five are polynomials in z = x + iy over 1, x, y, Re z², Im z², |z|². Counted from the middle of the points, no
+    digits are lost if the elements are farther away than the points are from each other.
+    """
+    at, along = zeta * zeta, zeta.conj() * tangent
+    factors = np.zeros((6, 5, *zeta.shape))
+    factors[0] = (zeta * zeta.conj()).real, at.real, along.imag, at.imag, along.real
+    factors[1] = -2 * zeta.real, -2 * zeta.real, -tangent.imag, -2 * zeta.imag, -tangent.real
+    factors[2] = -2 * zeta.imag, 2 * zeta.imag, tangent.real, -2 * zeta.real, -tangent.imag
+    factors[3, 1] = factors[4, 3] = factors[5, 0] = 1
+    square = z * z
+    powers = np.stack([np.ones(len(z)), z.real, z.imag, square.real, square.imag, (z * z.conj()).real])
+    return (factors.reshape(6, -1).T @ powers).reshape(*factors.shape[1:], len(z))
+
+
+def regular(integrands: Array, rule: GaussRule, factor: Factors, *, with_U: bool) -> Components:
     """Gauss's rule, for pairs whose root is far enough away.
 
     Parameters
     ----------
-    dx, dy : (n, …) τ at the Gauss points; overwritten
-    tx, ty : (n, …) dζ/dξ there, broadcast against `dx`
+    integrands : (5, n, …) as from `numerators` or `block_numerators`; overwritten
     rule : with n points
     factor : Factors
     with_U : whether the integrals of U are wanted
@@ -150,27 +170,14 @@ def regular(
     -------
     Components
     """
-    n, *pairs = dx.shape
-    fields = np.empty((7, *dx.shape))
-    log, cos, normal, sin, tangential, inverse, product = (np.asarray(field) for field in fields)
-    np.multiply(dx, tx, out=tangential)
-    np.multiply(dy, ty, out=product)
-    tangential += product
-    np.multiply(dx, ty, out=normal)
-    np.multiply(dy, tx, out=product)
-    normal -= product
-    np.multiply(dx, dy, out=sin)
-    dx *= dx
-    dy *= dy
-    np.add(dx, dy, out=inverse)
-    np.subtract(dx, dy, out=cos)
-    if with_U:
-        np.log(inverse, out=log)
-    np.reciprocal(inverse, out=inverse)
-    fields[1:5] *= inverse
-    rows = fields.reshape(7 * n, -1)
+    _, n, *pairs = integrands.shape
+    square, cos, normal, sin, _ = (np.asarray(part) for part in integrands)
+    rows = integrands.reshape(5 * n, -1)
+    inverse = 1 / square
+    integrands[1:] *= inverse
     U = None
     if with_U:
+        np.log(square, out=square)
         U = np.empty((9, rows.shape[1]))
         np.matmul(rule.U_diagonal, rows[: 2 * n], out=U[:6])
         np.matmul(rule.U_cross, rows[3 * n : 4 * n], out=U[6:])
@@ -180,7 +187,7 @@ def regular(
     sin *= normal
     T = np.empty((12, rows.shape[1]))
     np.matmul(rule.T_diagonal, rows[n : 3 * n], out=T[:6])
-    np.matmul(rule.T_cross, rows[3 * n : 5 * n], out=T[6:])
+    np.matmul(rule.T_cross, rows[3 * n :], out=T[6:])
     return Components(T.reshape(4, 3, *pairs), U)
 
 

@@ -8,7 +8,7 @@ from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.condense import solve
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh, connected
-from bemcontact.bem.rigid_motions import free_rigid_motions
+from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.system import System
 from bemcontact.bem.volume_loads import particular_solution
 from bemcontact.problem.loads import Loads
@@ -91,15 +91,21 @@ def values_of(
     )
 
 
+def system_of(
+    mesh: Mesh, material: Material, values: BoundaryValues, motions: RigidMotions, loads: Loads | None = None
+) -> System:
+    return System(
+        mesh=mesh, material=material, values=values, points=no_points(mesh), motions=motions,
+        particular=particular_solution(loads or Loads(), material, mesh),
+    )  # fmt: skip
+
+
 def solved(
     mesh: Mesh, material: Material, values: BoundaryValues, loads: Loads | None = None
 ) -> tuple[np.ndarray, np.ndarray, System]:
     """Displacement (N, 2) and traction (m, 3, 2) of a body without contact, and its system."""
-    system = System(
-        mesh=mesh, material=material, values=values, points=no_points(mesh),
-        particular=particular_solution(loads or Loads(), material, mesh),
-        motions=free_rigid_motions(mesh.nodes, values.displacement_given),
-    )  # fmt: skip
+    motions = free_rigid_motions(mesh.nodes, values.displacement_given)
+    system = system_of(mesh, material, values, motions, loads)
     displacement, traction = system.fields(solve(system)[:, 0])
     return displacement, traction, system
 

@@ -1,0 +1,197 @@
+"""Is it the solution, is it the only one, and how far off can it be? `certify` answers from p and u_n alone.
+
+Uniqueness. Let D = J be the tributary weights and λ the smallest eigenvalue of sym(DM) on the equilibrium space
+{v : ℓᵀv = 0}. For two solutions (p, δ) and (p', δ') the difference v = p - p' lies there, so that
+vᵀD(δ - δ') = vᵀDM v + ℓᵀv·(a - a') >= λ|v|², and complementarity makes the left side -pᵀDδ' - p'ᵀDδ <= 0.
+With λ > 0 the pressure is unique.
+
+Error bound. Let y >= 0 be a pressure in equilibrium, ℓᵀy = -load, a any amplitudes and δ = ε + Δ1 + M y + R a. Let s
+be the part of Dδ that should not be: s = Dδ where y > 0, s = min(Dδ, 0) where y = 0; so Dδ - s >= 0 and
+yᵀ(Dδ - s) = 0. For the solution (p*, δ*) and e = y - p*
+
+    λ|e|² <= eᵀDM e = eᵀD(δ - δ*) = eᵀs - yᵀDδ* - p*ᵀ(Dδ - s) <= |e||s|,
+
+so that |y - p*| <= |s|/λ, and for any p at all |p - p*| <= |p - y| + |s|/λ. Here y is p cut off outside its contact set
+and brought into equilibrium by the smallest change. This sharpens Pang's bound for strongly monotone problems,
+(1 + ‖DM‖)/λ·|min(p, Dδ)| (Math. Oper. Res. 12(3), 1987, 474-484), which does not carry over to bodies with free
+motions: a small pressure on a body lifted off its support has a small min(p, Dδ), however far it is from the solution.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigvalsh
+
+from bemcontact.assessment.residual import Residuals
+from bemcontact.contact import Array, CondensedContact, ContactSolution
+
+TOLERANCE = 1e-10
+"""Residuals allowed: a thousand times above the round-off of the gap, a thousand below what shows in a result."""
+ROUND_OFF_LIMIT = 1e-6
+"""Most that round-off may raise the tolerance of (12) to: beyond it the equations are too ill-conditioned to check."""
+NEWTON_STEPS = 20
+
+
+class CertificateKind(Enum):
+    """What has been proved of a solution."""
+
+    UNIQUE = "unique"
+    LOCAL = "local only"
+    NOT_A_SOLUTION = "not a solution"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Certificate:
+    """What can be said of a solution without believing the solver.
+
+    Parameters
+    ----------
+    kind : CertificateKind
+    smallest_eigenvalue : λ of sym(DM) on the equilibrium space, D = J/max J and M of unit norm; None if n = k, where
+        equilibrium alone fixes the pressure
+    error_bound : no pressure differs from that of the solution by more [p]; None if none can be given
+    relative_error_bound : the same over the peak pressure; None likewise, or where nothing touches
+    words : two or three sentences for an engineer
+    """
+
+    kind: CertificateKind
+    smallest_eigenvalue: float | None
+    error_bound: float | None
+    relative_error_bound: float | None
+    words: str
+
+    @property
+    def certified(self) -> bool:
+        """Whether this is the solution, the only one, to the tolerance."""
+        return self.kind is CertificateKind.UNIQUE
+
+
+def certify(
+    condensed: CondensedContact, solution: ContactSolution, residuals: Residuals, tolerance: float = TOLERANCE
+) -> Certificate:
+    """Judge a solution.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    solution : of any formulation
+    residuals : of that solution
+    tolerance : allowed penetration, tension, complementarity and balance; equilibrium, whose rows are multiplied by the
+        inverse of the compliance, may also be as large as the round-off of its evaluation, but never above 1e-6
+
+    Returns
+    -------
+    Certificate
+    """
+    D, M = _scaled_compliance(condensed)
+    eigenvalue = _smallest_eigenvalue(D, M, condensed.equilibrium)
+    unique = eigenvalue is None or eigenvalue > condensed.size * np.finfo(float).eps
+    bound = _error_bound(condensed, solution, eigenvalue) if unique else None
+    peak = float(solution.pressure.max(initial=0.0))
+    complaint = _complaint(residuals, tolerance)
+    kind = CertificateKind.UNIQUE if unique else CertificateKind.LOCAL
+    kind = CertificateKind.NOT_A_SOLUTION if complaint else kind
+    relative = bound / peak if bound is not None and peak > 0 else None
+    return Certificate(
+        kind=kind,
+        smallest_eigenvalue=eigenvalue,
+        error_bound=bound,
+        relative_error_bound=relative,
+        words=_words(kind, complaint, eigenvalue, relative),
+    )
+
+
+def _scaled_compliance(condensed: CondensedContact) -> tuple[Array, Array]:
+    """D = J/max J (n,) and M T/U (n, n)."""
+    U, T = condensed.scales
+    return condensed.weights / condensed.weights.max(), condensed.compliance * (T / U)
+
+
+def _smallest_eigenvalue(D: Array, M: Array, ell: Array) -> float | None:
+    """λ of Zᵀ sym(DM) Z, the columns of Z an orthonormal basis of {v : ℓᵀv = 0}."""
+    n, k = ell.shape
+    if n == k:
+        return None
+    Z = np.linalg.qr(ell, mode="complete")[0][:, k:]
+    weighted = D[:, None] * M
+    return float(eigvalsh(Z.T @ (weighted + weighted.T) @ Z / 2, subset_by_index=(0, 0))[0])
+
+
+def _error_bound(condensed: CondensedContact, solution: ContactSolution, eigenvalue: float | None) -> float | None:
+    """|p - y| + |s|/λ of the module's head in units of pressure; s includes the round-off of δ."""
+    U, T = condensed.scales
+    D, M = _scaled_compliance(condensed)
+    p = solution.pressure / T
+    gap = (condensed.initial_gap + solution.displacement) / U
+    y = _balanced(condensed, p, p > gap)
+    if y is None:
+        return None
+    if eigenvalue is None:
+        return float(np.linalg.norm(p - y)) * T
+    q, R, ell = condensed.offset / U, condensed.rigid_motions, condensed.equilibrium
+    a = np.linalg.solve(ell.T @ R, ell.T @ (gap - q - M @ y))
+    delta = q + M @ y + R @ a
+    s = D * np.where(y > 0, delta, np.minimum(delta, 0.0))
+    round_off = len(D) * np.finfo(float).eps * D * (np.abs(q) + np.abs(M) @ y + np.abs(R) @ np.abs(a))
+    return float(np.linalg.norm(p - y) + (np.linalg.norm(s) + np.linalg.norm(round_off)) / eigenvalue) * T
+
+
+def _unit_rows(condensed: CondensedContact) -> tuple[Array, Array]:
+    """ℓ (n, k) with columns of unit length, and the load (k,) over T to match."""
+    length = np.linalg.norm(condensed.equilibrium, axis=0)
+    return condensed.equilibrium / length, condensed.motion_load / (length * condensed.scales.pressure)
+
+
+def _balanced(condensed: CondensedContact, p: Array, contact: NDArray[np.bool_]) -> Array | None:
+    """A scaled pressure near p in equilibrium: zero off the contact set, or without that if the set carries no load."""
+    ell, load = _unit_rows(condensed)
+    y = _nearest_balanced(p, contact, ell, load)
+    return _nearest_balanced(p, np.ones_like(contact), ell, load) if y is None else y
+
+
+def _nearest_balanced(p: Array, contact: NDArray[np.bool_], ell: Array, load: Array) -> Array | None:
+    """The y >= 0 nearest to p with ℓᵀy = -load and y = 0 off the contact set: y = max(p + ℓ b, 0), Newton on b (k,)."""
+    b = np.zeros(len(load))
+    for _ in range(NEWTON_STEPS):
+        y = np.where(contact, np.maximum(p + ell @ b, 0.0), 0.0)
+        imbalance = ell.T @ y + load
+        if np.abs(imbalance).max(initial=0.0) <= 1e-14 * (1.0 + np.abs(p).sum()):
+            return y
+        touching = ell[y > 0]
+        b -= np.linalg.lstsq(touching.T @ touching, imbalance, rcond=None)[0]
+    return None
+
+
+def _complaint(residuals: Residuals, tolerance: float) -> str:
+    """The worst violation in words, or nothing."""
+    rows = min(max(tolerance, residuals.equilibrium_round_off), ROUND_OFF_LIMIT)
+    checks = {
+        "penetration": (residuals.penetration, tolerance),
+        "tension": (residuals.tension, tolerance),
+        "complementarity": (residuals.complementarity, tolerance),
+        "balance of forces": (residuals.balance, tolerance),
+        "equilibrium (12)": (residuals.equilibrium, rows),
+    }
+    name, (value, allowed) = max(checks.items(), key=lambda check: check[1][0] / check[1][1])
+    return "" if value <= allowed else f"the residual of {name} is {value:.1e} where {allowed:.1e} is allowed"
+
+
+def _words(kind: CertificateKind, complaint: str, eigenvalue: float | None, relative: float | None) -> str:
+    """Two or three sentences for an engineer."""
+    sure = "equilibrium alone fixes it" if eigenvalue is None else f"its smallest eigenvalue is {eigenvalue:.2e}"
+    error = "" if relative is None else f" No pressure is off by more than {relative:.1e} of the peak."
+    match kind:
+        case CertificateKind.UNIQUE:
+            return (
+                f"All contact conditions hold. The compliance is positive definite ({sure}), so no other state "
+                f"exists.{error}"
+            )
+        case CertificateKind.LOCAL:
+            return (
+                f"All contact conditions hold, but the compliance is not positive definite ({sure}), so another "
+                "contact state may exist. Refine the mesh, or compare solutions from several starts."
+            )
+        case CertificateKind.NOT_A_SOLUTION:
+            return f"This is not the contact state: {complaint}.{error} Polish the solution, or use the direct solver."

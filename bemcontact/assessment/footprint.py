@@ -1,0 +1,196 @@
+"""Where the bodies touch: intervals of contact, the peak pressure, the resultant."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.contact import Array, CondensedContact, ContactSolution
+
+Point = tuple[float, float]
+OPEN_NODES = 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactInterval:
+    """One unbroken stretch of contact along the boundary.
+
+    Parameters
+    ----------
+    zone : name of the contact zone
+    start, end : (x, y) in the order of the boundary [L]
+    start_arc, end_arc : their arc positions on the run [L]; across the seam of a closed run they go on counting
+    """
+
+    zone: str
+    start: Point
+    end: Point
+    start_arc: float
+    end_arc: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Peak:
+    """The largest nodal pressure [p], per undeformed length, and where it acts."""
+
+    pressure: float
+    at: Point
+
+
+@dataclass(frozen=True, kw_only=True)
+class Resultant:
+    """Force of the rigid surface on the body: Σ w p n [p L], its moment about the origin, anticlockwise [p L²].
+
+    `line_point` is the point of the line of action that is nearest to the origin; None without a force.
+    """
+
+    force: Point
+    moment: float
+    line_point: Point | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Footprint:
+    """What a contact state looks like to an engineer.
+
+    Parameters
+    ----------
+    intervals : zone by zone, in the order of the boundary; empty without contact
+    peak : None without contact
+    resultant : of the contact pressure
+    """
+
+    intervals: tuple[ContactInterval, ...]
+    peak: Peak | None
+    resultant: Resultant
+
+
+def footprint(condensed: CondensedContact, solution: ContactSolution) -> Footprint:
+    """Find contact intervals, peak and resultant of a solution.
+
+    A point touches if p/T > δ/U. The end of an interval is read off the gap, which grows like s^(3/2) beyond it: the
+    zero of the line through δ^(2/3) at the first three open points, as long as the gap grows, kept between the last
+    point in contact and the first open one. With two open points the line goes through both; with one the end is put
+    half-way. Contact up to the end of a run ends at its last point.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    solution : of any formulation
+
+    Returns
+    -------
+    Footprint
+    """
+    U, T = condensed.scales
+    gap = condensed.initial_gap + solution.displacement
+    touching = solution.pressure / T > gap / U
+    pieces = sorted(set(zip(condensed.zone.tolist(), condensed.run.tolist(), strict=True)))
+    return Footprint(
+        intervals=tuple(
+            interval
+            for zone, run in pieces
+            for interval in _intervals(_path(condensed, zone, run, gap, touching), condensed.zone_names[zone])
+        ),
+        peak=_peak(condensed, solution.pressure),
+        resultant=_resultant(condensed, solution.pressure),
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Path:
+    """The points of one run in order, gap cut off below zero; a closed run three times over.
+
+    Only intervals that begin at one of the points `first` to `last` - 1 belong to the run itself.
+    """
+
+    arc: Array
+    points: Array
+    gap: Array
+    touching: NDArray[np.bool_]
+    first: int
+    last: int
+
+
+def _path(condensed: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
+    """Gather the points of a run."""
+    index = np.flatnonzero((condensed.zone == zone) & (condensed.run == run))
+    index = index[np.argsort(condensed.arc_position[index], kind="stable")]
+    perimeter = condensed.run_length[run]
+    turns = np.array([-1.0, 0.0, 1.0]) if np.isfinite(perimeter) else np.zeros(1)
+    around = np.tile(index, len(turns))
+    m = len(index)
+    return _Path(
+        arc=condensed.arc_position[around] + np.repeat(turns, m) * (perimeter if len(turns) > 1 else 0.0),
+        points=condensed.points[around],
+        gap=np.maximum(gap[around], 0.0),
+        touching=touching[around],
+        first=m * (len(turns) // 2),
+        last=m * (len(turns) // 2 + 1),
+    )
+
+
+def _intervals(path: _Path, zone: str) -> list[ContactInterval]:
+    """The unbroken stretches of contact of a run; a closed run in contact all around is one, from its first point."""
+    if path.first and path.touching.all():
+        return [_interval(path, zone, path.arc[path.first], path.arc[path.last])]
+    edges = np.diff(np.concatenate([[0], path.touching.astype(int), [0]]))
+    begins, ends = np.flatnonzero(edges > 0).tolist(), (np.flatnonzero(edges < 0) - 1).tolist()
+    return [
+        _interval(path, zone, _end(path, begin, -1), _end(path, finish, +1))
+        for begin, finish in zip(begins, ends, strict=True)
+        if path.first <= begin < path.last
+    ]
+
+
+def _interval(path: _Path, zone: str, start: float, end: float) -> ContactInterval:
+    """An interval from its arc positions."""
+    return ContactInterval(
+        zone=zone, start=_at(path, start), end=_at(path, end), start_arc=float(start), end_arc=float(end)
+    )
+
+
+def _end(path: _Path, last: int, step: int) -> float:
+    """Arc position of the end of contact beyond the point `last`, walking by `step`."""
+    opened: list[int] = []
+    for i in range(last + step, last + (OPEN_NODES + 1) * step, step):
+        if not 0 <= i < len(path.arc) or path.touching[i] or (opened and path.gap[i] <= path.gap[opened[-1]]):
+            break
+        opened.append(i)
+    if not opened:
+        return path.arc[last]
+    nearest = path.arc[opened[0]]
+    if len(opened) == 1:
+        return (path.arc[last] + nearest) / 2
+    slope, value = np.polyfit(path.arc[opened] - path.arc[last], path.gap[opened] ** (2 / 3), 1)
+    return np.clip(path.arc[last] - value / slope, *sorted((path.arc[last], nearest)))
+
+
+def _at(path: _Path, position: float) -> Point:
+    """The point at an arc position, by the parabola through the three nearest points in order."""
+    count = min(3, len(path.arc))
+    start = np.clip(np.argmin(np.abs(path.arc - position)) - 1, 0, len(path.arc) - count)
+    arc, points = path.arc[start : start + count], path.points[start : start + count]
+    shape = [np.prod([(position - other) / (own - other) for other in arc if other != own]) for own in arc]
+    x, y = np.array(shape) @ points
+    return float(x), float(y)
+
+
+def _peak(condensed: CondensedContact, pressure: Array) -> Peak | None:
+    """The point of largest pressure."""
+    i = int(np.argmax(pressure))
+    if pressure[i] <= 0:
+        return None
+    x, y = condensed.points[i]
+    return Peak(pressure=float(pressure[i]), at=(float(x), float(y)))
+
+
+def _resultant(condensed: CondensedContact, pressure: Array) -> Resultant:
+    """Force Σ w p n, its moment, and its line of action."""
+    forces = (condensed.weights * pressure)[:, None] * condensed.normals
+    x, y = condensed.points.T
+    fx, fy = map(float, forces.sum(axis=0))
+    moment = float((x * forces[:, 1] - y * forces[:, 0]).sum())
+    square = fx**2 + fy**2
+    line_point = (moment * fy / square, -moment * fx / square) if square > 0 else None
+    return Resultant(force=(fx, fy), moment=moment, line_point=line_point)

@@ -1,0 +1,241 @@
+"""The direct solver: gap = q + M p + R a >= 0, p >= 0, p·gap = 0, ℓᵀp = -load, and the polish of other solvers.
+
+Primal-dual active set first, Lemke's method behind it. The quadratic programs are compared with it.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.linalg import qr
+from scipy.optimize import nnls
+
+from bemcontact.contact import Array, CondensedContact, ContactSolution, IntArray, Status
+from bemcontact.errors import ProblemError
+from bemcontact.formulations.active_set import ActiveSetEnd, BoolArray, first_active_set, primal_dual
+from bemcontact.formulations.formulation import FormulationOptions
+from bemcontact.formulations.lemke import lemke
+from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
+
+ACCEPTED = 1e-11
+"""Residual of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
+BALANCED = 1e-12
+"""Part of the load, by its norm, that may be left without support before the load counts as impossible to carry."""
+POLISH_STEPS = 10
+NAMED = 1e-9
+"""Share of a motion that is worth its name in a sentence."""
+
+ACTIVE_SET, LEMKE = "primal-dual active set", "Lemke's method"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LcpResult:
+    """What `solve_lcp` found; z and w are a solution only with `Status.SOLVED`.
+
+    Parameters
+    ----------
+    z, w : (n,) with z >= 0 and w = q + M z
+    status : INFEASIBLE is said only with a certificate of Farkas in hand; NUMERICAL_FAILURE: no solution was found
+    iterations : steps of the active set plus pivots
+    method : the one that ended the search
+    """
+
+    z: Array
+    w: Array
+    status: Status
+    iterations: int
+    method: str
+
+
+def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
+    """Solve a linear complementarity problem: z >= 0, w = q + M z >= 0, z·w = 0.
+
+    Parameters
+    ----------
+    M : (n, n), neither symmetric nor definite of necessity; if it is row sufficient, there is always an answer
+    q : (n,)
+
+    Returns
+    -------
+    LcpResult
+
+    Raises
+    ------
+    ProblemError
+        Shapes that do not fit, or entries that are not finite numbers.
+    """
+    M, q = np.array(M, float, ndmin=2), np.array(q, float, ndmin=1)
+    n = len(q)
+    if M.shape != (n, n) or not (np.isfinite(M).all() and np.isfinite(q).all()):
+        raise ProblemError(f"M (n, n) and q (n,) of finite numbers are needed; found shapes {M.shape} and {q.shape}")
+    U = float(np.abs(q).max(initial=0.0)) or 1.0
+    T = U / (float(np.abs(M).sum(axis=1).max(initial=0.0)) or 1.0)
+    problem = ScaledContact(
+        compliance=M * (T / U),
+        offset=q / U,
+        rigid_motions=np.zeros((n, 0)),
+        motion_load=np.zeros(0),
+        weights=np.ones(n),
+    )
+    found = _search(problem, None)
+    z = found.end.pressure * T
+    return LcpResult(z=z, w=q + M @ z, status=found.status, iterations=found.iterations, method=found.method)
+
+
+def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+    """Solve the contact problem as what it is, (16)-(18) with (35)-(38); no objective, no weights but those of ℓ.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    options : `max_iterations` limits the pivots of Lemke's method; the rest does not concern this solver
+
+    Returns
+    -------
+    ContactSolution
+        p is exactly zero off the contact set. With `Status.INFEASIBLE` p = 0, and the notes say in which motion the
+        load carries the body away.
+    """
+    options = options or FormulationOptions()
+    problem = scaled(condensed)
+    if note := escape_note(condensed, problem):
+        return _without_contact(condensed, note)
+    carried = replace(problem, motion_load=problem.motion_load - loose_load(problem))
+    found = _search(carried, options.max_iterations)
+    if found.status is Status.INFEASIBLE:
+        return _without_contact(condensed, "the path of pivots ended on a ray that proves that no pressure will do")
+    p, u_n, a = unscaled(condensed, found.end.pressure, found.end.amplitudes)
+    return ContactSolution(
+        formulation="complementarity",
+        solver=found.method,
+        status=found.status,
+        pressure=p,
+        displacement=u_n,
+        rigid_amplitudes=a,
+        iterations=found.iterations,
+    )
+
+
+def polish(condensed: CondensedContact, solution: ContactSolution) -> ContactSolution:
+    """Make an approximate solution exact: a few primal-dual steps from the contact set {p/T > δ/U} that it shows.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    solution : of any formulation
+
+    Returns
+    -------
+    ContactSolution
+        With `polished` set if the natural residual got smaller, else `solution` itself.
+    """
+    problem = scaled(condensed)
+    p, a = scaled_point(condensed, solution.pressure, solution.rigid_amplitudes)
+    gap = (condensed.initial_gap + solution.displacement) / condensed.scales.displacement
+    end = primal_dual(problem, p > gap, POLISH_STEPS)
+    if not end.residual < problem.residual(p, a):
+        return solution
+    p, u_n, a = unscaled(condensed, end.pressure, end.amplitudes)
+    return replace(solution, pressure=p, displacement=u_n, rigid_amplitudes=a, polished=True)
+
+
+def loose_load(problem: ScaledContact) -> Array:
+    """The part r (k,) of the load that no p >= 0 carries: the least ℓᵀp + load by norm.
+
+    Where it is not zero, it is the motion in which the body leaves: R r >= 0 opens every gap, and the load works on it,
+    r·load = r·r > 0 (Farkas).
+    """
+    ell, load = problem.equilibrium, problem.motion_load
+    return ell.T @ nnls(ell.T, -load)[0] + load if load.size else load
+
+
+def escape_note(condensed: CondensedContact, problem: ScaledContact) -> str | None:
+    """Say in words in which motion the load carries the body off its support; None if the support carries the load."""
+    motion = loose_load(problem)
+    if np.linalg.norm(motion) <= BALANCED * np.linalg.norm(problem.motion_load):
+        return None
+    parts = zip(motion / np.abs(motion).max(), condensed.motion_names, strict=True)
+    terms = ", ".join(f"{part:+.3g} x {name}" for part, name in parts if abs(part) > NAMED)
+    return f"the load carries the body off its support, in a motion that no contact resists: {terms}"
+
+
+def standard_form(problem: ScaledContact) -> tuple[Array, Array, BoolArray]:
+    """The contact problem as w = q' + M' z without free motions, by one principal pivot.
+
+    Choose k points B on which R_B has full rank (QR with pivoting). The block of [[M, R], [ℓᵀ, 0]] on B and the motions
+    then is nonsingular whatever M is, so that p_B and a can be expressed by δ_B and p elsewhere. On B pressure and gap
+    change places. Rows are weighted by J: Δzᵀ Δw = Δpᵀ JM Δp on the equilibrium space, so that M' inherits
+    semidefiniteness from sym(JM) there.
+
+    Parameters
+    ----------
+    problem : ScaledContact
+
+    Returns
+    -------
+    matrix : (n, n) M'
+    vector : (n,) q'
+    exchanged : (n,) True on B: z is the gap and w the pressure there
+    """
+    M, R, ell, J = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.weights
+    n, k = R.shape
+    B = _spanning_points(np.sqrt(J)[:, None] * R)
+    rest = np.setdiff1d(np.arange(n), B)
+    inside, order = np.append(B, n + np.arange(k)), np.append(B, rest)
+    W = np.block([[M, R], [ell.T, np.zeros((k, k))]])
+    h = np.append(problem.offset, problem.motion_load)
+    given = np.hstack([np.eye(2 * k, k), -W[np.ix_(inside, rest)], -h[inside, None]])
+    inner = np.linalg.solve(W[np.ix_(inside, inside)], given)
+    gap_rest = W[np.ix_(rest, inside)] @ inner + np.hstack([np.zeros((n - k, k)), M[np.ix_(rest, rest)], h[rest, None]])
+    rows = np.empty((n, n + 1))
+    rows[order] = np.vstack([inner[:k], gap_rest])
+    matrix = np.empty((n, n))
+    matrix[:, order] = rows[:, :n]
+    return J[:, None] * matrix, J * rows[:, n], np.isin(np.arange(n), B)
+
+
+def _spanning_points(motions: Array) -> IntArray:
+    """As many rows as an (n, k) matrix has columns, as independent as the pivoting of QR makes them."""
+    k = motions.shape[1]
+    return np.array(qr(motions.T, mode="r", pivoting=True)[-1][:k], np.int64) if k else np.zeros(0, np.int64)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Found:
+    """End of a search: the point, what it is, how many iterations of both methods, and which method ended it."""
+
+    end: ActiveSetEnd
+    status: Status
+    iterations: int
+    method: str
+
+
+def _search(problem: ScaledContact, pivot_limit: int | None) -> _Found:
+    """Primal-dual active set; where it cycles, Lemke's method and the active set again from where that ended."""
+    first = primal_dual(problem, first_active_set(problem))
+    if first.residual <= ACCEPTED:
+        return _Found(end=first, status=Status.SOLVED, iterations=first.steps, method=ACTIVE_SET)
+    matrix, vector, exchanged = standard_form(problem)
+    path = lemke(matrix, vector, limit=pivot_limit)
+    second = primal_dual(problem, path.active ^ exchanged, POLISH_STEPS)
+    iterations = first.steps + path.pivots + second.steps
+    if second.residual <= ACCEPTED:
+        return _Found(end=second, status=Status.SOLVED, iterations=iterations, method=LEMKE)
+    status = Status.NUMERICAL_FAILURE if path.status is Status.SOLVED else path.status
+    return _Found(
+        end=min(first, second, key=lambda end: end.residual), status=status, iterations=iterations, method=LEMKE
+    )
+
+
+def _without_contact(condensed: CondensedContact, note: str) -> ContactSolution:
+    """The free body, p = 0, as the answer to a problem that has none."""
+    return ContactSolution(
+        formulation="complementarity",
+        solver=ACTIVE_SET,
+        status=Status.INFEASIBLE,
+        pressure=np.zeros(condensed.size),
+        displacement=condensed.free_displacement,
+        rigid_amplitudes=np.zeros(condensed.free_motions),
+        iterations=0,
+        notes=(note,),
+    )

@@ -1,0 +1,227 @@
+"""QP3, (40)-(42): the quadratic program in pressures and rigid amplitudes, written in cvxpy and solved by Clarabel.
+
+    minimise   pᵀJ(ε + Δ1 + R a) + pᵀJ M p    over p, a
+    subject to ε + Δ1 + M p + R a >= 0,  p >= 0,  ℓᵀp = -load
+
+In equilibrium the objective is pᵀJδ, (19). M stays unsymmetric in the constraints; the objective sees its symmetric
+part only, which changes no value of it.
+"""
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigvalsh
+
+from bemcontact.contact import Array, CondensedContact, ContactSolution, Status, Weights
+from bemcontact.errors import NotConvexError, SolverError
+from bemcontact.formulations.complementarity import escape_note, polish
+from bemcontact.formulations.formulation import FormulationOptions
+from bemcontact.formulations.scaling import ScaledContact, scaled, unscaled
+
+ITERATIONS = 200
+NEGLIGIBLE = 1e-10
+"""Entry of ZᵀJR, or negative eigenvalue, that is round-off; by the scaling the numbers are of size one."""
+TOLERANCES = 1e-11, 1e-8
+"""Asked of Clarabel one after the other, the second where the first cannot be reached; the polish does the rest."""
+STATUSES = {
+    "optimal": Status.SOLVED,
+    "optimal_inaccurate": Status.SOLVED,
+    "user_limit": Status.ITERATION_LIMIT,
+    "infeasible": Status.INFEASIBLE,
+    "infeasible_inaccurate": Status.INFEASIBLE,
+    "unbounded": Status.UNBOUNDED,
+    "unbounded_inaccurate": Status.UNBOUNDED,
+}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Objective:
+    """½ pᵀH p + cᵀp + bᵀa + d, which is pᵀJ(q + M p + R a) for every p in equilibrium.
+
+    Parameters
+    ----------
+    hessian : (n, n) H, positive semidefinite on all of space if it is on the equilibrium space
+    pressure : (n,) c
+    amplitudes : (k,) b
+    constant : d
+    """
+
+    hessian: Array
+    pressure: Array
+    amplitudes: Array
+    constant: float
+
+    def value(self, pressure: Array, amplitudes: Array) -> float:
+        """The objective at p (n,) and a (k,)."""
+        quadratic = 0.5 * pressure @ self.hessian @ pressure
+        return float(quadratic + self.pressure @ pressure + self.amplitudes @ amplitudes + self.constant)
+
+
+def objective(problem: ScaledContact, J: Array) -> Objective:
+    """Write pᵀJδ as a convex function of (p, a), with the help of equilibrium.
+
+    With P = I - R(ℓᵀR)⁻¹ℓᵀ and p0 = -R(ℓᵀR)⁻¹load every p in equilibrium is P p + p0, so that
+    pᵀJM p = (P p)ᵀJM(P p) + p0ᵀ(JM + MᵀJᵀ)P p + p0ᵀJM p0. And if JR = ℓC, then pᵀJR a = -loadᵀC a; C = I for the
+    tributary J.
+
+    Parameters
+    ----------
+    problem : ScaledContact
+    J : (n, n) weights of the objective, scaled
+
+    Returns
+    -------
+    Objective
+    """
+    M, R, ell, load = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.motion_load
+    weighted = J @ M
+    hessian = weighted + weighted.T
+    project = np.eye(len(M)) - R @ np.linalg.solve(ell.T @ R, ell.T)
+    p0 = -R @ np.linalg.solve(ell.T @ R, load)
+    share = np.linalg.lstsq(ell, J @ R, rcond=None)[0]
+    return Objective(
+        hessian=project.T @ hessian @ project,
+        pressure=J @ problem.offset + project.T @ (hessian @ p0),
+        amplitudes=-share.T @ load,
+        constant=float(p0 @ weighted @ p0),
+    )
+
+
+def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
+    """Smallest eigenvalue of Zᵀ(JM + MᵀJᵀ)Z, Z spanning {p : ℓᵀp = 0}: the curvature on the equilibrium space.
+
+    Where ZᵀJR is not zero, pᵀJR a makes the objective a saddle in (p, a), and the eigenvalue is that of the Hessian in
+    both. Never so with the tributary weights.
+
+    Parameters
+    ----------
+    problem : ScaledContact
+    J : (n, n) weights of the objective, scaled
+
+    Returns
+    -------
+    float or None
+        Dimensionless; None if equilibrium leaves no pressure free (n = k).
+    """
+    R, ell = problem.rigid_motions, problem.equilibrium
+    n, k = R.shape
+    if n == k:
+        return None
+    Z = np.linalg.qr(ell, mode="complete")[0][:, k:]
+    weighted = J @ problem.compliance
+    hessian = Z.T @ (weighted + weighted.T) @ Z
+    coupling = Z.T @ J @ R
+    if np.abs(coupling).max(initial=0.0) > NEGLIGIBLE:
+        hessian = np.block([[hessian, coupling], [coupling.T, np.zeros((k, k))]])
+    return float(eigvalsh(hessian, subset_by_index=(0, 0))[0])
+
+
+def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+    """Minimise QP3, (40)-(42), on the scaled problem, then polish.
+
+    With the consistent weights the minimum need not be the contact state, as J has negative entries; so the result then
+    is left as it is.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    options : weights of the objective, whether to polish, limit of Clarabel's iterations
+
+    Returns
+    -------
+    ContactSolution
+        With `smallest_eigenvalue` of the scaled Hessian.
+
+    Raises
+    ------
+    NotConvexError
+        The Hessian has a negative eigenvalue on the equilibrium space.
+    ProblemError
+        The problem does not carry the weights asked for.
+    SolverError
+        Clarabel broke down.
+    """
+    options = options or FormulationOptions()
+    J = condensed.weight_matrix(options.weights)
+    J = J / np.abs(J).max()
+    problem = scaled(condensed)
+    eigenvalue = smallest_eigenvalue(problem, J)
+    _refuse_nonconvex(eigenvalue, options.weights)
+    found = _minimise(problem, objective(problem, J), options.max_iterations)
+    p, u_n, a = unscaled(condensed, found.pressure, found.amplitudes)
+    note = escape_note(condensed, problem) if found.status is Status.INFEASIBLE else None
+    solution = ContactSolution(
+        formulation="qp3",
+        solver="Clarabel",
+        status=found.status,
+        pressure=p,
+        displacement=u_n,
+        rigid_amplitudes=a,
+        iterations=found.iterations,
+        smallest_eigenvalue=eigenvalue,
+        notes=(note,) if note else (),
+    )
+    exact = options.weights is not Weights.CONSISTENT
+    return polish(condensed, solution) if options.polish and exact and found.has_point else solution
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Found:
+    """What came out of cvxpy: the status, the point if there is one (else zeros), the iterations."""
+
+    status: Status
+    pressure: Array
+    amplitudes: Array
+    iterations: int
+    has_point: bool
+
+
+def _minimise(problem: ScaledContact, objective: Objective, max_iterations: int | None) -> _Found:
+    """State the quadratic program in cvxpy, solve it, and take the arrays out."""
+    import cvxpy as cp
+
+    M, R, ell, load = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.motion_load
+    n, k = R.shape
+    p = cp.Variable(n, nonneg=True, name="pressure")
+    a = cp.Variable(k, name="rigid_amplitudes") if k else cp.Constant(np.zeros(0))
+    work = 0.5 * cp.quad_form(p, cp.psd_wrap(objective.hessian)) + objective.pressure @ p + objective.amplitudes @ a
+    gap = problem.offset + M @ p + R @ a
+    balance = [ell.T @ p == -load] if k else []
+    program = cp.Problem(cp.Minimize(work + objective.constant), [gap >= 0, *balance])
+
+    failure = None
+    for tolerance in TOLERANCES:
+        accuracy = dict.fromkeys(("tol_gap_abs", "tol_gap_rel", "tol_feas"), tolerance)
+        try:
+            with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status tells the same
+                program.solve(solver=cp.CLARABEL, max_iter=max_iterations or ITERATIONS, **accuracy)
+        except cp.SolverError as error:
+            failure = error
+        else:
+            break
+    else:
+        raise SolverError(
+            "Clarabel found no solution of QP3; check the mesh for very short elements, or solve the "
+            "complementarity problem directly"
+        ) from failure
+    has_point = p.value is not None
+    return _Found(
+        status=STATUSES[program.status],
+        pressure=np.asarray(p.value, float) if has_point else np.zeros(n),
+        amplitudes=np.asarray(a.value, float) if has_point else np.zeros(k),
+        iterations=program.solver_stats.num_iters or 0,
+        has_point=has_point,
+    )
+
+
+def _refuse_nonconvex(eigenvalue: float | None, weights: Weights) -> None:
+    """Raise where the eigenvalue is negative beyond round-off."""
+    if eigenvalue is None or eigenvalue >= -NEGLIGIBLE:
+        return
+    remedy = "refine the mesh" if weights is Weights.TRIBUTARY else "use the tributary weights"
+    raise NotConvexError(
+        f"QP3 is not convex with {weights.value} weights: the smallest eigenvalue of its scaled Hessian on the "
+        f"equilibrium space is {eigenvalue:.3e}; {remedy}, or solve the complementarity problem directly",
+        smallest_eigenvalue=eigenvalue,
+    )

@@ -1,0 +1,168 @@
+"""The certificate: what it proves, what it refuses, and its error bound against true errors."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bemcontact.assessment.certificate import Certificate, CertificateKind, certify
+from bemcontact.assessment.residual import residuals
+from bemcontact.contact import CondensedContact, ContactSolution
+from bemcontact.formulations import complementarity
+
+
+def random_contact(seed: int, n: int = 8, k: int = 1) -> CondensedContact:
+    """Unsymmetric compliance with sym(JM) positive definite, and a load that some p >= 0 carries."""
+    rng = np.random.default_rng(seed)
+    A, S = rng.standard_normal((2, n, n))
+    J = rng.uniform(0.3, 1.5, n)
+    R = rng.standard_normal((n, k))
+    carried = np.maximum(rng.standard_normal(n), 0.0)
+    return CondensedContact.from_compliance(
+        (A @ A.T / n + 0.05 * np.eye(n) + 0.1 * (S - S.T)) / J[:, None],
+        rng.standard_normal(n),
+        J,
+        rigid_motions=R,
+        motion_load=-(J[:, None] * R).T @ carried,
+    )
+
+
+def judged(problem: CondensedContact, solution: ContactSolution) -> Certificate:
+    return certify(problem, solution, residuals(problem, solution))
+
+
+def moved(
+    problem: CondensedContact, solution: ContactSolution, pressure: np.ndarray, lift: np.ndarray
+) -> ContactSolution:
+    """Another point, with the displacement that belongs to it."""
+    p, a = solution.pressure + pressure, solution.rigid_amplitudes + lift
+    u_n = problem.free_displacement + problem.compliance @ p + problem.rigid_motions @ a
+    return replace(solution, pressure=p, rigid_amplitudes=a, displacement=u_n)
+
+
+@pytest.mark.parametrize("k", [0, 1, 2, 3])
+def test_solution_is_certified(k):
+    problem = random_contact(0, k=k)
+    certificate = judged(problem, complementarity.solve(problem))
+    assert certificate.kind is CertificateKind.UNIQUE
+    assert certificate.certified
+    assert certificate.relative_error_bound is not None
+    assert certificate.relative_error_bound <= 1e-11
+    assert "no other state exists" in certificate.words
+
+
+@pytest.mark.parametrize("k", [0, 1, 2, 3])
+@pytest.mark.parametrize("seed", range(5))
+def test_error_is_never_above_the_bound(seed, k):
+    """Fifty points around the solution, off by 1e-10 to 10 of its size, in and out of equilibrium."""
+    rng = np.random.default_rng(seed)
+    problem = random_contact(seed, k=k)
+    exact = complementarity.solve(problem)
+    peak = exact.pressure.max()
+    bounds = 0
+    for _ in range(50):
+        size = 10.0 ** rng.uniform(-10, 1)
+        change = size * peak * rng.standard_normal(problem.size) * rng.integers(0, 2, problem.size)
+        other = moved(problem, exact, change, size * rng.standard_normal(k))
+        bound = judged(problem, other).error_bound
+        if bound is not None:
+            bounds += 1
+            assert np.abs(other.pressure - exact.pressure).max() <= bound + 1e-14 * peak
+    assert bounds >= 40
+
+
+@pytest.mark.parametrize("k", [0, 2])
+def test_bound_falls_with_the_error(k):
+    """It is linear in the error near the solution: a thousandth of the change has about a thousandth of the bound."""
+    problem = random_contact(3, k=k)
+    exact = complementarity.solve(problem)
+    change = np.where(exact.pressure > 0, 1e-4, 0.0)
+    large, small = (judged(problem, moved(problem, exact, s * change, np.zeros(k))).error_bound for s in (1.0, 1e-3))
+    assert large is not None
+    assert small is not None
+    assert 500 < large / small < 2000
+
+
+def test_body_lifted_off_its_support_is_bounded_too():
+    """M = I, R = 1: the right pressure is 1 on the first of 400 points; 1/400 on each, far above the surface, is wrong.
+
+    min(p, δ) is small there, 1/20 by norm, so that (1 + ‖DM‖)/λ = 3 times it is no bound of the error, which is near 1.
+    """
+    n = 400
+    offset = np.append(0.0, np.full(n - 1, 10.0))
+    problem = CondensedContact.from_compliance(np.eye(n), offset, rigid_motions=np.ones(n), motion_load=-1.0)
+    exact = complementarity.solve(problem)
+    np.testing.assert_allclose(exact.pressure, np.eye(n)[0], atol=1e-12)
+    lifted = moved(problem, exact, 1 / n - exact.pressure, np.array([100.0]))
+    certificate = judged(problem, lifted)
+    natural = np.minimum(lifted.pressure, problem.initial_gap + lifted.displacement)
+    assert 3 * np.linalg.norm(natural) < 0.2
+    assert certificate.kind is CertificateKind.NOT_A_SOLUTION
+    assert certificate.error_bound is not None
+    assert certificate.error_bound >= 1 - 1 / n
+
+
+def test_wrong_pressure_is_no_solution():
+    problem = random_contact(1)
+    exact = complementarity.solve(problem)
+    certificate = judged(problem, replace(exact, pressure=exact.pressure * 1.01))
+    assert certificate.kind is CertificateKind.NOT_A_SOLUTION
+    assert not certificate.certified
+    assert "where 1.0e-10 is allowed" in certificate.words
+
+
+def test_solution_that_may_not_be_the_only_one():
+    """M = [[1, 2], [2, 1]], q = -1: p = (1, 0), (0, 1) and (1/3, 1/3) all solve; the eigenvalue is -1 over ‖M‖ = 3."""
+    problem = CondensedContact.from_compliance([[1.0, 2.0], [2.0, 1.0]], [-1.0, -1.0])
+    solution = complementarity.solve(problem)
+    certificate = judged(problem, solution)
+    assert certificate.kind is CertificateKind.LOCAL
+    assert not certificate.certified
+    assert certificate.error_bound is None
+    assert certificate.smallest_eigenvalue == pytest.approx(-1 / 3, rel=1e-12)
+    assert "another contact state may exist" in certificate.words
+
+
+def test_eigenvalue_is_taken_on_the_equilibrium_space():
+    """The form [[1, 2], [2, 1]] is -1 along (1, -1), all that R = (1, 1) leaves; R = (1, -1) leaves (1, 1), with 3."""
+    for motion, sign in ((1.0, -1), (-1.0, 1)):
+        problem = CondensedContact.from_compliance(
+            [[1.0, 2.0], [2.0, 1.0]], [1.0, 1.0], rigid_motions=[1.0, motion], motion_load=-1.0
+        )
+        value = judged(problem, complementarity.solve(problem)).smallest_eigenvalue
+        assert value is not None
+        assert np.sign(value) == sign
+
+
+def test_equilibrium_alone_fixes_the_pressure():
+    """With n = k there is no eigenvalue, and the solution is certified all the same."""
+    problem = CondensedContact.from_compliance([[1.0]], [1.0], rigid_motions=[1.0], motion_load=-2.0)
+    certificate = judged(problem, complementarity.solve(problem))
+    assert certificate.certified
+    assert certificate.smallest_eigenvalue is None
+    assert certificate.error_bound == pytest.approx(0.0, abs=1e-14)
+
+
+def test_no_contact_is_certified():
+    problem = CondensedContact.from_compliance(np.eye(3), np.ones(3))
+    certificate = judged(problem, complementarity.solve(problem))
+    assert certificate.certified
+    assert certificate.relative_error_bound is None
+
+
+@pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6)])
+def test_units_do_not_matter(length, stress):
+    problem = random_contact(2)
+    other = CondensedContact.from_compliance(
+        problem.compliance * length / stress,
+        problem.offset * length,
+        problem.weights * length,
+        rigid_motions=problem.rigid_motions,
+        motion_load=problem.motion_load * stress * length,
+    )
+    change = np.full(problem.size, 1e-3)
+    lift = np.zeros(1)
+    one = judged(problem, moved(problem, complementarity.solve(problem), change, lift))
+    two = judged(other, moved(other, complementarity.solve(other), change * stress, lift))
+    assert two.smallest_eigenvalue == pytest.approx(one.smallest_eigenvalue, rel=1e-9)
+    assert two.relative_error_bound == pytest.approx(one.relative_error_bound, rel=1e-8)

@@ -1,0 +1,86 @@
+"""Residuals: what each one sees, and its scale."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bemcontact.assessment.residual import residuals
+from bemcontact.contact import CondensedContact, ContactSolution, Status
+
+
+def contact(length: float = 1.0, stress: float = 1.0) -> CondensedContact:
+    """Four points, one free motion, in units of length and stress that are so many times smaller."""
+    rng = np.random.default_rng(0)
+    A = rng.standard_normal((4, 4))
+    return CondensedContact.from_compliance(
+        (A @ A.T + np.eye(4)) * length / stress,
+        rng.standard_normal(4) * length,
+        np.array([1.0, 2.0, 2.0, 1.0]) * length,
+        rigid_motions=np.ones(4),
+        motion_load=-6.0 * stress * length,
+    )
+
+
+def solution(problem: CondensedContact, pressure: np.ndarray, lift: float) -> ContactSolution:
+    """The displacement that belongs to a pressure and an amplitude, by (12)."""
+    u_n = problem.free_displacement + problem.compliance @ pressure + lift
+    return ContactSolution(
+        formulation="test",
+        solver="none",
+        status=Status.SOLVED,
+        pressure=pressure,
+        displacement=u_n,
+        rigid_amplitudes=np.array([lift]),
+        iterations=0,
+    )
+
+
+def test_each_condition_has_its_residual():
+    """The pressure (2, -1, 3, 0) carries 2 - 2 + 6 = 6; the lift is chosen so that the smallest gap is -0.5."""
+    problem = contact()
+    p = np.array([2.0, -1.0, 3.0, 0.0])
+    lift = -0.5 - problem.gap(p, np.zeros(1)).min()
+    gap = problem.gap(p, np.array([lift]))
+    found = residuals(problem, solution(problem, p, lift))
+    U, T = problem.scales
+    assert found.penetration == pytest.approx(0.5 / U, rel=1e-12)
+    assert found.tension == pytest.approx(1.0 / T, rel=1e-12)
+    assert found.complementarity == pytest.approx(np.abs(np.minimum(p / T, gap / U)).max(), rel=1e-12)
+    assert found.work == pytest.approx((problem.weights * p * gap).sum() / (2 * U * T), rel=1e-12)
+    assert found.equilibrium <= 1e-13
+    assert found.balance <= 1e-15
+    assert found.force_balance is None
+
+
+def test_load_that_is_not_carried_shows_twice():
+    """Without pressure the mean pressure is off by load/Σw = 1; the rows of (12) contain equilibrium as well."""
+    problem = contact()
+    found = residuals(problem, solution(problem, np.zeros(4), 0.0))
+    assert found.balance == pytest.approx(1.0 / problem.scales.pressure, rel=1e-12)
+    assert found.equilibrium > 0.9 / problem.scales.pressure
+
+
+def test_displacement_of_the_solver_is_what_is_judged():
+    """A wrong u_n with a right p: K du is the residual, whatever the amplitudes say."""
+    problem = contact()
+    right = solution(problem, np.array([2.0, 1.0, 1.0, 0.0]), 1.0)
+    step = np.array([0.1, 0.0, 0.0, 0.0])
+    found = residuals(problem, replace(right, displacement=right.displacement + step))
+    expected = np.abs(problem.stiffness_rows.K @ step).max() / problem.scales.pressure
+    assert found.equilibrium == pytest.approx(expected, rel=1e-10)
+
+
+@pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6), (25.4, 6.894757)])
+def test_units_do_not_matter(length, stress):
+    p = np.array([2.0, -1.0, 3.0, 0.1])
+    one = residuals(contact(), solution(contact(), p, 0.3))
+    other = contact(length, stress)
+    two = residuals(other, solution(other, p * stress, 0.3 * length))
+    for name in ("penetration", "tension", "complementarity", "work", "equilibrium", "balance"):
+        assert getattr(two, name) == pytest.approx(getattr(one, name), rel=1e-11, abs=1e-13)
+
+
+def test_force_balance_is_passed_through():
+    problem = contact()
+    assert residuals(problem, solution(problem, np.zeros(4), 0.0), force_balance=1e-7).force_balance == 1e-7

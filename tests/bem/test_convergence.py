@@ -1,0 +1,120 @@
+"""Observed orders of convergence against closed forms."""
+
+import numpy as np
+import pytest
+from bodies import arc, even, mesh_of, rectangle, solved, system_of, values_of, without_rigid_motion
+
+from bemcontact.bem.condense import solve
+from bemcontact.bem.rigid_motions import RigidMotions
+from bemcontact.problem.material import Material
+
+
+def order(errors: list[float]) -> float:
+    """Mean order over all halvings of the element length."""
+    return float(np.log2(errors[0] / errors[-1]) / (len(errors) - 1))
+
+
+def lame_ring(points: np.ndarray, material: Material, a: float, b: float, p: float) -> np.ndarray:
+    """Ring a <= r <= b in plane strain under inner pressure p (Timoshenko and Goodier, Theory of Elasticity, § 28)."""
+    nu, G = material.poisson_ratio, material.shear_modulus
+    r2 = np.sum(points**2, axis=1, keepdims=True)
+    return p * a**2 / (b**2 - a**2) / (2 * G) * ((1 - 2 * nu) + b**2 / r2) * points
+
+
+def test_lame_ring():
+    """Nodal displacement on smooth contours is superconvergent, order four; 3.8 is what a third halving must show."""
+    material = Material(young_modulus=1000, poisson_ratio=0.3)
+    errors = []
+    for n in (8, 16, 32, 64):
+        mesh = mesh_of([("out", arc((0, 0), 2, 0, 360), even(n))], [("in", arc((0, 0), 1, 360, 0), even(n))])
+        inner = (np.hypot(*np.moveaxis(mesh.nodes[mesh.elements], 2, 0)) < 1.5)[..., None]
+        values = values_of(mesh, {}, lambda x: 0 * x, lambda x, n, inner=inner: np.where(inner, -n, 0))
+        u, _, _ = solved(mesh, material, values)
+        exact = lame_ring(mesh.nodes, material, 1, 2, 1)
+        errors.append(abs(without_rigid_motion(mesh, u - exact)).max() / abs(exact).max())
+    assert order(errors) >= 3.8, errors
+
+
+def of_potentials(z, potentials, material: Material) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement (…, 2) and stress (…, 2, 2) from φ, φ', φ'', ψ, ψ' at z = x + iy (Muskhelishvili 1953, § 32).
+
+    2G (u + iv) = κφ - z conj(φ') - conj(ψ), σxx + σyy = 4 Re φ', σyy - σxx + 2iσxy = 2 (conj(z) φ'' + ψ').
+    """
+    phi, d_phi, dd_phi, psi, d_psi = potentials(z)
+    kappa = 3 - 4 * material.effective_poisson_ratio
+    w = (kappa * phi - z * d_phi.conj() - psi.conj()) / (2 * material.shear_modulus)
+    total, difference = 4 * d_phi.real, 2 * (z.conj() * dd_phi + d_psi)
+    xx, yy, xy = (total - difference.real) / 2, (total + difference.real) / 2, difference.imag / 2
+    stress = np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -2)
+    return np.stack([w.real, w.imag], -1), stress
+
+
+def complex_points(points: np.ndarray) -> np.ndarray:
+    return points[..., 0] + 1j * points[..., 1]
+
+
+def kirsch(z):
+    """What a hole of radius 1 adds to unit tension along x: φ = 1/(2z), ψ = -(1/z - 1/z³)/2."""
+    return 1 / (2 * z), -1 / (2 * z**2), 1 / z**3, -(1 / z - 1 / z**3) / 2, (1 / z**2 - 3 / z**4) / 2
+
+
+def cubic(z):
+    return z**3, 3 * z**2, 6 * z, z**2, 2 * z
+
+
+@pytest.mark.parametrize("state", ["plane_strain", "plane_stress"])
+def test_kirsch_hole(state):
+    """The unbounded plate outside one hole, loaded by what cancels the tension; no rigid motion at infinity."""
+    material = Material(young_modulus=1000, poisson_ratio=0.3, state=state)
+    errors = []
+    for n in (8, 16, 32, 64):
+        mesh = mesh_of([("hole", arc((0, 0), 1, 360, 0), even(n))])
+        values = values_of(mesh, {}, lambda x: 0 * x, lambda x, n: -n * [1, 0])
+        none = RigidMotions(coefficients=np.zeros((0, 3)), center=mesh.center, radius=1)
+        system = system_of(mesh, material, values, none)
+        u, _ = system.fields(solve(system)[:, 0])
+        exact, _ = of_potentials(complex_points(mesh.nodes), kirsch, material)
+        errors.append(abs(u - exact).max() / abs(exact).max())
+    assert order(errors) >= 3.8, errors
+
+
+def test_cubic_field_in_a_disc():
+    """A field without such symmetry: the Cauchy kernel meets the cubic remainder of the displacement, order three."""
+    material = Material(young_modulus=1000, poisson_ratio=0.3)
+    errors = []
+    for n in (8, 16, 32, 64):
+        mesh = mesh_of([("out", arc((0, 0), 1, 0, 360), even(n))])
+        exact, _ = of_potentials(complex_points(mesh.nodes), cubic, material)
+
+        def traction(points, normals):
+            return np.einsum("mkij,mkj->mki", of_potentials(complex_points(points), cubic, material)[1], normals)
+
+        u, _, _ = solved(mesh, material, values_of(mesh, {}, lambda x: 0 * x, traction))
+        errors.append(abs(without_rigid_motion(mesh, u - exact)).max() / abs(exact).max())
+    assert order(errors) >= 3.0, errors
+
+
+def test_timoshenko_cantilever():
+    """Plane stress, L/D = 5, exact displacement at the clamp (Augarde and Deeks 2008): the declared order is three."""
+    material = Material(young_modulus=1000, poisson_ratio=0.3, state="plane_stress")
+    E, nu, L, D, P = 1000, 0.3, 5.0, 1.0, 1.0
+    inertia = D**3 / 12
+
+    def displacement(points):
+        x, y = points[:, 0], points[:, 1] - D / 2
+        u = P * y / (6 * E * inertia) * ((6 * L - 3 * x) * x + (2 + nu) * (y**2 - D**2 / 4))
+        v = -P / (6 * E * inertia) * (3 * nu * y**2 * (L - x) + (4 + 5 * nu) * D**2 * x / 4 + (3 * L - x) * x**2)
+        return np.column_stack([u, v])
+
+    def traction(points, normals):
+        x, y = points[..., 0], points[..., 1] - D / 2
+        xx, xy = P * (L - x) * y / inertia, -P / (2 * inertia) * (D**2 / 4 - y**2)
+        return np.stack([xx * normals[..., 0] + xy * normals[..., 1], xy * normals[..., 0]], axis=-1)
+
+    errors = []
+    for n in (2, 4, 8, 16):
+        mesh = mesh_of(rectangle(L, D, even(5 * n // 2), even(n // 2)))
+        u, _, _ = solved(mesh, material, values_of(mesh, {"left": "xy"}, displacement, traction))
+        exact = displacement(mesh.nodes)
+        errors.append(abs(u - exact).max() / abs(exact).max())
+    assert order(errors) >= 3.0, errors

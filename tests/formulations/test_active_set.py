@@ -1,0 +1,67 @@
+"""The primal-dual iteration: exact where it settles, harmless where it cannot."""
+
+import numpy as np
+import pytest
+
+from bemcontact.contact import CondensedContact
+from bemcontact.formulations.active_set import contact_equations, first_active_set, primal_dual
+from bemcontact.formulations.scaling import ScaledContact, scaled
+
+
+def plain(M: np.ndarray, q: np.ndarray) -> ScaledContact:
+    return scaled(CondensedContact.from_compliance(M, q))
+
+
+def test_exact_in_one_step_from_the_right_set():
+    problem = plain(np.array([[2.0, 1.0], [0.5, 2.0]]), np.array([-1.0, 3.0]))
+    end = primal_dual(problem, np.array([True, False]))
+    assert end.steps == 1
+    assert end.residual <= 1e-16
+
+
+def test_m_matrix_is_solved_within_n_plus_one_steps():
+    """For an M-matrix the iteration from {q < 0} only adds points (Hintermüller, Ito and Kunisch, theorem 3.2)."""
+    rng = np.random.default_rng(0)
+    n = 30
+    M = -rng.uniform(0, 1, (n, n))
+    np.fill_diagonal(M, 0)
+    M += np.diag(1.1 - M.sum(axis=1))
+    problem = plain(M, rng.standard_normal(n))
+    end = primal_dual(problem, first_active_set(problem))
+    assert end.residual <= 1e-15
+    assert end.steps <= n + 1
+
+
+def test_cycle_ends_with_the_best_point_seen():
+    """A P-matrix on which the sets come back: the steps stop, and the point does not pass for a solution."""
+    M = np.array([[2, -2, -1, 2, 0], [0, 2, -2, 2, -1], [2, 1, 1, -1, 0], [-2, -2, 1, 2, -3], [3, -3, -2, 3, 2]], float)
+    problem = plain(M, np.array([0.0, -2.0, 1.0, 0.0, -2.0]))
+    end = primal_dual(problem, first_active_set(problem))
+    assert end.steps < 32
+    assert end.residual > 1e-3
+    assert (end.pressure >= 0).all()
+
+
+def test_too_few_contacts_for_the_motions():
+    """One point cannot hold two motions: the least-squares answer keeps its gap closed and is finite."""
+    R = np.array([[1.0, 0.0], [1.0, 1.0], [1.0, 2.0]])
+    problem = scaled(
+        CondensedContact.from_compliance(np.eye(3), np.ones(3), rigid_motions=R, motion_load=np.array([-1.0, -1.0]))
+    )
+    p, a = contact_equations(problem, np.array([True, False, False]))
+    assert np.isfinite(p).all()
+    assert np.isfinite(a).all()
+
+
+def test_coincident_points_share_the_load():
+    """Two copies of one point: the equations are singular, and the shortest solution gives each half."""
+    M = np.array([[1.0, 1.0], [1.0, 1.0]])
+    p, _ = contact_equations(plain(M, np.array([-1.0, -1.0])), np.array([True, True]))
+    assert p[0] == pytest.approx(p[1], rel=1e-14)
+
+
+def test_first_set_of_a_free_body_is_laid_by_least_squares():
+    """A parabola on a plane: the weighted mean of x² separates the points that are taken to touch."""
+    x = np.linspace(-1, 1, 11)
+    problem = scaled(CondensedContact.from_compliance(np.eye(11), x**2, rigid_motions=np.ones(11), motion_load=-1.0))
+    np.testing.assert_array_equal(first_active_set(problem), x**2 <= np.mean(x**2))

@@ -1,0 +1,334 @@
+"""The direct solver: against all contact sets, on the classical worst cases, on bodies that contact alone holds."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bemcontact.contact import CondensedContact, ContactSolution, Status
+from bemcontact.errors import ProblemError
+from bemcontact.formulations.complementarity import escape_note, polish, solve, solve_lcp, standard_form
+from bemcontact.formulations.scaling import scaled
+
+
+def murty(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """M, q and the solution (0, ..., 0, 1): principal pivoting by least index takes 2ⁿ steps (Murty 1978)."""
+    return np.eye(n) + 2 * np.triu(np.ones((n, n)), 1), -np.ones(n), np.eye(n)[-1]
+
+
+def fathi(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """M = L Lᵀ, q and the solution (1, 0, ..., 0): the same for a symmetric positive definite M (Fathi 1979)."""
+    L = np.eye(n) + 2 * np.tril(np.ones((n, n)), -1)
+    return L @ L.T, -np.ones(n), np.eye(n)[0]
+
+
+def random_contact(seed: int, n: int, k: int) -> CondensedContact:
+    """Unsymmetric compliance with sym(JM) positive definite, and a load that some p >= 0 carries."""
+    rng = np.random.default_rng(seed)
+    A, S = rng.standard_normal((2, n, n))
+    J = rng.uniform(0.3, 1.5, n)
+    R = rng.standard_normal((n, k))
+    carried = np.maximum(rng.standard_normal(n), 0.0)
+    return CondensedContact.from_compliance(
+        (A @ A.T / n + 0.05 * np.eye(n) + 0.1 * (S - S.T)) / J[:, None],
+        rng.standard_normal(n),
+        J,
+        rigid_motions=R,
+        motion_load=-(J[:, None] * R).T @ carried,
+    )
+
+
+def exhaustive(problem: CondensedContact) -> np.ndarray:
+    """The pressure that solves the problem, found among all 2ⁿ contact sets."""
+    M, R, ell, n, k = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.size, problem.free_motions
+    right = -np.concatenate([problem.offset, problem.motion_load])
+    bordered = np.block([[M, R], [ell.T, np.zeros((k, k))]])
+    for size in range(k, n + 1):
+        for contact in itertools.combinations(range(n), size):
+            rows = [*contact, *range(n, n + k)]
+            if not rows:
+                if problem.offset.min() >= 0:
+                    return np.zeros(n)
+                continue
+            p_and_a = np.zeros(n + k)
+            p_and_a[rows] = np.linalg.solve(bordered[np.ix_(rows, rows)], right[rows])
+            gap = problem.gap(p_and_a[:n], p_and_a[n:])
+            if min(p_and_a[:n].min(), gap.min()) >= -1e-10:
+                return p_and_a[:n]
+    raise AssertionError("a strictly monotone problem whose load can be carried has a solution")
+
+
+def block_in_a_corner(load: tuple[float, float, float]) -> CondensedContact:
+    """Nine points on a floor, five on a wall; the load works in (x, y, rotation about the corner)."""
+    rng = np.random.default_rng(0)
+    floor = np.column_stack([np.linspace(0, 2, 9), np.zeros(9)])
+    wall = np.column_stack([np.zeros(5), np.linspace(0, 1, 5)])
+    (x, y), nx, ny = np.vstack([floor, wall]).T, np.repeat([0.0, 1.0], [9, 5]), np.repeat([1.0, 0.0], [9, 5])
+    A = rng.standard_normal((14, 14))
+    return CondensedContact.from_compliance(
+        A @ A.T / 14 + 0.1 * np.eye(14),
+        0.01 * rng.standard_normal(14),
+        rng.uniform(0.5, 1.0, 14),
+        rigid_motions=np.column_stack([nx, ny, x * ny - y * nx]),
+        motion_load=load,
+    )
+
+
+def assert_solution(problem: CondensedContact, solution: ContactSolution, tolerance: float = 1e-13) -> None:
+    """Conditions (16)-(18) and equilibrium, recomputed and divided by U and T."""
+    U, T = problem.scales
+    p, gap = solution.pressure / T, problem.gap(solution.pressure, solution.rigid_amplitudes) / U
+    assert solution.status is Status.SOLVED
+    assert (p >= 0).all()
+    np.testing.assert_allclose(np.minimum(p, gap), 0, atol=tolerance)
+    balance = (problem.equilibrium.T @ solution.pressure + problem.motion_load) / T
+    np.testing.assert_allclose(balance, 0, atol=tolerance * np.abs(problem.equilibrium).sum())
+    np.testing.assert_allclose(problem.initial_gap + solution.displacement, gap * U, atol=1e-14 * U)
+
+
+@pytest.mark.parametrize("k", [0, 1, 2, 3])
+@pytest.mark.parametrize("n", [4, 5, 6])
+@pytest.mark.parametrize("seed", range(4))
+def test_against_all_contact_sets(seed, n, k):
+    problem = random_contact(seed, n, k)
+    solution = solve(problem)
+    assert_solution(problem, solution)
+    np.testing.assert_allclose(solution.pressure, exhaustive(problem), atol=1e-10 * max(1.0, solution.pressure.max()))
+
+
+@pytest.mark.parametrize("k", [0, 2])
+def test_eight_points_against_all_contact_sets(k):
+    problem = random_contact(7, 8, k)
+    np.testing.assert_allclose(solve(problem).pressure, exhaustive(problem), atol=1e-10)
+
+
+@pytest.mark.parametrize("family", [murty, fathi])
+@pytest.mark.parametrize("n", [10, 50, 200])
+def test_worst_cases_of_pivoting(family, n):
+    """The solution is known in closed form."""
+    M, q, z = family(n)
+    result = solve_lcp(M, q)
+    assert result.status is Status.SOLVED
+    np.testing.assert_allclose(result.z, z, atol=1e-12)
+    np.testing.assert_allclose(result.w, q + M @ z, atol=1e-9)
+
+
+def test_lemke_takes_over_where_the_active_set_cycles():
+    """A P-matrix on which the sets come back; the conditions are recomputed."""
+    M = np.array([[1, 1, -3, 2, 0], [-1, 2, 1, -2, -2], [3, 2, 2, 0, 2], [-1, 2, 0, 1, 0], [-1, 0, -2, 0, 1]], float)
+    result = solve_lcp(M, np.array([1.0, -1.0, 1.0, -2.0, -3.0]))
+    assert result.method == "Lemke's method"
+    assert result.status is Status.SOLVED
+    np.testing.assert_allclose(np.minimum(result.z, result.w), 0, atol=1e-14)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_any_matrix_gives_a_solution_or_none_but_never_a_wrong_one(seed):
+    """Small integers, any signs: what is called solved solves, what is called infeasible has no complementary point."""
+    rng = np.random.default_rng(seed)
+    n = 4
+    M, q = rng.integers(-2, 3, (n, n)).astype(float), rng.integers(-2, 3, n).astype(float)
+    result = solve_lcp(M, q)
+    if result.status is Status.SOLVED:
+        np.testing.assert_allclose(np.minimum(result.z, result.w), 0, atol=1e-10)
+    if result.status is Status.INFEASIBLE:
+        corners = np.array(list(itertools.product(np.linspace(0, 3, 7), repeat=n)))
+        assert ((q + corners @ M.T).min(axis=1) < 0).all()
+
+
+@pytest.mark.parametrize(("M", "q"), [(np.ones((2, 3)), np.ones(2)), (np.diag([1.0, np.inf]), np.ones(2))])
+def test_numbers_that_state_no_problem_are_refused(M, q):
+    with pytest.raises(ProblemError, match="of finite numbers are needed; found shapes"):
+        solve_lcp(M, q)
+
+
+def test_one_point():
+    """Interference 3 with compliance 2: p = 3/2; clearance: p = 0; on a free body the load itself."""
+    assert solve(CondensedContact.from_compliance([[2.0]], [-3.0])).pressure == pytest.approx([1.5])
+    assert solve(CondensedContact.from_compliance([[2.0]], [3.0])).pressure == pytest.approx([0.0])
+    free = CondensedContact.from_compliance([[2.0]], [3.0], [0.5], rigid_motions=[[1.0]], motion_load=[-4.0])
+    solution = solve(free)
+    assert solution.pressure == pytest.approx([8.0])
+    assert solution.rigid_amplitudes == pytest.approx([-3.0])
+
+
+def test_all_open_and_all_closed():
+    """With p = 0 where no point penetrates, p = -M⁻¹q where that is positive: here M = I + ones, q = -1."""
+    M = np.eye(5) + 1.0
+    assert (solve(CondensedContact.from_compliance(M, np.ones(5))).pressure == 0).all()
+    np.testing.assert_allclose(solve(CondensedContact.from_compliance(M, -np.ones(5))).pressure, 1 / 6, rtol=1e-14)
+
+
+def test_points_that_just_touch():
+    """Points with p = 0 and δ = 0 at once: q = -M p for a p with zeros makes every point degenerate."""
+    rng = np.random.default_rng(1)
+    problem = random_contact(1, 10, 0)
+    p = np.maximum(rng.standard_normal(10), 0)
+    degenerate = CondensedContact.from_compliance(problem.compliance, -problem.compliance @ p, problem.weights)
+    np.testing.assert_allclose(solve(degenerate).pressure, p, atol=1e-13)
+
+
+@pytest.mark.parametrize("k", [0, 1])
+def test_coincident_points_share_one_pressure(k):
+    """A point listed twice with half its weight: the sum of the two forces is that of the single point."""
+    single = random_contact(3, 7, k)
+    twice = np.append(np.arange(7), 2)
+    share = np.ones(8)
+    share[[2, 7]] = 0.5
+    double = CondensedContact.from_compliance(
+        (single.compliance[np.ix_(twice, twice)] * share),
+        single.offset[twice],
+        single.weights[twice] * share,
+        rigid_motions=single.rigid_motions[twice],
+        motion_load=single.motion_load,
+    )
+    one, two = solve(single), solve(double)
+    forces = two.pressure * share
+    forces[2] += forces[7]
+    assert two.status is Status.SOLVED
+    np.testing.assert_allclose(forces[:7], one.pressure, atol=1e-11)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(0, 3))
+def test_renumbered_problem_has_the_renumbered_solution(seed, k):
+    problem = random_contact(seed, 9, k)
+    order = np.random.default_rng(seed).permutation(9)
+    other = CondensedContact.from_compliance(
+        problem.compliance[np.ix_(order, order)],
+        problem.offset[order],
+        problem.weights[order],
+        rigid_motions=problem.rigid_motions[order],
+        motion_load=problem.motion_load,
+    )
+    peak = max(1.0, solve(problem).pressure.max())
+    np.testing.assert_allclose(solve(other).pressure, solve(problem).pressure[order], atol=1e-9 * peak)
+
+
+@pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6), (25.4, 6.894757)])
+@pytest.mark.parametrize("k", [0, 1, 3])
+def test_units_do_not_matter(length, stress, k):
+    problem = random_contact(11, 20, k)
+    other = CondensedContact.from_compliance(
+        problem.compliance * length / stress,
+        problem.offset * length,
+        problem.weights * length,
+        rigid_motions=problem.rigid_motions,
+        motion_load=problem.motion_load * stress * length,
+    )
+    one, two = solve(problem), solve(other)
+    np.testing.assert_allclose(two.pressure / stress, one.pressure, atol=1e-12 * one.pressure.max())
+
+
+@pytest.mark.parametrize("modulus", [1e3, 2e6, 2e11])
+@pytest.mark.parametrize("free", [False, True])
+def test_half_plane_at_any_modulus(modulus, free):
+    """A parabola on strips of the logarithmic kernel: symmetric, in one piece, exact conditions at every modulus."""
+    n = 101
+    edges = np.linspace(-4, 4, n + 1)
+    middle, width = (edges[1:] + edges[:-1]) / 2, np.diff(edges)
+    primitive = [(s := middle[:, None] - end) * np.log(np.abs(s)) - s for end in (edges[1:], edges[:-1])]
+    compliance = 2 / (np.pi * modulus) * (primitive[0] - primitive[1] + np.log(40) * width)
+    problem = CondensedContact.from_compliance(
+        compliance,
+        middle**2 / 16 - (0 if free else 0.05),
+        width,
+        rigid_motions=np.ones(n) if free else None,
+        motion_load=-0.05 * modulus if free else None,
+    )
+    solution = solve(problem)
+    assert_solution(problem, solution, 1e-14)
+    p = solution.pressure
+    np.testing.assert_allclose(p, p[::-1], atol=1e-12 * p.max())
+    assert np.abs(np.diff((p > 0).astype(int))).sum() == 2
+    assert solution.iterations <= 12
+
+
+@pytest.mark.parametrize("side_load", [0.0, 1e-17, -1e-17, -0.5])
+def test_block_in_a_corner(side_load):
+    """Three free motions; without a side load the wall may touch but not press, and forces and moment balance."""
+    problem = block_in_a_corner((side_load, -1.0, -1.0))
+    solution = solve(problem)
+    assert_solution(problem, solution)
+    pressing = (problem.weights * solution.pressure)[9:].sum()
+    assert pressing == pytest.approx(-side_load, abs=1e-13)
+
+
+@pytest.mark.parametrize("load", [(0.0, -1.0, -2.0), (0.0, -1.0, 0.0), (0.0, 0.0, 0.0)])
+def test_load_on_the_edge_of_what_can_be_carried(load):
+    """Over the outermost point (x = 2) or the corner, or no load at all: solved, with the conditions exact."""
+    problem = block_in_a_corner(load)
+    assert_solution(problem, solve(problem))
+
+
+@pytest.mark.parametrize(
+    ("load", "motion"),
+    [((0.0, 1.0, 0.0), "+1 x motion 2"), ((1e-3, -1.0, -1.0), "+1 x motion 1"), ((0.0, -1.0, -2.5), "motion 3")],
+)
+def test_load_that_carries_the_body_away_is_named(load, motion):
+    """Lifted; pulled off the wall; tipped about the outermost point: no p >= 0 is in equilibrium."""
+    problem = block_in_a_corner(load)
+    solution = solve(problem)
+    assert solution.status is Status.INFEASIBLE
+    assert (solution.pressure == 0).all()
+    assert "carries the body off its support" in solution.notes[0]
+    assert motion in solution.notes[0]
+
+
+def test_note_of_a_supported_body_is_none():
+    problem = block_in_a_corner((0.0, -1.0, -1.0))
+    assert escape_note(problem, scaled(problem)) is None
+
+
+@pytest.mark.parametrize("k", [0, 1, 2, 3])
+def test_standard_form_says_the_same(k):
+    """For any p in equilibrium and any a, J w = q' + M' z with pressure and gap exchanged on k points."""
+    rng = np.random.default_rng(2)
+    problem = scaled(random_contact(5, 9, k))
+    matrix, vector, exchanged = standard_form(problem)
+    assert exchanged.sum() == k
+    R, ell = problem.rigid_motions, problem.equilibrium
+    p, a = rng.standard_normal(9), rng.standard_normal(k)
+    p -= R @ np.linalg.solve(ell.T @ R, ell.T @ p + problem.motion_load)
+    gap = problem.gap(p, a)
+    z, w = np.where(exchanged, gap, p), np.where(exchanged, p, gap)
+    np.testing.assert_allclose(vector + matrix @ z, problem.weights * w, atol=1e-11)
+
+
+@pytest.mark.parametrize("k", [1, 3])
+def test_standard_form_is_monotone(k):
+    """Where sym(JM) is positive definite on {ℓᵀp = 0}, sym(M') is positive semidefinite: Lemke ends with an answer."""
+    matrix = standard_form(scaled(random_contact(6, 12, k)))[0]
+    smallest = np.linalg.eigvalsh(matrix + matrix.T)[0]
+    assert smallest >= -1e-12 * np.abs(matrix).max()
+
+
+@pytest.mark.parametrize("k", [0, 2])
+def test_polish_makes_a_rough_solution_exact(k):
+    """Off by 1e-4 in p, with the displacement that belongs to it: the contact set is right, so one step is exact."""
+    rng = np.random.default_rng(3)
+    problem = random_contact(8, 15, k)
+    exact = solve(problem)
+    p = np.maximum(exact.pressure + 1e-4 * rng.uniform(0, 1, 15), 0)
+    rough = ContactSolution(
+        formulation="test",
+        solver="none",
+        status=Status.SOLVED,
+        pressure=p,
+        displacement=exact.displacement,
+        rigid_amplitudes=exact.rigid_amplitudes,
+        iterations=3,
+    )
+    better = polish(problem, rough)
+    assert better.polished
+    assert (better.formulation, better.iterations) == ("test", 3)
+    np.testing.assert_allclose(better.pressure, exact.pressure, atol=1e-12)
+
+
+def test_polish_keeps_what_it_cannot_improve():
+    problem = random_contact(9, 10, 1)
+    exact = solve(problem)
+    assert polish(problem, exact) is exact

@@ -1,0 +1,31 @@
+"""The list of formulations and their options."""
+
+import subprocess
+import sys
+from dataclasses import FrozenInstanceError
+
+import numpy as np
+import pytest
+
+from bemcontact.contact import CondensedContact, Status
+from bemcontact.formulations import FORMULATIONS, FormulationOptions
+
+
+@pytest.mark.parametrize("name", ["qp3", "complementarity"])
+def test_every_formulation_solves_and_bears_its_name(name):
+    """One point with interference 3 and compliance 2: p = 3/2."""
+    solution = FORMULATIONS[name](CondensedContact.from_compliance([[2.0]], [-3.0]), FormulationOptions())
+    assert solution.formulation == name
+    assert solution.status is Status.SOLVED
+    np.testing.assert_allclose(solution.pressure, [1.5], rtol=1e-14)
+
+
+def test_options_do_not_change():
+    with pytest.raises(FrozenInstanceError):
+        FormulationOptions().polish = False  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def test_importing_the_formulations_does_not_import_cvxpy():
+    """Half a second that only QP3 has to pay."""
+    code = "import sys, bemcontact.formulations; sys.exit('cvxpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

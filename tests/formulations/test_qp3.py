@@ -1,0 +1,200 @@
+"""QP3: its objective, its convexity, and its agreement with the direct solver."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bemcontact.contact import CondensedContact, Status, Weights
+from bemcontact.errors import NotConvexError, ProblemError, SolverError
+from bemcontact.formulations import complementarity, qp3
+from bemcontact.formulations.formulation import FormulationOptions
+from bemcontact.formulations.scaling import scaled
+
+UNPOLISHED = FormulationOptions(polish=False)
+
+
+def random_contact(seed: int, n: int, k: int, **fields) -> CondensedContact:
+    """Unsymmetric compliance with sym(JM) positive definite, and a load that some p >= 0 carries."""
+    rng = np.random.default_rng(seed)
+    A, S = rng.standard_normal((2, n, n))
+    J = rng.uniform(0.3, 1.5, n)
+    R = rng.standard_normal((n, k))
+    carried = np.maximum(rng.standard_normal(n), 0.0)
+    problem = CondensedContact.from_compliance(
+        (A @ A.T / n + 0.05 * np.eye(n) + 0.1 * (S - S.T)) / J[:, None],
+        rng.standard_normal(n),
+        J,
+        rigid_motions=R,
+        motion_load=-(J[:, None] * R).T @ carried,
+    )
+    return replace(problem, **fields)
+
+
+def balanced(problem, rng: np.random.Generator) -> np.ndarray:
+    """A random pressure (n,), of either sign, with ℓᵀp = -load."""
+    R, ell = problem.rigid_motions, problem.equilibrium
+    p = rng.standard_normal(len(R))
+    return p - R @ np.linalg.solve(ell.T @ R, ell.T @ p + problem.motion_load)
+
+
+@pytest.mark.parametrize("k", [0, 1, 2, 3])
+def test_quadratic_equals_the_work_of_the_pressure_in_the_gap(k):
+    """F3 = pᵀJδ = F1 wherever (12) holds, for every p in equilibrium and every a: no factor 1/2 is amiss."""
+    rng = np.random.default_rng(0)
+    problem = scaled(random_contact(1, 9, k))
+    J = np.diag(problem.weights)
+    work = qp3.objective(problem, J)
+    for _ in range(5):
+        p, a = balanced(problem, rng), rng.standard_normal(k)
+        assert work.value(p, a) == pytest.approx(p @ J @ problem.gap(p, a), rel=1e-11, abs=1e-12)
+
+
+def test_quadratic_with_full_weights():
+    """The same for a J that is neither diagonal nor tributary, with J R = ℓ C: here tributary weights plus PᵀXP."""
+    rng = np.random.default_rng(2)
+    problem = scaled(random_contact(3, 9, 2))
+    R, ell = problem.rigid_motions, problem.equilibrium
+    project = np.eye(9) - R @ np.linalg.solve(ell.T @ R, ell.T)
+    A = rng.standard_normal((9, 9))
+    J = 2 * np.diag(problem.weights) + project.T @ (A + A.T) @ project
+    work = qp3.objective(problem, J)
+    p, a = balanced(problem, rng), rng.standard_normal(2)
+    assert work.value(p, a) == pytest.approx(p @ J @ problem.gap(p, a), rel=1e-11)
+
+
+def test_hessian_is_semidefinite_in_all_directions():
+    """Positive on {ℓᵀp = 0} is made enough: PᵀHP has no negative eigenvalue, and k zero ones."""
+    problem = scaled(random_contact(4, 10, 2))
+    eigenvalues = np.linalg.eigvalsh(qp3.objective(problem, np.diag(problem.weights)).hessian)
+    assert eigenvalues[0] >= -1e-14
+    assert eigenvalues[1] == pytest.approx(0, abs=1e-14)
+    assert eigenvalues[2] > 1e-4
+
+
+@pytest.mark.parametrize("k", [0, 1, 2, 3])
+@pytest.mark.parametrize("seed", range(3))
+def test_agrees_with_the_direct_solver(seed, k):
+    """One problem, one solution (sym(JM) positive definite on the equilibrium space)."""
+    problem = random_contact(seed, 12, k)
+    direct, rough, polished = (
+        complementarity.solve(problem),
+        qp3.solve(problem, UNPOLISHED),
+        qp3.solve(problem),
+    )
+    peak = direct.pressure.max()
+    assert polished.status is Status.SOLVED
+    assert polished.polished
+    assert not rough.polished
+    np.testing.assert_allclose(rough.pressure, direct.pressure, atol=1e-4 * peak)
+    np.testing.assert_allclose(polished.pressure, direct.pressure, atol=1e-9 * peak)
+    np.testing.assert_allclose(polished.displacement, direct.displacement, atol=1e-9 * problem.scales.displacement)
+
+
+@pytest.mark.parametrize("k", [0, 2])
+@pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6)])
+def test_units_do_not_matter(length, stress, k):
+    problem = random_contact(5, 12, k)
+    other = CondensedContact.from_compliance(
+        problem.compliance * length / stress,
+        problem.offset * length,
+        problem.weights * length,
+        rigid_motions=problem.rigid_motions,
+        motion_load=problem.motion_load * stress * length,
+    )
+    one, two = qp3.solve(problem), qp3.solve(other)
+    np.testing.assert_allclose(two.pressure / stress, one.pressure, atol=1e-12 * one.pressure.max())
+    assert two.smallest_eigenvalue == pytest.approx(one.smallest_eigenvalue, rel=1e-9)
+
+
+def test_eigenvalue_is_that_of_the_hessian_on_the_equilibrium_space():
+    """Two points, R = (1, 1): the space is spanned by (1, -1)/√2; M in its gauge is m (1, -1)(1, -1)ᵀ."""
+    problem = CondensedContact.from_compliance(
+        np.diag([3.0, 1.0]), [1.0, 2.0], rigid_motions=[1.0, 1.0], motion_load=-1
+    )
+    np.testing.assert_allclose(problem.compliance, [[1.0, -1.0], [-1.0, 1.0]], atol=1e-15)
+    expected = 2 * 2 / np.abs(problem.compliance).sum(axis=1).max()
+    assert qp3.solve(problem).smallest_eigenvalue == pytest.approx(expected, rel=1e-12)
+
+
+def test_no_eigenvalue_where_equilibrium_fixes_the_pressure():
+    problem = CondensedContact.from_compliance([[1.0]], [1.0], rigid_motions=[1.0], motion_load=-2)
+    solution = qp3.solve(problem)
+    assert solution.smallest_eigenvalue is None
+    np.testing.assert_allclose(solution.pressure, [2.0], rtol=1e-14)
+
+
+def test_nonconvex_program_is_refused():
+    """For M = [[1, 3], [0, 1]] det sym(JM) is 4 - 9/4 with J = diag(1, 4), and 4 - 36 with J = diag(4, 1)."""
+    M = [[1.0, 3.0], [0.0, 1.0]]
+    problem = replace(
+        CondensedContact.from_compliance(M, [-1.0, -1.0], [1.0, 4.0]), element_length_weights=np.array([4.0, 1.0])
+    )
+    assert qp3.solve(problem).status is Status.SOLVED
+    with pytest.raises(
+        NotConvexError, match=r"element_length weights: the smallest eigenvalue .* use the tributary"
+    ) as e:
+        qp3.solve(problem, FormulationOptions(weights=Weights.ELEMENT_LENGTH))
+    assert e.value.smallest_eigenvalue < 0
+    other = CondensedContact.from_compliance(M, [-1.0, -1.0], [4.0, 1.0])
+    with pytest.raises(NotConvexError, match=r"not convex with tributary weights: .* refine the mesh"):
+        qp3.solve(other)
+
+
+def test_weights_that_couple_pressure_and_motion_are_refused():
+    """Where ZᵀJR is not zero, pᵀJRa makes a saddle, however definite sym(JM) is."""
+    problem = random_contact(6, 6, 1, element_length_weights=np.arange(1.0, 7.0))
+    with pytest.raises(NotConvexError) as e:
+        qp3.solve(problem, FormulationOptions(weights=Weights.ELEMENT_LENGTH))
+    assert e.value.smallest_eigenvalue < -1e-3
+
+
+def test_other_weights_have_the_same_solution():
+    """Any positive diagonal J for which the program is convex ends at the complementary solution."""
+    problem = random_contact(7, 10, 0)
+    problem = replace(problem, element_length_weights=problem.weights * np.linspace(1.0, 1.05, 10))
+    solution = qp3.solve(problem, FormulationOptions(weights=Weights.ELEMENT_LENGTH))
+    np.testing.assert_allclose(solution.pressure, complementarity.solve(problem).pressure, atol=1e-12)
+
+
+def test_consistent_weights_are_left_as_they_are():
+    """J with negative entries: its minimum lies below zero, which no complementary point does, and is not polished."""
+    J = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30
+    M = np.array([[2.0, 0.0, 1.0], [0.0, 0.5, 0.0], [1.0, 0.0, 2.0]])
+    problem = replace(CondensedContact.from_compliance(M, [-1.0, 0.2, 0.6], J.sum(axis=1)), consistent_weights=J)
+    solution = qp3.solve(problem, FormulationOptions(weights=Weights.CONSISTENT))
+    gap = problem.initial_gap + solution.displacement
+    assert solution.status is Status.SOLVED
+    assert not solution.polished
+    assert solution.pressure @ J @ gap < -1e-4
+
+
+def test_weights_that_are_not_there():
+    with pytest.raises(ProblemError, match="no consistent weights"):
+        qp3.solve(random_contact(0, 4, 0), FormulationOptions(weights=Weights.CONSISTENT))
+
+
+def test_infeasible_load_is_named():
+    """An upward load on a body that rests on a plane."""
+    problem = CondensedContact.from_compliance(np.eye(3), np.zeros(3), rigid_motions=np.ones(3), motion_load=1.0)
+    solution = qp3.solve(problem)
+    assert solution.status is Status.INFEASIBLE
+    assert "+1 x motion 1" in solution.notes[0]
+
+
+def test_iteration_limit_is_named():
+    solution = qp3.solve(random_contact(1, 12, 1), FormulationOptions(polish=False, max_iterations=2))
+    assert solution.status is Status.ITERATION_LIMIT
+
+
+def test_failure_of_the_solver_is_ours(monkeypatch):
+    """Clarabel's own error is the cause of ours."""
+    import cvxpy as cp
+
+    def breakdown(*_, **__):
+        raise cp.SolverError("numerical error")
+
+    monkeypatch.setattr(cp.Problem, "solve", breakdown)
+    with pytest.raises(SolverError, match="Clarabel found no solution of QP3") as e:
+        qp3.solve(random_contact(1, 5, 0))
+    assert isinstance(e.value.__cause__, cp.SolverError)
