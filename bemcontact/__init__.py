@@ -11,6 +11,7 @@ from typing import Any
 
 _HOMES = {
     "load": "bemcontact.spec",
+    "loads": "bemcontact.spec",
     "schema": "bemcontact.spec",
     "condense": "bemcontact.analysis",
     "solve": "bemcontact.analysis",

@@ -13,4 +13,5 @@ from bemcontact.errors import SolverError as SolverError
 from bemcontact.errors import SpecError as SpecError
 from bemcontact.problem.problem import Problem as Problem
 from bemcontact.spec import load as load
+from bemcontact.spec import loads as loads
 from bemcontact.spec import schema as schema

@@ -1,6 +1,6 @@
 """The four complex integrals against quadrature in 25 digits, and against what Kelvin's kernels are."""
 
-from itertools import product
+from itertools import pairwise, product
 
 import mpmath as mp
 import numpy as np
@@ -36,7 +36,7 @@ def reference(nodes: np.ndarray, z: complex, foot: float) -> np.ndarray:
         n = [mp.mpc(x) for x in nodes]
         c0, c1, c2 = n[1] - mp.mpc(z), (n[2] - n[0]) / 2, (n[0] + n[2]) / 2 - n[1]
         total = [[mp.mpc(0)] * 3 for _ in range(4)]
-        for first, last in zip(ends, ends[1:], strict=False):
+        for first, last in pairwise(ends):
             for node, weight in rule:
                 x, w = (first + last + (last - first) * node) / 2, (last - first) / 2 * weight
                 tau, slope = c0 + x * (c1 + x * c2), c1 + 2 * x * c2
@@ -71,7 +71,7 @@ def components_of(reference: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_integrals_near_an_element_are_exact(element):
-    """1e-12 from three element lengths down to 1e-9 of one, on both sides, abreast of the element and beyond its ends."""
+    """To 1e-12 from three element lengths down to 1e-9 of one, on both sides, abreast of the element and beyond it."""
     nodes = ELEMENTS[element]
     for (d, foot), side in zip(product(DISTANCES, (-1.001, -0.6, 0.3, 1.0)), [1, -1] * 14, strict=True):
         position, slope = at(nodes, foot)
@@ -122,7 +122,7 @@ def test_corner_term_is_the_interior_angle():
 
 
 def test_tiers_are_as_good_as_they_say():
-    """1/(ξ - r)² and ln(ξ - r), times the quadratic N_1, with r on the ellipse of each rule: the error is 30 tolerances."""
+    """Poles 1/(ξ - r)² and ln(ξ - r), times N_1, with r on the ellipse of each rule: errors below 30 tolerances."""
     for order, rho in zip(quadrature.ORDERS, quadrature.SMALLEST_RHO, strict=True):
         xi, weights = quadrature.gauss_legendre(int(order))
         fine, fine_weights = quadrature.gauss_legendre(60)

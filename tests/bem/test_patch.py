@@ -24,7 +24,7 @@ MESHES = {
     "rectangle, lengths 1:35": [rectangle(2, 1, ABRUPT, ABRUPT)],
     "circle of four elements": [[("c", arc((0, 0), 1, 0, 360), even(4))]],
     "circle of eight elements": [[("c", arc((0, 0), 1, 0, 360), even(8))]],
-    "circle, lengths 1:35": [[("c", arc((0, 0), 1, 0, 360), np.repeat(ABRUPT[:-1], 2)[::2].tolist() + [1.0])]],
+    "circle, lengths 1:35": [[("c", arc((0, 0), 1, 0, 360), ABRUPT)]],
     "half disc, lengths 1:35": [[("flat", segment((-1, 0), (1, 0)), even(4)), ("arc", arc((0, 0), 1, 0, 180), ABRUPT)]],
     "plate with a hole": [rectangle(2, 1, ABRUPT, even(4)), [("hole", arc((1, 0.5), 0.3, 360, 0), even(8))]],
     "ligament of 0.01": [rectangle(2, 1, even(20), even(10)), [("hole", arc((1, 0.5), 0.49, 360, 0), even(12))]],

@@ -45,7 +45,7 @@ def test_hanging_column(state):
 
 @pytest.mark.parametrize("state", STATES)
 def test_rotating_disc(state):
-    """Solid disc: u_r = ρω²(1-2ν)/(16G(1-ν)) r ((3-2ν) - r²) at unit radius (Timoshenko and Goodier, § 32), order four."""
+    """Solid disc: u_r = ρω²(1-2ν)/(16G(1-ν)) r ((3-2ν) - r²) (Timoshenko and Goodier, § 32), order four."""
     material = Material(young_modulus=1000, poisson_ratio=0.3, state=state)
     nu, G = material.effective_poisson_ratio, material.shear_modulus
     errors = []
@@ -86,8 +86,10 @@ def test_hindered_expansion(state):
 
 
 def test_resultants_are_exact():
-    """Rectangle 2 x 1 at (1, -3) with area 2: gravity acts at its centre; centrifugal force is ρω² A (centre - axis)."""
-    edges = [(name, lambda s, c=c: c(s) + [1, -3], ends) for name, c, ends in rectangle(2, 1, even(2), even(1))]
+    """Rectangle 2 x 1 at (1, -3): gravity acts at its centre; centrifugal force is ρω² A (centre - axis)."""
+    edges = [
+        (name, lambda s, c=c: c(s) + np.array([1, -3]), ends) for name, c, ends in rectangle(2, 1, even(2), even(1))
+    ]
     mesh, material = mesh_of(edges), Material(young_modulus=1, poisson_ratio=0)
     gravity = particular_solution(Loads(gravity=Gravity(density=5, acceleration=(3, -2))), material, mesh)
     assert gravity.force == pytest.approx([30, -20], rel=1e-14)

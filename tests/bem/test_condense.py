@@ -1,0 +1,179 @@
+"""Bodies condensed to their contact points: free rigid motions, equilibrium, gauge, refusals."""
+
+import numpy as np
+import pytest
+
+from bemcontact.analysis import solve
+from bemcontact.bem.condense import body_of, condense
+from bemcontact.bem.recovery import boundary_state
+from bemcontact.errors import ProblemError
+from bemcontact.problem import Problem
+
+PLANE = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+WALL = {"kind": "plane", "point": [0, 0], "normal": [1, 0]}
+
+
+def rectangle(width, height, along, across):
+    return [
+        {"name": "bottom", "start": [0, 0], "end": [width, 0], "elements": along},
+        {"name": "right", "elements": across, "start": [width, 0], "end": [width, height]},
+        {"name": "top", "elements": along, "start": [width, height], "end": [0, height]},
+        {"name": "left", "elements": across, "start": [0, height], "end": [0, 0]},
+    ]
+
+
+def problem(edges, zones, **more):
+    return Problem(
+        name="test",
+        material=more.pop("material", {"young_modulus": 1000, "poisson_ratio": 0.3}),
+        boundary={"outer": edges},
+        contact_zones={name: {"edges": edge, "surface": surface} for name, (edge, surface) in zones.items()},
+        **more,
+    )
+
+
+def block(conditions, zones=None, width=2.0, height=1.0, along=6, across=4, **more):
+    return problem(
+        rectangle(width, height, along, across), zones or {"base": (["bottom"], PLANE)}, conditions=conditions, **more
+    )
+
+
+def moment_of(result, about=(0.0, 0.0)):
+    contact, pressure = result.contact, result.solution.pressure
+    forces = (contact.weights * pressure)[:, None] * contact.normals
+    x, y = (contact.points - np.array(about)).T
+    return float(np.sum(x * forces[:, 1] - y * forces[:, 0]))
+
+
+@pytest.mark.parametrize(
+    ("conditions", "zones", "seen", "unseen"),
+    [
+        ({"left": {"displacement": {"x": 0, "y": 0}}}, None, 0, 0),
+        ({"left": {"displacement": {"x": 0}}, "top": {"pressure": 1}}, None, 1, 0),
+        ({"top": {"displacement": {"x": 0}}, "right": {"traction": {"y": -1}}}, None, 2, 0),
+        ({"top": {"pressure": 1}}, None, 2, 1),
+        ({"top": {"pressure": 1}}, {"base": (["bottom"], PLANE), "side": (["left"], WALL)}, 3, 0),
+    ],
+)
+def test_free_motions_are_counted(conditions, zones, seen, unseen):
+    """What prescribed displacements leave of three motions, and what a plane or two see of it."""
+    body = body_of(block(conditions, zones, **({"width": 0.2} if "right" in conditions else {})))
+    assert (len(body.seen), len(body.unseen)) == (seen, unseen)
+    condensed = condense(body).contact
+    assert condensed.free_motions == seen
+    assert len(condensed.notes) == unseen
+
+
+def test_uniform_pressure_on_a_block_is_exact():
+    """Constant stress: p = 10 at every point, also where the body is held by contact alone."""
+    for conditions in ({"top": {"pressure": 10}}, {"top": {"pressure": 10}, "left": {"displacement": {"x": 0}}}):
+        result = solve(block(conditions))
+        assert result.certified
+        assert result.solution.pressure == pytest.approx(np.full(13, 10.0), rel=1e-11)
+
+
+def test_block_in_a_corner_of_two_planes():
+    """Two points at the corner node; loads (-3, -10) per length with their moments are carried exactly."""
+    zones = {"base": (["bottom"], PLANE), "wall": (["left"], WALL)}
+    conditions = {"top": {"pressure": 10}, "right": {"pressure": {"constant": 1, "y": 4}}}
+    result = solve(block(conditions, zones))
+    contact = result.contact
+    at_corner = np.flatnonzero(np.hypot(*contact.points.T) == 0)
+    assert result.certified
+    assert len(at_corner) == 2
+    assert set(contact.zone[at_corner]) == {0, 1}
+    # pressure 10 on a width of 2; 1 + 4y on a height of 1: force 3, moment ∫ y (1 + 4y) dy = 1/2 + 4/3
+    assert result.footprint.resultant.force == pytest.approx([3, 20], rel=1e-9)
+    assert moment_of(result) == pytest.approx(20 * 1 - (1 / 2 + 4 / 3), rel=1e-9)
+    assert result.residuals.force_balance < 1e-12  # no tractions but loads and contact
+
+
+@pytest.mark.parametrize("formulation", ["qp3", "complementarity"])
+def test_block_on_a_plane_under_downward_load_on_three_free_motions(formulation):
+    """A load off the middle: force and moment exact to 1e-9, sliding pinned with a note, the wall not touched."""
+    conditions = {"top": {"pressure": {"constant": 5, "x": 4}}}  # ∫ = 18, ∫ x = 10 + 32/3
+    zones = {"base": (["bottom"], PLANE), "wall": (["left"], WALL)}
+    for where in (None, zones):
+        result = solve(block(conditions, where), formulation)
+        assert result.certified
+        assert result.footprint.resultant.force == pytest.approx([0, 18], abs=18e-9)
+        assert moment_of(result) == pytest.approx(10 + 32 / 3, rel=1e-9)
+    assert "pinned" in solve(block(conditions)).contact.notes[0]
+
+
+def test_polygon_on_a_plane_under_its_weight():
+    """A trapezoid: the resultant is its weight 1.5 x 2, through its centre of area at x = 7/9."""
+    edges = [
+        {"name": "bottom", "start": [0, 0], "end": [2, 0], "elements": 8},
+        {"name": "slope", "start": [2, 0], "end": [1, 1], "elements": 4},
+        {"name": "top", "elements": 3},
+        {"name": "left", "start": [0, 1], "end": [0, 0], "elements": 3},
+    ]
+    load = {"gravity": {"density": 2, "acceleration": [0, -1]}}
+    result = solve(problem(edges, {"base": (["bottom"], PLANE)}, loads=load))
+    assert result.certified
+    assert "translation along (1, 0)" in result.contact.notes[0]
+    assert result.footprint.resultant.force == pytest.approx([0, 3], abs=3e-9)
+    assert moment_of(result) == pytest.approx(3 * 7 / 9, rel=1e-9)
+
+
+def test_node_whose_normal_motion_is_prescribed_is_no_candidate():
+    """The clamped end of a contact edge carries no pressure; a symmetry line across the plane leaves its node."""
+    clamped = body_of(block({"left": {"displacement": {"x": 0, "y": 0}}, "top": {"pressure": 1}}))
+    assert not (np.hypot(*clamped.mesh.nodes[clamped.points.node].T) == 0).any()
+    symmetric = body_of(block({"left": {"displacement": {"x": 0}}, "top": {"pressure": 1}}))
+    assert (np.hypot(*symmetric.mesh.nodes[symmetric.points.node].T) == 0).any()
+
+
+def test_weights_integrate_pressure():
+    """Σ w = Σ J = length; tributary shares (1, 4, 2, 4, 1)/6 and the consistent matrix of two unit elements."""
+    points = body_of(block({"left": {"displacement": {"x": 0}}, "top": {"pressure": 1}}, along=2)).points
+    assert points.tributary == pytest.approx(np.array([1, 4, 2, 4, 1]) / 6, rel=1e-14)
+    assert points.consistent.sum() == pytest.approx(2, rel=1e-14)
+    element = np.array([[4, 2, -1], [2, 16, 2], [-1, 2, 4]]) / 30
+    assert points.consistent[:3, :2] == pytest.approx(element[:, :2], rel=1e-13)
+    assert points.element_length == pytest.approx(np.ones(5), rel=1e-14)
+
+
+def test_recovered_boundary_agrees_with_the_condensed_equation():
+    """n·u at the contact points is u_n, whatever the gauge; with three, two, one and no free motions."""
+    cases = [
+        block({"top": {"pressure": {"constant": 5, "x": 4}}}, {"b": (["bottom"], PLANE), "w": (["left"], WALL)}),
+        block({"top": {"pressure": {"constant": 5, "x": 4}}}),
+        block({"top": {"pressure": {"constant": 5, "x": 4}}, "left": {"displacement": {"x": 0}}}),
+        block({"top": {"pressure": 5}, "left": {"displacement": {"x": 0, "y": 0.01}}}),
+    ]
+    for case in cases:
+        condensation = condense(body_of(case))
+        solution = solve(condensation.contact).solution
+        state = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
+        points = condensation.body.points
+        seen = np.sum(points.normals[points.point] * state.displacement[points.element, points.local], axis=1)
+        assert abs(seen - solution.displacement[points.point]).max() < 1e-12 * condensation.contact.scales.displacement
+
+
+def test_free_body_lies_where_contact_puts_it():
+    """Uniform pressure 10, free to slide: v = -10 y (1-ν²)/E and u = 10 x ν(1+ν)/E, rigid amplitudes included."""
+    result = solve(block({"top": {"pressure": 10}, "left": {"displacement": {"x": 0}}}))
+    assert result.boundary is not None
+    x, y = np.moveaxis(result.boundary.points, -1, 0)
+    expected = np.stack([10 * x * 0.3 * 1.3 / 1000, -10 * y * (1 - 0.09) / 1000], axis=-1)
+    assert abs(result.boundary.displacement - expected).max() < 1e-12 * abs(expected).max()
+
+
+@pytest.mark.parametrize(
+    ("case", "words"),
+    [
+        (block({"top": {"pressure": -1}}), "pulls the body off its support"),
+        (block({"right": {"pressure": 1}, "top": {"pressure": 1}}), "nothing holds the body against the translation"),
+        (block({"top": {"traction": {"y": -1, "x": 0.1}}}), r"translation along \(1, 0\)"),
+        (block({}), "no load presses it"),
+        (block({"right": {"traction": {"y": -2}}, "left": {"traction": {"y": 1}}}), "rotation clockwise about"),
+        (block({}, {"roof": (["top"], {"kind": "plane", "point": [0, 1], "normal": [0, -1]})},
+               loads={"gravity": {"density": 1, "acceleration": [0, -1]}}), r"translation along \(0, -1\)"),
+        (block({"left": {"displacement": {"x": 0, "y": 0}}, "top": {"displacement": {"x": 0.1}}}), "different displ"),
+    ],
+)  # fmt: skip
+def test_bodies_that_contact_cannot_hold_are_refused(case, words):
+    with pytest.raises(ProblemError, match=words):
+        body_of(case)

@@ -1,0 +1,260 @@
+"""The main job on real problems: the paper's cylinder, invariances, agreement of the formulations."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import bemcontact
+from bemcontact.problem import Problem
+
+PEAK, HALF_WIDTH = 183.335, 2.7685
+"""The cylinder by finite elements on four meshes, per undeformed length; see the description in the model."""
+FORMULATIONS = ("qp3", "complementarity")
+
+
+@pytest.fixture(scope="module")
+def cylinder() -> Problem:
+    return bemcontact.load("models/cylinder_on_plane.yaml")
+
+
+def half_width(result: bemcontact.Result) -> float:
+    (interval,) = result.footprint.intervals
+    return interval.end[0]
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_cylinder_on_a_plane(cylinder, formulation):
+    """Peak to 0.1 %, half-width to 0.5 %, resultant 405 on the half to 1e-10, at most 260 degrees of freedom."""
+    result = bemcontact.solve(cylinder, formulation)
+    assert result.certified
+    assert result.degrees_of_freedom <= 260
+    assert result.footprint.peak.pressure == pytest.approx(PEAK, rel=1e-3)
+    assert half_width(result) == pytest.approx(HALF_WIDTH, rel=5e-3)
+    assert result.footprint.resultant.force == pytest.approx([0, 405], abs=405e-10)
+    assert result.residuals.complementarity <= 1e-10
+    assert 0 < result.equilibrium_slack < 1e-4  # coarse meshes leave 1e-7 to 1e-4
+    assert result.contact.free_motions == 1
+
+
+def test_three_times_finer_cylinder(cylinder):
+    """Peak to 0.01 %, of which the reference itself is worth half."""
+    result = bemcontact.solve(cylinder.refined(3))
+    assert result.certified
+    assert result.footprint.peak.pressure == pytest.approx(PEAK, rel=1e-4)
+
+
+@pytest.mark.parametrize("shift", np.arange(20) / 20)
+def test_mesh_shifted_along_the_arc(cylinder, shift):
+    """The ends of the short elements moved by parts of one: half-width to 0.5 %, peak to 0.1 %, wherever they fall."""
+    step = 6.1 / 6 * shift
+    ends = {
+        "under": (-90, -73.3 + step),
+        "end of contact": (-73.3 + step, -67.2 + step),
+        "beyond": (-67.2 + step, -61.6),
+    }
+    data = cylinder.model_dump()
+    for edge in data["boundary"]["outer"]:
+        if edge["name"] in ends:
+            edge["angles"] = ends[edge["name"]]
+    result = bemcontact.solve(Problem(**data), "complementarity")
+    assert half_width(result) == pytest.approx(HALF_WIDTH, rel=5e-3)
+    assert result.footprint.peak.pressure == pytest.approx(PEAK, rel=1e-3)
+
+
+def hertz(force: float, radius: float, young_modulus: float, poisson_ratio: float) -> tuple[float, float]:
+    """Half-width and peak under a line load (Johnson, Contact Mechanics, § 4.2c)."""
+    width = np.sqrt(4 * force * radius * (1 - poisson_ratio**2) / (np.pi * young_modulus))
+    return width, 2 * force / (np.pi * width)
+
+
+def test_hertz_at_a_hundredth_of_the_load(cylinder):
+    """Half-width over radius 0.034, where Hertz holds to 0.03 %: 0.2 % on a mesh graded to the end of contact."""
+    data = cylinder.model_dump()
+    width, peak = hertz(8.1, 8, 1000, 0.3)
+    arc = {"kind": "arc", "center": (0, 8), "radius": 8}
+    degrees = np.degrees(np.arcsin(np.array([0.85, 1.1, 1.5]) * width / 8)) - 90
+    data["boundary"]["outer"] = [
+        {**arc, "name": "under", "angles": (-90, degrees[0]), "elements": 6, "grading": {"ratio": 2, "towards": "end"}},
+        {**arc, "name": "end of contact", "angles": tuple(degrees[:2]), "elements": 10},
+        {**arc, "name": "beyond", "angles": tuple(degrees[1:]), "elements": 4},
+        {
+            **arc,
+            "name": "flank",
+            "angles": (degrees[2], 0),
+            "elements": 14,
+            "grading": {"ratio": 60, "towards": "start"},
+        },
+        {"name": "top", "elements": 4},
+        {"name": "axis", "start": (0, 8), "end": (0, 0), "elements": 14, "grading": {"ratio": 60, "towards": "end"}},
+    ]
+    data["conditions"]["top"] = {"pressure": 0.50625}
+    result = bemcontact.solve(Problem(**data))
+    assert result.certified
+    assert half_width(result) == pytest.approx(width, rel=2e-3)
+    assert result.footprint.peak.pressure == pytest.approx(peak, rel=2e-3)
+
+
+SPEC = """
+name: stepped part
+material: {{young_modulus: {E}, poisson_ratio: 0.29}}
+boundary:
+  outer:
+    - {{name: foot, start: [0, 0], end: [{a}, {b}], elements: 7, grading: {{ratio: 3, towards: both}}}}
+    - {{name: right, elements: 4}}
+    - {{name: top, start: [{c}, {d}], end: [0, {d}], elements: 7}}
+    - {{name: left, elements: 4}}
+conditions:
+  top: {{pressure: {{constant: {p}, x: {p_x}}}}}
+  left: {{displacement: {{x: 0}}}}
+contact_zones:
+  base:
+    edges: foot
+    surface: {{kind: circle, center: [{e}, {f}], radius: {g}, body: outside}}
+"""
+
+
+def stepped_part(length: float = 1.0, stress: float = 1.0, mirror: float = 1.0) -> Problem:
+    """A block with an inclined foot on a large disc, in any units; free to move up and down."""
+    L, s = length, stress
+    text = SPEC.format(
+        E=2e3 * s, a=4 * L, b=0.1 * L, c=4 * L, d=2 * L, p=3 * s, p_x=0.5 * s / L, e=1 * L, f=-60 * L, g=60 * L
+    )
+    return bemcontact.loads(text) if mirror == 1 else mirrored(bemcontact.loads(text))
+
+
+def mirrored(problem: Problem) -> Problem:
+    """Reflect at x = 0: edges in reverse order, with ends exchanged."""
+    data = problem.model_dump(exclude_none=True)
+
+    def flip(point):
+        return (-point[0], point[1])
+
+    edges = [
+        {
+            **edge.model_dump(exclude_none=True, include={"name", "elements", "grading"}),
+            "start": flip(joined.end),
+            "end": flip(joined.start),
+        }
+        for edge, joined in zip(problem.boundary.outer, problem.boundary.edges, strict=True)
+    ][::-1]
+    data["boundary"]["outer"] = edges
+    pressure = data["conditions"]["top"]["pressure"]
+    pressure["x"] = -pressure["x"]
+    surface = data["contact_zones"]["base"]["surface"]
+    surface["center"] = flip(surface["center"])
+    return Problem(**data)
+
+
+def profile(result: bemcontact.Result) -> tuple[np.ndarray, np.ndarray]:
+    order = np.argsort(abs(result.contact.points[:, 0]))
+    return result.solution.pressure[order], result.contact.points[order]
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+@pytest.mark.parametrize("length", [1e-3, 1, 1e3])
+@pytest.mark.parametrize("stress", [1e-6, 1, 1e6])
+def test_change_of_units(formulation, length, stress):
+    """Lengths by 1e-3 .. 1e3 and stresses by 1e-6 .. 1e6 scale the pressure and nothing else, to 1e-9."""
+    reference = bemcontact.solve(stepped_part(), formulation)
+    result = bemcontact.solve(stepped_part(length, stress), formulation)
+    peak = reference.footprint.peak.pressure
+    assert reference.certified
+    assert result.certified
+    assert abs(result.solution.pressure / stress - reference.solution.pressure).max() < 1e-9 * peak
+    assert result.certificate.smallest_eigenvalue == pytest.approx(reference.certificate.smallest_eigenvalue, rel=1e-6)
+    gap = result.contact.initial_gap + result.solution.displacement
+    expected = reference.contact.initial_gap + reference.solution.displacement
+    assert abs(gap / length - expected).max() < 1e-9 * reference.contact.scales.displacement
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.floats(-3, 3), st.floats(-6, 6))
+def test_any_change_of_units(log_length, log_stress):
+    """The same for factors that are no powers of two or ten."""
+    length, stress = 10**log_length, 10**log_stress
+    reference = bemcontact.solve(stepped_part(), "complementarity")
+    result = bemcontact.solve(stepped_part(length, stress), "complementarity")
+    peak = reference.footprint.peak.pressure
+    assert abs(result.solution.pressure / stress - reference.solution.pressure).max() < 1e-9 * peak
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_mirrored_problem(formulation):
+    """The mirror image, whose loop starts elsewhere and runs the other way, has the mirrored answer to 1e-9."""
+    reference = bemcontact.solve(stepped_part(), formulation)
+    result = bemcontact.solve(stepped_part(mirror=-1), formulation)
+    (p, x), (q, y) = profile(reference), profile(result)
+    assert abs(p - q).max() < 1e-9 * reference.footprint.peak.pressure
+    assert abs(x - y * [-1, 1]).max() < 1e-15
+    fx, fy = reference.footprint.resultant.force
+    assert result.footprint.resultant.force == pytest.approx([-fx, fy], abs=1e-9 * fy)
+
+
+def test_renumbered_problem():
+    """A loop that starts at another edge gives the same pressures, point by point."""
+    reference = stepped_part()
+    data = reference.model_dump(exclude_none=True)
+    edges = data["boundary"]["outer"]
+    data["boundary"]["outer"] = (*edges[2:], *edges[:2])
+    a, b = bemcontact.solve(reference), bemcontact.solve(Problem(**data))
+    assert abs(a.solution.pressure - b.solution.pressure).max() < 1e-9 * a.footprint.peak.pressure
+
+
+@pytest.mark.parametrize("refine", [1, 2])
+def test_formulations_agree(cylinder, refine):
+    """QP3 after its polish and the direct solver to 1e-9 of the peak, free rigid motions or none."""
+    held = stepped_part().with_value("conditions.left.displacement.y", 0).refined(refine)
+    held = held.with_value("contact_zones.base.surface.center", [1, -59.98])
+    for problem in (cylinder.refined(refine), stepped_part().refined(refine), held):
+        first, second = (bemcontact.solve(problem, formulation) for formulation in FORMULATIONS)
+        difference = abs(first.solution.pressure - second.solution.pressure).max()
+        assert difference < 1e-9 * second.footprint.peak.pressure
+        assert first.certified
+        assert second.certified
+
+
+def test_no_contact_is_an_answer():
+    """A clamped block that the load bends away from the plane: p = 0, certified."""
+    problem = stepped_part().with_value("conditions.left.displacement.y", 0)
+    problem = problem.with_value("conditions.top.pressure", -0.01).with_value(
+        "contact_zones.base.surface.center", [1, -61]
+    )
+    result = bemcontact.solve(problem)
+    assert result.certified
+    assert result.footprint.peak is None
+    assert result.footprint.intervals == ()
+
+
+def test_saved_problem_gives_the_same(cylinder, tmp_path):
+    """Condense, save, load, solve: the same pressure to the last digit, without a boundary."""
+    condensed = bemcontact.condense(cylinder)
+    condensed.save(tmp_path / "cylinder.npz")
+    result = bemcontact.solve(bemcontact.CondensedContact.load(tmp_path / "cylinder.npz"))
+    assert (result.solution.pressure == bemcontact.solve(condensed).solution.pressure).all()
+    assert result.boundary is None
+    assert result.to_dict()["boundary"] is None
+
+
+def test_result_as_numbers(cylinder):
+    """What programs read: every key that is promised, numbers finite, lists of one length."""
+    data = bemcontact.solve(cylinder).to_dict()
+    promised = (
+        "name formulation status certified units dof contact_nodes free_rigid_motions nodes normals zone pressure gap "
+        "normal_displacement resultant intervals peak objective residuals certificate boundary seconds version"
+    )
+    assert set(promised.split()) <= set(data)
+    assert {"penetration", "tension", "complementarity", "equilibrium", "force_balance"} <= set(data["residuals"])
+    assert {"kind", "smallest_eigenvalue", "error_bound"} <= set(data["certificate"])
+    assert {"points", "displacement", "traction"} <= set(data["boundary"])
+    n = data["contact_nodes"]
+    assert {len(data[key]) for key in ("nodes", "normals", "zone", "pressure", "gap", "normal_displacement")} == {n}
+    w, p = np.array(data["tributary_lengths"]), np.array(data["pressure"])
+    assert (w * p) @ np.array(data["normals"]) == pytest.approx(data["resultant"], abs=1e-12 * 405)
+    assert data["objective"] == pytest.approx(0, abs=1e-12 * 405 * data["scales"]["displacement"])
+
+
+@pytest.mark.parametrize(("formulation", "weights"), [("qp4", "tributary"), ("qp3", "nodal")])
+def test_unknown_names_are_refused(cylinder, formulation, weights):
+    with pytest.raises(bemcontact.ProblemError, match="take one of"):
+        bemcontact.solve(cylinder, formulation, weights)
