@@ -16,6 +16,7 @@ _HOMES = {
     "condense": "bemcontact.analysis",
     "solve": "bemcontact.analysis",
     "Result": "bemcontact.analysis",
+    "solve_lcp": "bemcontact.formulations.complementarity",
     "Problem": "bemcontact.problem.problem",
     "CondensedContact": "bemcontact.contact",
     "ContactSolution": "bemcontact.contact",

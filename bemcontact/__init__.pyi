@@ -11,6 +11,7 @@ from bemcontact.errors import ProblemError as ProblemError
 from bemcontact.errors import SingularSystemError as SingularSystemError
 from bemcontact.errors import SolverError as SolverError
 from bemcontact.errors import SpecError as SpecError
+from bemcontact.formulations.complementarity import solve_lcp as solve_lcp
 from bemcontact.problem.problem import Problem as Problem
 from bemcontact.spec import load as load
 from bemcontact.spec import loads as loads

@@ -43,6 +43,7 @@ class Status(Enum):
     ITERATION_LIMIT = "stopped at the iteration limit; raise the limit or start from another point"
     INFEASIBLE = "no pressure satisfies the constraints; check that the load presses the body onto its support"
     UNBOUNDED = "the objective has no lower bound; use the tributary weights"
+    NO_SOLUTION_FOUND = "no solution was found, and no proof that there is none; try another formulation or start"
     NUMERICAL_FAILURE = "the solver broke down numerically; check the mesh for very short elements"
 
 
@@ -205,13 +206,26 @@ class CondensedContact:
         -------
         CondensedContact
             Points lie on the x axis, one unit apart; the gauge is fixed, `initial_gap` is `offset`.
+
+        Raises
+        ------
+        ProblemError
+            Shapes that do not fit, weights that are not positive, or entries that are not finite.
         """
         M = np.array(compliance, float, ndmin=2)
         q = np.array(offset, float, ndmin=1)
         n = len(q)
-        J = np.ones(n) if weights is None else np.array(weights, float)
-        R = np.zeros((n, 0)) if rigid_motions is None else np.array(rigid_motions, float).reshape(n, -1)
+        J = np.ones(n) if weights is None else np.array(weights, float, ndmin=1)
+        R = np.zeros((n, 0)) if rigid_motions is None else np.array(rigid_motions, float)
+        R = R[:, None] if R.ndim == 1 else R
         load = np.zeros(R.shape[1]) if motion_load is None else np.array(motion_load, float, ndmin=1)
+        if not (M.shape == (n, n) and J.shape == (n,) and R.shape[0] == n and load.shape == R.shape[1:]):
+            raise ProblemError(
+                f"offset has {n} entries; then compliance needs ({n}, {n}), weights ({n},), rigid_motions ({n}, k), "
+                f"motion_load (k,); found {M.shape}, {J.shape}, {R.shape}, {load.shape}"
+            )
+        if R.shape[1] and np.linalg.matrix_rank(R) < R.shape[1]:
+            raise ProblemError("rigid_motions needs independent columns: a motion that no point sees holds nothing")
         gauge = fix_gauge(M, np.zeros(n), R, J, load)
         return cls(
             name=name,

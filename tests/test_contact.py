@@ -201,3 +201,19 @@ def test_scales_follow_the_units(length, stress):
 def test_problem_of_zeros_has_scales():
     """Nothing is divided by zero where gap and compliance vanish."""
     assert CondensedContact.from_compliance(np.zeros((2, 2)), np.zeros(2)).scales == (1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "words"),
+    [
+        ({"compliance": np.eye(3), "offset": [1, 2]}, "compliance needs"),
+        ({"compliance": np.eye(2), "offset": [1, 2], "weights": [1]}, "weights"),
+        ({"compliance": np.eye(2), "offset": [1, 2], "rigid_motions": [[1], [1]], "motion_load": [1, 2]}, "motion_load"),
+        ({"compliance": np.eye(2), "offset": [1, 2], "rigid_motions": [[0], [0]], "motion_load": [1]}, "independent"),
+        ({"compliance": np.eye(2), "offset": [1, 2], "weights": [1, -1]}, "positive"),
+        ({"compliance": np.eye(2), "offset": [1, np.nan]}, "finite"),
+    ],
+)
+def test_numbers_that_state_no_problem_are_refused(numbers, words):
+    with pytest.raises(ProblemError, match=words):
+        CondensedContact.from_compliance(**numbers)

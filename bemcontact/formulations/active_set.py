@@ -1,6 +1,6 @@
 """Primal-dual active set for the contact problem: guess who touches, solve linear equations, correct the guess.
 
-It is Newton's method on min(p, δ) = 0 (Hintermüller, Ito and Kunisch, SIAM J. Optim. 13(3), 2003, 865-888): exact when
+It is Newton's method on min(p, δ) = 0 (Hintermüller, Ito and Kunisch, SIAM J. Optim. 13(3), 2002, 865-888): exact when
 it stops, a handful of steps on contact problems, but it may cycle.
 """
 

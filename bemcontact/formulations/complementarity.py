@@ -35,7 +35,7 @@ class LcpResult:
     Parameters
     ----------
     z, w : (n,) with z >= 0 and w = q + M z
-    status : INFEASIBLE is said only with a certificate of Farkas in hand; NUMERICAL_FAILURE: no solution was found
+    status : INFEASIBLE is said only with a certificate of Farkas in hand
     iterations : steps of the active set plus pivots
     method : the one that ended the search
     """

@@ -26,7 +26,7 @@ class LemkeEnd:
 
     Parameters
     ----------
-    status : SOLVED, INFEASIBLE (proved by a ray), ITERATION_LIMIT, or NUMERICAL_FAILURE (a ray that proves nothing)
+    status : SOLVED, INFEASIBLE (proved by a ray), ITERATION_LIMIT, or NO_SOLUTION_FOUND (no proof)
     active : (n,) True where z is a basic variable
     pivots : number of them
     """
@@ -134,4 +134,4 @@ def _end_of_ray(M: Array, q: Array, basis: _Basis, entering: int, column: Array)
     y = np.maximum(direction[len(q) : basis.cover], 0.0)
     y /= max(y.max(), 1e-300)
     proved = (M.T @ y).max() <= ROUND_OFF and q @ y < -1e3 * ROUND_OFF
-    return Status.INFEASIBLE if proved else Status.NUMERICAL_FAILURE
+    return Status.INFEASIBLE if proved else Status.NO_SOLUTION_FOUND
