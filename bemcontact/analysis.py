@@ -105,6 +105,7 @@ class Result:
                 "tension": judged.tension,
                 "complementarity": judged.complementarity,
                 "equilibrium": judged.equilibrium,
+                "stiffness_rows": judged.stiffness_rows,
                 "balance": judged.balance,
                 "force_balance": judged.force_balance,
                 "work": judged.work,

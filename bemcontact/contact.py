@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import linprog
 
 from bemcontact.errors import ProblemError
 
@@ -22,6 +23,9 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 FILE_FORMAT = "bemcontact.condensed.1"
+
+INTERFERENCE = 1e-6
+"""Part of the widest gap that counts as interference; a linear program knows no less."""
 
 
 class Weights(Enum):
@@ -98,7 +102,8 @@ def fix_gauge(
     ell = weights[:, None] * R
     to_motion = np.linalg.solve(ell.T @ R, ell.T)
     p0 = -R @ np.linalg.solve(ell.T @ R, motion_load)
-    project = np.eye(len(M)) - R @ to_motion
+    n, k = R.shape
+    project = np.eye(n) - R @ to_motion if n > k else np.zeros((n, n))
     return Gauge(
         compliance=project @ M @ project,
         free_displacement=project @ (free_displacement + M @ p0),
@@ -272,13 +277,27 @@ class CondensedContact:
 
     @cached_property
     def scales(self) -> ContactScales:
-        """U = max|ε + Δ1| and T = U/‖M‖∞, widened so that the balancing pressure of a free body counts too."""
+        """Scales with U = ‖M‖∞ T, the larger of what the load and what interference asks for.
+
+        A load that presses a free body needs the balancing pressure; interference is what penetrates without pressure
+        however the body is placed. Wide gaps far from contact do not count; if there is neither, U = max|q|.
+        """
         norm = float(np.abs(self.compliance).sum(axis=1).max(initial=0.0))
         pressure = float(np.abs(self.balancing_pressure).max(initial=0.0))
-        displacement = max(float(np.abs(self.offset).max(initial=0.0)), norm * pressure)
-        if norm > 0:
-            pressure = displacement / norm
-        return ContactScales(displacement or 1.0, pressure or 1.0)
+        widest = float(np.abs(self.offset).max(initial=0.0))
+        displacement = max(norm * pressure, self._interference) or widest or 1.0
+        return ContactScales(displacement, displacement / norm if norm > 0 else pressure or 1.0)
+
+    @property
+    def _interference(self) -> float:
+        """Least s >= 0 [L] with q + R a >= -s for some a: a linear program; below 1e-6 of the widest gap it is none."""
+        widest = float(np.abs(self.offset).max(initial=0.0))
+        if self.free_motions == 0 or widest == 0:
+            return float(np.maximum(-self.offset, 0.0).max(initial=0.0))
+        columns = np.column_stack([self.rigid_motions, np.ones(self.size)])
+        cost, bounds = np.append(np.zeros(self.free_motions), 1.0), [(None, None)] * self.free_motions + [(0, None)]
+        found = linprog(cost, A_ub=-columns, b_ub=self.offset / widest, bounds=bounds)
+        return widest * found.fun if found.success and found.fun > INTERFERENCE else 0.0
 
     @cached_property
     def stiffness_rows(self) -> StiffnessRows:

@@ -29,8 +29,8 @@ from bemcontact.contact import Array, CondensedContact, ContactSolution
 
 TOLERANCE = 1e-10
 """Residuals allowed: a thousand times above the round-off of the gap, a thousand below what shows in a result."""
-ROUND_OFF_LIMIT = 1e-6
-"""Most that round-off may raise the tolerance of (12) to: beyond it the equations are too ill-conditioned to check."""
+LARGEST_BOUND = 1e-3
+"""Error bound, relative to the peak pressure, above which round-off alone leaves the answer open."""
 NEWTON_STEPS = 20
 
 
@@ -78,8 +78,8 @@ def certify(
     condensed : CondensedContact
     solution : of any formulation
     residuals : of that solution
-    tolerance : allowed penetration, tension, complementarity and balance; equilibrium, whose rows are multiplied by the
-        inverse of the compliance, may also be as large as the round-off of its evaluation, but never above 1e-6
+    tolerance : allowed penetration, tension, complementarity, equilibrium (12) and balance; where the peak pressure is
+        above T, gaps are judged relative to the displacement that goes with it, and never below their round-off
 
     Returns
     -------
@@ -90,7 +90,9 @@ def certify(
     unique = eigenvalue is None or eigenvalue > condensed.size * np.finfo(float).eps
     bound = _error_bound(condensed, solution, eigenvalue) if unique else None
     peak = float(solution.pressure.max(initial=0.0))
-    complaint = _complaint(residuals, tolerance)
+    complaint = _complaint(residuals, tolerance, max(1.0, peak / condensed.scales.pressure))
+    if not complaint and unique and (bound is None or bound > LARGEST_BOUND * (peak or condensed.scales.pressure)):
+        complaint = "in floating-point numbers this pressure cannot be told from others that are far from it"
     kind = CertificateKind.UNIQUE if unique else CertificateKind.LOCAL
     kind = CertificateKind.NOT_A_SOLUTION if complaint else kind
     relative = bound / peak if bound is not None and peak > 0 else None
@@ -164,15 +166,15 @@ def _nearest_balanced(p: Array, contact: NDArray[np.bool_], ell: Array, load: Ar
     return None
 
 
-def _complaint(residuals: Residuals, tolerance: float) -> str:
-    """The worst violation in words, or nothing."""
-    rows = min(max(tolerance, residuals.equilibrium_round_off), ROUND_OFF_LIMIT)
+def _complaint(residuals: Residuals, tolerance: float, size: float) -> str:
+    """The worst violation in words, or nothing; `size` is that of the pressure over T."""
+    of_gaps = max(tolerance * size, residuals.round_off)
     checks = {
-        "penetration": (residuals.penetration, tolerance),
+        "penetration": (residuals.penetration, of_gaps),
         "tension": (residuals.tension, tolerance),
-        "complementarity": (residuals.complementarity, tolerance),
+        "complementarity": (residuals.complementarity, of_gaps),
         "balance of forces": (residuals.balance, tolerance),
-        "equilibrium (12)": (residuals.equilibrium, rows),
+        "equilibrium (12)": (residuals.equilibrium, of_gaps),
     }
     name, (value, allowed) = max(checks.items(), key=lambda check: check[1][0] / check[1][1])
     return "" if value <= allowed else f"the residual of {name} is {value:.1e} where {allowed:.1e} is allowed"

@@ -17,11 +17,12 @@ class Residuals:
     tension : max(-p)/T, or 0 if no point is in tension
     complementarity : max |min(p/T, δ/U)|, point by point, independent of weights
     work : pᵀJδ / (U T max J) with the tributary weights: zero exactly at the solution if p, δ >= 0
-    equilibrium : max |K u_n - B p - r| / T, the contact stiffness rows of (12): an error of pressure
+    equilibrium : of (12), max |u_n - Δ1 - M p - R a| / U for the best amplitudes a
+    stiffness_rows : the same in the contact stiffness rows, max |K u_n - B p - r| / T: an error of pressure, to which
+        round-off adds eps times the condition of the compliance
     balance : max over the free motions of |ℓᵀp + load| / (T Σ|ℓ|), an error of mean pressure; 0 if there are none
+    round_off : what evaluating δ where p/T > δ/U may leave of penetration and complementarity
     force_balance : of the whole body, from its recovered boundary tractions, if the caller has them; else None
-    equilibrium_round_off : what evaluating the rows of (12) may leave of `equilibrium`, n eps times
-        max(|K||u_n| + |p| + |r|)/T; it grows with the condition of the compliance
     """
 
     penetration: float
@@ -29,9 +30,10 @@ class Residuals:
     complementarity: float
     work: float
     equilibrium: float
+    stiffness_rows: float
     balance: float
+    round_off: float
     force_balance: float | None
-    equilibrium_round_off: float
 
 
 def residuals(condensed: CondensedContact, solution: ContactSolution, force_balance: float | None = None) -> Residuals:
@@ -51,17 +53,28 @@ def residuals(condensed: CondensedContact, solution: ContactSolution, force_bala
     p, u_n = solution.pressure, solution.displacement
     gap = condensed.initial_gap + u_n
     K, B, r = condensed.stiffness_rows
-    magnitudes = np.abs(K) @ np.abs(u_n) + np.abs(B) @ np.abs(p) + np.abs(r)
+    ell, R = condensed.equilibrium, condensed.rigid_motions
+    strange = u_n - condensed.free_displacement - condensed.compliance @ p
+    strange = strange - R @ np.linalg.solve(ell.T @ R, ell.T @ strange)
     return Residuals(
         penetration=_largest(-gap / U),
         tension=_largest(-p / T),
         complementarity=_largest(np.abs(np.minimum(p / T, gap / U))),
         work=float(condensed.weights @ (p * gap)) / (U * T * float(condensed.weights.max())),
-        equilibrium=_largest(np.abs(K @ u_n - B @ p - r) / T),
+        equilibrium=_largest(np.abs(strange) / U),
+        stiffness_rows=_largest(np.abs(K @ u_n - B @ p - r) / T),
         balance=_largest(_imbalance(condensed, p) / (T * np.abs(condensed.equilibrium).sum(axis=0))),
+        round_off=_largest(_round_off(condensed, solution)[p / T > gap / U] / U),
         force_balance=force_balance,
-        equilibrium_round_off=condensed.size * float(np.finfo(float).eps) * _largest(magnitudes / T),
     )
+
+
+def _round_off(condensed: CondensedContact, solution: ContactSolution) -> Array:
+    """Round-off of δ (n,) [L], n eps times the sum of the magnitudes of all that is added up in it."""
+    terms = np.abs(condensed.initial_gap) + np.abs(condensed.free_displacement)
+    terms += np.abs(condensed.compliance) @ np.abs(solution.pressure)
+    terms += np.abs(condensed.rigid_motions) @ np.abs(solution.rigid_amplitudes)
+    return condensed.size * np.finfo(float).eps * terms
 
 
 def _imbalance(condensed: CondensedContact, pressure: Array) -> Array:

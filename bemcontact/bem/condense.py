@@ -64,7 +64,7 @@ class Body:
     def load_magnitude(self) -> float:
         """Sum of the magnitudes of all loads [p L]."""
         forces = self.mesh.tributary[..., None] * self.values.traction
-        return float(np.hypot(forces[..., 0], forces[..., 1]).sum() + np.hypot(*self.particular.force))
+        return float(np.hypot(forces[..., 0], forces[..., 1]).sum() + self.particular.magnitude)
 
     def normal_motion(self, motions: RigidMotions) -> Array:
         """R (n, k): rigid motions seen along the rigid normals at the contact points."""
@@ -136,30 +136,30 @@ def _check_support(body: Body) -> None:
     """Refuse loads that no pressure p >= 0 can balance, and bodies that nothing presses on."""
     if len(body.seen) == 0:
         return
-    ell = body.points.tributary[:, None] * body.normal_motion(body.seen)
-    load = body.motion_load(body.seen)
+    R, load = body.normal_motion(body.seen), body.motion_load(body.seen)
+    R = np.where(abs(R) > UNSEEN, R, 0.0)
     if abs(load).max() <= BALANCED * body.load_magnitude:
-        if not _can_clamp(ell):
+        if not _can_clamp(R):
             words = " and the ".join(body.seen.describe())
             raise ProblemError(
                 f"only contact holds the body against the {words}, but no load presses it onto its support, "
                 "so that its position is not determined; apply a load, or prescribe a displacement"
             )
         return
-    columns = ell.T / abs(ell).max(axis=1)
-    pressures, residual = nnls(columns, -load / abs(load).max())
+    forces, residual = nnls(R.T, -load / abs(load).max())
     if residual > BALANCED:
-        pull = body.seen.combined((columns @ pressures + load / abs(load).max())[:, None])
+        pull = body.seen.combined((R.T @ forces + load / abs(load).max())[:, None])
         raise ProblemError(
             f"the load pulls the body off its support: it drives the {pull.describe()[0]}, which no contact resists; "
             "turn the load around, or prescribe a displacement that holds the body"
         )
 
 
-def _can_clamp(ell: Array) -> bool:
-    """Whether some pressure p >= 0 other than zero is in equilibrium by itself, as in a body between two walls."""
-    columns = np.vstack([ell.T / abs(ell).max(), np.ones(len(ell))])
-    _, residual = nnls(columns, np.append(np.zeros(ell.shape[1]), 1.0))
+def _can_clamp(R: Array) -> bool:
+    """Whether some forces f >= 0 at points that see a motion balance each other, as in a body between two walls."""
+    sees = R.any(axis=1)
+    columns = np.vstack([R[sees].T, np.ones(np.count_nonzero(sees))])
+    _, residual = nnls(columns, np.append(np.zeros(R.shape[1]), 1.0))
     return residual <= BALANCED
 
 

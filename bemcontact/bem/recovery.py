@@ -78,7 +78,7 @@ def _force_balance(condensation: Condensation, traction: Array) -> float:
     forces = mesh.tributary[..., None] * traction
     volume = body.particular
     resultant = every.work(mesh.nodes[mesh.elements], forces) + every.work_of(volume.force, volume.moment)
-    magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + np.hypot(*volume.force)
+    magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + volume.magnitude
     return float(abs(resultant).max() / magnitude) if magnitude > 0 else 0.0
 
 

@@ -29,12 +29,14 @@ class ParticularSolution:
     traction : (m, 3, 2) t_p [p]
     force : (2,) resultant of the body force [p L]
     moment : moment of the body force about the origin [p L²]
+    magnitude : sum of the magnitudes of the body forces, or a bound of it [p L]
     """
 
     displacement: Array
     traction: Array
     force: Array = field(default_factory=lambda: np.zeros(2))
     moment: float = 0.0
+    magnitude: float = 0.0
 
 
 def particular_solution(loads: Loads, material: Material, mesh: Mesh) -> ParticularSolution:
@@ -62,6 +64,7 @@ def particular_solution(loads: Loads, material: Material, mesh: Mesh) -> Particu
         traction=sum((part.traction for part in parts), np.zeros((*mesh.elements.shape, 2))),
         force=sum((part.force for part in parts), np.zeros(2)),
         moment=sum(part.moment for part in parts),
+        magnitude=sum(part.magnitude for part in parts),
     )
 
 
@@ -78,6 +81,7 @@ def _gravity(gravity: Gravity, material: Material, mesh: Mesh) -> ParticularSolu
         traction=_traction(gradient, material, mesh),
         force=area * b,
         moment=float(first_moment[0] * b[1] - first_moment[1] * b[0]),
+        magnitude=area * float(np.hypot(*b)),
     )
 
 
@@ -97,6 +101,7 @@ def _centrifugal(centrifugal: Centrifugal, material: Material, mesh: Mesh) -> Pa
         traction=_traction(gradient, material, mesh),
         force=density * (first_moment - area * axis),
         moment=float(density * (axis[0] * first_moment[1] - axis[1] * first_moment[0])),
+        magnitude=density * area * float(np.sqrt(r2.max())),
     )
 
 

@@ -8,7 +8,7 @@ part only, which changes no value of it.
 """
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import eigvalsh
@@ -149,6 +149,9 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     eigenvalue = smallest_eigenvalue(problem, J)
     _refuse_nonconvex(eigenvalue, options.weights)
     found = _minimise(problem, objective(problem, J), options.max_iterations)
+    widest = float(np.abs(problem.offset).max(initial=0.0))
+    if found.status in (Status.UNBOUNDED, Status.INFEASIBLE) and widest > 1 and not escape_note(condensed, problem):
+        found = _in_units_of(widest, problem, objective(problem, J), options.max_iterations)
     p, u_n, a = unscaled(condensed, found.pressure, found.amplitudes)
     note = escape_note(condensed, problem) if found.status is Status.INFEASIBLE else None
     solution = ContactSolution(
@@ -175,6 +178,19 @@ class _Found:
     amplitudes: Array
     iterations: int
     has_point: bool
+
+
+def _in_units_of(size: float, problem: ScaledContact, objective: Objective, max_iterations: int | None) -> _Found:
+    """Minimise with pressures and gaps over a larger size, where the widest gaps drown the pressures otherwise."""
+    smaller = replace(problem, offset=problem.offset / size, motion_load=problem.motion_load / size)
+    linear = replace(
+        objective,
+        pressure=objective.pressure / size,
+        amplitudes=objective.amplitudes / size,
+        constant=objective.constant / size**2,
+    )
+    found = _minimise(smaller, linear, max_iterations)
+    return replace(found, pressure=found.pressure * size, amplitudes=found.amplitudes * size)
 
 
 def _minimise(problem: ScaledContact, objective: Objective, max_iterations: int | None) -> _Found:
