@@ -7,6 +7,7 @@
 """
 
 from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 _HOMES = {
@@ -35,11 +36,21 @@ __all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used, so that ``bemcontact --help`` needs no numerics."""
+    if name == "__version__":
+        return _version()
     if name not in _HOMES:
         raise AttributeError(f"module 'bemcontact' has no attribute '{name}'")
     value = getattr(import_module(_HOMES[name]), name)
     globals()[name] = value
     return value
+
+
+def _version() -> str:
+    """Version of the installed package; a bare source tree has none."""
+    try:
+        return version("bemcontact")
+    except PackageNotFoundError:
+        return "unknown"
 
 
 def __dir__() -> list[str]:

@@ -16,3 +16,5 @@ from bemcontact.problem.problem import Problem as Problem
 from bemcontact.spec import load as load
 from bemcontact.spec import loads as loads
 from bemcontact.spec import schema as schema
+
+__version__: str

@@ -5,13 +5,15 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from importlib.metadata import version
 from typing import Any
 
+import numpy as np
+
+import bemcontact
 from bemcontact.assessment.certificate import Certificate, certify
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.residual import Residuals, residuals
-from bemcontact.bem.condense import body_of
+from bemcontact.bem.condense import Body, body_of
 from bemcontact.bem.condense import condense as condense_body
 from bemcontact.bem.recovery import BoundaryState, boundary_state
 from bemcontact.contact import CondensedContact, ContactSolution, Weights
@@ -19,8 +21,15 @@ from bemcontact.errors import ProblemError
 from bemcontact.formulations import FORMULATIONS, FormulationOptions
 from bemcontact.problem.problem import Problem
 
+FEW_POINTS = 5
+"""Points under pressure below which a contact is not resolved: three make a parabola, two more its ends."""
+SMOOTH = 0.2
+"""Sine of the angle at the end of a zone below which the boundary goes on smoothly."""
+LARGE_PRESSURE = 0.5
+"""Peak pressure over Young's modulus beyond which nothing is left of small displacements."""
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Result:
     """A contact solution, judged.
 
@@ -35,6 +44,7 @@ class Result:
     footprint : contact intervals, peak, resultant
     boundary : displacement and traction on the whole boundary, or None if no boundary stands behind `contact`
     degrees_of_freedom : two for each node of the mesh, or None likewise
+    notes : what a person should know: of the condensation, of the solver, of the mesh
     seconds : spent on each stage
     """
 
@@ -48,7 +58,14 @@ class Result:
     footprint: Footprint
     boundary: BoundaryState | None
     degrees_of_freedom: int | None
+    notes: tuple[str, ...]
     seconds: dict[str, float]
+
+    def __repr__(self) -> str:
+        """One line: name, formulation, verdict, peak."""
+        peak = "no contact" if self.footprint.peak is None else f"peak pressure {self.footprint.peak.pressure:.6g}"
+        verdict = "certified" if self.certified else self.certificate.kind.value
+        return f"<Result of {self.contact.name!r} by {self.solution.formulation}: {verdict}, {peak}>"
 
     @property
     def certified(self) -> bool:
@@ -65,7 +82,7 @@ class Result:
         contact, solution, judged = self.contact, self.solution, self.residuals
         return {
             "name": contact.name,
-            "version": version("bemcontact"),
+            "version": bemcontact.__version__,
             "formulation": solution.formulation,
             "solver": solution.solver,
             "status": solution.status.name.lower(),
@@ -77,7 +94,7 @@ class Result:
             "motion_names": list(contact.motion_names),
             "motion_load": contact.motion_load.tolist(),
             "rigid_amplitudes": solution.rigid_amplitudes.tolist(),
-            "notes": [*contact.notes, *solution.notes],
+            "notes": list(self.notes),
             "nodes": contact.points.tolist(),
             "normals": contact.normals.tolist(),
             "zone": [contact.zone_names[i] for i in contact.zone],
@@ -166,7 +183,18 @@ def condense(problem: Problem) -> CondensedContact:
     SingularSystemError
         If the equations of the body have no unique solution.
     """
+    _check_kind(problem, Problem)
     return condense_body(body_of(problem)).contact
+
+
+def _check_kind(problem: object, *kinds: type) -> None:
+    """Refuse what is no problem, a file name above all."""
+    kinds = kinds or (Problem, CondensedContact)
+    if not isinstance(problem, kinds):
+        names = " or a ".join(kind.__name__ for kind in kinds)
+        raise ProblemError(
+            f"a {names} is needed, found {type(problem).__name__}; bemcontact.load reads one from a file"
+        )
 
 
 def solve(
@@ -179,8 +207,8 @@ def solve(
     Parameters
     ----------
     problem : Problem or CondensedContact
-    formulation : a key of `bemcontact.formulations.FORMULATIONS`
-    weights : the J of the objective, a `Weights` or its name
+    formulation : "qp3" (a convex program, then polished) or "complementarity" (the direct solver)
+    weights : the J of QP3's objective, a `Weights` or its name: "tributary", "consistent" or "element_length"
 
     Returns
     -------
@@ -194,6 +222,7 @@ def solve(
     NotConvexError
         If the formulation needs a convex program and this is none.
     """
+    _check_kind(problem)
     if formulation not in FORMULATIONS:
         raise ProblemError(f"there is no formulation '{formulation}'; take one of {', '.join(FORMULATIONS)}")
     weights = _weights(weights)
@@ -217,6 +246,9 @@ def solve(
         judged = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, judged)
         where = footprint(contact, solution)
+        notes = (*contact.notes, *solution.notes, *_notes_of(solution))
+        if condensation is not None:
+            notes += (*_notes_of_zone_ends(condensation.body, solution), *_notes_of_size(condensation.body, where))
     gap = contact.initial_gap + solution.displacement
     return Result(
         problem=problem if isinstance(problem, Problem) else None,
@@ -229,8 +261,44 @@ def solve(
         footprint=where,
         boundary=boundary,
         degrees_of_freedom=None if condensation is None else condensation.body.mesh.degrees_of_freedom,
+        notes=notes,
         seconds=watch.seconds,
     )
+
+
+def _notes_of(solution: ContactSolution) -> Iterator[str]:
+    """Say if too few points carry pressure to show its course."""
+    carrying = int((solution.pressure > 0).sum())
+    if 0 < carrying < FEW_POINTS:
+        yield (
+            f"pressure acts on {carrying} contact point{'s' if carrying > 1 else ''} only: the mesh is too coarse there "
+            "to tell how it is distributed; shorten the elements"
+        )
+
+
+def _notes_of_zone_ends(body: Body, solution: ContactSolution) -> Iterator[str]:
+    """Say where contact reaches the end of a zone although the boundary goes on smoothly."""
+    mesh, points = body.mesh, body.points
+    in_zone = np.isin(np.arange(len(mesh.elements)), points.element)
+    turn = np.sum(mesh.normals[mesh.before, 2] * mesh.tangents[:, 0], axis=1) / mesh.jacobians[:, 0]
+    smooth_end = (in_zone != in_zone[mesh.before]) & (abs(turn) < SMOOTH)
+    for i in np.flatnonzero(solution.pressure > 0):
+        if points.node[i] < len(mesh.elements) and smooth_end[points.node[i]]:
+            x, y = mesh.nodes[points.node[i]]
+            yield (
+                f"contact reaches the end of the zone '{list(body.problem.contact_zones)[points.zone[i]]}' at "
+                f"({x:.5g}, {y:.5g}), where the boundary goes on smoothly; make the zone longer"
+            )
+
+
+def _notes_of_size(body: Body, where: Footprint) -> Iterator[str]:
+    """Say if the pressure is too large for small displacements."""
+    modulus = body.problem.material.young_modulus
+    if where.peak is not None and where.peak.pressure > LARGE_PRESSURE * modulus:
+        yield (
+            f"the peak pressure is {where.peak.pressure / modulus:.2g} times Young's modulus: displacements are not "
+            "small, and the linear answer means little"
+        )
 
 
 def _weights(weights: Weights | str) -> Weights:

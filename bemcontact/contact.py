@@ -12,6 +12,7 @@ from enum import Enum
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, Self
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -112,7 +113,7 @@ def fix_gauge(
     )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class CondensedContact:
     """An elastic body condensed to its n contact points: u_n = Δ1 + M p + R a with ℓᵀp = -load, [SS92] (35)-(38).
 
@@ -249,6 +250,11 @@ class CondensedContact:
             weights=J,
         )
 
+    def __repr__(self) -> str:
+        """One line: name, zones, number of points and free motions."""
+        zones = ", ".join(self.zone_names)
+        return f"<CondensedContact {self.name!r}: {self.size} points in {zones}; {self.free_motions} free motions>"
+
     @property
     def size(self) -> int:
         """Number n of contact points."""
@@ -336,7 +342,7 @@ class CondensedContact:
         return J
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write all of it as one ``.npz`` file, whole or not at all."""
+        """Write all of it as one ``.npz`` file, whole or not at all; `OSError` where that cannot be."""
         path = Path(path)
         arrays: dict[str, Any] = {"format": np.array(FILE_FORMAT)}
         for item in fields(self):
@@ -357,8 +363,10 @@ class CondensedContact:
         try:
             with np.load(path, allow_pickle=False) as data:
                 stored = {key: data[key] for key in data.files}
-        except (OSError, ValueError) as error:
-            raise ProblemError(f"{path}: not a readable .npz file ({error})") from error
+        except OSError as error:
+            raise ProblemError(f"{path}: cannot be read ({error.strerror or 'not an .npz file'})") from error
+        except (ValueError, EOFError, BadZipFile) as error:
+            raise ProblemError(f"{path}: not an .npz file; CondensedContact.save writes one") from error
         if str(stored.pop("format", "")) != FILE_FORMAT:
             raise ProblemError(f"{path}: not a condensed contact problem of format {FILE_FORMAT}; write it again")
         texts = {key: tuple(map(str, stored.pop(key))) for key in ("zone_names", "notes", "motion_names")}

@@ -258,3 +258,25 @@ def test_result_as_numbers(cylinder):
 def test_unknown_names_are_refused(cylinder, formulation, weights):
     with pytest.raises(bemcontact.ProblemError, match="take one of"):
         bemcontact.solve(cylinder, formulation, weights)
+
+
+def test_notes_say_what_the_certificate_does_not(cylinder):
+    """A hundredth of the load touches with two points of this mesh; a hundredfold one fills the zone."""
+    assert bemcontact.solve(cylinder).notes == ()
+    (note,) = bemcontact.solve(cylinder.with_value("conditions.top.pressure", 0.5)).notes
+    assert "too coarse" in note
+    notes = bemcontact.solve(cylinder.with_value("conditions.top.pressure", 5000)).to_dict()["notes"]
+    assert any("end of the zone 'foot'" in note for note in notes)
+    assert any("Young's modulus" in note for note in notes)
+
+
+def test_results_are_told_in_a_line(cylinder):
+    result = bemcontact.solve(cylinder)
+    assert repr(result) == "<Result of 'cylinder on a plane' by qp3: certified, peak pressure 183.226>"
+    assert repr(result.contact) == "<CondensedContact 'cylinder on a plane': 29 points in foot; 1 free motions>"
+
+
+@pytest.mark.parametrize("task", [bemcontact.solve, bemcontact.condense])
+def test_a_file_name_is_no_problem(task):
+    with pytest.raises(bemcontact.ProblemError, match=r"found str; bemcontact\.load"):
+        task("models/cylinder_on_plane.yaml")

@@ -137,6 +137,7 @@ def _error_bound(condensed: CondensedContact, solution: ContactSolution, eigenva
     delta = q + M @ y + R @ a
     s = D * np.where(y > 0, delta, np.minimum(delta, 0.0))
     round_off = len(D) * np.finfo(float).eps * D * (np.abs(q) + np.abs(M) @ y + np.abs(R) @ np.abs(a))
+    round_off = np.where((y > 0) | (D * delta < round_off), round_off, 0.0)
     return float(np.linalg.norm(p - y) + (np.linalg.norm(s) + np.linalg.norm(round_off)) / eigenvalue) * T
 
 

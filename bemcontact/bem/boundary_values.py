@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from bemcontact.bem.mesh import Mesh
 from bemcontact.errors import Complaint, ProblemError
-from bemcontact.problem.conditions import AxisFields, Field
+from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]
@@ -70,14 +70,22 @@ def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:
             values.displacement_given[nodes, axis] = True
             values.traction_unknown[elements, axis] = True
             owner[nodes, axis] = index
-        points = mesh.nodes[mesh.elements[elements]]
-        for axis, field in _given(condition.traction):
-            values.traction[elements, :, axis] = _at(field, points)
-        if condition.pressure is not None:
-            values.traction[elements] = -_at(condition.pressure, points)[..., None] * mesh.normals[elements]
+        values.traction[elements] = applied_traction(
+            condition, mesh.nodes[mesh.elements[elements]], mesh.normals[elements]
+        )
     if complaints:
         raise ProblemError(complaints)
     return values
+
+
+def applied_traction(condition: Condition, points: Array, normals: Array) -> Array:
+    """Traction (…, 2) [p] that a condition prescribes at points (…, 2) [L] with outward normals, else zero."""
+    traction = np.zeros_like(points)
+    for axis, field in _given(condition.traction):
+        traction[..., axis] = _at(field, points)
+    if condition.pressure is not None:
+        traction = -_at(condition.pressure, points)[..., None] * normals
+    return traction
 
 
 def _given(fields: AxisFields) -> Iterator[tuple[int, Field]]:

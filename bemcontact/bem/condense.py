@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 from scipy.optimize import nnls
 
-from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
+from bemcontact.bem.boundary_values import BoundaryValues, applied_traction, boundary_values
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.influence import Block
-from bemcontact.bem.mesh import Mesh, build
+from bemcontact.bem.mesh import Mesh, along_curve, build
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.system import System
-from bemcontact.bem.volume_loads import ParticularSolution, particular_solution
+from bemcontact.bem.volume_loads import ParticularSolution, particular_solution, true_resultant
 from bemcontact.contact import CondensedContact, Gauge, fix_gauge
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.problem.problem import Problem
@@ -59,6 +59,16 @@ class Body:
         forces = self.mesh.tributary[..., None] * self.values.traction
         at = self.mesh.nodes[self.mesh.elements]
         return motions.work(at, forces) + motions.work_of(self.particular.force, self.particular.moment)
+
+    def true_motion_load(self, motions: RigidMotions) -> Array:
+        """The same (k,) on the curves themselves, to round-off: whether loads balance is no matter of the mesh."""
+        work = motions.work_of(*true_resultant(self.problem))
+        for edge in self.problem.boundary.edges:
+            if edge.name in self.problem.conditions:
+                points, normals, lengths = along_curve(edge)
+                tractions = applied_traction(self.problem.conditions[edge.name], points, normals)
+                work = work + motions.work(points, lengths[:, None] * tractions)
+        return work
 
     @cached_property
     def load_magnitude(self) -> float:
@@ -123,7 +133,7 @@ def _split_by_contact(points: ContactPoints, motions: RigidMotions) -> tuple[Rig
 
 def _check_unseen(body: Body) -> None:
     """Refuse a load that works on a motion which no contact sees."""
-    work = body.motion_load(body.unseen)
+    work = body.true_motion_load(body.unseen)
     for motion, done in zip(body.unseen.describe(), work, strict=True):
         if abs(done) > BALANCED * body.load_magnitude:
             raise ProblemError(

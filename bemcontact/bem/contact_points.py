@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,8 @@ IntArray = NDArray[np.int64]
 
 PARALLEL = 1e-9
 """Sine of the angle below which the rigid normal lies along a prescribed axis."""
+ALIKE = 1e-9
+"""Difference of two normals, or of two gaps over the size of the body, at one node that counts as none."""
 ARC_ORDER = 12
 """Gauss points for arc lengths and the consistent weights."""
 
@@ -130,27 +133,44 @@ class _Piece(NamedTuple):
 def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
     """String all runs together and find the (element, local node) pairs of every point."""
     sizes = [len(piece.nodes) for piece in pieces]
+    node, normals, gap = (
+        np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("nodes", "normals", "gap")
+    )
+    first_alike = _first_alike(mesh, node, normals, gap)
+    own = first_alike == np.arange(len(node))
+    number = (np.cumsum(own) - 1)[first_alike]
     elements, points = [], []
     for first, piece in zip(np.cumsum([0, *sizes]), pieces, strict=False):
         point_of = np.full(len(mesh.nodes), -1)
-        point_of[piece.nodes] = first + np.arange(len(piece.nodes))
+        point_of[piece.nodes] = number[first : first + len(piece.nodes)]
         elements.append(np.repeat(piece.elements, 3))
         points.append(point_of[mesh.elements[piece.elements]].ravel())
     point = np.concatenate(points)
     used = point >= 0
     return ContactPoints(
         mesh=mesh,
-        node=np.concatenate([piece.nodes for piece in pieces]),
-        zone=np.repeat([piece.zone for piece in pieces], sizes),
-        run=np.repeat(np.arange(len(pieces)), sizes),
-        arc_position=np.concatenate([piece.arc for piece in pieces]),
+        node=node[own],
+        zone=np.repeat([piece.zone for piece in pieces], sizes)[own],
+        run=np.repeat(np.arange(len(pieces)), sizes)[own],
+        arc_position=np.concatenate([piece.arc for piece in pieces])[own],
         run_length=np.array([piece.length for piece in pieces]),
-        normals=np.concatenate([piece.normals for piece in pieces]),
-        gap=np.concatenate([piece.gap for piece in pieces]),
+        normals=normals[own],
+        gap=gap[own],
         element=np.concatenate(elements)[used],
         local=np.tile(np.arange(3), len(point) // 3)[used],
         point=point[used],
     )
+
+
+def _first_alike(mesh: Mesh, node: IntArray, normals: Array, gap: Array) -> IntArray:
+    """The first point (n,) with the same node, normal and gap: zones that meet on one surface share it."""
+    first = np.arange(len(node))
+    order = np.argsort(node, kind="stable")
+    for i, j in pairwise(order):
+        alike = node[i] == node[j] and np.hypot(*(normals[i] - normals[j])) <= ALIKE
+        if alike and abs(gap[i] - gap[j]) <= ALIKE * mesh.size:
+            first[j] = first[i]
+    return first
 
 
 def _runs(mesh: Mesh, in_zone: NDArray[np.bool_]) -> Iterator[tuple[IntArray, bool]]:

@@ -7,11 +7,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.bem import shape_functions
+from bemcontact.bem import quadrature, shape_functions
+from bemcontact.problem.curves import Edge
 from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+
+CURVE_ORDER = 16
+"""Gauss points for each element's piece of the curve itself."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -100,6 +105,23 @@ def build(problem: Problem) -> Mesh:
             edge_of += [edge.name] * (len(ends) - 1)
         after += [*range(first + 1, len(edge_of)), first]
     return connected(np.vstack(starts), np.vstack(middles), np.array(after), edge_of)
+
+
+def along_curve(edge: Edge) -> tuple[Array, Array, Array]:
+    """Gauss points of an edge itself, not of its elements, many enough for integrals to round-off.
+
+    Returns
+    -------
+    points : (q, 2) [L]
+    normals : (q, 2) out of the body
+    lengths : (q,) arc length that belongs to each point [L]
+    """
+    ends = edge.breakpoints(1)
+    xi, weights = quadrature.gauss_legendre(CURVE_ORDER)
+    fractions = ((ends[:-1, None] + ends[1:, None]) / 2 + np.diff(ends)[:, None] / 2 * xi).ravel()
+    directions = edge.directions(fractions)
+    lengths = (np.diff(ends)[:, None] / 2 * weights).ravel() * edge.length
+    return edge.points(fractions), np.column_stack([directions[:, 1], -directions[:, 0]]), lengths
 
 
 def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[str]) -> Mesh:

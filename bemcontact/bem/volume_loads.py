@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.bem import quadrature, shape_functions
-from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.mesh import Mesh, along_curve
 from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
+from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
@@ -66,6 +67,34 @@ def particular_solution(loads: Loads, material: Material, mesh: Mesh) -> Particu
         moment=sum(part.moment for part in parts),
         magnitude=sum(part.magnitude for part in parts),
     )
+
+
+def true_resultant(problem: Problem) -> tuple[Array, float]:
+    """Resultant (2,) [p L] of the body forces and its moment about the origin [p L²], on the curves themselves.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    force, moment
+    """
+    area, moments = 0.0, np.zeros(2)
+    for edge in problem.boundary.edges:
+        points, normals, lengths = along_curve(edge)
+        flux = lengths * np.sum(points * normals, axis=1)
+        area += float(flux.sum()) / 2
+        moments += flux @ points / 3
+    force, moment = np.zeros(2), 0.0
+    if gravity := problem.loads.gravity:
+        b = gravity.density * np.array(gravity.acceleration)
+        force, moment = force + area * b, moment + float(moments[0] * b[1] - moments[1] * b[0])
+    if turning := problem.loads.centrifugal:
+        density, axis = turning.density * turning.angular_velocity**2, np.array(turning.center)
+        force = force + density * (moments - area * axis)
+        moment += density * float(axis[0] * moments[1] - axis[1] * moments[0])
+    return force, moment
 
 
 def _gravity(gravity: Gravity, material: Material, mesh: Mesh) -> ParticularSolution:

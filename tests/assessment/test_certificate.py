@@ -8,7 +8,7 @@ import pytest
 from bemcontact.assessment.certificate import Certificate, CertificateKind, certify
 from bemcontact.assessment.residual import residuals
 from bemcontact.contact import CondensedContact, ContactSolution
-from bemcontact.formulations import complementarity
+from bemcontact.formulations import complementarity, qp3
 
 
 def random_contact(seed: int, n: int = 8, k: int = 1) -> CondensedContact:
@@ -166,3 +166,30 @@ def test_units_do_not_matter(length, stress):
     two = judged(other, moved(other, complementarity.solve(other), change * stress, lift))
     assert two.smallest_eigenvalue == pytest.approx(one.smallest_eigenvalue, rel=1e-9)
     assert two.relative_error_bound == pytest.approx(one.relative_error_bound, rel=1e-8)
+
+
+def test_wide_gaps_far_away_hide_nothing():
+    """Two points that touch, a third a million times farther: only the right pressure is certified."""
+    M = np.array([[2.0, 0.5, 0.1], [0.4, 2.0, 0.1], [0.1, 0.1, 2.0]])
+    problem = CondensedContact.from_compliance(M, np.array([-1e-6, -1e-6, 1.0]))
+    right = complementarity.solve(problem)
+    assert certify(problem, right, residuals(problem, right)).certified
+    for factor in (0.0, 0.99, 1.01, 2.0):
+        p = factor * right.pressure
+        wrong = replace(right, pressure=p, displacement=M @ p)
+        assert not certify(problem, wrong, residuals(problem, wrong)).certified
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_nothing_but_equilibrium_is_certified(seed):
+    """As many points as motions, n = k: p = -ℓ⁻ᵀ load, and nothing else is certified."""
+    rng = np.random.default_rng(seed)
+    R, expected = rng.standard_normal((2, 2)), rng.uniform(0.5, 2, 2)
+    M = np.eye(2) + 0.1 * rng.standard_normal((2, 2))
+    problem = CondensedContact.from_compliance(M, rng.uniform(-1, 1, 2), rigid_motions=R, motion_load=-R.T @ expected)
+    for solver in (complementarity.solve, qp3.solve):
+        found = solver(problem)
+        assert certify(problem, found, residuals(problem, found)).certified
+        assert found.pressure == pytest.approx(expected, rel=1e-9)
+    wrong = replace(found, pressure=np.zeros(2))
+    assert not certify(problem, wrong, residuals(problem, wrong)).certified

@@ -177,3 +177,80 @@ def test_free_body_lies_where_contact_puts_it():
 def test_bodies_that_contact_cannot_hold_are_refused(case, words):
     with pytest.raises(ProblemError, match=words):
         body_of(case)
+
+
+def test_contact_points_that_see_no_free_motion():
+    """A half model free to move down, with a side wall: p = 10 below, ν p/(1-ν) of the pressure on the wall."""
+    zones = {
+        "base": (["bottom"], PLANE),
+        "wall": (["right"], {"kind": "plane", "point": [2, 0], "normal": [-1, 0]}),
+    }
+    result = solve(block({"top": {"pressure": 10}, "left": {"displacement": {"x": 0}}}, zones))
+    on_wall = result.contact.zone == 1
+    assert result.certified
+    assert result.solution.pressure[~on_wall] == pytest.approx(np.full(13, 10.0), rel=1e-10)
+    assert result.solution.pressure[on_wall] == pytest.approx(np.full(on_wall.sum(), 10 * 0.3 / 0.7), rel=1e-10)
+
+
+@pytest.mark.parametrize("formulation", ["qp3", "complementarity"])
+def test_as_many_points_as_free_motions(formulation):
+    """One element with three points on three pieces of a polyline: equilibrium alone fixes the pressures."""
+    hollow = {"kind": "polyline", "points": [[-1, 1], [0, 0], [1, 0], [2, 1]]}
+    edges = rectangle(1, 1, 1, 2)
+    result = solve(problem(edges, {"seat": (["bottom"], hollow)}, conditions={"top": {"pressure": 10}}), formulation)
+    assert result.footprint.resultant.force == pytest.approx([0, 10], abs=1e-9)
+    assert result.residuals.force_balance < 1e-12
+
+
+@pytest.mark.parametrize("elements", [(6, 6), (5, 7), (10, 14)])
+def test_balanced_loads_need_no_symmetric_mesh(elements):
+    """Pressure y² around the upper half of a disc balances sideways; the weights of an uneven mesh do not quite."""
+    arc = {"kind": "arc", "center": [0, 1], "radius": 1}
+    edges = [
+        {**arc, "name": "foot", "angles": [-110, -70], "elements": 8},
+        {**arc, "name": "right", "angles": [-70, 0], "elements": 3},
+        {**arc, "name": "first", "angles": [0, 90], "elements": elements[0]},
+        {**arc, "name": "second", "angles": [90, 180], "elements": elements[1]},
+        {**arc, "name": "left", "angles": [180, 250], "elements": 3},
+    ]
+    load = {"pressure": {"constant": 1, "y": -2, "yy": 1}}
+    result = solve(problem(edges, {"z": (["foot"], PLANE)}, conditions={"first": load, "second": load}))
+    assert result.certified
+    # ∫ (y-1)² sin θ dθ over the upper half: 4/3
+    assert result.footprint.resultant.force == pytest.approx([0, 4 / 3], rel=1e-4, abs=1e-9)
+
+
+@pytest.mark.parametrize("center", [(0, 0), (3.3, 1.7)])
+def test_rotating_ring_on_a_pin(center):
+    """Centrifugal force balances itself wherever the axis is; the ring turns freely, and the pin keeps it in place."""
+    out, hole = ({"kind": "arc", "center": center, "radius": r} for r in (2, 1))
+    body = Problem(
+        name="ring",
+        material={"young_modulus": 1000, "poisson_ratio": 0.3},
+        boundary={
+            "outer": [{**out, "name": "rim", "angles": [0, 360], "elements": 16}],
+            "holes": [[{**hole, "name": "bore", "angles": [360, 0], "elements": 16}]],
+        },
+        loads={"centrifugal": {"density": 1, "angular_velocity": 1, "center": center}},
+        contact_zones={
+            "pin": {"edges": "bore", "surface": {"kind": "circle", "center": center, "radius": 1.01, "body": "outside"}}
+        },
+    )
+    result = solve(body)
+    assert result.certified
+    assert "rotation" in result.contact.notes[0]
+    assert np.ptp(result.solution.pressure) < 1e-3 * result.footprint.peak.pressure
+
+
+def test_two_zones_that_meet_on_one_surface():
+    """A flat foot in two edges, each a zone of its own: the point where they meet is one, and nothing else changes."""
+    halves = [
+        {"name": "a", "start": [0, 0], "end": [1, 0], "elements": 3},
+        {"name": "b", "start": [1, 0], "end": [2, 0], "elements": 3},
+        *rectangle(2, 1, 6, 4)[1:],
+    ]
+    conditions = {"top": {"pressure": {"constant": 5, "x": 4}}, "left": {"displacement": {"x": 0}}}
+    one = solve(block(conditions))
+    two = solve(problem(halves, {"a": (["a"], PLANE), "b": (["b"], PLANE)}, conditions=conditions))
+    assert two.certified
+    assert two.solution.pressure == pytest.approx(one.solution.pressure, rel=1e-9)

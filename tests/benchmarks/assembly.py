@@ -95,8 +95,8 @@ def report(problem: Problem) -> None:
     tracemalloc.stop()
     own = 8 * size * (size + 1 + len(system.points))
     print(
-        f"{problem.name:22s} N = {size:6d}  assembly {assembly:7.3f} s  LU {lu:7.3f} s  assembly/LU {assembly / lu:5.2f}"
-        f"  LU/GEMM {lu / gemm:5.2f}  GEMM {2e-9 * size**3 / gemm:5.0f} Gflop/s"
+        f"{problem.name:22s} N = {size:6d}  assembly {assembly:7.3f} s  LU {lu:7.3f} s"
+        f"  assembly/LU {assembly / lu:5.2f}  LU/GEMM {lu / gemm:5.2f}  GEMM {2e-9 * size**3 / gemm:5.0f} Gflop/s"
         f"  memory/(matrix and right sides) {peak / own:5.2f}"
     )
 
