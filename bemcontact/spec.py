@@ -5,16 +5,16 @@ YAML is read as its version 1.2 has it: ``2e6`` is a number, ``no`` and ``on`` a
 
 import os
 import re
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import yaml
 
+from bemcontact.document import Document, Finding, Mark, Place, one_line_each
 from bemcontact.errors import Complaint, Path, ProblemError, SpecError
 from bemcontact.problem import Problem
-from bemcontact.problem.key_path import existing_path, parsed_path, with_entry
-from bemcontact.problem.stated import KeyComplaint, described
+from bemcontact.problem.key_path import existing_path, parsed_path
+from bemcontact.problem.stated import described, number_hint
 from bemcontact.text_file import place_after, text_of
 
 _REQUIRED = ", ".join(key for key, item in Problem.model_fields.items() if item.is_required())
@@ -87,11 +87,27 @@ def loads(text: str, name: str = "<string>", overrides: Sequence[str] = ()) -> P
     SpecError
         A line ``name:line:column: key.path: message`` for each complaint.
     """
-    document = _parsed(text, name)
-    _check_mapping(document, name)
-    for override in overrides:
-        document = _overridden(document, override)
-    return _stated(document)
+    return _stated(_stages(text, name, overrides))
+
+
+def located(error: ProblemError, path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> SpecError:
+    """Tell where in its file a problem is wrong of which that was found out only after it had been read.
+
+    Parameters
+    ----------
+    error : what was found
+    path, overrides : what the problem was read from, by `load`
+
+    Returns
+    -------
+    SpecError
+        A line ``file:line:column: key.path: message`` for each complaint; ``file: message`` for one about the problem
+        as a whole.
+    """
+    name = os.fspath(path)
+    document = _stages(text_of(path), name, overrides)[-1]
+    whole = [(Mark(0, 0, name), complaint.message) for complaint in error.complaints if not complaint.path]
+    return SpecError(one_line_each([*whole, *(document.located(item) for item in error.complaints if item.path)]))
 
 
 def schema() -> dict[str, Any]:
@@ -100,33 +116,6 @@ def schema() -> dict[str, Any]:
     for definition in (stated, *stated["$defs"].values()):
         definition["description"] = definition["description"].partition("\n\n")[0]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **stated}
-
-
-@dataclass(frozen=True, order=True)
-class _Mark:
-    """A place in a text, or an override; `text` begins the complaint."""
-
-    line: int
-    column: int
-    text: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Place:
-    """Where a complaint about a value points to, and where one about its key does."""
-
-    value: _Mark
-    key: _Mark
-    scalar: bool
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Document:
-    """Plain data, the place of each value by its path, and what was found wrong while reading."""
-
-    data: Any
-    places: dict[Path, _Place]
-    findings: tuple[tuple[_Mark, str], ...] = ()
 
 
 class _Loader(yaml.SafeLoader):
@@ -139,7 +128,16 @@ class _Loader(yaml.SafeLoader):
         return super().resolve(kind, value, implicit)
 
 
-def _parsed(text: str, name: str) -> _Document:
+def _stages(text: str, name: str, overrides: Sequence[str]) -> list[Document]:
+    """Read a text, and make the changes one after the other; the first is the text alone."""
+    stages = [_parsed(text, name)]
+    _check_mapping(stages[0], name)
+    for override in overrides:
+        stages.append(_overridden(stages[-1], override))
+    return stages
+
+
+def _parsed(text: str, name: str) -> Document:
     """Read YAML into plain data with places; `SpecError` if it is not YAML."""
     try:
         loader = _Loader(text)
@@ -156,15 +154,15 @@ def _parsed(text: str, name: str) -> _Document:
         mark = _marked(loader.get_mark(), name)
         raise SpecError(f"{mark.text}: not YAML: an escape that means no character ({error})") from None
     if node is None:
-        return _Document(data=None, places={})
+        return Document(data=None, places={})
     tree = _Tree(name)
     data = tree.value(node, (), None)
-    return _Document(data=data, places=tree.places, findings=tuple(tree.findings))
+    return Document(data=data, places=tree.places, findings=tuple(tree.findings))
 
 
-def _marked(mark: yaml.Mark, name: str) -> _Mark:
+def _marked(mark: yaml.Mark, name: str) -> Mark:
     """Count lines and columns from 1, as editors do."""
-    return _Mark(mark.line + 1, mark.column + 1, f"{name}:{mark.line + 1}:{mark.column + 1}")
+    return Mark(mark.line + 1, mark.column + 1, f"{name}:{mark.line + 1}:{mark.column + 1}")
 
 
 def _not_yaml(error: yaml.MarkedYAMLError, name: str) -> str:
@@ -178,13 +176,24 @@ def _not_yaml(error: yaml.MarkedYAMLError, name: str) -> str:
     return f"{where}: not YAML: {what}{'; ' * bool(hint)}{hint}"
 
 
+def _no_key(node: yaml.Node, before: yaml.Node | None) -> str:
+    """Refuse a key that is no text; in braces it may be what follows the comma in a number."""
+    if not isinstance(node, yaml.ScalarNode):
+        return "a key must be a text, found a list or a mapping; write it in quotes"
+    if isinstance(before, yaml.ScalarNode) and before.end_mark.index + 1 == node.start_mark.index:
+        number = f"{before.value},{node.value}"
+        if hint := number_hint(number):
+            return f"expected a number, found {number}{hint}"
+    return f"a key must be a text, found '{node.value}'; write it in quotes"
+
+
 class _Tree:
     """Walks through the nodes of a document and gathers places and findings."""
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.places: dict[Path, _Place] = {}
-        self.findings: list[tuple[_Mark, str]] = []
+        self.places: dict[Path, Place] = {}
+        self.findings: list[Finding] = []
         self._above: list[yaml.Node] = []
 
     def value(self, node: yaml.Node, path: Path, key: yaml.Node | None) -> Any:
@@ -193,7 +202,7 @@ class _Tree:
         key_mark = self._mark(key) if key else mark
         scalar = isinstance(node, yaml.ScalarNode)
         inline = scalar or (isinstance(node, yaml.CollectionNode) and node.flow_style)
-        self.places[path] = _Place(value=mark if inline else key_mark, key=key_mark, scalar=scalar)
+        self.places[path] = Place(value=mark if inline else key_mark, key=key_mark, scalar=scalar)
         if any(node is above for above in self._above):
             self._find(mark, path, "an alias inside its own anchor has no end; write the value out")
             return None
@@ -227,13 +236,12 @@ class _Tree:
         data: dict[str, Any] = {}
         lines: dict[str, int] = {}
         merged: list[yaml.Node] = []
-        for key, value in node.value:
+        for (_, before), (key, value) in zip([(None, None), *node.value], node.value, strict=False):
             mark = self._mark(key)
             if key.tag == f"{_TAG}merge":
                 merged += value.value if isinstance(value, yaml.SequenceNode) else [value]
             elif key.tag != f"{_TAG}str":
-                found = f"'{key.value}'" if isinstance(key, yaml.ScalarNode) else "a list or a mapping"
-                self._find(mark, path, f"a key must be a text, found {found}; write it in quotes")
+                self._find(mark, path, _no_key(key, before))
             elif key.value in data:
                 message = f"the key stands twice, first in line {lines[key.value]}; keep one"
                 self._find(mark, (*path, key.value), message)
@@ -254,14 +262,14 @@ class _Tree:
             data = {**(more or {}), **data}
         return data
 
-    def _mark(self, node: yaml.Node) -> _Mark:
+    def _mark(self, node: yaml.Node) -> Mark:
         return _marked(node.start_mark, self.name)
 
-    def _find(self, mark: _Mark, path: Path, message: str) -> None:
+    def _find(self, mark: Mark, path: Path, message: str) -> None:
         self.findings.append((mark, str(Complaint(path=path, message=message))))
 
 
-def _overridden(document: _Document, override: str) -> _Document:
+def _overridden(document: Document, override: str) -> Document:
     """Replace or add one value, as ``key.path=value`` says."""
     start = f"--set {override}"
     keys, equals, text = override.partition("=")
@@ -271,59 +279,51 @@ def _overridden(document: _Document, override: str) -> _Document:
         path = existing_path(document.data, parsed_path(keys.strip()))
     except ProblemError as error:
         raise SpecError("\n".join(f"{start}: {complaint}" for complaint in error.complaints)) from None
-    mark = _Mark(0, 0, start)
     try:
         entry = _parsed(text, start)
     except SpecError as error:
         raise SpecError(f"{start}: {str(error).removeprefix(start).partition(': ')[2]}") from None
-    kept = {other: place for other, place in document.places.items() if other[: len(path)] != path}
-    added = {
-        (*path, *below): _Place(value=mark, key=mark, scalar=place.scalar) for below, place in entry.places.items()
-    }
-    return _Document(
-        data=with_entry(document.data, path, entry.data),
-        places={**kept, **added},
-        findings=(*document.findings, *((mark, message) for _, message in entry.findings)),
-    )
+    return document.changed(path, entry, Mark(0, 0, start))
 
 
-def _stated(document: _Document) -> Problem:
-    """Make the problem, or gather all complaints in the order of the text."""
-    found = [*document.findings]
+def _stated(stages: Sequence[Document]) -> Problem:
+    """Make the problem of the last stage, or gather all complaints in the order of the text."""
+    document = stages[-1]
     try:
         problem = Problem(**document.data)
+    except ProblemError:
+        raise SpecError(one_line_each([*document.findings, *_found(stages)])) from None
+    if document.findings:
+        raise SpecError(one_line_each(document.findings))
+    return problem
+
+
+def _found(stages: Sequence[Document]) -> Iterator[Finding]:
+    """Place the complaints about the last stage; those that came with an override are complaints about it."""
+    blamed: dict[Complaint, Mark | None] = {}
+    for document in stages:
+        blamed = {complaint: blamed.get(complaint, document.change) for complaint in _complaints(document)}
+    for complaint, override in blamed.items():
+        place, message = stages[-1].located(complaint)
+        yield override or place, message
+
+
+def _complaints(document: Document) -> tuple[Complaint, ...]:
+    """List what is wrong with the problem that a document states."""
+    try:
+        Problem(**document.data)
     except ProblemError as error:
-        found += [_located(complaint, document.places) for complaint in error.complaints]
-    else:
-        if not found:
-            return problem
-    raise SpecError(_lines(found))
+        return error.complaints
+    return ()
 
 
-def _located(complaint: Complaint, places: dict[Path, _Place]) -> tuple[_Mark, str]:
-    """Find the place of a complaint, or of the nearest thing above that stands in the text."""
-    path = complaint.path
-    while path not in places:
-        path = path[:-1]
-    place = places[path]
-    if place.scalar:  # its entries exist in the model only: a number that is a field, a name that is a list of one
-        complaint = replace(complaint, path=path)
-    is_key = isinstance(complaint, KeyComplaint) and path == complaint.path
-    return (place.key if is_key else place.value), str(complaint)
-
-
-def _check_mapping(document: _Document, name: str) -> None:
+def _check_mapping(document: Document, name: str) -> None:
     """Refuse a document that is empty, or no mapping."""
     if isinstance(document.data, dict):
         return
     needs = f"a spec is a mapping with at least {_REQUIRED}"
     if document.findings:
-        raise SpecError(_lines(document.findings))
+        raise SpecError(one_line_each(document.findings))
     if document.data is None:
         raise SpecError(f"{name}:1:1: there is nothing in it; {needs}")
     raise SpecError(f"{document.places[()].value.text}: {needs}; found {described(document.data)}")
-
-
-def _lines(findings: Iterable[tuple[_Mark, str]]) -> str:
-    """Write findings in the order of the text, a line each."""
-    return "\n".join(f"{mark.text}: {message}" for mark, message in sorted(findings))

@@ -7,6 +7,9 @@ from pathlib import Path
 
 from bemcontact.errors import SpecError
 
+_CONTROL_BYTES = frozenset(range(32)) - frozenset(b"\t\n\f\r\x1b")
+"""Bytes that stand in no text, whatever its encoding, unless its characters have two bytes."""
+
 
 def text_of(path: str | os.PathLike[str]) -> str:
     """Read a file as text.
@@ -57,6 +60,8 @@ def _decoded(content: bytes, name: str) -> str:
     try:
         return content.decode(encoding)
     except UnicodeDecodeError as error:
+        if _CONTROL_BYTES.intersection(content):
+            raise SpecError(f"{name}: is not a text file; name one that an editor shows as text") from None
         place = place_after(content[: error.start].decode(encoding, errors="replace"), name)
         message = f"byte 0x{content[error.start]:02x} is no {label} text; save the file as UTF-8"
         raise SpecError(f"{place}: {message}") from None

@@ -5,10 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+import yaml
+from jsonschema import Draft202012Validator
 
 import bemcontact.spec
-from bemcontact.errors import SpecError
+from bemcontact.errors import Complaint, ProblemError, SpecError, dotted
 
+MODEL = Path(__file__).parents[1] / "models" / "cylinder_on_plane.yaml"
 SPEC = """\
 name: block on a plane
 units: {length: cm, force: kN}
@@ -77,6 +80,26 @@ BROKEN = {
         "material.poisson_ratio",
         ("'0,3'", "decimal sign is a point"),
     ),
+    "comma between thousands": Broken(
+        "young_modulus: 1e3",
+        "young_modulus: 1,210,000",
+        "4:18",
+        "material.young_modulus",
+        ("write 1210000 without a comma between thousands",),
+    ),
+    "comma between thousands, or decimal comma": Broken(
+        "young_modulus: 1e3",
+        "young_modulus: 210,000",
+        "4:18",
+        "material.young_modulus",
+        ("write 210000 without a comma", "or 210.000 if the comma is the decimal sign"),
+    ),
+    "comma between thousands in braces": Broken(
+        "top: {pressure: 5}", "top: {pressure: 5,000}", "23:21", "conditions.top", ("found 5,000; write 5000 without",)
+    ),
+    "decimal comma in braces": Broken(
+        "top: {pressure: 5}", "top: {pressure: 0,5}", "23:21", "conditions.top", ("found 0,5; the decimal sign",)
+    ),
     "true as a number": Broken(
         "young_modulus: 1e3", "young_modulus: true", "4:18", "material.young_modulus", ("a number", "found true")
     ),
@@ -128,8 +151,14 @@ BROKEN = {
     "name that is no text": Broken(
         "name: left", "name: 7", "19:14", "boundary.outer[3].name", ("expected a text", "found 7", "'7' in quotes")
     ),
+    "edge that is no text": Broken(
+        "edges: bottom", "edges: 1", "27:12", "contact_zones.foot.edges", ("found 1", "write '1' in quotes")
+    ),
     "name that no key path can hold": Broken(
         "name: bore", "name: bore.1", "21:16", "boundary.holes[0][0].name", ("must not contain .", "'bore.1'")
+    ),
+    "angles in radians": Broken(
+        "angles: [360, 0]", "angles: [6.2832, 0]", "21:73", "boundary.holes[0][0].angles", ("open", "are in degrees")
     ),
     "open loop": Broken(
         "{name: left, elements: 2}",
@@ -338,6 +367,19 @@ def test_all_mistakes_of_a_file_are_reported_in_order():
     ]
 
 
+def test_unknown_edge_is_reported_beside_mistakes_in_keys():
+    text = SPEC.replace("edges: bottom", "edges: botom").replace("poisson_ratio: .3", "poison_ratio: .3")
+    text = text.replace("kind: plane, point", "kind: plane, pont").replace("boundary:", "boundry:")
+    text = text.replace("{name: left, elements: 2}", "{name: left, elments: 2}")
+    assert [line.split(": ")[:3] for line in complaint_lines(text)] == [
+        ["block.yaml:5:3", "material.poison_ratio", "unknown key 'poison_ratio'; did you mean 'poisson_ratio'?"],
+        ["block.yaml:6:1", "boundry", "unknown key 'boundry'; did you mean 'boundary'?"],
+        ["block.yaml:19:20", "boundry.outer[3].elments", "unknown key 'elments'; did you mean 'elements'?"],
+        ["block.yaml:27:12", "contact_zones.foot.edges", "unknown edge 'botom'; did you mean 'bottom'?"],
+        ["block.yaml:28:28", "contact_zones.foot.surface.pont", "unknown key 'pont'; did you mean 'point'?"],
+    ]
+
+
 @pytest.mark.parametrize(
     ("written", "value"),
     [
@@ -401,6 +443,10 @@ def test_later_override_wins():
         ("name.first=3", "name: has no entry first, it is the text 'block on a plane'"),
         ("material.young_modulus=[1", "not YAML: "),
         ("conditions.top={pressure: 1, pressure: 2}", "the key stands twice"),
+        ("conditions.topp.pressure=3", "conditions.topp: unknown edge 'topp'; did you mean 'top'?"),
+        ("conditions.top.pressure=", "conditions.top: it states nothing"),
+        ("conditions.left.traction.x=1", "conditions.left: both displacement and traction are given along x"),
+        ("contact_zones.foot.edges=top", "conditions.top: edge 'top' is in the contact zone 'foot'"),
     ],
 )
 def test_mistake_in_an_override_points_to_it(override, words):
@@ -408,6 +454,31 @@ def test_mistake_in_an_override_points_to_it(override, words):
     assert len(lines) == 1
     assert lines[0].startswith(f"--set {override}: ")
     assert words in lines[0]
+
+
+def test_only_what_came_with_an_override_is_its_fault():
+    text = SPEC.replace("young_modulus: 1e3", "young_modulus: 0")
+    lines = complaint_lines(text, ["mesh.refine=2", "conditions.top.pressure=", "material.poisson_ratio=0.2"])
+    assert [line.split(": ")[:2] for line in lines] == [
+        ["--set conditions.top.pressure=", "conditions.top"],
+        ["block.yaml:4:18", "material.young_modulus"],
+    ]
+
+
+def test_what_is_found_out_later_is_located_in_the_file(tmp_path):
+    path = tmp_path / "block.yaml"
+    path.write_text(SPEC, encoding="utf-8")
+    complaints = [
+        Complaint(path=("conditions", "left", "displacement", "x"), message="conflicts with its neighbour"),
+        Complaint(path=("conditions", "right"), message="conflicts too"),
+        Complaint(path=(), message="nothing holds the body"),
+    ]
+    error = bemcontact.spec.located(ProblemError(complaints), path, ["conditions.right={pressure: 1}"])
+    assert str(error).splitlines() == [
+        "--set conditions.right={pressure: 1}: conditions.right: conflicts too",
+        f"{path}: nothing holds the body",
+        f"{path}:24:28: conditions.left.displacement.x: conflicts with its neighbour",
+    ]
 
 
 def test_file_is_read_in_the_encodings_of_editors(tmp_path):
@@ -424,6 +495,14 @@ def test_file_in_another_encoding_is_refused_at_its_byte(tmp_path):
     with pytest.raises(SpecError) as caught:
         bemcontact.spec.load(path)
     assert str(caught.value) == f"{path}:2:9: byte 0xf6 is no UTF-8 text; save the file as UTF-8"
+
+
+def test_file_that_is_no_text_is_refused_as_such(tmp_path):
+    path = tmp_path / "picture.png"
+    path.write_bytes(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")
+    with pytest.raises(SpecError) as caught:
+        bemcontact.spec.load(path)
+    assert str(caught.value) == f"{path}: is not a text file; name one that an editor shows as text"
 
 
 def test_missing_file_is_refused_with_the_name_of_a_similar_one(tmp_path):
@@ -443,18 +522,62 @@ def test_schema_describes_the_keys_and_both_forms_of_a_field():
     schema = bemcontact.spec.schema()
     assert schema["$schema"] == "https://json-schema.org/draft/2020-12/schema"
     assert set(schema["required"]) == {"name", "material", "boundary", "contact_zones"}
-    forms = schema["$defs"]["Field"]["anyOf"]
-    assert [form["type"] for form in forms] == ["number", "object"]
-    assert "kind" in schema["$defs"]["Arc"]["required"]
-    assert "kind" not in schema["$defs"]["Line"]["required"]
+    assert schema["$defs"]["Field"]["type"] == ["number", "object"]
     assert all(item["description"] for item in schema["properties"].values())
     json.dumps(schema)
 
 
+def as_seen_by_an_editor(text):
+    """What JSON Schema says of a spec: path and message of each error."""
+    schema = bemcontact.spec.schema()
+    Draft202012Validator.check_schema(schema)
+    errors = Draft202012Validator(schema).iter_errors(yaml.load(text, yaml.SafeLoader))
+    return [(dotted(tuple(error.absolute_path)), error.message) for error in errors]
+
+
+def keys_within(data):
+    """All keys of nested mappings and lists."""
+    for value in data.values() if isinstance(data, dict) else data if isinstance(data, list) else ():
+        yield from keys_within(value)
+    if isinstance(data, dict):
+        yield from data
+
+
+def test_limits_are_keywords_of_json_schema_and_not_of_pydantic():
+    assert {"gt", "ge", "lt", "le"}.isdisjoint(keys_within(bemcontact.spec.schema()))
+
+
+def test_schema_takes_what_is_right():
+    assert as_seen_by_an_editor(SPEC.replace("1e3", "1.0e+3")) == []
+    assert as_seen_by_an_editor(MODEL.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "message"),
+    [
+        ("1e3", "-210.0e+3", "material.young_modulus", "-210000.0 is less than or equal to the minimum of 0"),
+        ("poisson_ratio: .3", "poisson_ratio: 0.6", "material.poisson_ratio", "greater than the maximum of 0.5"),
+        ("ratio: 3", "ratio: 0.3", "boundary.outer[2].grading", "is not valid"),
+        ("{name: left, elements: 2}", "{name: left}", "boundary.outer[3]", "'elements' is a required property"),
+        ("elements: 8}", "elements: 0}", "boundary.holes[0][0].elements", "0 is less than the minimum of 1"),
+        ("radius: 0.25", "radius: 0.25, knots: 2", "boundary.holes[0][0]", "('knots' was unexpected)"),
+        ("kind: arc", "kind: ark", "boundary.holes[0][0].kind", "'ark' is not one of ['line', 'arc', 'ellipse']"),
+        ("kind: plane, ", "", "contact_zones.foot.surface", "'kind' is a required property"),
+        ("normal: [0, 1]", "normal: 1", "contact_zones.foot.surface.normal", "1 is not of type 'array'"),
+        ("edges: bottom", "edges: []", "contact_zones.foot.edges", "[] should be non-empty"),
+        (SPEC[SPEC.index("contact_zones:") :], "contact_zones: {}\n", "contact_zones", "{} should be non-empty"),
+    ],
+)
+def test_schema_refuses_what_is_wrong_in_words_that_fit(old, new, path, message):
+    assert SPEC.count(old) == 1
+    [(found, words)] = as_seen_by_an_editor(SPEC.replace(old, new).replace(": 1e3", ": 1.0e+3"))
+    assert found == path
+    assert message in words
+
+
 def test_model_of_the_paper_fits_on_a_page():
-    path = Path(__file__).parents[1] / "models" / "cylinder_on_plane.yaml"
-    lines = path.read_text(encoding="utf-8").splitlines()
-    problem = bemcontact.spec.load(path)
+    lines = MODEL.read_text(encoding="utf-8").splitlines()
+    problem = bemcontact.spec.load(MODEL)
     assert len(lines) <= 30
     assert 4 * problem.mesh.refine * sum(edge.elements for edge in problem.boundary.edges) <= 260
     assert "2.7685" in problem.description

@@ -2,11 +2,12 @@
 
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import AxisFields, Condition, Field
+from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import Arc, EllipseArc, Grading, Line
 from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
-from bemcontact.problem.problem import ContactZone, MeshDensity, Problem, Units
+from bemcontact.problem.problem import MeshDensity, Problem, Units
 from bemcontact.problem.rigid_surface import Circle, Closest, Plane, Polyline
 
 __all__ = [

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
-from math import dist
+from math import dist, pi
 from typing import Self
 
 import numpy as np
@@ -10,7 +10,7 @@ from pydantic import model_validator
 
 from bemcontact.errors import Complaint, Path, ProblemError, dotted
 from bemcontact.problem.curves import CircularArc, Edge
-from bemcontact.problem.geometry import AnyEdge, Arc, StatedLoop
+from bemcontact.problem.geometry import AnyEdge, Arc, Line, StatedLoop
 from bemcontact.problem.loops import loop_complaints
 from bemcontact.problem.stated import Point, Stated, validation_error
 
@@ -120,7 +120,15 @@ def _gap(edge: AnyEdge, before: AnyEdge, start: Point, end: Point) -> str:
     way_out = "leave the start out to join them" if edge.states_points() else "correct one of them"
     if not edge.states_points() and before.states_points():
         way_out = f"leave the end of '{before.name}' out to join them"
-    return f"the loop is open: {where}, {dist(start, end):.6g} away; {way_out}"
+    suspects = dict.fromkeys(f"'{item.name}'" for item in (before, edge) if _maybe_in_radians(item))
+    hint = f"; angles are in degrees: are those of {' and '.join(suspects)} in radians?" if suspects else ""
+    return f"the loop is open: {where}, {dist(start, end):.6g} away; {way_out}{hint}"
+
+
+def _maybe_in_radians(edge: AnyEdge) -> bool:
+    """Tell whether angles are so close together that they would be at most a full turn (rounded) in radians."""
+    angles = None if isinstance(edge, Line) else edge.angles
+    return angles is not None and abs(angles[1] - angles[0]) <= 2.01 * pi
 
 
 def _start_key(edge: AnyEdge) -> Path:

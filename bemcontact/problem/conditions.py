@@ -45,10 +45,8 @@ class Field(Stated):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        """Allow both forms in the JSON Schema."""
-        polynomial = handler.resolve_ref_schema(handler(schema))
-        description = polynomial.pop("description", "")
-        return {"description": description, "anyOf": [{"type": "number"}, {**polynomial, "minProperties": 1}]}
+        """Allow both forms in the JSON Schema; what it says of keys concerns mappings only."""
+        return {**handler.resolve_ref_schema(handler(schema)), "type": ["number", "object"], "minProperties": 1}
 
     def at(self, points: Array) -> Array:
         """Values (k,) at points (k, 2) [L]."""

@@ -1,6 +1,6 @@
-"""Checks of the parts of a problem against each other: names that must exist, and geometry that must fit."""
+"""Checks of the geometry of a problem as a whole: the mesh on its curves, and the rigid surfaces beside them."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import degrees, radians
 
@@ -8,10 +8,10 @@ import numpy as np
 
 from bemcontact.errors import Complaint, Path
 from bemcontact.problem.boundary import Boundary
+from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.rigid_surface import Circle, Plane, Polyline
-from bemcontact.problem.stated import KeyComplaint, unknown_word
 
 LARGEST_TURNING = radians(60)
 """Largest angle by which a quadratic element may turn: beyond it the element strays visibly from its arc."""
@@ -20,67 +20,31 @@ ALONG = 0.5
 """Cosine between two normals above which they point the same way, for an edge that should face its surface."""
 
 
-def name_complaints(
-    edges: Sequence[str], conditions: Iterable[str], zones: Mapping[str, Sequence[str]]
-) -> list[Complaint]:
-    """Check that conditions and contact zones refer to edges that there are, and share none.
-
-    Parameters
-    ----------
-    edges : names of all edges
-    conditions : names of the edges with a condition
-    zones : names of the edges of each contact zone
-    """
-    complaints: list[Complaint] = []
-    for name in conditions:
-        if name not in edges:
-            complaints.append(KeyComplaint(path=("conditions", name), message=unknown_word("edge", name, edges)))
-    zone_of: dict[str, str] = {}
-    for zone, members in zones.items():
-        for i, name in enumerate(members):
-            path = ("contact_zones", zone, "edges", i)
-            if name not in edges:
-                complaints.append(Complaint(path=path, message=unknown_word("edge", name, edges)))
-            elif name in zone_of:
-                complaints.append(Complaint(path=path, message=_twice(name, zone_of[name], zone)))
-            zone_of.setdefault(name, zone)
-    for name in conditions:
-        if name in zone_of:
-            message = f"edge '{name}' is in the contact zone '{zone_of[name]}' and can carry no condition; remove one"
-            complaints.append(KeyComplaint(path=("conditions", name), message=message))
-    return complaints
-
-
-def _twice(edge: str, first: str, second: str) -> str:
-    if first == second:
-        return f"edge '{edge}' is listed twice in the zone; list it once"
-    return f"edge '{edge}' is in the contact zone '{first}' already; an edge can touch one surface only"
-
-
-def mesh_complaints(boundary: Boundary, refine: int) -> list[Complaint]:
+def mesh_complaints(boundary: Boundary, path: Path, refine: int) -> list[Complaint]:
     """Check that elements are neither too many for a dense matrix, nor too few for the curves.
 
     Parameters
     ----------
     boundary : with the elements of each edge
+    path : path of keys to it
     refine : number of parts into which each of them is cut
     """
     total = refine * sum(edge.elements for edge in boundary.edges)
     if total > MOST_ELEMENTS:
         message = f"{total} elements are more than a dense matrix can hold; take at most {MOST_ELEMENTS}"
-        return [Complaint(path=("mesh", "refine") if refine > 1 else ("boundary",), message=message)]
+        return [Complaint(path=("mesh", "refine") if refine > 1 else path, message=message)]
     return [
-        Complaint(path=(*path, "elements"), message=_turns_too_much(edge, refine))
-        for edge, path in _placed_edges(boundary)
+        Complaint(path=(*path, *place, "elements"), message=_turns_too_much(edge, refine))
+        for edge, place in _placed_edges(boundary)
         if edge.turning(refine) > LARGEST_TURNING * (1 + 1e-9)
     ]
 
 
 def _placed_edges(boundary: Boundary) -> Iterator[tuple[Edge, Path]]:
-    """List all edges with their paths in the problem."""
+    """List all edges with their paths in the boundary."""
     for path, loop in zip(boundary.loop_paths, boundary.loops, strict=True):
         for i, edge in enumerate(loop):
-            yield edge, ("boundary", *path, i)
+            yield edge, (*path, i)
 
 
 def _turns_too_much(edge: Edge, refine: int) -> str:
@@ -93,24 +57,21 @@ def _turns_too_much(edge: Edge, refine: int) -> str:
     return f"{found}, more than {limit}; give it more elements, and grade them towards the bend"
 
 
-def facing_complaints(
-    boundary: Boundary, zones: Mapping[str, tuple[Plane | Circle | Polyline, Sequence[str]]]
-) -> list[Complaint]:
+def facing_complaints(boundary: Boundary, zones: Mapping[Path, ContactZone]) -> list[Complaint]:
     """Check that the normal of each rigid surface points into the body, where they are closest to each other.
 
     Parameters
     ----------
     boundary : with the edges of the zones
-    zones : surface and names of the edges of each contact zone
+    zones : contact zones by their path of keys
     """
     edges = {edge.name: edge for edge in boundary.edges}
     complaints = []
-    for zone, (surface, names) in zones.items():
-        facing = [_facing(edges[name], surface) for name in names]
-        _, cosine, name = min((*closest, name) for closest, name in zip(facing, names, strict=True))
+    for path, zone in zones.items():
+        facing = [_facing(edges[name], zone.surface) for name in zone.edges]
+        _, cosine, name = min((*closest, name) for closest, name in zip(facing, zone.edges, strict=True))
         if cosine > ALONG:
-            message = _faces_away(name, surface)
-            complaints.append(Complaint(path=("contact_zones", zone, "surface"), message=message))
+            complaints.append(Complaint(path=(*path, "surface"), message=_faces_away(name, zone.surface)))
     return complaints
 
 

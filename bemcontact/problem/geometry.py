@@ -3,19 +3,20 @@
 from math import atan2, hypot, pi, radians
 from typing import Annotated, Literal, Self
 
-from pydantic import ConfigDict, Field, WrapValidator, model_validator
+from pydantic import Field, Strict, model_validator
 
 from bemcontact.problem.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
+from bemcontact.problem.kinds import ByKind
 from bemcontact.problem.stated import (
     Count,
     Flag,
     Name,
     Number,
     Point,
+    Positive,
+    PositivePair,
     Stated,
     complain,
-    kind_chooser,
-    require_kind,
 )
 
 MOST_ELEMENTS = 10_000
@@ -25,7 +26,7 @@ MOST_ELEMENTS = 10_000
 class Grading(Stated):
     """Element lengths in geometric progression along an edge."""
 
-    ratio: Annotated[Number, Field(ge=1, le=1e6)]
+    ratio: Annotated[float, Strict(), Field(ge=1, le=1e6)]
     """The ratio of the longest element to the shortest, such as 4."""
     towards: Literal["start", "end", "both"]
     """The end of the edge with the short elements: start, end, or both."""
@@ -68,13 +69,11 @@ class Line(_StatedEdge):
 class Arc(_StatedEdge):
     """A circular edge: a centre, and either radius and angles, or start, end and the sense of rotation."""
 
-    model_config = ConfigDict(json_schema_extra=require_kind)
-
     kind: Literal["arc"] = "arc"
     """The shape of the edge: line, arc, or ellipse."""
     center: Point
     """The centre [x, y]."""
-    radius: Annotated[Number, Field(gt=0)] | None = None
+    radius: Positive | None = None
     """The radius, together with angles."""
     angles: Point | None = None
     """Polar angles [first, last] in degrees; anticlockwise if the last is the larger."""
@@ -126,13 +125,11 @@ class Arc(_StatedEdge):
 class EllipseArc(_StatedEdge):
     """A piece of an ellipse: center + rotated (a cos t, b sin t)."""
 
-    model_config = ConfigDict(json_schema_extra=require_kind)
-
     kind: Literal["ellipse"] = "ellipse"
     """The shape of the edge: line, arc, or ellipse."""
     center: Point
     """The centre [x, y]."""
-    semi_axes: Point
+    semi_axes: PositivePair
     """The half-lengths [a, b] of the axes."""
     angles: Point
     """Eccentric angles t [first, last] in degrees; anticlockwise if the last is the larger."""
@@ -141,9 +138,7 @@ class EllipseArc(_StatedEdge):
 
     @model_validator(mode="after")
     def _sound(self) -> Self:
-        """Refuse axes without length and more than a full turn."""
-        if min(self.semi_axes) <= 0:
-            raise complain(f"semi_axes must be greater than 0, found {list(self.semi_axes)}")
+        """Refuse more than a full turn."""
         _check_sweep(self.angles)
         return self
 
@@ -185,8 +180,7 @@ def _moved(center: Point, distance: float, direction: Point) -> Point:
 AnyEdge = Line | Arc | EllipseArc
 """An edge of any shape."""
 StatedEdge = Annotated[
-    AnyEdge,
-    WrapValidator(kind_chooser("an edge", {"line": Line, "arc": Arc, "ellipse": EllipseArc}, default="line")),
+    AnyEdge, ByKind(what="an edge", kinds={"line": Line, "arc": Arc, "ellipse": EllipseArc}, default="line")
 ]
 """An edge as it is written; `kind` says which."""
 StatedLoop = Annotated[tuple[StatedEdge, ...], Field(min_length=1)]

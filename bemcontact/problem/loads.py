@@ -1,20 +1,17 @@
 """Loads that act on the volume of the body."""
 
-from typing import Annotated, Self
+from typing import Self
 
-from pydantic import Field as Limits
 from pydantic import model_validator
 
 from bemcontact.problem.conditions import Field
-from bemcontact.problem.stated import Number, Point, Stated, complain
-
-Density = Annotated[Number, Limits(gt=0)]
+from bemcontact.problem.stated import Number, Point, Positive, Stated, complain
 
 
 class Gravity(Stated):
     """Weight: the body force density · acceleration."""
 
-    density: Density
+    density: Positive
     """Mass per volume."""
     acceleration: Point
     """Acceleration of gravity [gx, gy], such as [0, -9.81]."""
@@ -23,7 +20,7 @@ class Gravity(Stated):
 class Centrifugal(Stated):
     """The body force density · angular_velocity² · (x - center) of a body that rotates steadily."""
 
-    density: Density
+    density: Positive
     """Mass per volume."""
     angular_velocity: Number
     """Angular velocity in radians per time."""

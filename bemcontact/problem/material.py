@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from bemcontact.problem.stated import Number, Stated, complain
+from bemcontact.problem.stated import Number, Positive, Stated, complain
 
 
 class Material(Stated):
@@ -16,7 +16,7 @@ class Material(Stated):
         If E <= 0, or ν is outside the range for which the plane body has a unique equilibrium.
     """
 
-    young_modulus: Annotated[Number, Field(gt=0)]
+    young_modulus: Positive
     """The modulus of elasticity E (Young's modulus), in the unit of stress."""
     state: Literal["plane_strain", "plane_stress"] = "plane_strain"
     """The plane state: plane_strain (thick body, the default) or plane_stress (thin sheet)."""

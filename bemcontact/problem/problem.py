@@ -1,29 +1,28 @@
 """A problem: a body, what acts on it, and the rigid surfaces that it may touch. Checked as a whole when it is made."""
 
-from collections.abc import Mapping
 from typing import Annotated, Any, Self
 
 from pydantic import (
     AfterValidator,
-    BeforeValidator,
     Field,
     ModelWrapValidatorHandler,
     ValidationError,
-    WithJsonSchema,
     model_validator,
 )
 
 from bemcontact.errors import Complaint, ProblemError
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition
-from bemcontact.problem.cross_checks import facing_complaints, mesh_complaints, name_complaints
+from bemcontact.problem.contact_zone import ContactZone
+from bemcontact.problem.cross_checks import facing_complaints, mesh_complaints
 from bemcontact.problem.curves import Edge
+from bemcontact.problem.edge_names import name_complaints
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.key_path import existing_path, parsed_path, with_entry
 from bemcontact.problem.loads import Loads
 from bemcontact.problem.material import Material
-from bemcontact.problem.rigid_surface import RigidSurface
 from bemcontact.problem.stated import Count, Name, Stated, Text, complain, complaints_of, unknown_word
+from bemcontact.problem.written import Written
 
 
 class Units(Stated):
@@ -47,33 +46,11 @@ class MeshDensity(Stated):
     """The number of equal parts into which each stated element is cut."""
 
 
-def _as_list(value: Any) -> Any:
-    """Read one edge name as a list of one."""
-    return (value,) if isinstance(value, str) else value
-
-
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
     """Refuse a problem without contact."""
     if not value:
         raise complain("there is no contact zone; name at least one, with its edges and its surface")
     return value
-
-
-EdgeNames = Annotated[
-    tuple[Name, ...],
-    Field(min_length=1),
-    BeforeValidator(_as_list),
-    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}),
-]
-
-
-class ContactZone(Stated):
-    """Edges of the body that may touch a rigid surface without friction."""
-
-    edges: EdgeNames
-    """The name of the edge, or a list of names of edges, that may touch the surface."""
-    surface: RigidSurface
-    """The rigid surface."""
 
 
 class Problem(Stated):
@@ -100,7 +77,9 @@ class Problem(Stated):
     """What is prescribed on edges, by edge name; an edge that is left out is free of traction."""
     loads: Loads = Loads()
     """Loads on the volume of the body."""
-    contact_zones: Annotated[dict[Name, ContactZone], AfterValidator(_not_empty)]
+    contact_zones: Annotated[
+        dict[Name, ContactZone], AfterValidator(_not_empty), Field(json_schema_extra={"minProperties": 1})
+    ]
     """The contact zones by name, each with edges and the rigid surface that they may touch."""
     mesh: MeshDensity = MeshDensity()
     """Refinement of the mesh."""
@@ -108,21 +87,30 @@ class Problem(Stated):
     @model_validator(mode="wrap")
     @classmethod
     def _consistent(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        """Check the parts against each other too; of a problem with ill parts, the names at least."""
+        """Check the parts against each other too; where some are wrong, those that are right."""
         try:
-            problem = handler(data)
+            made = handler(data)
+            written, complaints = Written((), made), []
         except ValidationError as error:
-            raise ProblemError([*complaints_of(error), *_name_complaints_of_raw(data)]) from None
-        zones = problem.contact_zones
-        names = [edge.name for edge in problem.boundary.edges]
-        complaints = name_complaints(names, problem.conditions, {name: zone.edges for name, zone in zones.items()})
-        complaints += mesh_complaints(problem.boundary, problem.mesh.refine)
-        if not complaints:
-            facing = {name: (zone.surface, zone.edges) for name, zone in zones.items()}
-            complaints = facing_complaints(problem.boundary, facing)
-        if complaints:
+            made, written, complaints = None, Written((), data), complaints_of(error)
+        complaints += cls._mismatches(written)
+        if made is None or complaints:
             raise ProblemError(complaints)
-        return problem
+        return made
+
+    @classmethod
+    def _mismatches(cls, written: Written) -> list[Complaint]:
+        """Find parts that do not fit each other: names first, then the geometry of what is right by itself."""
+        boundary, conditions, zones = (written.below(cls, key) for key in ("boundary", "conditions", "contact_zones"))
+        complaints = name_complaints(boundary, conditions, zones)
+        body = boundary.read(Boundary)
+        if body is None:
+            return complaints
+        if not complaints:  # an edge that is in a zone by mistake need not face the surface
+            surfaces = {zone.path: made for zone in zones.each() if (made := zone.read(ContactZone))}
+            complaints += facing_complaints(body, surfaces)
+        density = written.below(cls, "mesh").read(MeshDensity) or MeshDensity()
+        return [*complaints, *mesh_complaints(body, boundary.path, density.refine)]
 
     @property
     def size(self) -> float:
@@ -162,37 +150,3 @@ class Problem(Stated):
         """
         data = self.model_dump()
         return type(self)(**with_entry(data, existing_path(data, parsed_path(path)), value))
-
-
-def _names_of(raw: Any) -> dict[str, tuple[str, ...]]:
-    """Read the edges of each contact zone that is in order by itself."""
-    zones = {}
-    for name, zone in raw.items() if isinstance(raw, Mapping) else ():
-        try:
-            zones[str(name)] = ContactZone.model_validate(zone).edges
-        except ValidationError:
-            continue
-    return zones
-
-
-def _edge_names_of(raw: Any) -> list[str] | None:
-    """Read the names of all edges from a boundary that may be wrong otherwise; None if some are not to be had."""
-    if isinstance(raw, Boundary):
-        return [edge.name for edge in raw.edges]
-    try:
-        edges = [edge for loop in (raw["outer"], *raw.get("holes", ())) for edge in loop]
-        names = [edge["name"] if isinstance(edge, Mapping) else edge.name for edge in edges]
-    except (AttributeError, KeyError, TypeError):
-        return None
-    return names if all(isinstance(name, str) for name in names) else None
-
-
-def _name_complaints_of_raw(data: Any) -> list[Complaint]:
-    """Check the names in a problem that has ill parts, as far as they can be read."""
-    if not isinstance(data, Mapping):
-        return []
-    names, conditions = _edge_names_of(data.get("boundary")), data.get("conditions")
-    if names is None:
-        return []
-    conditions = conditions if isinstance(conditions, Mapping) else {}
-    return name_complaints(names, conditions, _names_of(data.get("contact_zones")))

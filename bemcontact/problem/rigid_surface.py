@@ -5,9 +5,10 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, Field, WrapValidator, model_validator
+from pydantic import Field, model_validator
 
-from bemcontact.problem.stated import Number, Point, Stated, complain, kind_chooser, require_kind
+from bemcontact.problem.kinds import ByKind
+from bemcontact.problem.stated import Point, Positive, Stated, complain
 
 Array = NDArray[np.float64]
 
@@ -24,8 +25,6 @@ class Closest(NamedTuple):
 
 class Plane(Stated):
     """A straight surface without end."""
-
-    model_config = ConfigDict(json_schema_extra=require_kind)
 
     kind: Literal["plane"] = "plane"
     """The shape of the surface: plane, circle, or polyline."""
@@ -57,13 +56,11 @@ class Plane(Stated):
 class Circle(Stated):
     """A rigid disc with the body outside, or a rigid hole with the body inside."""
 
-    model_config = ConfigDict(json_schema_extra=require_kind)
-
     kind: Literal["circle"] = "circle"
     """The shape of the surface: plane, circle, or polyline."""
     center: Point
     """The centre [x, y]."""
-    radius: Annotated[Number, Field(gt=0)]
+    radius: Positive
     """The radius."""
     body: Literal["outside", "inside"]
     """The side of the circle on which the body is: outside or inside."""
@@ -77,8 +74,6 @@ class Circle(Stated):
 
 class Polyline(Stated):
     """Straight pieces from point to point, the first and the last going on without end, the body on the left."""
-
-    model_config = ConfigDict(json_schema_extra=require_kind)
 
     kind: Literal["polyline"] = "polyline"
     """The shape of the surface: plane, circle, or polyline."""
@@ -130,6 +125,6 @@ def _unit(vectors: Array, otherwise: Array) -> Array:
 
 RigidSurface = Annotated[
     Plane | Circle | Polyline,
-    WrapValidator(kind_chooser("a rigid surface", {"plane": Plane, "circle": Circle, "polyline": Polyline})),
+    ByKind(what="a rigid surface", kinds={"plane": Plane, "circle": Circle, "polyline": Polyline}),
 ]
 """The surface that the body may touch; `kind` says which."""

@@ -1,7 +1,8 @@
 """What all parts of a problem share: they are frozen, strict about types, and complain in the user's words."""
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Annotated, Any, Self
 
@@ -10,10 +11,10 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Field,
     ModelWrapValidatorHandler,
     Strict,
     ValidationError,
-    ValidatorFunctionWrapHandler,
     model_validator,
 )
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
@@ -22,16 +23,12 @@ from bemcontact.errors import Complaint, ProblemError
 
 LARGEST_NUMBER = 1e100
 """Its square is still a floating-point number, so that lengths and areas can be computed."""
+_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
 
 
 @dataclass(frozen=True, kw_only=True)
 class KeyComplaint(Complaint):
     """A complaint about the last key of the path itself, not about what stands there."""
-
-
-def require_kind(schema: dict[str, Any]) -> None:
-    """Say in a JSON Schema that `kind` must be given, although the class knows its own."""
-    schema["required"] = ["kind", *schema.get("required", ())]
 
 
 def complain(message: str) -> PydanticCustomError:
@@ -99,51 +96,8 @@ class Stated(BaseModel):
         try:
             return handler(data)
         except ValidationError as error:
-            raise validation_error(cls.__name__, _worded(cls, error)) from None
-
-
-def kind_chooser(
-    what: str, kinds: Mapping[str, type[Stated]], *, default: str | None = None
-) -> Callable[[Any, ValidatorFunctionWrapHandler], Stated]:
-    """Make the validator of a union whose member the key `kind` chooses.
-
-    Parameters
-    ----------
-    what : the thing in words, with its article
-    kinds : the members by their kind
-    default : kind of a mapping that says none
-    """
-
-    def chosen(value: Any, _: ValidatorFunctionWrapHandler) -> Stated:
-        if isinstance(value, tuple(kinds.values())):
-            return value
-        if not isinstance(value, Mapping):
-            raise complain(f"expected a mapping that describes {what}, found {described(value)}")
-        kind = value.get("kind", default)
-        if kind not in kinds if isinstance(kind, str) else True:
-            raise validation_error(what, [_unknown_kind(what, kinds, value)])
-        if "kind" not in value and (better := _fitting(kinds, kind, value)):
-            message = f"missing; {what} with these keys needs {' or '.join(f'kind: {word}' for word in better)}"
-            raise validation_error(what, [Complaint(path=("kind",), message=message)])
-        return kinds[kind].model_validate(value)
-
-    return chosen
-
-
-def _unknown_kind(what: str, kinds: Mapping[str, type[Stated]], value: Mapping[str, Any]) -> Complaint:
-    """Complain about a kind that is missing, no text, or none of those that there are."""
-    if "kind" not in value:
-        return Complaint(path=("kind",), message=f"missing; say which kind {what} is: {_listed(kinds)}")
-    if not isinstance(kind := value["kind"], str):
-        return Complaint(path=("kind",), message=f"expected one of {_listed(kinds)}; found {described(kind)}")
-    return Complaint(path=("kind",), message=unknown_word("kind", kind, kinds))
-
-
-def _fitting(kinds: Mapping[str, type[Stated]], kind: str, value: Mapping[str, Any]) -> list[str]:
-    """Find the kinds that know all keys of a mapping, if the default kind does not."""
-    if set(value) <= set(kinds[kind].model_fields):
-        return []
-    return [word for word, member in kinds.items() if set(value) <= set(member.model_fields)]
+            complaints = [*_worded(cls, error), *_below_misspelled(cls, data, handler)]
+            raise validation_error(cls.__name__, complaints) from None
 
 
 def _finite(value: float) -> float:
@@ -171,6 +125,9 @@ def _usable_name(value: str) -> str:
 
 Number = Annotated[float, Strict(), AfterValidator(_finite)]
 """A finite number; text that looks like one is refused."""
+# Limits stand before the function: behind it, pydantic would not write them into the JSON Schema as its keywords.
+Positive = Annotated[float, Strict(), Field(gt=0), AfterValidator(_finite)]
+"""A finite number greater than 0."""
 Count = Annotated[int, Strict()]
 """A whole number."""
 Flag = Annotated[bool, Strict()]
@@ -181,6 +138,8 @@ Name = Annotated[Text, AfterValidator(_usable_name)]
 """The name of an edge or a zone."""
 Point = Annotated[tuple[Number, Number], BeforeValidator(_pair)]
 """Coordinates or components (x, y)."""
+PositivePair = Annotated[tuple[Positive, Positive], BeforeValidator(_pair)]
+"""Two numbers greater than 0."""
 
 
 def _worded(cls: type[BaseModel], error: ValidationError) -> list[Complaint]:
@@ -193,6 +152,25 @@ def _worded(cls: type[BaseModel], error: ValidationError) -> list[Complaint]:
         for item in details
         if not (item["type"] == "missing" and item["loc"][-1] in meant) and not _is_consequence(item)
     ]
+
+
+def misspelled(cls: type[BaseModel], data: Mapping[str, Any]) -> dict[str, str]:
+    """Find unknown keys that probably mean a known one which is not given: found key -> meant key."""
+    unknown = [key for key in data if isinstance(key, str) and key not in cls.model_fields]
+    meant = {key: near_by(key, cls.model_fields) for key in unknown}
+    return {key: word for key, word in meant.items() if word is not None and word not in data}
+
+
+def _below_misspelled(cls: type[BaseModel], data: Any, handler: ModelWrapValidatorHandler[Any]) -> list[Complaint]:
+    """Complain about what stands under misspelled keys too, as if they were spelled right."""
+    found = []
+    for key, meant in misspelled(cls, data).items() if isinstance(data, Mapping) else ():
+        try:
+            handler({meant: data[key]})
+        except ValidationError as error:
+            complaints = [complaint for complaint in _worded(cls, error) if complaint.path[:1] == (meant,)]
+            found += [replace(complaint, path=(key, *complaint.path[1:])) for complaint in complaints]
+    return found
 
 
 def _is_consequence(details: ErrorDetails) -> bool:
@@ -226,7 +204,7 @@ def _translated(cls: type[BaseModel], details: ErrorDetails) -> Complaint:
     if details["type"] == "missing":
         return Complaint(path=path, message=_missing(cls, str(path[-1])))
     if details["type"] == "model_type":
-        expected = f"a mapping with the keys {_listed(cls.model_fields)}"
+        expected = f"a mapping with the keys {listed(cls.model_fields)}"
         return Complaint(path=path, message=f"expected {expected}; found {described(details['input'])}")
     return Complaint(path=path, message=_wrong_value(details))
 
@@ -235,7 +213,7 @@ def unknown_word(what: str, word: str, known: Iterable[str]) -> str:
     """Say that a word is unknown, which one was probably meant, and which there are."""
     known = tuple(known)
     meant = near_by(word, known)
-    hint = f"did you mean '{meant}'?" if meant else f"there is: {_listed(known)}"
+    hint = f"did you mean '{meant}'?" if meant else f"there is: {listed(known)}"
     return f"unknown {what} {_shortened(repr(word))}; {hint}"
 
 
@@ -251,17 +229,16 @@ def _wrong_value(details: ErrorDetails) -> str:
     was = f"found {described(found)}"
     match details["type"]:
         case "float_type" | "float_parsing":
-            return f"expected a number, {was}{_number_hint(found)}"
+            return f"expected a number, {was}{number_hint(found)}"
         case "finite_number":
             return f"expected a finite number, {was}"
         case "int_type" | "int_from_float" | "int_parsing" | "int_parsing_size":
-            return f"expected a whole number, {was}{_number_hint(found)}"
+            return f"expected a whole number, {was}{number_hint(found)}"
         case "bool_type":
             return f"expected true or false, {was}"
         case "string_type":
-            return f"expected a text, {was}" + (
-                f"; write '{found}' in quotes" if isinstance(found, int | float) else ""
-            )
+            quotes = f"; write '{described(found)}' in quotes" if isinstance(found, int | float) else ""
+            return f"expected a text, {was}{quotes}"
         case "greater_than":
             return f"must be greater than {context['gt']:g}, {was}"
         case "greater_than_equal":
@@ -281,19 +258,21 @@ def _wrong_value(details: ErrorDetails) -> str:
     return f"{details['msg'][0].lower()}{details['msg'][1:]}, {was}"
 
 
-def _number_hint(found: object) -> str:
-    """Say how a number in a text is to be written, if it is one."""
+def number_hint(found: object) -> str:
+    """Say how a number in a text is to be written, if it is one; nothing otherwise."""
     if not isinstance(found, str):
         return ""
+    if _THOUSANDS.fullmatch(found):
+        otherwise = f", or {found.replace(',', '.')} if the comma is the decimal sign" * (found.count(",") == 1)
+        return f"; write {found.replace(',', '')} without a comma between thousands{otherwise}"
     try:
-        float(found)
+        float(found.replace(",", ".", 1))
     except ValueError:
-        comma = found.count(",") == 1 and _number_hint(found.replace(",", "."))
-        return "; the decimal sign is a point" if comma else ""
-    return "; leave the quotes out"
+        return ""
+    return "; the decimal sign is a point" if "," in found else "; leave the quotes out"
 
 
-def _listed(words: Iterable[str]) -> str:
+def listed(words: Iterable[str]) -> str:
     """Write words as an enumeration."""
     return ", ".join(words) or "none"
 

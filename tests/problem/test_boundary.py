@@ -97,6 +97,17 @@ def test_all_gaps_are_reported_and_the_line_next_to_an_arc_may_give_way():
     assert second.startswith("outer[1].start: the loop is open: 'down' starts at (0, 0.9), but 'arc'")
 
 
+def test_open_loop_asks_for_degrees_if_the_angles_may_be_radians():
+    lines = [Line(name="down", start=(0, 1), end=(0, 0), elements=1), Line(name="along", end=(1, 0), elements=1)]
+    arc = Arc(name="arc", center=(0, 0), radius=1, angles=(0, 1.5708), elements=2)
+    [complaint] = complaints(outer=[arc, *lines])
+    assert complaint.endswith("; angles are in degrees: are those of 'arc' in radians?")
+    full = complaints(outer=square(), holes=[[circle(angles=(6.2832, 0))]])
+    assert full[0].endswith("are those of 'bore' in radians?")
+    degrees = arc.model_copy(update={"angles": (0, 80)})
+    assert "radians" not in complaints(outer=[degrees, *lines])[0]
+
+
 def test_gap_within_round_off_is_closed():
     lines = square()
     lines[0] = Line(name="bottom", start=(0, 0), end=(2 + 1e-10, 0), elements=2)

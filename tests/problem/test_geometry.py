@@ -25,7 +25,8 @@ def test_arc_is_given_in_one_form(keys, words):
 
 
 @pytest.mark.parametrize(
-    ("axes", "angles", "words"), [((1, 0), (0, 90), "semi_axes must be"), ((2, 1), (0, 361), "at most 360 degrees")]
+    ("axes", "angles", "words"),
+    [((1, 0), (0, 90), r"semi_axes\[1\]: must be greater than 0"), ((2, 1), (0, 361), "at most 360 degrees")],
 )
 def test_ellipse_has_axes_and_at_most_one_turn(axes, angles, words):
     with pytest.raises(ProblemError, match=words):

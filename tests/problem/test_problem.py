@@ -83,6 +83,32 @@ def test_names_are_checked_in_a_problem_that_has_ill_parts():
     assert second == "conditions.tip: unknown edge 'tip'; did you mean 'top'?"
 
 
+def test_geometry_is_checked_in_a_problem_that_has_ill_parts():
+    boundary = parts()["boundary"].model_dump()
+    boundary["outer"][0]["elements"] = 1
+    zone = {"edges": "arc", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, -1]}}
+    found = complaints(boundary=boundary, material={"young_modulus": 1}, contact_zones={"foot": zone})
+    assert [line.partition(": ")[0] for line in found] == [
+        "material.poisson_ratio",
+        "contact_zones.foot.surface",
+        "boundary.outer[0].elements",
+    ]
+
+
+def test_what_stands_under_a_misspelled_key_is_checked():
+    data = parts()
+    data["materiel"] = {"young_modulus": 0, "poison_ratio": 0.7}
+    del data["material"]
+    with pytest.raises(ProblemError) as caught:
+        Problem(**data)
+    assert [str(complaint) for complaint in caught.value.complaints] == [
+        "materiel: unknown key 'materiel'; did you mean 'material'?",
+        "materiel.young_modulus: must be greater than 0, found 0",
+        "materiel.poison_ratio: unknown key 'poison_ratio'; did you mean 'poisson_ratio'?",
+        "materiel.poison_ratio: must be greater than -1 and less than 0.5, found 0.7",
+    ]
+
+
 def test_zone_lists_an_edge_once():
     zone = ContactZone(edges=["arc", "arc"], surface=Plane(point=(0, 0), normal=(0, 1)))
     assert complaints(contact_zones={"foot": zone}) == [
