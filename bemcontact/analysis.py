@@ -271,8 +271,8 @@ def _notes_of(solution: ContactSolution) -> Iterator[str]:
     carrying = int((solution.pressure > 0).sum())
     if 0 < carrying < FEW_POINTS:
         yield (
-            f"pressure acts on {carrying} contact point{'s' if carrying > 1 else ''} only: the mesh is too coarse there "
-            "to tell how it is distributed; shorten the elements"
+            f"pressure acts on {carrying} contact point{'s' if carrying > 1 else ''} only: the mesh is too coarse "
+            "there to tell how it is distributed; shorten the elements"
         )
 
 

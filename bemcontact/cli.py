@@ -4,11 +4,14 @@ The numerical half of the package is imported inside the commands, so that ``bem
 """
 
 import json
+import re
+import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from importlib.metadata import PackageNotFoundError, version
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -67,6 +70,8 @@ FigureOption = Annotated[
 
 def main() -> None:
     """Run the command line; the entry point of the ``bemcontact`` program."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # a terminal that lacks a letter shows a question mark
     app()
 
 
@@ -113,7 +118,7 @@ def check(
       bemcontact check models/cylinder_on_plane.yaml --figure problem.svg
       bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
     """
-    with _told(), _busy("checking"):
+    with _told(spec, overrides), _busy("checking"):
         _claim(spec, {"--figure": figure})
         from bemcontact import spec as spec_file
         from bemcontact.bem.condense import body_of
@@ -124,20 +129,27 @@ def check(
             from bemcontact.report import figures
 
             figures.save(figures.figure_of_problem(body.problem, body.mesh), figure)
-    _show(text.problem_summary(body))
+    with _told(spec):
+        _show(text.problem_summary(body))
 
 
 @app.command()
 def solve(
     spec: SpecArgument,
     formulation: Annotated[Formulation, typer.Option(help="Statement of the contact problem.")] = Formulation.QP3,
-    weights: Annotated[WeightsOption, typer.Option(help="Weights of the objective.")] = WeightsOption.TRIBUTARY,
+    weights: Annotated[
+        WeightsOption, typer.Option(help="Weights of QP3's objective; complementarity has none.")
+    ] = WeightsOption.TRIBUTARY,
     refine: RefineOption = 1,
     overrides: SetOption = None,
     figure: FigureOption = None,
     json_file: Annotated[
         Path | None,
         typer.Option("--json", metavar="FILE", help="Write all results; - for standard output.", show_default=False),
+    ] = None,
+    vtk_file: Annotated[
+        Path | None,
+        typer.Option("--vtk", metavar="FILE", help="Write the boundary; ends in .vtu or .vtk.", show_default=False),
     ] = None,
 ) -> None:
     """Find the contact pressure, judge it, and say it in a short table.
@@ -151,8 +163,9 @@ def solve(
       bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
     """
-    with _told(), _busy("solving"):
-        _claim(spec, {"--figure": figure, "--json": None if json_file == STANDARD_OUTPUT else json_file})
+    with _told(spec, overrides), _busy("solving"):
+        json_claim = None if json_file == STANDARD_OUTPUT else json_file
+        _claim(spec, {"--figure": figure, "--json": json_claim, "--vtk": vtk_file})
         from bemcontact import analysis
         from bemcontact import spec as spec_file
         from bemcontact.report import output, text
@@ -163,15 +176,20 @@ def solve(
             from bemcontact.report import figures
 
             figures.save(figures.figure_of_result(result), figure)
+        if vtk_file:
+            from bemcontact.report import vtk
+
+            vtk.save(result, vtk_file)
         if json_file and json_file != STANDARD_OUTPUT:
             with output.whole_file(json_file) as temporary:
                 temporary.write_text(result.to_json(indent=2) + "\n", encoding="utf-8")
-    if json_file == STANDARD_OUTPUT:
-        typer.echo(result.to_json(indent=2))
-        if not result.certified:
-            _tell("not certified: ", text.verdict(result))
-    else:
-        _show(text.result_summary(result))
+    with _told(spec):
+        if json_file == STANDARD_OUTPUT:
+            _write_json(result.to_json(indent=2))
+            if not result.certified:
+                _tell("not certified: ", text.verdict(result))
+        else:
+            _show(text.result_summary(result))
     raise typer.Exit(0 if result.certified else UNCERTIFIED)
 
 
@@ -190,7 +208,7 @@ def condense(
       bemcontact condense models/cylinder_on_plane.yaml --out cylinder.npz
       bemcontact condense models/cylinder_on_plane.yaml --refine 2 --out fine.npz
     """
-    with _told(), _busy("condensing"):
+    with _told(spec, overrides), _busy("condensing"):
         _claim(spec, {"--out": out})
         from bemcontact import analysis
         from bemcontact import spec as spec_file
@@ -199,7 +217,8 @@ def condense(
         condensed = analysis.condense(spec_file.load(spec, overrides or ()).refined(refine))
         with output.whole_file(out) as temporary:
             condensed.save(temporary)
-    _show(text.condensed_summary(condensed, out))
+    with _told(spec):
+        _show(text.condensed_summary(condensed, out))
 
 
 @app.command()
@@ -212,7 +231,7 @@ def schema() -> None:
     with _told():
         from bemcontact import spec
 
-        typer.echo(json.dumps(spec.schema(), indent=2, ensure_ascii=False))
+        _write_json(json.dumps(spec.schema(), indent=2, ensure_ascii=False))
 
 
 def _claim(spec: Path, outputs: Mapping[str, Path | None]) -> None:
@@ -231,14 +250,31 @@ def _claim(spec: Path, outputs: Mapping[str, Path | None]) -> None:
                 from bemcontact.report import figures
 
                 figures.ensure_known_format(path)
+            if option == "--vtk":
+                from bemcontact.report import vtk
+
+                vtk.ensure_possible(path)
+            if option == "--out" and path.suffix != ".npz":
+                raise ValueError(f"{path}: a condensed problem is written as .npz; end the file name in it")
             output.ensure_writable(path)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, ModuleNotFoundError) as error:
             _refuse(f"{option}: {error}")
 
 
 def _show(renderable: RenderableType) -> None:
-    """Print for a person on standard output."""
-    Console(highlight=False, markup=False, emoji=False).print(renderable)
+    """Print for a person on standard output; into a file or a pipe, without blanks at the ends of lines."""
+    console = Console(highlight=False, markup=False, emoji=False)
+    if console.is_terminal:
+        console.print(renderable)
+        return
+    with console.capture() as captured:
+        console.print(renderable)
+    print(re.sub(r" +$", "", captured.get(), flags=re.MULTILINE), end="", flush=True)
+
+
+def _write_json(text: str) -> None:
+    """Write JSON on standard output, which is UTF-8 whatever the terminal speaks."""
+    typer.echo(text.encode() + b"\n", nl=False)
 
 
 def _tell(head: str, message: str, style: str = "bold red") -> None:
@@ -256,18 +292,25 @@ def _refuse(message: str) -> NoReturn:
 
 
 @contextmanager
-def _told() -> Iterator[None]:
-    """Turn all that can go wrong on purpose into one text on standard error and an exit status."""
+def _told(spec: Path | None = None, overrides: Sequence[str] | None = None) -> Iterator[None]:
+    """Turn all that can go wrong on purpose into one text on standard error, about a spec, and an exit status."""
     try:
         yield
     except KeyboardInterrupt:
         raise typer.Exit(INTERRUPTED) from None
     except BrokenPipeError:
         raise
-    except (SpecError, ProblemError, NotConvexError) as error:
+    except (SpecError, NotConvexError) as error:
         _refuse(str(error))
+    except ProblemError as error:
+        if spec is None:
+            _refuse(str(error))
+        from bemcontact import spec as spec_file
+
+        _refuse(str(spec_file.located(error, spec, overrides or ())))
     except OSError as error:
-        _refuse(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+        where = error.filename or ("standard output" if error.errno else "")
+        _refuse(f"{where}: {error.strerror}" if where else str(error))
     except BemContactError as error:
         _tell("failed: ", str(error))
         raise typer.Exit(UNCERTIFIED) from error

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import TextIO
 
 import pytest
 from typer.testing import CliRunner, Result
@@ -52,14 +53,22 @@ def run(*arguments: object) -> Result:
     return CliRunner().invoke(cli.app, [str(argument) for argument in arguments])
 
 
-def in_a_process(*arguments: object, code: str = "", **environment: str) -> subprocess.CompletedProcess[str]:
+def in_a_process(
+    *arguments: object,
+    code: str = "",
+    stdout: TextIO | int = subprocess.PIPE,
+    encoding: str | None = None,
+    **environment: str,
+) -> subprocess.CompletedProcess[str]:
     """Run the program as a user's shell would; `code` is run after it."""
     script = f"import sys\nfrom bemcontact.cli import main\ntry:\n    main()\nfinally:\n    {code or 'pass'}"
     root = str(Path(bemcontact.__file__).parents[1])
     return subprocess.run(
         [sys.executable, "-c", script, *map(str, arguments)],
-        capture_output=True,
+        stdout=stdout,
+        stderr=subprocess.PIPE,
         text=True,
+        encoding=encoding or environment.get("PYTHONIOENCODING"),
         timeout=120,
         check=False,
         env={**os.environ, "PYTHONPATH": root, "OPENBLAS_NUM_THREADS": "1", **environment},
@@ -357,6 +366,55 @@ def test_a_closed_pipe_is_no_traceback(block: Path):
             env={**os.environ, "PYTHONPATH": root},
         )
         assert answer.stderr == ""
+
+
+@pytest.mark.parametrize("command", ["check BLOCK", "solve BLOCK", "solve BLOCK --json -", "schema"])
+def test_a_full_disk_is_one_clear_error(block: Path, command: str):
+    with Path("/dev/full").open("w") as full:
+        answer = in_a_process(*command.replace("BLOCK", str(block)).split(), stdout=full)
+    assert (answer.returncode, answer.stderr) == (2, "error: standard output: No space left on device\n")
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+@pytest.mark.parametrize("command", ["check", "solve"])
+def test_a_terminal_that_lacks_letters_gets_the_others(block: Path, command: str, encoding: str):
+    block.write_text(BLOCK.replace("block on a table", "блок on a table"), encoding="utf-8")
+    answer = in_a_process(command, block, PYTHONIOENCODING=encoding, PYTHONUTF8="0")
+    assert (answer.returncode, answer.stderr) == (0, "")
+    assert answer.stdout.startswith("???? on a table\n")
+
+
+def test_json_is_utf_8_whatever_the_terminal_speaks(block: Path):
+    answer = in_a_process("solve", block, "--json", "-", PYTHONIOENCODING="cp1252", encoding="utf-8")
+    assert json.loads(answer.stdout)["name"] == "block on a table"
+    schema = in_a_process("schema", PYTHONIOENCODING="cp1252", encoding="utf-8")
+    assert json.loads(schema.stdout) == spec.schema()
+
+
+@pytest.mark.parametrize("command", ["check", "solve"])
+def test_no_line_ends_in_blanks(block: Path, command: str):
+    lines = run(command, block).stdout.splitlines()
+    assert lines == [line.rstrip() for line in lines]
+
+
+@pytest.mark.parametrize("command", ["check", "solve", "condense"])
+@pytest.mark.parametrize(
+    ("old", "new"), [("pressure: 3", "pressure: -3"), ("left: {displacement: {x: 0}}", "left: {traction: {x: 1}}")]
+)
+def test_errors_found_after_reading_name_the_file(block: Path, command: str, old: str, new: str):
+    block.write_text(BLOCK.replace(old, new), encoding="utf-8")
+    options = ("--out", block.with_suffix(".npz")) if command == "condense" else ()
+    answer = run(command, block, *options)
+    assert answer.exit_code == 2
+    assert answer.stderr.startswith(f"error: {block}: ")
+
+
+def test_a_condensed_problem_is_written_as_npz_only(block: Path):
+    assert_refused(run("condense", block, "--out", block.with_suffix(".txt")), r"--out: .*end the file name")
+
+
+def test_weights_are_said_to_mean_nothing_to_complementarity():
+    assert "complementarity has none" in " ".join(run("solve", "--help").stdout.replace("│", " ").split())
 
 
 def test_no_color_is_respected(block: Path):

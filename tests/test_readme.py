@@ -1,5 +1,6 @@
 """What the README shows is run: its spec, its library call, its commands, and its test command in CI."""
 
+import math
 import re
 import shlex
 from pathlib import Path
@@ -21,7 +22,7 @@ def shown(language: str) -> list[str]:
 
 @pytest.fixture
 def block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    (spec,) = shown("yaml")
+    spec = shown("yaml")[0]
     path = tmp_path / "block.yaml"
     path.write_text(spec, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
@@ -33,6 +34,25 @@ def test_the_spec_has_the_answer_that_is_told(block: Path):
     assert result.certified
     assert result.solution.pressure == pytest.approx(3.0, rel=1e-9)  # uniform compression
     assert result.footprint.resultant.force == pytest.approx((0.0, 3.0 * 40.0), abs=1e-8)
+
+
+def test_the_ring_hangs_on_its_pin():
+    """What pulls is 25 on half of the outline, which is quadratic elements of the circle."""
+    result = bemcontact.solve(bemcontact.loads(shown("yaml")[1]))
+    assert result.certified
+    force_x, force_y = result.footprint.resultant.force
+    assert force_x == pytest.approx(0.0, abs=1e-6)
+    assert force_y == pytest.approx(25 * 20 * math.pi, rel=1e-5)
+    (interval,) = result.footprint.intervals
+    assert interval.start == pytest.approx((-interval.end[0], interval.end[1]), rel=1e-6)  # the crown of the pin
+    assert interval.start[1] > 0
+
+
+def test_all_keys_of_the_json_are_listed(block: Path):
+    rows = re.findall(r"^\| (`.*?`) \|", README[README.index("## JSON") :], flags=re.MULTILINE)
+    listed = {key for row in rows for key in re.findall(r"`(\w+)`", row)}
+    keys = bemcontact.solve(bemcontact.load(block)).to_dict().keys()
+    assert keys <= listed
 
 
 def test_the_library_call_runs(block: Path, capsys: pytest.CaptureFixture[str]):

@@ -7,20 +7,19 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
 from bemcontact.analysis import Result
+from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.bem.condense import Body
 from bemcontact.contact import CondensedContact, Status
 from bemcontact.problem import Circle, Edge, Field, Plane, Polyline, Problem, Units
 
 NEGLIGIBLE = 1e-9
-"""Share of the largest component below which a component of a vector is written as zero."""
-
-FEW = 5
-"""Points with pressure below which a contact is poorly resolved: two quadratic elements."""
+"""Share of the largest component, or of a scale, below which a component of a vector is written as zero."""
 
 
 def number(value: float) -> str:
@@ -28,9 +27,9 @@ def number(value: float) -> str:
     return f"{value:.5g}" if value else "0"
 
 
-def vector(components: tuple[float, float], unit: str = "") -> str:
-    """Write a point or a force: (2.7685, 0.48) cm."""
-    largest = max(map(abs, components))
+def vector(components: tuple[float, float], unit: str = "", *, scale: float = 0.0) -> str:
+    """Write a point or a force: (2.7685, 0.48) cm; what is negligible beside it, or beside the scale, is zero."""
+    largest = max(*map(abs, components), scale)
     x, y = (number(value if abs(value) > NEGLIGIBLE * largest else 0.0) for value in components)
     return with_unit(f"({x}, {y})", unit)
 
@@ -52,9 +51,13 @@ def per_thickness(units: Units) -> str:
 
 def field_on(field: Field, edge: Edge, unit: str = "") -> str:
     """Write the value of a field on an edge, or from where to where it goes: 50.625 kN/cm²; 3 … 5 N/mm²."""
-    values = field.at(edge.points(np.linspace(0, 1, 41)))
+    return with_unit(_range(field.at(edge.points(np.linspace(0, 1, 41)))), unit)
+
+
+def _range(values: NDArray[np.float64]) -> str:
+    """Write a value, or from where to where values (k,) go."""
     low, high = float(values.min()), float(values.max())
-    return with_unit(number(low) if np.isclose(low, high) else f"{number(low)} … {number(high)}", unit)
+    return number(low) if np.isclose(low, high) else f"{number(low)} … {number(high)}"
 
 
 def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
@@ -72,6 +75,18 @@ def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
                 yield f"{symbol}_{axis} = {field_on(field, edge, unit)}"
     if condition.pressure is not None:
         yield f"pressure {field_on(condition.pressure, edge, problem.units.stress)}"
+
+
+def volume_loads(problem: Problem) -> Iterator[str]:
+    """Say what acts on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0)``."""
+    loads = problem.loads
+    if loads.gravity:
+        yield f"gravity {vector(loads.gravity.acceleration)}"
+    if loads.centrifugal:
+        yield f"rotation {number(loads.centrifugal.angular_velocity)} about {vector(loads.centrifugal.center)}"
+    if loads.temperature:
+        points = np.concatenate([edge.polyline() for edge in problem.boundary.edges])
+        yield f"temperature change {_range(loads.temperature.change.at(points))}"
 
 
 def surface_in_words(surface: Plane | Circle | Polyline) -> str:
@@ -108,10 +123,16 @@ def problem_summary(body: Body) -> RenderableType:
     material, units = problem.material, problem.units
     modulus = with_unit(number(material.young_modulus), units.stress)
     facts = _facts()
-    _add(facts, "Material", f"E = {modulus}, ν = {number(material.poisson_ratio)}, {material.state.replace('_', ' ')}")
+    _add(
+        facts,
+        "Material",
+        f"E = {modulus}, Poisson's ratio {number(material.poisson_ratio)}, {material.state.replace('_', ' ')}",
+    )
     _add(facts, "Mesh", f"{len(mesh.elements)} elements, {len(mesh.nodes)} nodes, {len(body.points)} contact points")
     _add(facts, "Degrees of freedom", f"{mesh.degrees_of_freedom}")
-    _add(facts, "Total load", f"{vector(_total_load(body), per_thickness(units))}, reactions not counted")
+    for load in volume_loads(problem):
+        _add(facts, "Volume load", load)
+    _add(facts, "Total load", f"{_total_load(body)}, reactions not counted")
     _add(facts, "Held by conditions", "all rigid motions" if not len(body.motions) else "all but those below")
     for motion in body.seen.describe():
         _add(facts, "Held by contact", motion)
@@ -128,24 +149,21 @@ def result_summary(result: Result) -> RenderableType:
     RenderableType
         For `rich`; no wider than 100 columns where the names are not.
     """
-    found, units = result.footprint, units_of(result.contact)
-    length, stress = units.length, units.stress
+    contact, found, units = result.contact, result.footprint, units_of(result.contact)
     facts = _facts()
     if not found.intervals:
         _add(facts, "Contact", "nowhere")
     for interval in found.intervals:
-        span = f"{vector(interval.start)} to {vector(interval.end, length)}"
-        along = with_unit(number(interval.end_arc - interval.start_arc), length)
-        _add(facts, "Contact", f"{interval.zone}: {span}, {along} long")
+        _add(facts, "Contact", f"{interval.zone}: {_span(contact, interval)}")
     if found.peak:
-        at = vector(found.peak.at, length)
-        _add(facts, "Peak pressure", f"{with_unit(number(found.peak.pressure), stress)} at {at}; per UNDEFORMED length")
-    _add(
-        facts, "Resultant", f"{vector(found.resultant.force, per_thickness(units))}, of the rigid surfaces on the body"
-    )
+        pressure = with_unit(number(found.peak.pressure), units.stress)
+        at = vector(found.peak.at, units.length, scale=_size(contact))
+        _add(facts, "Peak pressure", f"{pressure} at {at}; per UNDEFORMED length")
+    pressed = float(contact.weights @ np.abs(result.solution.pressure))
+    force = vector(found.resultant.force, per_thickness(units), scale=pressed)
+    _add(facts, "Resultant", f"{force}, of the rigid surfaces on the body")
     _add(facts, "Residuals", _residuals(result))
-    _add(facts, "Certificate", _proof(result))
-    for note in (*result.contact.notes, *result.solution.notes, *_coarse(result)):
+    for note in result.notes:
         _add(facts, "Note", note)
     style = "bold green" if result.certified else "bold red"
     word = "certified" if result.certified else "NOT certified"
@@ -209,11 +227,29 @@ def _zone_table(body: Body) -> Table:
     return table
 
 
-def _total_load(body: Body) -> tuple[float, float]:
-    """Resultant of the prescribed tractions and of the body forces."""
-    tractions = np.einsum("ml,mlx->x", body.mesh.tributary, body.values.traction)
-    x, y = tractions + body.particular.force
-    return float(x), float(y)
+def _total_load(body: Body) -> str:
+    """Write the resultant of the prescribed tractions and of the body forces."""
+    tractions = body.mesh.tributary[..., None] * body.values.traction
+    x, y = tractions.sum(axis=(0, 1)) + body.particular.force
+    scale = float(np.hypot(tractions[..., 0], tractions[..., 1]).sum()) + body.particular.magnitude
+    return vector((float(x), float(y)), per_thickness(body.problem.units), scale=scale)
+
+
+def _size(contact: CondensedContact) -> float:
+    """The largest coordinate of a contact point, beside which round-off is written as zero."""
+    return float(np.abs(contact.points).max(initial=0.0))
+
+
+def _span(contact: CondensedContact, interval: ContactInterval) -> str:
+    """Say from where to where there is contact: at one point, along a stretch, or all round a closed zone."""
+    unit, scale = units_of(contact).length, _size(contact)
+    start, end = vector(interval.start, scale=scale), vector(interval.end, unit, scale=scale)
+    length = interval.end_arc - interval.start_arc
+    if length == 0:
+        return f"at the point {end} alone"
+    along = with_unit(number(length), unit)
+    all_round = (np.isfinite(contact.run_length) & np.isclose(contact.run_length, length)).any()
+    return f"all round, {along}" if all_round else f"{start} to {end}, {along} long"
 
 
 def _held(condensed: CondensedContact) -> str:
@@ -221,14 +257,6 @@ def _held(condensed: CondensedContact) -> str:
     if not condensed.free_motions:
         return "all held by conditions"
     return f"held by contact alone: {', '.join(condensed.motion_names)}"
-
-
-def _coarse(result: Result) -> Iterator[str]:
-    """Warn of a mesh that cannot show how the pressure runs, which no certificate of the discrete problem tells."""
-    carrying = int((result.solution.pressure > 0).sum())
-    if 0 < carrying < FEW:
-        points = "1 contact point carries" if carrying == 1 else f"{carrying} contact points carry"
-        yield f"only {points} pressure, so that the peak depends on the mesh; take more elements there"
 
 
 def _residuals(result: Result) -> str:
@@ -244,21 +272,15 @@ def _residuals(result: Result) -> str:
     return ", ".join(f"{name} {value + 0.0:.1e}" for name, value in values.items() if value is not None)
 
 
-def _proof(result: Result) -> str:
-    """Write what kind of certificate there is, and the numbers that it rests on."""
-    certificate = result.certificate
-    parts = [certificate.kind.value]
-    if certificate.relative_error_bound is not None:
-        parts.append(f"pressure within {certificate.relative_error_bound:.1e} of the peak")
-    if certificate.smallest_eigenvalue is not None:
-        parts.append(f"smallest eigenvalue {certificate.smallest_eigenvalue:.1e}")
-    return ", ".join(parts)
-
-
 def _how(result: Result) -> str:
     """Say which statement was solved, by what, on what."""
     solution = result.solution
     polished = ", polished" if solution.polished else ""
     freedom = "" if result.degrees_of_freedom is None else f"{result.degrees_of_freedom} degrees of freedom, "
     size = f"{freedom}{result.contact.size} contact points"
-    return f"{solution.formulation} by {solution.solver}{polished}; {size}, {sum(result.seconds.values()):.2g} s"
+    return f"{solution.formulation} by {solution.solver}{polished}; {size}, {_time(sum(result.seconds.values()))}"
+
+
+def _time(seconds: float) -> str:
+    """Write seconds with two figures, or all before the point."""
+    return f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"

@@ -4,11 +4,14 @@ import dataclasses
 from collections.abc import Iterator
 from pathlib import Path
 
+import matplotlib.image
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.quiver import Quiver
+from matplotlib.text import Annotation
 
 from bemcontact import analysis
 from bemcontact.bem import mesh
@@ -84,7 +87,8 @@ def test_each_edge_is_named_and_no_name_covers_another(problem: Problem):
     figure = figures.figure_of_problem(problem, mesh.build(problem))
     axes = only_axes(figure)
     figure.draw_without_rendering()
-    assert [text.get_text().split("\n")[0] for text in axes.texts] == [edge.name for edge in problem.boundary.edges]
+    names = axes.texts[: len(problem.boundary.edges)]
+    assert [text.get_text().split("\n")[0] for text in names] == [edge.name for edge in problem.boundary.edges]
     boxes = [text.get_window_extent() for text in axes.texts]
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
     assert all(figure.bbox.contains(*box.min) and figure.bbox.contains(*box.max) for box in boxes)
@@ -142,24 +146,138 @@ def test_result_page_has_pressure_gap_and_shape(result: analysis.Result):
     )
 
 
-def test_magnified_gap_is_the_gap_times_the_factor():
-    """Where the body touches, the deformed outline lies on the drawn ground, whatever the factor."""
+def factor_of(axes: Axes) -> float:
+    """Read the stated magnification."""
+    title = axes.get_title(loc="left")
+    return 1.0 if "displacements to scale" in title else float(title.split("× ")[1].split(" ")[0])
+
+
+def grey_lines(axes: Axes) -> list[np.ndarray]:
+    return [np.column_stack(line.get_data()) for line in axes.lines if line.get_color() == "#7d838c"]
+
+
+def test_deformed_outline_is_displaced_by_the_stated_factor(result: analysis.Result):
+    assert result.boundary is not None
+    axes = Figure().add_subplot()
+    figures.draw_deformed(axes, result)
+    elements = [stroke[::4] for stroke in strokes(axes) if len(stroke) == 9]
+    moved = result.boundary.points + factor_of(axes) * result.boundary.displacement
+    assert np.array(elements[len(moved) :]) == pytest.approx(moved, abs=1e-12 * 50)
+
+
+def test_contact_is_marked_on_the_deformed_outline():
+    """The whole floor is in contact: each half of its elements is thick, and its nodes are dotted."""
     result = analysis.solve(block_in_a_corner())
     assert result.boundary is not None
     axes = Figure().add_subplot()
     figures.draw_deformed(axes, result)
-    title = axes.get_title(loc="left")
-    factor = float(title.split("× ")[1].split(";")[0])
-    shape = np.concatenate(
-        [stroke[[0, 4]] for stroke in strokes(axes) if len(stroke) == 9][len(result.boundary.edge) :]
-    )
-    moved = (result.boundary.points + factor * result.boundary.displacement)[:, :2].reshape(-1, 2)
-    assert shape == pytest.approx(moved, abs=1e-12 * 2)
-    floor = result.contact.points[:, 1] == 0
-    touching = floor & (result.solution.pressure > 0)
-    on_bottom = (result.boundary.points[:, :2, 1] == 0).reshape(-1)
-    assert touching[result.contact.zone == 0].all()
-    assert moved[on_bottom, 1] == pytest.approx(0, abs=1e-9)
+    halves = [stroke for stroke in strokes(axes) if len(stroke) == 5]
+    on_floor = [half for half in halves if np.abs(half[:, 1]).max() < 1e-9]
+    assert len(on_floor) == 8  # 4 elements
+    assert np.ptp(np.concatenate(on_floor)[:, 0]) > 1.9
+
+
+def test_rigid_surfaces_stand_only_beside_a_body_to_scale(result: analysis.Result):
+    assert result.boundary is not None
+    shown = []
+    for scale in (1e-3, 1.0, 1e3):
+        state = dataclasses.replace(result.boundary, displacement=scale * result.boundary.displacement)
+        axes = Figure().add_subplot()
+        figures.draw_deformed(axes, dataclasses.replace(result, boundary=state))
+        assert bool(grey_lines(axes)) == (factor_of(axes) == 1) != ("not drawn" in axes.get_title(loc="left"))
+        assert result.problem is not None
+        for line in grey_lines(axes):
+            gaps = [zone.surface.closest(line)[0] for zone in result.problem.contact_zones.values()]
+            assert min(np.abs(gap).max() for gap in gaps) < 1e-9 * 100
+        shown.append(bool(grey_lines(axes)))
+    assert not shown[0]
+    assert shown[-1]
+
+
+def test_round_off_in_the_gap_is_drawn_as_closed():
+    problem = block_in_a_corner().model_dump()
+    problem["contact_zones"].pop("wall")
+    problem["conditions"].pop("right")
+    problem["conditions"]["left"] = {"displacement": {"x": 0}}
+    problem["conditions"]["top"] = {"pressure": 3}
+    problem["loads"] = {}
+    problem["boundary"]["holes"] = []
+    result = analysis.solve(Problem(**problem))  # uniform compression
+    axes = Figure().add_subplot()
+    figures.draw_gap(axes, result)
+    assert [text.get_text() for text in axes.texts] == ["closed everywhere"]
+    assert axes.get_ylim()[1] == result.contact.scales.displacement
+
+
+def test_volume_loads_are_drawn():
+    """An arrow down for the weight, the sense of the rotation, and all in words in the legend."""
+    loads = {
+        "gravity": {"density": 1e-3, "acceleration": [0, -9.81]},
+        "centrifugal": {"density": 1e-3, "angular_velocity": -3, "center": [1, 1]},
+        "temperature": {"expansion": 1e-5, "change": 20},
+    }
+    problem = Problem(**{**block_in_a_corner().model_dump(), "loads": loads})
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    (gravity,) = [text for text in axes.texts if isinstance(text, Annotation)]
+    assert gravity.get_text() == "$g$"
+    (x0, y0), (x1, y1) = gravity.xyann, gravity.xy
+    assert (x1 - x0, np.sign(y1 - y0)) == (pytest.approx(0, abs=1e-9), -1)
+    assert any("circlearrowright" in text.get_text() for text in axes.texts)
+    legend = axes.get_legend()
+    assert legend is not None
+    said = [text.get_text() for text in legend.get_texts()]
+    assert said[-3:] == ["gravity (0, -9.81)", "rotation -3 about (1, 1)", "temperature change 20"]
+
+
+def test_names_stand_on_their_own_side_of_a_slender_body():
+    """A name beyond the far edge of a beam would belong to the wrong one."""
+    problem = beam_over_a_circle()
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    heights = {text.get_text().split("\n")[0]: text.get_position()[1] for text in axes.texts}
+    assert heights["top"] > 0  # the beam lies between 0 and 5
+    assert heights["under"] < 5
+
+
+def test_tractions_along_an_edge_stand_beside_it_one_after_the_other():
+    problem = beam_over_a_circle().model_dump()
+    problem["conditions"]["top"] = {"traction": {"x": 2}}
+    loaded = Problem(**problem)
+    axes = only_axes(figures.figure_of_problem(loaded, mesh.build(loaded)))
+    arrows = next(item for item in axes.collections if isinstance(item, Quiver) and np.ravel(item.U).max() > 0)
+    tails = np.asarray(arrows.get_offsets())
+    assert (tails[:, 1] > 5).all()
+    assert np.abs(np.diff(np.sort(tails[:, 0]))).min() > np.ravel(arrows.U).max()
+
+
+@pytest.mark.parametrize("name", ["long words " * 60, "x" * 900, "方块"])
+def test_long_and_foreign_names_fit(name: str, tmp_path: Path):
+    problem = Problem(**{**block_in_a_corner().model_dump(), "name": name})
+    figures.save(figures.figure_of_problem(problem, mesh.build(problem)), tmp_path / "problem.png")
+    figures.save(figures.figure_of_result(analysis.solve(problem)), tmp_path / "result.png")
+    for path in tmp_path.iterdir():
+        height, width = matplotlib.image.imread(path).shape[:2]
+        assert width < 13 * 160
+        assert height < 10 * 160
+
+
+def test_zones_with_equal_pressures_are_both_seen():
+    """The wall's line is thinner than the floor's and dashed; the legend is above the axes."""
+    axes = Figure().add_subplot()
+    figures.draw_pressure(axes, analysis.solve(block_in_a_corner()))
+    first, second = (line for line in axes.lines if len(line.get_xdata()) > 2)
+    assert first.get_linewidth() > second.get_linewidth()
+    assert (first.get_linestyle(), second.get_linestyle()) == ("-", "--")
+    legend = axes.get_legend()
+    assert legend is not None
+    assert legend.get_window_extent().y0 >= axes.get_window_extent().y1
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_a_figure_written_twice_is_the_same(tmp_path: Path, ending: str):
+    problem = beam_over_a_circle()
+    for name in ("a", "b"):
+        figures.save(figures.figure_of_problem(problem, mesh.build(problem)), tmp_path / f"{name}.{ending}")
+    assert (tmp_path / f"a.{ending}").read_bytes() == (tmp_path / f"b.{ending}").read_bytes()
 
 
 def test_the_largest_displacement_is_magnified_to_be_seen(result: analysis.Result):
@@ -169,8 +287,7 @@ def test_the_largest_displacement_is_magnified_to_be_seen(result: analysis.Resul
         state = dataclasses.replace(result.boundary, displacement=scale * result.boundary.displacement)
         axes = Figure().add_subplot()
         figures.draw_deformed(axes, dataclasses.replace(result, boundary=state))
-        title = axes.get_title(loc="left")
-        factor = 1.0 if "to scale" in title else float(title.split("× ")[1].split(";")[0])
+        factor = factor_of(axes)
         size = np.hypot(*np.ptp(state.points.reshape(-1, 2), axis=0))
         seen = factor * np.hypot(*state.displacement.reshape(-1, 2).T).max() / size
         assert factor == 1 or 0.02 <= seen <= 0.05

@@ -45,6 +45,7 @@ def test_numbers_and_vectors():
     assert text.number(2e-7) == "2e-07"
     assert text.vector((1.0, -1e-15)) == "(1, 0)"
     assert text.vector((0.0, 0.0), "mm") == "(0, 0) mm"
+    assert text.vector((6e-16, 0.0), "mm", scale=1.0) == "(0, 0) mm"
     assert text.with_unit("3", "") == "3"
     assert text.with_unit("0", "mm") == "0"
 
@@ -73,7 +74,7 @@ def test_unit_labels():
 def test_problem_summary_says_what_is_there():
     lines = printed(text.problem_summary(body_of(block()))).splitlines()
     facts = {line[:20].strip(): line[20:].strip() for line in lines if line[18:20] == "  "}
-    assert facts["Material"] == "E = 2.1e+05 N/mm², ν = 0.3, plane strain"
+    assert facts["Material"] == "E = 2.1e+05 N/mm², Poisson's ratio 0.3, plane strain"
     assert facts["Mesh"] == "8 elements, 16 nodes, 5 contact points"
     assert facts["Degrees of freedom"] == "32"
     assert facts["Total load"] == "(0, -120) N/mm, reactions not counted"  # 3 N/mm² on 40 mm
@@ -101,12 +102,50 @@ def test_a_result_that_is_not_certified_says_so(result: analysis.Result):
     assert "NOT certified" in printed(text.result_summary(doubtful))
 
 
-def test_a_contact_of_few_points_is_called_coarse(result: analysis.Result):
-    pressure = np.where(np.arange(result.contact.size) < 2, result.solution.pressure, 0.0)
-    solution = dataclasses.replace(result.solution, pressure=pressure)
-    coarse = printed(text.result_summary(dataclasses.replace(result, solution=solution)))
-    assert "only 2 contact points carry pressure" in coarse
-    assert "only" not in printed(text.result_summary(result)).split("Verdict")[0]
+def test_all_notes_of_a_result_are_printed(result: analysis.Result):
+    noted = dataclasses.replace(result, notes=("the first thing", "the second thing"))
+    notes = [line.split(maxsplit=1)[1] for line in printed(text.result_summary(noted)).splitlines() if "Note" in line]
+    assert [note.strip() for note in notes] == ["the first thing", "the second thing"]
+
+
+def test_contact_at_one_point_and_all_round_is_said_so(result: analysis.Result):
+    """A closed run as long as the interval is in contact all round."""
+    (interval,) = result.footprint.intervals
+    point = dataclasses.replace(interval, start=interval.end, start_arc=interval.end_arc)
+    at_point = dataclasses.replace(result, footprint=dataclasses.replace(result.footprint, intervals=(point,)))
+    assert "foot: at the point (40, 0) mm alone" in printed(text.result_summary(at_point))
+    closed = dataclasses.replace(result.contact, run_length=np.array([40.0]))
+    answer = printed(text.result_summary(dataclasses.replace(result, contact=closed)))
+    assert "foot: all round, 40 mm" in answer
+
+
+def test_round_off_in_a_resultant_is_zero(result: analysis.Result):
+    """A resultant of 1e-13 is nothing beside the 120 N/mm that press."""
+    resultant = dataclasses.replace(result.footprint.resultant, force=(1e-13, -2e-13))
+    balanced = dataclasses.replace(result, footprint=dataclasses.replace(result.footprint, resultant=resultant))
+    assert "(0, 0) N/mm, of the rigid surfaces" in printed(text.result_summary(balanced))
+
+
+def test_each_number_of_the_certificate_is_said_once(result: analysis.Result):
+    answer = " ".join(printed(text.result_summary(result)).split())
+    assert answer.count("eigenvalue") == 1
+    assert answer.count("of the peak") == 1
+
+
+@pytest.mark.parametrize(("seconds", "written"), [(0.04, "0.04 s"), (9.94, "9.9 s"), (104.0, "104 s")])
+def test_seconds_have_no_exponent(result: analysis.Result, seconds: float, written: str):
+    assert printed(text.result_summary(dataclasses.replace(result, seconds={"all": seconds}))).count(written) == 1
+
+
+def test_volume_loads_are_listed():
+    gravity, spin = {"density": 1, "acceleration": [0, -9.81]}, {"density": 1, "angular_velocity": 5, "center": [1, 30]}
+    heat = {"expansion": 1e-5, "change": {"constant": 20, "y": 0.5}}  # y from 0 to 20
+    loads = {"gravity": gravity, "centrifugal": spin, "temperature": heat}
+    problem = Problem(**{**block().model_dump(), "loads": loads})
+    lines = ["gravity (0, -9.81)", "rotation 5 about (1, 30)", "temperature change 20 … 30"]
+    assert [*text.volume_loads(problem)] == lines
+    answer = printed(text.problem_summary(body_of(problem)))
+    assert all(line in answer for line in lines)
 
 
 def test_no_contact_is_said(result: analysis.Result):
@@ -124,7 +163,7 @@ def test_tables_keep_within_the_width_and_100_columns(result: analysis.Result, w
 
 def test_markup_in_a_name_stays_text(result: analysis.Result):
     name = "a [red]block[/red] [/b]"
-    renamed = dataclasses.replace(result, contact=dataclasses.replace(result.contact, name=name, notes=("[/i] note",)))
+    renamed = dataclasses.replace(result, contact=dataclasses.replace(result.contact, name=name), notes=("[/i] note",))
     answer = printed(text.result_summary(renamed))
     assert name in answer
     assert "[/i] note" in answer

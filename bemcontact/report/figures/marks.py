@@ -7,12 +7,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon
+from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from bemcontact.report.placement import Box, centred, least_crowded
 
 Array = NDArray[np.float64]
+
+SYMBOL_REACH = 18.0
+"""Half the length of a symbolic arrow, in pixels of the page."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,39 +75,110 @@ def draw_arrows(axes: Axes, tails: Array, vectors: Array, colour: str) -> Array:
     return np.concatenate([tails + share * vectors for share in (0.0, 0.35, 0.7, 1.0)])
 
 
-def place_names(axes: Axes, names: Sequence[Name], drawn: Array) -> None:
-    """Write names where they cover least of each other and of what is drawn (k, 2).
+def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence[Array]) -> list[Box]:
+    """Write names where they cover least of each other and of what is drawn, on their own side of the boundary.
 
     The limits and the place of the axes on the page must be settled before.
+
+    Parameters
+    ----------
+    axes : to write into
+    names : in the order of writing
+    drawn : (k, 2) points of what is drawn
+    loops : (j, 2) closed polygons of the boundary, which no name may be beyond
+
+    Returns
+    -------
+    list of Box
+        What the names cover on the page.
     """
-    page = axes.get_figure(root=True)
-    if page is not None:
-        page.draw_without_rendering()
-    to_page = axes.transData
+    _settle(axes)
+    to_page, frame = axes.transData, axes.get_window_extent()
     ink = to_page.transform(drawn)
+    walls = [Path(to_page.transform(loop)) for loop in loops]
     taken: list[Box] = []
-    frame = axes.get_window_extent()
     for name in names:
         text = axes.text(0, 0, name.text, color=name.colour, fontsize=9, ha="center", va="center", zorder=6)
         extent = text.get_window_extent()
         size = (extent.width + 4, extent.height + 2)
-        centers = _places(to_page.transform(name.anchors), name.directions, size)
-        inside = centers[_holds(frame, centers, size)]
-        centers = inside if len(inside) else centers
+        anchors, centers = _places(to_page.transform(name.anchors), name.directions, size)
+        near_side = ~_beyond(walls, anchors, centers)
+        both = near_side & _holds(frame, centers, size)
+        for admissible in (both, near_side):
+            if admissible.any():
+                centers = centers[admissible]
+                break
         chosen = centers[least_crowded(centers, size, taken, ink)]
         taken.append(centred(chosen, size))
-        x, y = to_page.inverted().transform(chosen)
-        text.set_position((float(x), float(y)))
+        text.set_position(_to_data(axes, chosen))
+    return taken
 
 
-def _places(anchors: Array, directions: Array, size: tuple[float, float]) -> Array:
-    """Centres (c, 2) for a text of this size beside each anchor, near ones first."""
+def place_arrow(axes: Axes, symbol: str, vector: Array, drawn: Array, taken: Sequence[Box]) -> None:
+    """Draw an arrow of fixed length along a vector (2,), its symbol at the tail, where it covers least.
+
+    Parameters
+    ----------
+    axes : to draw into; limits and place must be settled
+    symbol : such as ``$g$``
+    vector : only its direction counts
+    drawn : (k, 2) points of what is drawn
+    taken : boxes that names cover
+    """
+    _settle(axes)
+    reach = SYMBOL_REACH * vector / np.hypot(*vector)
+    size = (2 * abs(float(reach[0])) + 22, 2 * abs(float(reach[1])) + 22)
+    centers = _grid(axes.get_window_extent(), size)
+    center = centers[least_crowded(centers, size, taken, axes.transData.transform(drawn))]
+    axes.annotate(
+        symbol,
+        xy=_to_data(axes, center + reach),
+        xytext=_to_data(axes, center - reach),
+        arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4},
+        ha="center",
+        va="center",
+        zorder=6,
+    )
+
+
+def _settle(axes: Axes) -> None:
+    """Lay the page out, so that places on it are known."""
+    page = axes.get_figure(root=True)
+    if page is not None:
+        page.draw_without_rendering()
+
+
+def _to_data(axes: Axes, place: Array) -> tuple[float, float]:
+    """Coordinates of a place on the page."""
+    x, y = axes.transData.inverted().transform(place)
+    return float(x), float(y)
+
+
+def _grid(frame: Bbox, size: tuple[float, float]) -> Array:
+    """Centres (c, 2) all over a frame, those near its middle first."""
+    low, high = frame.min + np.array(size) / 2, frame.max - np.array(size) / 2
+    shares = np.stack(np.meshgrid(np.linspace(0, 1, 25), np.linspace(0, 1, 15)), axis=-1).reshape(-1, 2)
+    nearest_first = np.argsort(np.hypot(*(shares - 0.5).T), kind="stable")
+    return (low + shares * (high - low))[nearest_first]
+
+
+def _places(anchors: Array, directions: Array, size: tuple[float, float]) -> tuple[Array, Array]:
+    """Anchors (c, 2), and centres (c, 2) for a text of this size beside them, near ones first."""
     reach = np.abs(directions) @ np.array(size) / 2
     distances = (8.0, 16.0, 30.0, 50.0, 75.0)
-    return np.concatenate([anchors + (reach + distance)[:, None] * directions for distance in distances])
+    centers = [anchors + (reach + distance)[:, None] * directions for distance in distances]
+    return np.tile(anchors, (len(distances), 1)), np.concatenate(centers)
 
 
 def _holds(frame: Bbox, centers: Array, size: tuple[float, float]) -> NDArray[np.bool_]:
     """Tell which texts lie inside a frame."""
     half = np.array(size) / 2
     return np.all((centers - half > frame.min) & (centers + half < frame.max), axis=1)
+
+
+def _beyond(walls: Sequence[Path], anchors: Array, centers: Array) -> NDArray[np.bool_]:
+    """Tell from which places (c, 2) one would have to cross a wall to reach the anchor (c, 2)."""
+    way = anchors + np.linspace(0.05, 1.0, 20)[:, None, None] * (centers - anchors)
+    within = [wall.contains_points(way.reshape(-1, 2)).reshape(way.shape[:2]) for wall in walls]
+    inside = np.logical_xor.reduce(within)
+    return (inside != inside[0]).any(axis=0)

@@ -1,8 +1,13 @@
 """The page that pictures stand on: colours, formats, axes with units."""
 
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from textwrap import wrap
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -14,6 +19,9 @@ Array = NDArray[np.float64]
 
 FORMATS = (".png", ".svg", ".pdf")
 """Endings of the files that can be written."""
+
+DATES = {"svg": "Date", "pdf": "CreationDate"}
+"""Format -> the key of its metadata that would make each file another."""
 
 # The palette of Okabe and Ito, which colour-blind people can tell apart.
 BLACK, BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
@@ -29,10 +37,20 @@ def ensure_known_format(path: Path) -> None:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure in the format that the file name's ending says, whole or not at all."""
+    """Write a figure in the format that the file name's ending says, whole or not at all; the same each time."""
     ensure_known_format(path)
-    with output.whole_file(path) as temporary:
-        figure.savefig(temporary, format=path.suffix.lower()[1:], dpi=160, bbox_inches="tight", pad_inches=0.15)
+    ending = path.suffix.lower()[1:]
+    undated = {DATES[ending]: None} if ending in DATES else {}
+    with output.whole_file(path) as temporary, rc_context({"svg.hashsalt": "bemcontact"}), without_glyph_warnings():
+        figure.savefig(temporary, format=ending, dpi=160, bbox_inches="tight", pad_inches=0.15, metadata=undated)
+
+
+@contextmanager
+def without_glyph_warnings() -> Iterator[None]:
+    """Draw a box for a letter that the font lacks, and say nothing."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph", UserWarning)
+        yield
 
 
 def new_page(width: float, height: float) -> Figure:
@@ -47,15 +65,26 @@ def plain(text: str) -> str:
     return text.replace("\\", r"\\").replace("$", r"\$") if "$" in text else text
 
 
+def wrapped(text: str, columns: int) -> str:
+    """Break a user's text into three lines of so many letters at most, and take the meaning of mathematics away."""
+    return plain("\n".join(wrap(text, columns, max_lines=3, placeholder=" …")))
+
+
+def shortened(text: str, columns: int) -> str:
+    """Cut a user's text to so many letters, and take the meaning of mathematics away."""
+    return plain(text if len(text) <= columns else f"{text[: columns - 1]}…")
+
+
 def labelled(quantity: str, unit: str) -> str:
     """Write a quantity with its unit, if there is one."""
     return f"{quantity} [{plain(unit)}]" if unit else quantity
 
 
 def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
-    """Show all drawn points (k, 2) of a plan with some air around them, x and y to one scale."""
+    """Show all drawn points (k, 2) of a plan with some air around them, more around slender ones; one scale."""
     low, high = drawn.min(axis=0), drawn.max(axis=0)
-    air = 0.06 * float((high - low).max())
+    longest = float((high - low).max())
+    air = longest * (0.12 if (high - low).min() < longest / 3 else 0.06)
     axes.set_xlim(low[0] - air, high[0] + air)
     axes.set_ylim(low[1] - air, high[1] + air)
     axes.set_aspect("equal")

@@ -15,25 +15,42 @@ from numpy.typing import NDArray
 from bemcontact.bem import shape_functions
 from bemcontact.bem.mesh import Mesh
 from bemcontact.problem import AxisFields, Circle, Condition, Edge, Field, Plane, Polyline, Problem
-from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, draw_rollers, place_names
-from bemcontact.report.figures.page import BLACK, BLUE, BODY, GREEN, GREY, VERMILION, frame_plan, new_page, plain
-from bemcontact.report.text import prescribed
+from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
+from bemcontact.report.figures.page import (
+    BLACK,
+    BLUE,
+    BODY,
+    GREEN,
+    GREY,
+    VERMILION,
+    frame_plan,
+    new_page,
+    shortened,
+    without_glyph_warnings,
+    wrapped,
+)
+from bemcontact.report.text import prescribed, volume_loads
 
 Array = NDArray[np.float64]
 
 ROLES = {"may touch": VERMILION, "held": BLUE, "loaded": GREEN, "free": BLACK}
 """What an edge is for, and its colour."""
+ALONG = 0.3
+"""Largest share of a traction across the edge with which it is drawn as one along the edge."""
 FREE = Condition(traction=AxisFields(x=Field(constant=0.0)))
 """What an edge without a condition means."""
+SHORT = 0.2
+"""Length over the body's size of an edge that has too little room for its name; it may stand beyond the ends."""
 
 
 def figure_of_problem(problem: Problem, mesh: Mesh) -> Figure:
     """Compose a page with geometry, mesh, conditions and rigid surfaces."""
     low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
     width, height = (high - low) / (high - low).max()
-    figure = new_page(3.0 + 7.0 * max(width, 0.5), 1.8 + 7.0 * max(height, 0.3))
+    inches = 3.6 + 7.0 * max(width, 0.5)
+    figure = new_page(inches, 1.8 + 7.0 * max(height, 0.3))
     axes = figure.add_subplot()
-    axes.set_title(plain(problem.name), loc="left", fontweight="bold")
+    axes.set_title(wrapped(problem.name, int(7 * inches)), loc="left", fontweight="bold")
     draw_problem(axes, problem, mesh)
     return figure
 
@@ -54,7 +71,11 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     drawn = np.concatenate([*outline, *marks])
     frame_plan(axes, drawn, problem.units.length)
     _draw_legend(axes, problem)
-    place_names(axes, [_name(problem, edge) for edge in problem.boundary.edges], drawn)
+    names = [_name(problem, edge) for edge in problem.boundary.edges]
+    with without_glyph_warnings():
+        taken = place_names(axes, [*names, *_draw_rotation(axes, problem)], drawn, _polygons(problem))
+        if problem.loads.gravity and any(problem.loads.gravity.acceleration):
+            place_arrow(axes, "$g$", np.array(problem.loads.gravity.acceleration), drawn, taken)
 
 
 def role(problem: Problem, edge: str) -> str:
@@ -69,9 +90,13 @@ def role(problem: Problem, edge: str) -> str:
 
 def _fill_body(axes: Axes, problem: Problem) -> None:
     """Fill the body; holes run the other way round and so stay empty."""
-    loops = [np.concatenate([edge.polyline() for edge in loop]) for loop in problem.boundary.loops]
-    path = Path.make_compound_path(*(Path(loop, closed=True) for loop in loops))
+    path = Path.make_compound_path(*(Path(loop, closed=True) for loop in _polygons(problem)))
     axes.add_patch(PathPatch(path, facecolor=BODY, edgecolor="none", zorder=0))
+
+
+def _polygons(problem: Problem) -> list[Array]:
+    """Each loop as a fine polygon (j, 2)."""
+    return [np.concatenate([edge.polyline() for edge in loop]) for loop in problem.boundary.loops]
 
 
 def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
@@ -84,9 +109,9 @@ def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
         axes.scatter(*nodes.T, s=diameter**2, c="white", edgecolors=colours, linewidths=0.9, zorder=4)
 
 
-def _spread(edge: Edge, size: float, spots: int) -> tuple[Array, Array]:
+def _spread(edge: Edge, size: float, spots: int, fewest: int = 2) -> tuple[Array, Array]:
     """Choose points (k, 2) on an edge for symbols, about `spots` over the body's size, and the outward normals."""
-    count = int(np.clip(round(spots * edge.length / size), 2, spots))
+    count = int(np.clip(round(spots * edge.length / size), fewest, spots))
     fractions = (np.arange(count) + 0.5) / count
     return edge.points(fractions), _outward(edge, fractions)
 
@@ -114,16 +139,38 @@ def _draw_supports(axes: Axes, problem: Problem) -> Iterator[Array]:
 
 
 def _draw_loads(axes: Axes, problem: Problem) -> Iterator[Array]:
-    """Draw prescribed tractions as arrows to one scale; they end on the body if they push, start there if they pull."""
+    """Draw prescribed tractions as arrows to one scale; they end on the body if they push, start there if they pull.
+
+    Those along an edge stand beside it, one after the other.
+    """
     size = problem.boundary.size
-    loads = [(*_spread(edge, size, 20), edge.name) for edge in problem.boundary.edges]
-    tractions = [_traction(problem, name, points, normals) for points, normals, name in loads]
+    across = [_spread(edge, size, 20) for edge in problem.boundary.edges]
+    tractions = [_traction(problem, e.name, *at) for e, at in zip(problem.boundary.edges, across, strict=True)]
     largest = max(float(np.hypot(*traction.T).max()) for traction in tractions)
-    for (points, normals, _), traction in zip(loads, tractions, strict=True):
-        if traction.any():
-            arrows = traction * (0.1 * size / largest)
-            pulls = (traction * normals).sum(axis=1, keepdims=True) > 0
-            yield draw_arrows(axes, np.where(pulls, points, points - arrows), arrows, GREEN)
+    for edge, (points, normals), traction in zip(problem.boundary.edges, across, tractions, strict=True):
+        if not traction.any():
+            continue
+        pull = (traction * normals).sum(axis=1)
+        if (np.abs(pull) <= ALONG * np.hypot(*traction.T)).all():
+            points, normals = _spread(edge, size, 8, fewest=1)
+            arrows = _traction(problem, edge.name, points, normals) * (0.1 * size / largest)
+            yield draw_arrows(axes, points + 0.02 * size * normals - arrows / 2, arrows, GREEN)
+            continue
+        arrows = traction * (0.1 * size / largest)
+        yield draw_arrows(axes, np.where(pull[:, None] > 0, points, points - arrows), arrows, GREEN)
+
+
+def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
+    """Draw the centre of a rotation, and give its symbol a name to be placed there."""
+    spin = problem.loads.centrifugal
+    if spin is None or spin.angular_velocity == 0:
+        return
+    axes.autoscale(False)
+    axes.plot(*spin.center, marker="+", markersize=9, color=BLACK, zorder=5)
+    sense = r"$\circlearrowleft\,\omega$" if spin.angular_velocity > 0 else r"$\circlearrowright\,\omega$"
+    angle = np.radians(45 + 45 * np.arange(8))
+    around = np.column_stack([np.cos(angle), np.sin(angle)])
+    yield Name(text=sense, colour=BLACK, anchors=np.tile(spin.center, (8, 1)), directions=around)
 
 
 def _draw_surfaces(axes: Axes, problem: Problem) -> Iterator[Array]:
@@ -182,11 +229,15 @@ def _name(problem: Problem, edge: Edge) -> Name:
     """Prepare the text at an edge: its name, and what is prescribed there."""
     fractions = np.array([0.5, 0.4, 0.6, 0.25, 0.75, 0.12, 0.88])
     anchors, outward = edge.points(fractions), _outward(edge, fractions)
+    ends = np.array([0.02, 0.98] if edge.length < SHORT * problem.boundary.size else [])
+    slanted = (_outward(edge, ends) + edge.directions(ends) * np.sign(ends - 0.5)[:, None]) / np.sqrt(2)
     return Name(
-        text="\n".join(_symbols(plain(line)) for line in (edge.name, *prescribed(problem, edge))),
+        text="\n".join(
+            [wrapped(edge.name, 28), *(_symbols(shortened(line, 40)) for line in prescribed(problem, edge))]
+        ),
         colour=ROLES[role(problem, edge.name)],
-        anchors=np.concatenate([anchors, anchors]),
-        directions=np.concatenate([-outward, outward]),
+        anchors=np.concatenate([anchors, anchors, edge.points(ends)]),
+        directions=np.concatenate([-outward, outward, slanted]),
     )
 
 
@@ -196,11 +247,9 @@ def _symbols(text: str) -> str:
 
 
 def _draw_legend(axes: Axes, problem: Problem) -> None:
-    """Explain the colours that occur, and the loads that stand at no edge."""
+    """Explain the colours that occur, and name the loads on the volume."""
     occurring = {role(problem, edge.name) for edge in problem.boundary.edges}
     handles = [Line2D([], [], color=c, linewidth=2.5, label=name) for name, c in ROLES.items() if name in occurring]
     handles.append(Line2D([], [], color=GREY, linewidth=1.3, label="rigid surface, normal"))
-    for load in ("gravity", "centrifugal", "temperature"):
-        if getattr(problem.loads, load) is not None:
-            handles.append(Line2D([], [], linestyle="none", marker="$+$", color=BLACK, label=load))
+    handles += [Line2D([], [], linestyle="none", label=load) for load in volume_loads(problem)]
     axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
