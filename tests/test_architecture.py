@@ -33,12 +33,14 @@ HOME = {
     "cvxpy": ("bemcontact.formulations.qp3",),
     "matplotlib": ("bemcontact.report.figures",),
     "typer": ("bemcontact.cli",),
+    "numba": ("bemcontact.bem.compiled",),
+    "meshio": ("bemcontact.report.vtk",),
     "rich": ("bemcontact.cli", "bemcontact.report.text"),
 }
 """Foreign package -> the only rooms that import it."""
 
-SLOW = {"cvxpy", "matplotlib", "numba"}
-"""Foreign packages that may be imported where they are used."""
+SLOW = {"cvxpy", "matplotlib", "numba", "meshio"}
+"""Foreign packages that may be imported where they are used: slow ones, and those of the optional extras."""
 
 MAY_IMPORT_LATE = ("bemcontact", "bemcontact.cli")
 """Where our own modules may be imported late, so that ``bemcontact --help`` answers without the numerical half."""
@@ -205,6 +207,8 @@ BAD = [
     (one_home_for_each_foreign_package, "bemcontact.formulations.scaling", "import cvxpy as cp"),
     (one_home_for_each_foreign_package, "bemcontact.analysis", "from matplotlib.figure import Figure"),
     (one_home_for_each_foreign_package, "bemcontact.report.figures", "from rich.table import Table"),
+    (one_home_for_each_foreign_package, "bemcontact.bem.kernels", "def f():\n    import numba"),
+    (one_home_for_each_foreign_package, "bemcontact.cli", "def f():\n    import meshio"),
     (no_type_checking_imports, "bemcontact.spec", "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    pass"),
     (no_relative_imports, "bemcontact.bem.mesh", "from . import kernels"),
     (imports_at_the_top, "bemcontact.bem.mesh", "def f():\n    import numpy"),

@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.bem import kernels, quadrature
+from bemcontact.bem import compiled, kernels, quadrature
 from bemcontact.bem.kernels import Components, GaussRule
 from bemcontact.bem.mesh import Mesh
 
@@ -28,8 +28,10 @@ ComplexArray = NDArray[np.complex128]
 ROWS_PER_BLOCK = 64
 LARGEST_BLOCK = 400_000
 """Pairs of one block of rows: bounds its memory to about 100 MB."""
-CACHE_SIZE = 16_000
+CACHE_SIZE = 24_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
+WORTH_COMPILING = 4000
+"""Degrees of freedom from which numba is used, where it is installed: to import it takes as long as it saves then."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
@@ -90,11 +92,13 @@ class Influence:
     mesh : Mesh
     poisson_ratio : effective one, of plane strain
     traction_elements : (e,) elements whose columns of G are wanted
+    by_numba : whether to sum the far part by machine code where numba is installed; None: if the mesh is large enough
     """
 
     mesh: Mesh
     poisson_ratio: float
     traction_elements: IntArray
+    by_numba: bool | None = None
 
     @property
     def length(self) -> float:
@@ -133,16 +137,19 @@ class Influence:
         return rules
 
     def each_block(self, collocation: Collocation, use: Callable[[Block], None]) -> None:
-        """Compute rows of F and G for all points and hand them on, block by block, on all processors.
+        """Compute rows of F and G for all points and hand them on, block by block.
+
+        Machine code runs on all processors. NumPy does not: its operations on a cacheful are so short that threads
+        mostly wait for the interpreter.
 
         Parameters
         ----------
         collocation : Collocation
-        use : called once for each block, from several threads and in any order; must not keep the block
+        use : called once for each block, perhaps from several threads and in any order; must not keep the block
         """
         step = max(8, min(ROWS_PER_BLOCK, LARGEST_BLOCK // len(self.mesh.elements)))
         blocks = [slice(first, min(first + step, len(collocation))) for first in range(0, len(collocation), step)]
-        if len(blocks) <= 2:
+        if self._far_sums is None or len(blocks) == 1:
             for rows in blocks:
                 use(self.block(collocation, rows))
             return
@@ -172,9 +179,7 @@ class Influence:
         for run in self._runs(np.where(far, tiers, -1)):
             if far[run.start]:
                 self._far(block, z, int(tiers[run.start]), run)
-        point, element = (x.ravel() for x in np.meshgrid(np.arange(len(z)), np.flatnonzero(~far), indexing="ij"))
-        self._near(block, collocation, point, element)
-        self._on_elements(block, collocation)
+        self._near(block, collocation, np.flatnonzero(~far))
         self._turn_corners(block, collocation)
         return block
 
@@ -196,62 +201,87 @@ class Influence:
         distance = np.maximum(abs(c0 - middle) - radius, 0)
         r = 2 * distance / (abs(c1) + np.sqrt(abs(c1) ** 2 + 4 * abs(c2) * distance))
         rho = np.where(r > 1, r + np.sqrt(np.maximum(r * r - 1, 0)), 1.0)
-        return quadrature.tier(rho), (rho > SHARED_RULE_RHO) & (distance > radius)
+        return quadrature.tier(rho), (rho > SHARED_RULE_RHO) & (distance > radius / 2)
+
+    @cached_property
+    def _far_sums(self) -> compiled.FarSums | None:
+        """The machine code, if there is any and it is wanted."""
+        large = self.mesh.degrees_of_freedom >= WORTH_COMPILING
+        return compiled.far_sums() if (large if self.by_numba is None else self.by_numba) else None
 
     def _far(self, block: Block, z: ComplexArray, tier: int, run: slice) -> None:
-        """Every point of the block with every element of a run, by one Gauss rule, a cacheful at a time."""
+        """Every point of the block with every element of a run, by one Gauss rule."""
+        if self._far_sums is None:
+            self._far_by_products(block, z, tier, run)
+            return
         rule, zeta, tangent = self._rules[tier]
-        middle, m = (z[0] + z[-1]) / 2, len(self.mesh.elements)
-        step = max(1, CACHE_SIZE // (len(z) * len(zeta)))
-        for first in range(run.start, run.stop, step):
-            part = slice(first, min(first + step, run.stop))
-            integrands = kernels.block_numerators(zeta[:, part] - middle, tangent[:, part], z - middle)
-            result = kernels.regular(integrands, rule, self._factors, with_U=bool(self._slot[first] >= 0))
-            ends = _successive(self.mesh.elements[part, 2])
-            for F, T in zip(block.F, result.T, strict=True):
-                F[part] += T[0]
-                F[m + part.start : m + part.stop] = T[1]
-                F[ends] += T[2]
-            if result.U is not None:
-                slot = int(self._slot[first])
-                block.G[:, :, slot : slot + part.stop - part.start] = result.U
+        self._far_sums(
+            block.F, block.G, z, self.mesh.elements, run.start, run.stop, int(self._slot[run.start]),
+            zeta, tangent, rule.weighted, self._factors,
+        )  # fmt: skip
 
-    def _near(self, block: Block, collocation: Collocation, point: IntArray, element: IntArray) -> None:
-        """Pairs (point, element), each by the rule that its own root asks for."""
-        apart = ~self._pairs_on_elements(block, collocation, point, element)
-        point, element = point[apart], element[apart]
-        base, offset = (x[block.rows][point, None] for x in (collocation.base, collocation.offset))
-        tau = (self.element_nodes[element] - base) - offset
+    def _far_by_products(self, block: Block, z: ComplexArray, tier: int, run: slice) -> None:
+        """The same by products of matrices, a cacheful at a time."""
+        rule, zeta, tangent = self._rules[tier]
+        middle = (z[0] + z[-1]) / 2
+        with_U = bool(self._slot[run.start] >= 0)
+        polynomials = kernels.numerator_polynomials(zeta[:, run] - middle, tangent[:, run])
+        powers = kernels.point_powers(z - middle)
+        step = max(1, CACHE_SIZE // (len(z) * len(zeta)))
+        for first in range(0, run.stop - run.start, step):
+            some = polynomials[..., first : first + step]
+            integrands = (some.reshape(6, -1).T @ powers).reshape(*some.shape[1:], len(z))
+            part = slice(run.start + first, run.start + first + some.shape[-1])
+            self._add(block, part, kernels.regular(integrands, rule, self._factors, with_U=with_U))
+
+    def _near(self, block: Block, collocation: Collocation, element: IntArray) -> None:
+        """Every point of the block with some elements, each pair by the rule that its own root asks for."""
+        base, offset = collocation.base[block.rows], collocation.offset[block.rows]
+        tau = ((self.element_nodes[element, None] - base[:, None]) - offset[:, None]).reshape(-1, 3)
         root = kernels.nearest_root(tau)
         tiers = quadrature.tier(quadrature.bernstein_parameter(root.r))
-        for tier in np.unique(tiers):
+        on_element, on = self._on_elements(block, collocation, element)
+        tiers[on_element] = -1
+        T, U = np.empty((4, 3, len(tau))), np.empty((3, 3, len(tau)))
+        T[..., on_element], U[..., on_element] = on
+        for tier in np.unique(tiers[tiers >= 0]):
             at = np.flatnonzero(tiers == tier)
             if tier < len(quadrature.ORDERS):
-                rule, _, tangent = self._rules[tier]
-                integrands = kernels.numerators(rule.shapes.T @ tau[at].T, tangent[:, element[at]])
-                result = kernels.regular(integrands, rule, self._factors, with_U=True)
+                result = self._regular(tau[at], int(tier))
             else:
                 part = kernels.Root(root.r[at], root.minus[at], root.plus[at])
                 result = kernels.components(kernels.near_singular(tau[at], part), self._factors)
-            self._add_pairs(block, point[at], element[at], result)
+            T[..., at], U[..., at] = result
+        shape = (len(element), len(base))
+        self._add(block, element, Components(T.reshape(4, 3, *shape), U.reshape(3, 3, *shape)))
 
-    def _pairs_on_elements(
-        self, block: Block, collocation: Collocation, point: IntArray, element: IntArray
-    ) -> NDArray[np.bool_]:
-        """Which pairs have their point on their element."""
-        on = _within(collocation.on_point, block.rows)
-        count = len(self.mesh.elements)
-        known = (collocation.on_point[on] - block.rows.start) * count + collocation.on_element[on]
-        return np.isin(point * count + element, known)
+    def _regular(self, tau: ComplexArray, tier: int) -> Components:
+        """Pairs (p, 3), each by itself, with one Gauss rule."""
+        rule, _, _ = self._rules[tier]
+        integrands = kernels.numerators(rule.shapes.T @ tau.T, rule.derivatives.T @ tau.T)
+        return kernels.regular(integrands, rule, self._factors, with_U=True)
 
-    def _on_elements(self, block: Block, collocation: Collocation) -> None:
-        """Pairs whose point lies on the element."""
+    def _on_elements(self, block: Block, collocation: Collocation, element: IntArray) -> tuple[IntArray, Components]:
+        """Pairs whose point lies on the element: their places among all of (element, point), and their integrals."""
         on = np.flatnonzero(_within(collocation.on_point, block.rows))
-        element, local = collocation.on_element[on], collocation.on_local[on]
-        integrals = kernels.singular(self.element_nodes[element], local)
-        for some in (local == 1, local != 1):  # the two elements at a node add to the same entry
-            part = kernels.components(integrals.only(some), self._factors)
-            self._add_pairs(block, collocation.on_point[on[some]] - block.rows.start, element[some], part)
+        their, local = collocation.on_element[on], collocation.on_local[on]
+        row = collocation.on_point[on] - block.rows.start
+        at = np.searchsorted(element, their) * block.F.shape[-1] + row
+        return at, kernels.components(kernels.singular(self.element_nodes[their], local), self._factors)
+
+    def _add(self, block: Block, element: IntArray | slice, result: Components) -> None:
+        """Add the integrals over some elements (e, R)."""
+        start, middle, end = self.mesh.elements[element].T
+        block.F[:, _successive(start)] += result.T[:, 0]
+        block.F[:, _successive(middle)] = result.T[:, 1]
+        block.F[:, _successive(end)] += result.T[:, 2]
+        if result.U is not None:
+            slot = self._slot[element]
+            wanted = slot >= 0
+            if wanted.all():
+                block.G[:, :, _successive(slot)] = result.U
+            else:
+                block.G[:, :, slot[wanted]] = result.U[:, :, wanted]
 
     def _turn_corners(self, block: Block, collocation: Collocation) -> None:
         """The free term at nodes between two elements."""
@@ -259,16 +289,6 @@ class Influence:
         row = np.flatnonzero(corner >= 0)
         for diagonal in range(2):
             block.F[diagonal, corner[row], row] += self._factors.normal * self._corner_angles[corner[row]]
-
-    def _add_pairs(self, block: Block, point: IntArray, element: IntArray, result: Components) -> None:
-        """Add the integrals of pairs, no two of which share both point and element."""
-        for F, T in zip(block.F, result.T, strict=True):
-            for k in range(3):
-                F[self.mesh.elements[element, k], point] += T[k]
-        slot = self._slot[element]
-        wanted = slot >= 0
-        if result.U is not None:
-            block.G[:, :, slot[wanted], point[wanted]] = result.U[..., wanted]
 
     @cached_property
     def _corner_angles(self) -> Array:
@@ -283,6 +303,6 @@ def _within(index: IntArray, rows: slice) -> NDArray[np.bool_]:
 
 def _successive(index: IntArray) -> IntArray | slice:
     """A slice where indices follow each other, which NumPy adds several times faster."""
-    if (np.diff(index) == 1).all():
+    if len(index) and (index[1:] - index[:-1] == 1).all():
         return slice(int(index[0]), int(index[-1]) + 1)
     return index

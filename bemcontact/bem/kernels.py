@@ -104,12 +104,14 @@ class GaussRule(NamedTuple):
     """A Gauss rule with n points, and the matrices by which it sums the integrands of `regular`.
 
     shapes, derivatives : (3, n) N_k and dN_k/dξ
+    weighted : (3, n) N_k times the weights
     T_diagonal, T_cross : (6, 2n) for [Re S, Im A] and [Im S, Re A]
     U_diagonal, U_cross : (6, 2n) for [ln|τ|², Re τ/conj τ] and (3, n) for Im τ/conj τ
     """
 
     shapes: Array
     derivatives: Array
+    weighted: Array
     T_diagonal: Array
     T_cross: Array
     U_diagonal: Array
@@ -126,6 +128,7 @@ def gauss_rule(order: int, factor: Factors) -> GaussRule:
     return GaussRule(
         shapes=shapes,
         derivatives=derivatives(xi).T,
+        weighted=S,
         T_diagonal=np.block([[-skew, normal], [skew, normal]]),
         T_cross=np.block([[-skew, -tangential], [-skew, tangential]]),
         U_diagonal=np.block([[-log, turn], [-log, -turn]]),
@@ -139,21 +142,24 @@ def numerators(tau: ComplexArray, tangent: ComplexArray) -> Array:
     return np.stack([(tau * tau.conj()).real, square.real, along.imag, square.imag, along.real])
 
 
-def block_numerators(zeta: ComplexArray, tangent: ComplexArray, z: ComplexArray) -> Array:
-    """The same (5, n, e, R) for every pair of e elements, ζ, ζ' (n, e), and R points z, as a product of matrices.
+def numerator_polynomials(zeta: ComplexArray, tangent: ComplexArray) -> Array:
+    """The same as polynomials in the point z: coefficients (6, 5, n, e) at Gauss points ζ, ζ' (n, e) of e elements.
 
-    All five are polynomials in z = x + iy over 1, x, y, Re z², Im z², |z|². Counted from the middle of the points, no
-    digits are lost if the elements are farther away than the points are from each other.
+    Their product with `point_powers` is every pair of an element and a point. With ζ and z counted from the middle of
+    the points, elements farther away from all points than half their radius lose one digit.
     """
-    at, along = zeta * zeta, zeta.conj() * tangent
-    factors = np.zeros((6, 5, *zeta.shape))
-    factors[0] = (zeta * zeta.conj()).real, at.real, along.imag, at.imag, along.real
-    factors[1] = -2 * zeta.real, -2 * zeta.real, -tangent.imag, -2 * zeta.imag, -tangent.real
-    factors[2] = -2 * zeta.imag, 2 * zeta.imag, tangent.real, -2 * zeta.real, -tangent.imag
-    factors[3, 1] = factors[4, 3] = factors[5, 0] = 1
-    square = z * z
-    powers = np.stack([np.ones(len(z)), z.real, z.imag, square.real, square.imag, (z * z.conj()).real])
-    return (factors.reshape(6, -1).T @ powers).reshape(*factors.shape[1:], len(z))
+    square, along = zeta * zeta, zeta.conj() * tangent
+    result = np.zeros((6, 5, *zeta.shape))
+    result[0] = (zeta * zeta.conj()).real, square.real, along.imag, square.imag, along.real
+    result[1] = -2 * zeta.real, -2 * zeta.real, -tangent.imag, -2 * zeta.imag, -tangent.real
+    result[2] = -2 * zeta.imag, 2 * zeta.imag, tangent.real, -2 * zeta.real, -tangent.imag
+    result[3, 1] = result[4, 3] = result[5, 0] = 1
+    return result
+
+
+def point_powers(z: ComplexArray) -> Array:
+    """1, x, y, Re z², Im z², |z|² (6, R) of points z."""
+    return np.stack([np.ones(len(z)), z.real, z.imag, (z * z).real, (z * z).imag, (z * z.conj()).real])
 
 
 def regular(integrands: Array, rule: GaussRule, factor: Factors, *, with_U: bool) -> Components:
@@ -161,7 +167,7 @@ def regular(integrands: Array, rule: GaussRule, factor: Factors, *, with_U: bool
 
     Parameters
     ----------
-    integrands : (5, n, …) as from `numerators` or `block_numerators`; overwritten
+    integrands : (5, n, …) as from `numerators`, or `numerator_polynomials` at points; overwritten
     rule : with n points
     factor : Factors
     with_U : whether the integrals of U are wanted
@@ -173,8 +179,7 @@ def regular(integrands: Array, rule: GaussRule, factor: Factors, *, with_U: bool
     _, n, *pairs = integrands.shape
     square, cos, normal, sin, _ = (np.asarray(part) for part in integrands)
     rows = integrands.reshape(5 * n, -1)
-    inverse = 1 / square
-    integrands[1:] *= inverse
+    integrands[1:] *= np.divide(1, square, out=None if with_U else square)
     U = None
     if with_U:
         np.log(square, out=square)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 1e-14
+TOLERANCE = 1e-13
 """Error of one integral over one element, relative to integrals of order one."""
 
 ORDERS = np.array([3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 23])

@@ -117,6 +117,7 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: NDArray[np.complex128
     wanted = np.ones((2 * m, 2), bool)
     wanted[:m] = ~double
     at_nodes = np.flatnonzero(wanted.any(axis=1))
+    at_nodes = at_nodes[np.argsort(at_nodes % m, kind="stable")]  # along the boundary, as blocks of rows want it
     split = np.flatnonzero(double.any(axis=1))
     on_split = np.column_stack([before[split], split]).ravel()
     local_split = np.tile([OFFSET, -OFFSET], len(split))
@@ -286,7 +287,9 @@ class System:
         """The right sides b, b_i (1 + n, q)."""
         known = self._known_traction[self.influence.traction_elements] * self._jacobians[..., None]
         t, u = known.transpose(2, 1, 0).reshape(2, -1), self._known_displacement.T
-        b = t[0] @ G[0] + t[1] @ G[1] - u[0] @ F[0] - u[1] @ F[1]
+        b = t[0] @ G[0] + t[1] @ G[1]
+        if u.any():
+            b -= u[0] @ F[0] + u[1] @ F[1]
         x, y = self._unit_pressures
         return np.vstack([b, x.times(G[0]) + y.times(G[1])])
 

@@ -1,10 +1,11 @@
-"""Time of assembly against the LU of the same matrix, in one run, and the memory that both take.
+"""Time of assembly, by NumPy and by numba if installed, against the LU of the same matrix, and the memory of it.
 
     python tests/benchmarks/assembly.py [DEGREES_OF_FREEDOM ...]
 
 The bodies are discs on a plane, with a tenth of the elements in the contact zone.
 """
 
+import dataclasses
 import sys
 import time
 import tracemalloc
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf
 
+from bemcontact.bem.compiled import far_sums
 from bemcontact.bem.condense import assemble, body_of
 from bemcontact.bem.system import System
 from bemcontact.problem.problem import Problem
@@ -84,19 +86,35 @@ def factorisation(matrix: Array) -> tuple[float, float]:
     return lu, best_of(lambda: matrix @ matrix)
 
 
+def summed(system: System, *, by_numba: bool) -> System:
+    """The same system, its far part summed in one way or the other."""
+    other = dataclasses.replace(system)
+    vars(other)["influence"] = dataclasses.replace(system.influence, by_numba=by_numba)  # where the property keeps it
+    return other
+
+
 def report(problem: Problem) -> None:
     system = system_of(problem)
     size = system.size
     lu, gemm = factorisation(assemble(system)[0])
+    print(
+        f"{problem.name:22s} N = {size:6d}  LU {lu:7.3f} s  LU/GEMM {lu / gemm:5.2f}"
+        f"  GEMM {2e-9 * size**3 / gemm:5.0f} Gflop/s"
+    )
+    for by_numba in (False, True) if far_sums() else (False,):
+        report_assembly(summed(system, by_numba=by_numba), "numba" if by_numba else "NumPy", lu)
+
+
+def report_assembly(system: System, name: str, lu: float) -> None:
+    assemble(system)  # compiles
     assembly = best_of(lambda: assemble(system))
     tracemalloc.start()
     assemble(system)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    own = 8 * size * (size + 1 + len(system.points))
+    own = 8 * system.size * (system.size + 1 + len(system.points))
     print(
-        f"{problem.name:22s} N = {size:6d}  assembly {assembly:7.3f} s  LU {lu:7.3f} s"
-        f"  assembly/LU {assembly / lu:5.2f}  LU/GEMM {lu / gemm:5.2f}  GEMM {2e-9 * size**3 / gemm:5.0f} Gflop/s"
+        f"    by {name}  assembly {assembly:7.3f} s  assembly/LU {assembly / lu:5.2f}"
         f"  memory/(matrix and right sides) {peak / own:5.2f}"
     )
 
