@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 ComplexArray = NDArray[np.complex128]
 
-ROWS_PER_BLOCK = 64
+ROWS_PER_BLOCK = 96
 LARGEST_BLOCK = 400_000
 """Pairs of one block of rows: bounds its memory to about 100 MB."""
 CACHE_SIZE = 24_000
@@ -139,23 +139,34 @@ class Influence:
     def each_block(self, collocation: Collocation, use: Callable[[Block], None]) -> None:
         """Compute rows of F and G for all points and hand them on, block by block.
 
-        Machine code runs on all processors. NumPy does not: its operations on a cacheful are so short that threads
-        mostly wait for the interpreter.
+        Machine code runs on all processors. NumPy does not, as its operations on a cacheful are so short that threads
+        mostly wait for the interpreter; but one thread uses a block while the next one is computed.
 
         Parameters
         ----------
         collocation : Collocation
-        use : called once for each block, perhaps from several threads and in any order; must not keep the block
+        use : called once for each block, from other threads and in any order; must not keep the block
         """
         step = max(8, min(ROWS_PER_BLOCK, LARGEST_BLOCK // len(self.mesh.elements)))
         blocks = [slice(first, min(first + step, len(collocation))) for first in range(0, len(collocation), step)]
-        if self._far_sums is None or len(blocks) == 1:
-            for rows in blocks:
-                use(self.block(collocation, rows))
-            return
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            for _ in pool.map(lambda rows: use(self.block(collocation, rows)), blocks):
-                pass
+        if len(blocks) == 1:
+            use(self.block(collocation, blocks[0]))
+        elif self._far_sums is None:
+            self._one_ahead(collocation, blocks, use)
+        else:
+            with ThreadPoolExecutor(os.cpu_count()) as pool:
+                for _ in pool.map(lambda rows: use(self.block(collocation, rows)), blocks):
+                    pass
+
+    def _one_ahead(self, collocation: Collocation, blocks: list[slice], use: Callable[[Block], None]) -> None:
+        """Compute each block while the one before is used."""
+        with ThreadPoolExecutor(1) as pool:
+            used = pool.submit(use, self.block(collocation, blocks[0]))
+            for rows in blocks[1:]:
+                block = self.block(collocation, rows)
+                used.result()
+                used = pool.submit(use, block)
+            used.result()
 
     def block(self, collocation: Collocation, rows: slice) -> Block:
         """Rows of F and G for the points `rows`.
@@ -201,7 +212,8 @@ class Influence:
         distance = np.maximum(abs(c0 - middle) - radius, 0)
         r = 2 * distance / (abs(c1) + np.sqrt(abs(c1) ** 2 + 4 * abs(c2) * distance))
         rho = np.where(r > 1, r + np.sqrt(np.maximum(r * r - 1, 0)), 1.0)
-        return quadrature.tier(rho), (rho > SHARED_RULE_RHO) & (distance > radius / 2)
+        tiers = np.where(self._slot >= 0, quadrature.tier(rho), quadrature.tier(rho, quadrature.RHO_OF_T))
+        return tiers, (rho > SHARED_RULE_RHO) & (distance > radius / 2)
 
     @cached_property
     def _far_sums(self) -> compiled.FarSums | None:

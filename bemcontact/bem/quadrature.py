@@ -13,18 +13,17 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 1e-13
+TOLERANCE = 1e-14
 """Error of one integral over one element, relative to integrals of order one."""
 
 ORDERS = np.array([3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 23])
 """Numbers of Gauss points to choose from."""
 
-SMALLEST_RHO = np.maximum(
-    (2 * ORDERS / TOLERANCE) ** (1 / (2 * ORDERS - 1)), (2 * ORDERS * TOLERANCE) ** (-1 / (2 * ORDERS - 2))
-)
-"""The ρ from which each rule is good enough, decreasing; below the last one the singularity is taken out first."""
+RHO_OF_T = (2 * ORDERS / TOLERANCE) ** (1 / (2 * ORDERS - 1))
+"""The ρ from which each rule is good enough for the integrals of T, decreasing."""
 
-NEAR_RHO = SMALLEST_RHO[-1]
+SMALLEST_RHO = np.maximum(RHO_OF_T, (2 * ORDERS * TOLERANCE) ** (-1 / (2 * ORDERS - 2)))
+"""The same for T and U; below the last one the singularity is taken out first."""
 
 
 @lru_cache(maxsize=32)
@@ -42,6 +41,6 @@ def bernstein_parameter(root: NDArray[np.complex128]) -> Array:
     return np.maximum(abs(root + step), abs(root - step))
 
 
-def tier(rho: Array) -> NDArray[np.int64]:
-    """Index into `ORDERS` of the cheapest sufficient rule; `len(ORDERS)` where ρ < `NEAR_RHO`."""
-    return np.searchsorted(-SMALLEST_RHO, -np.asarray(rho), side="left")
+def tier(rho: Array, smallest: Array = SMALLEST_RHO) -> NDArray[np.int64]:
+    """Index into `ORDERS` of the cheapest sufficient rule; `len(ORDERS)` where none is."""
+    return np.searchsorted(-smallest, -np.asarray(rho), side="left")
