@@ -49,10 +49,6 @@ class Integrals(NamedTuple):
     L: Array
     M: ComplexArray
 
-    def only(self, some: NDArray[np.bool_]) -> "Integrals":
-        """Those of some of the pairs."""
-        return Integrals(self.A[some], self.B[some], self.L[some], self.M[some])
-
 
 class Components(NamedTuple):
     """The integrals of T and U by components: T (4, 3, …) in the order of `T_ORDER`, U (3, 3, …) likewise, or None.
