@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import bemcontact
 from bemcontact.assessment.certificate import Certificate, certify
@@ -71,6 +72,11 @@ class Result:
     def certified(self) -> bool:
         """Whether this is proved to be the solution, and the only one."""
         return self.certificate.certified
+
+    @property
+    def touching(self) -> NDArray[np.bool_]:
+        """Which contact points (n,) are in contact, by `CondensedContact.touching`."""
+        return self.contact.touching(self.solution.pressure, self.solution.displacement)
 
     @property
     def equilibrium_slack(self) -> float | None:
@@ -246,9 +252,10 @@ def solve(
         judged = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, judged)
         where = footprint(contact, solution)
-        notes = (*contact.notes, *solution.notes, *_notes_of(solution))
+        touching = contact.touching(solution.pressure, solution.displacement)
+        notes = (*contact.notes, *solution.notes, *_notes_of(touching))
         if condensation is not None:
-            notes += (*_notes_of_zone_ends(condensation.body, solution), *_notes_of_size(condensation.body, where))
+            notes += (*_notes_of_zone_ends(condensation.body, touching), *_notes_of_size(condensation.body, where))
     gap = contact.initial_gap + solution.displacement
     return Result(
         problem=problem if isinstance(problem, Problem) else None,
@@ -266,9 +273,9 @@ def solve(
     )
 
 
-def _notes_of(solution: ContactSolution) -> Iterator[str]:
+def _notes_of(touching: NDArray[np.bool_]) -> Iterator[str]:
     """Say if too few points carry pressure to show its course."""
-    carrying = int((solution.pressure > 0).sum())
+    carrying = int(np.count_nonzero(touching))
     if 0 < carrying < FEW_POINTS:
         yield (
             f"pressure acts on {carrying} contact point{'s' if carrying > 1 else ''} only: the mesh is too coarse "
@@ -276,13 +283,13 @@ def _notes_of(solution: ContactSolution) -> Iterator[str]:
         )
 
 
-def _notes_of_zone_ends(body: Body, solution: ContactSolution) -> Iterator[str]:
+def _notes_of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     """Say where contact reaches the end of a zone although the boundary goes on smoothly."""
     mesh, points = body.mesh, body.points
     in_zone = np.isin(np.arange(len(mesh.elements)), points.element)
     turn = np.sum(mesh.normals[mesh.before, 2] * mesh.tangents[:, 0], axis=1) / mesh.jacobians[:, 0]
     smooth_end = (in_zone != in_zone[mesh.before]) & (abs(turn) < SMOOTH)
-    for i in np.flatnonzero(solution.pressure > 0):
+    for i in np.flatnonzero(touching):
         if points.node[i] < len(mesh.elements) and smooth_end[points.node[i]]:
             x, y = mesh.nodes[points.node[i]]
             yield (

@@ -328,6 +328,11 @@ class CondensedContact:
         """δ = ε + Δ1 + M p + R a, (n,) [L], from p (n,) [p] and a (k,)."""
         return self.offset + self.compliance @ pressure + self.rigid_motions @ rigid_amplitudes
 
+    def touching(self, pressure: Array, displacement: Array) -> NDArray[np.bool_]:
+        """Which points (n,) are in contact, p/T > δ/U, from p (n,) [p] and u_n (n,) [L]: unmoved by a solver's dust."""
+        U, T = self.scales
+        return pressure / T > (self.initial_gap + displacement) / U
+
     def weight_matrix(self, weights: Weights) -> Array:
         """The J (n, n) [L] of the objective; `ProblemError` where the problem does not carry these weights."""
         match weights:

@@ -281,3 +281,31 @@ def test_results_are_told_in_a_line(cylinder):
 def test_a_file_name_is_no_problem(task):
     with pytest.raises(bemcontact.ProblemError, match=r"found str; bemcontact\.load"):
         task("models/cylinder_on_plane.yaml")
+
+
+WHEEL = """
+name: wheel in a groove
+material: {young_modulus: 30e6, poisson_ratio: 0.29}
+boundary:
+  outer:
+    - {name: seat, kind: arc, center: [0, 1], radius: 1, angles: [-150, -30], elements: 60}
+    - {name: rest, kind: arc, center: [0, 1], radius: 1, angles: [-30, 210], elements: 30}
+loads: {gravity: {density: 2e4, acceleration: [0.1, -1]}}
+contact_zones:
+  groove:
+    edges: seat
+    surface: {kind: polyline, points: [[-2, 0.5858], [0, -0.4142], [2, 0.5858]]}
+"""
+
+
+def test_polish_leaves_no_dust_of_the_solver():
+    """A wheel laid far into a groove, three free motions: p is exactly zero off two contacts, and no note is wrong."""
+    result = bemcontact.solve(bemcontact.loads(WHEEL))
+    direct = bemcontact.solve(bemcontact.loads(WHEEL), "complementarity")
+    assert result.certified
+    assert result.solution.polished
+    assert len(result.footprint.intervals) == 2
+    assert ((result.solution.pressure > 0) == (direct.solution.pressure > 0)).all()
+    assert result.notes == ()
+    # the weight 2e4 π and a tenth of it sideways, on the mesh's own area: 90 parabolas, error below 1e-5
+    assert result.footprint.resultant.force == pytest.approx([-2e3 * np.pi, 2e4 * np.pi], rel=1e-5)

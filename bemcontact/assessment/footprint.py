@@ -82,9 +82,8 @@ def footprint(condensed: CondensedContact, solution: ContactSolution) -> Footpri
     -------
     Footprint
     """
-    U, T = condensed.scales
     gap = condensed.initial_gap + solution.displacement
-    touching = solution.pressure / T > gap / U
+    touching = condensed.touching(solution.pressure, solution.displacement)
     pieces = sorted(set(zip(condensed.zone.tolist(), condensed.run.tolist(), strict=True)))
     return Footprint(
         intervals=tuple(

@@ -64,7 +64,7 @@ def residuals(condensed: CondensedContact, solution: ContactSolution, force_bala
         equilibrium=_largest(np.abs(strange) / U),
         stiffness_rows=_largest(np.abs(K @ u_n - B @ p - r) / T),
         balance=_largest(_imbalance(condensed, p) / (T * np.abs(condensed.equilibrium).sum(axis=0))),
-        round_off=_largest(_round_off(condensed, solution)[p / T > gap / U] / U),
+        round_off=_largest(_round_off(condensed, solution)[condensed.touching(p, u_n)] / U),
         force_balance=force_balance,
     )
 

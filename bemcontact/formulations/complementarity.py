@@ -127,13 +127,15 @@ def polish(condensed: CondensedContact, solution: ContactSolution) -> ContactSol
     Returns
     -------
     ContactSolution
-        With `polished` set if the natural residual got smaller, else `solution` itself.
+        With `polished` set if the natural residual got smaller, or is at round-off where the solver had left traces of
+        pressure off the contact set. Else `solution` itself.
     """
     problem = scaled(condensed)
     p, a = scaled_point(condensed, solution.pressure, solution.rigid_amplitudes)
-    gap = (condensed.initial_gap + solution.displacement) / condensed.scales.displacement
-    end = primal_dual(problem, p > gap, POLISH_STEPS)
-    if not end.residual < problem.residual(p, a):
+    touching = condensed.touching(solution.pressure, solution.displacement)
+    end = primal_dual(problem, touching, POLISH_STEPS)
+    cleaner = end.residual <= ACCEPTED and solution.pressure[~touching].any()
+    if not (cleaner or end.residual < problem.residual(p, a)):
         return solution
     p, u_n, a = unscaled(condensed, end.pressure, end.amplitudes)
     return replace(solution, pressure=p, displacement=u_n, rigid_amplitudes=a, polished=True)

@@ -155,7 +155,7 @@ def draw_deformed(axes: Axes, result: Result) -> None:
 
 def _draw_touching(axes: Axes, result: Result, state: BoundaryState, after: Array) -> None:
     """Thicken the halves of elements, drawn as curves (m, 9, 2), whose nodes carry pressure, and dot these nodes."""
-    carrying = {tuple(point) for point in result.contact.points[result.solution.pressure > 0].tolist()}
+    carrying = {tuple(point) for point in result.contact.points[result.touching].tolist()}
     touching = np.array([[tuple(node) in carrying for node in element] for element in state.points.tolist()])
     halves = [*after[touching[:, 0] & touching[:, 1], :5], *after[touching[:, 1] & touching[:, 2], 4:]]
     axes.add_collection(LineCollection(halves, colors=VERMILION, linewidths=3.5, capstyle="round", zorder=4))
@@ -213,7 +213,7 @@ def _draw_along(axes: Axes, result: Result, values: Array) -> None:
 
     The later of two equal curves is the thinner one and interrupted, so that both are seen.
     """
-    contact, touching = result.contact, result.solution.pressure > 0
+    contact, touching = result.contact, result.touching
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
     pieces = [*_pieces(contact)]
     for piece in pieces:
