@@ -1,7 +1,8 @@
 """Influence of displacement and traction on the boundary upon collocation points: rows of F and G in F u = G t, (7).
 
-Rows are computed in blocks of neighbouring points. The far elements of a block share one Gauss rule each; pairs near
-to each other get the rule, or the closed form, that the root of their own element map asks for.
+Rows are computed in blocks of neighbouring points. What far elements do to a block follows from what they do, by one
+Gauss rule each, to a few of its points (`skeleton`); pairs near to each other get the rule, or the closed form, that
+the root of their own element map asks for.
 
 Lengths here are dimensionless, over L0 = 2 diameters of the body, which also keeps ln r away from the degenerate
 scale; stresses are over the shear modulus.
@@ -13,19 +14,22 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from bemcontact.bem import compiled, kernels, quadrature
 from bemcontact.bem.kernels import Components, GaussRule
 from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.skeleton import RATIO, disc, skeleton
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 ComplexArray = NDArray[np.complex128]
 
-ROWS_PER_BLOCK = 96
+ROWS_PER_BLOCK = 160
 LARGEST_BLOCK = 400_000
 """Pairs of one block of rows: bounds its memory to about 100 MB."""
 CACHE_SIZE = 24_000
@@ -79,6 +83,13 @@ class Block:
     """
 
     rows: slice
+    F: Array
+    G: Array
+
+
+class _Space(NamedTuple):
+    """Room for F and G of a block, used again for the next: fresh memory costs as much as filling it."""
+
     F: Array
     G: Array
 
@@ -137,10 +148,9 @@ class Influence:
         return rules
 
     def each_block(self, collocation: Collocation, use: Callable[[Block], None]) -> None:
-        """Compute rows of F and G for all points and hand them on, block by block.
+        """Compute rows of F and G for all points and hand them on, block by block, on all processors.
 
-        Machine code runs on all processors. NumPy does not, as its operations on a cacheful are so short that threads
-        mostly wait for the interpreter; but one thread uses a block while the next one is computed.
+        BLAS keeps to one thread meanwhile: for products as small as these it loses more by sharing them out.
 
         Parameters
         ----------
@@ -151,22 +161,17 @@ class Influence:
         blocks = [slice(first, min(first + step, len(collocation))) for first in range(0, len(collocation), step)]
         if len(blocks) == 1:
             use(self.block(collocation, blocks[0]))
-        elif self._far_sums is None:
-            self._one_ahead(collocation, blocks, use)
-        else:
-            with ThreadPoolExecutor(os.cpu_count()) as pool:
-                for _ in pool.map(lambda rows: use(self.block(collocation, rows)), blocks):
-                    pass
+            return
+        workers = min(len(blocks), os.cpu_count() or 1)
 
-    def _one_ahead(self, collocation: Collocation, blocks: list[slice], use: Callable[[Block], None]) -> None:
-        """Compute each block while the one before is used."""
-        with ThreadPoolExecutor(1) as pool:
-            used = pool.submit(use, self.block(collocation, blocks[0]))
-            for rows in blocks[1:]:
-                block = self.block(collocation, rows)
-                used.result()
-                used = pool.submit(use, block)
-            used.result()
+        def work(some: list[slice]) -> None:
+            space = self._space(step)
+            for rows in some:
+                use(self._block(collocation, rows, space))
+
+        with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(workers) as pool:
+            for _ in pool.map(work, [blocks[first::workers] for first in range(workers)]):
+                pass
 
     def block(self, collocation: Collocation, rows: slice) -> Block:
         """Rows of F and G for the points `rows`.
@@ -180,16 +185,16 @@ class Influence:
         -------
         Block
         """
+        return self._block(collocation, rows, self._space(rows.stop - rows.start))
+
+    def _space(self, size: int) -> _Space:
+        return _Space(np.empty(4 * len(self.nodes) * size), np.empty(9 * len(self.traction_elements) * size))
+
+    def _block(self, collocation: Collocation, rows: slice, space: _Space) -> Block:
+        """The same in a given space, which the result keeps."""
         z = collocation.points[rows]
-        block = Block(
-            rows=rows,
-            F=np.zeros((4, len(self.nodes), len(z))),
-            G=np.empty((3, 3, len(self.traction_elements), len(z))),
-        )
         tiers, far = self._far_tiers(z)
-        for run in self._runs(np.where(far, tiers, -1)):
-            if far[run.start]:
-                self._far(block, z, int(tiers[run.start]), run)
+        block = self._far(rows, z, np.where(far, tiers, -1), space)
         self._near(block, collocation, np.flatnonzero(~far))
         self._turn_corners(block, collocation)
         return block
@@ -207,13 +212,13 @@ class Influence:
         |z - c0| = |c1 r + c2 r²| bounds |r| from below, and ρ >= |r| + sqrt(|r|² - 1).
         """
         c0, c1, c2 = kernels.element_coefficients(self.element_nodes)
-        middle = (z[0] + z[-1]) / 2
-        radius = abs(z - middle).max()
+        middle, radius = disc(z)
+        c1, c2 = abs(c1), abs(c2)
         distance = np.maximum(abs(c0 - middle) - radius, 0)
-        r = 2 * distance / (abs(c1) + np.sqrt(abs(c1) ** 2 + 4 * abs(c2) * distance))
+        r = 2 * distance / (c1 + np.sqrt(c1**2 + 4 * c2 * distance))
         rho = np.where(r > 1, r + np.sqrt(np.maximum(r * r - 1, 0)), 1.0)
         tiers = np.where(self._slot >= 0, quadrature.tier(rho), quadrature.tier(rho, quadrature.RHO_OF_T))
-        return tiers, (rho > SHARED_RULE_RHO) & (distance > radius / 2)
+        return tiers, (rho > SHARED_RULE_RHO) & (radius <= RATIO * (abs(c0 - middle) - c1 - c2))
 
     @cached_property
     def _far_sums(self) -> compiled.FarSums | None:
@@ -221,8 +226,24 @@ class Influence:
         large = self.mesh.degrees_of_freedom >= WORTH_COMPILING
         return compiled.far_sums() if (large if self.by_numba is None else self.by_numba) else None
 
-    def _far(self, block: Block, z: ComplexArray, tier: int, run: slice) -> None:
-        """Every point of the block with every element of a run, by one Gauss rule."""
+    def _far(self, rows: slice, z: ComplexArray, tiers: IntArray, space: _Space) -> Block:
+        """A block with what far elements do to its points, by one Gauss rule each; a tier of -1 leaves one out."""
+        if (tiers < 0).all():
+            return self._zero(rows, len(z))
+        few = skeleton(z)
+        block = self._zero(rows, len(few.at))
+        for run in self._runs(tiers):
+            if tiers[run.start] >= 0:
+                self._far_run(block, z[few.at], int(tiers[run.start]), run)
+        return Block(rows=rows, F=few.extend(block.F, space.F), G=few.extend(block.G, space.G))
+
+    def _zero(self, rows: slice, points: int) -> Block:
+        """A block for so many points."""
+        nodes, elements = len(self.nodes), len(self.traction_elements)
+        return Block(rows=rows, F=np.zeros((4, nodes, points)), G=np.zeros((3, 3, elements, points)))
+
+    def _far_run(self, block: Block, z: ComplexArray, tier: int, run: slice) -> None:
+        """Every point with every element of a run, by one Gauss rule."""
         if self._far_sums is None:
             self._far_by_products(block, z, tier, run)
             return
@@ -235,7 +256,7 @@ class Influence:
     def _far_by_products(self, block: Block, z: ComplexArray, tier: int, run: slice) -> None:
         """The same by products of matrices, a cacheful at a time."""
         rule, zeta, tangent = self._rules[tier]
-        middle = (z[0] + z[-1]) / 2
+        middle, _ = disc(z)
         with_U = bool(self._slot[run.start] >= 0)
         polynomials = kernels.numerator_polynomials(zeta[:, run] - middle, tangent[:, run])
         powers = kernels.point_powers(z - middle)

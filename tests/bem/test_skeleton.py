@@ -1,0 +1,86 @@
+"""Few points that stand for a block, against the kernels themselves."""
+
+import numpy as np
+import pytest
+from bodies import arc, even, mesh_of, rectangle, values_of
+
+from bemcontact.bem import influence
+from bemcontact.bem.influence import Influence
+from bemcontact.bem.quadrature import TOLERANCE
+from bemcontact.bem.skeleton import RATIO, disc, skeleton
+from bemcontact.bem.system import number_unknowns, place_equations
+
+EIGHTH = np.exp(1j * np.linspace(0, np.pi / 4, 160))
+BLOCKS = {
+    "straight": np.linspace(0, 1, 160) * (3 + 4j),
+    "graded": np.geomspace(1e-4, 1, 160) + 0j,
+    "arc": EIGHTH,
+    "corner": np.concatenate([np.linspace(1, 0, 80), 1j * np.linspace(0, 1, 81)[1:]]),
+    "two sides of a strip": np.concatenate([np.linspace(0, 1, 80), np.linspace(1, 0, 80) + 0.1j]),
+    "scattered": np.random.default_rng(5).uniform(-1, 1, (160, 2)) @ [1, 1j],
+    "fewer than it takes": EIGHTH[:8],
+    "one": np.array([2 - 1j]),
+}
+
+
+def kernels_at(z, zeta):
+    """1/τ, conj(τ)/τ², conj(τ)/τ, ln|τ| and their parts for sources ζ, in the size of the block."""
+    _, radius = disc(z)
+    size = radius or 1.0
+    tau = (zeta[:, None] - z) / size
+    functions = np.stack([1 / tau, tau.conj() / tau**2, tau.conj() / tau, np.log(abs(tau)) + 0j])
+    return np.stack([functions.real, functions.imag]).reshape(-1, len(z))
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+@pytest.mark.parametrize("ratio", [RATIO, 0.1, 1e-3])
+def test_far_sources_at_all_points_follow_from_the_few(name, ratio):
+    """To the tolerance of one integral, times what sums of a few dozen terms add, from the nearest sources on."""
+    z = BLOCKS[name]
+    middle, radius = disc(z)
+    zeta = middle + (radius or 1.0) / ratio * np.exp(2j * np.pi * np.arange(50) / 50)
+    exact = kernels_at(z, zeta)
+    few = skeleton(z)
+    assert abs(exact[:, few.at] @ few.weights - exact).max() <= 30 * TOLERANCE * abs(exact).max()
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+def test_the_few_stand_for_themselves(name):
+    few = skeleton(BLOCKS[name])
+    assert (few.weights[:, few.at] == np.eye(len(few.at))).all()
+
+
+@pytest.mark.parametrize(("name", "most"), [("straight", 40), ("graded", 40), ("arc", 40), ("corner", 80)])
+def test_on_a_boundary_few_points_do(name, most):
+    """A function with Bernstein parameter 2 / RATIO needs 24 terms for 1e-14; a corner has two such pieces."""
+    assert len(skeleton(BLOCKS[name]).at) <= most
+
+
+@pytest.mark.parametrize("size", [1e-6, 3.7, 1e6])
+def test_a_change_of_units_changes_no_more_than_round_off_does(size):
+    few, there = skeleton(EIGHTH), skeleton(size * EIGHTH)
+    assert abs(len(few.at) - len(there.at)) <= 2
+
+
+@pytest.mark.parametrize("points", [16, 64, 160])
+@pytest.mark.parametrize(
+    "loops",
+    [
+        [[("c", arc((0, 0), 1, 0, 360), even(300))]],
+        [rectangle(2, 0.1, even(150), even(10))],
+        [rectangle(2, 1, np.geomspace(1e-3, 1, 80), even(60)), [("hole", arc((1, 0.5), 0.3, 360, 0), even(60))]],
+    ],
+    ids=["circle", "strip", "graded plate with a hole"],
+)
+def test_blocks_with_a_skeleton_and_every_pair_by_itself_agree(loops, points, monkeypatch):
+    """Both are good to the tolerance of one integral, of those of order one."""
+    mesh = mesh_of(*loops)
+    source = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(0, len(mesh.elements), 2))
+    values = values_of(mesh, {}, lambda at: 0 * at, lambda at, normals: 0 * normals)
+    collocation = place_equations(mesh, number_unknowns(mesh, values), source.nodes).collocation
+    rows = slice(40, 40 + points)
+    block = source.block(collocation, rows)
+    monkeypatch.setattr(influence, "RATIO", 0.0)
+    pairs = source.block(collocation, rows)
+    assert abs(block.F - pairs.F).max() <= 3 * TOLERANCE
+    assert abs(block.G - pairs.G).max() <= 3 * TOLERANCE
