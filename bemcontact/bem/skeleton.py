@@ -4,9 +4,8 @@ With z = c + r w, c the middle and r the radius of the block, and q = r/(ζ - c)
 q^p w^p and (p + 1) q^p conj(w) w^p times what does not depend on z (Taylor's series of 1/τ, 1/τ² and ln τ). So
 the influence of all elements with |q| <= RATIO upon the points of a block is spanned, but for TOLERANCE, by the values
 of these few functions there, and on a smooth boundary most of these depend on each other. An interpolative
-decomposition by QR with pivoting finds points and weights: Cheng, Gimbutas, Martinsson and Rokhlin (2005); its use for
-integral equations on curves, with the far field stated by a basis instead of by its sources: Martinsson and
-Rokhlin (2005).
+decomposition by QR with pivoting finds points and weights [CGMR05]; that the far field may be stated by a basis instead
+of by its sources is from [MR05].
 """
 
 from typing import NamedTuple
