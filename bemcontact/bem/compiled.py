@@ -19,9 +19,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 ComplexArray = NDArray[np.complex128]
 
-FarSums = Callable[
-    [Array, Array, ComplexArray, IntArray, int, int, int, ComplexArray, ComplexArray, Array, Factors], None
-]
+FarSums = Callable[[Array, Array, ComplexArray, IntArray, int, ComplexArray, ComplexArray, Array, Factors], None]
 """A function with the parameters of `add_far`."""
 
 
@@ -48,7 +46,7 @@ def far_sums() -> FarSums | None:
 
 
 def add_far(
-    F: Array, G: Array, z: ComplexArray, elements: IntArray, first: int, last: int, slot: int,
+    F: Array, G: Array, z: ComplexArray, elements: IntArray, slot: int,
     zeta: ComplexArray, tangent: ComplexArray, weighted: Array, factor: Factors,
 ) -> None:  # fmt: skip
     """Add the integrals of `kernels.regular` over a run of elements for every point, in loops for a compiler.
@@ -58,17 +56,16 @@ def add_far(
     F : (4, N, R) as in `influence.Block`; added to
     G : (3, 3, e, R) as in `influence.Block`; written, from place `slot` on, unless `slot` is negative
     z : (R,) points
-    elements : (m, 3) nodes of all elements
-    first, last : the run is from `first` up to but without `last`
+    elements : (r, 3) nodes of the run
     slot : place of the first one in G, or a negative number if G is not wanted
-    zeta, tangent : (n, m) ζ and ζ' at the Gauss points of all elements
+    zeta, tangent : (n, r) ζ and ζ' at the Gauss points
     weighted : (3, n) shape functions times weights
     factor : Factors
     """
     n, R, kinds = len(zeta), len(z), 4 if slot < 0 else 7
     x0, y0 = z.real.copy(), z.imag.copy()
     f, s = np.empty((n, 7, R)), np.empty((7, R))  # integrands, and their sums for one local node
-    for e in range(first, last):
+    for e in range(len(elements)):
         for g in range(n):
             X, Y, dx, dy = zeta[g, e].real, zeta[g, e].imag, tangent[g, e].real, tangent[g, e].imag
             for i in range(R):
@@ -88,7 +85,7 @@ def add_far(
                 for c in range(kinds):
                     for i in range(R):
                         s[c, i] += weighted[k, g] * f[g, c, i]
-            node, place = elements[e, k], slot + e - first
+            node, place = elements[e, k], slot + e
             for i in range(R):
                 diagonal, cross = factor.normal * s[0, i], factor.tangential * s[1, i]
                 cos, sin = factor.skew * s[2, i], factor.skew * s[3, i]

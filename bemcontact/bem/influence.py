@@ -10,6 +10,7 @@ scale; stresses are over the shear modulus.
 
 import itertools
 import os
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -36,6 +37,8 @@ CACHE_SIZE = 24_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
 WORTH_COMPILING = 4000
 """Degrees of freedom from which numba is used, where it is installed: to import it takes as long as it saves then."""
+ALONE = threading.Lock()
+"""The number of threads of BLAS is that of the process: two assemblies at once would restore each other's."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
@@ -102,7 +105,7 @@ class Influence:
     ----------
     mesh : Mesh
     poisson_ratio : effective one, of plane strain
-    traction_elements : (e,) elements whose columns of G are wanted
+    traction_elements : (e,) elements whose columns of G are wanted, ascending
     by_numba : whether to sum the far part by machine code where numba is installed; None: if the mesh is large enough
     """
 
@@ -139,13 +142,11 @@ class Influence:
         return kernels.factors(self.poisson_ratio)
 
     @cached_property
-    def _rules(self) -> list[tuple[GaussRule, ComplexArray, ComplexArray]]:
-        """For each tier: the rule, ζ (n, m) and dζ/dξ (n, m) at its Gauss points."""
-        rules = []
-        for order in quadrature.ORDERS:
-            rule = kernels.gauss_rule(int(order), self._factors)
-            rules.append((rule, rule.shapes.T @ self.element_nodes.T, rule.derivatives.T @ self.element_nodes.T))
-        return rules
+    def _rules(self) -> list[tuple[GaussRule, ComplexArray]]:
+        """For each tier: the rule, and dζ/dξ (n, m) at its Gauss points."""
+        rules = [kernels.gauss_rule(int(order), self._factors) for order in quadrature.ORDERS]
+        from_middle = self.element_nodes - self.element_nodes[:, 1:2]
+        return [(rule, rule.derivatives.T @ from_middle.T) for rule in rules]
 
     def each_block(self, collocation: Collocation, use: Callable[[Block], None]) -> None:
         """Compute rows of F and G for all points and hand them on, block by block, on all processors.
@@ -169,7 +170,7 @@ class Influence:
             for rows in some:
                 use(self._block(collocation, rows, space))
 
-        with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(workers) as pool:
+        with ALONE, threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(workers) as pool:
             for _ in pool.map(work, [blocks[first::workers] for first in range(workers)]):
                 pass
 
@@ -192,9 +193,11 @@ class Influence:
 
     def _block(self, collocation: Collocation, rows: slice, space: _Space) -> Block:
         """The same in a given space, which the result keeps."""
-        z = collocation.points[rows]
-        tiers, far = self._far_tiers(z)
-        block = self._far(rows, z, np.where(far, tiers, -1), space)
+        origin = collocation.base[rows.start]  # the digits of short elements are in differences to nodes of their own
+        z = (collocation.base[rows] - origin) + collocation.offset[rows]
+        nodes = self.element_nodes - origin
+        tiers, far = self._far_tiers(z, nodes)
+        block = self._far(rows, z, nodes, np.where(far, tiers, -1), space)
         self._near(block, collocation, np.flatnonzero(~far))
         self._turn_corners(block, collocation)
         return block
@@ -206,12 +209,12 @@ class Influence:
         for first, last in itertools.pairwise([0, *ends.tolist(), len(kind)]):
             yield slice(first, last)
 
-    def _far_tiers(self, z: ComplexArray) -> tuple[IntArray, NDArray[np.bool_]]:
+    def _far_tiers(self, z: ComplexArray, nodes: ComplexArray) -> tuple[IntArray, NDArray[np.bool_]]:
         """The rule (m,) that each element may share for all points of a block, and whether it is far from the block.
 
         |z - c0| = |c1 r + c2 r²| bounds |r| from below, and ρ >= |r| + sqrt(|r|² - 1).
         """
-        c0, c1, c2 = kernels.element_coefficients(self.element_nodes)
+        c0, c1, c2 = kernels.element_coefficients(nodes)
         middle, radius = disc(z)
         c1, c2 = abs(c1), abs(c2)
         distance = np.maximum(abs(c0 - middle) - radius, 0)
@@ -226,15 +229,16 @@ class Influence:
         large = self.mesh.degrees_of_freedom >= WORTH_COMPILING
         return compiled.far_sums() if (large if self.by_numba is None else self.by_numba) else None
 
-    def _far(self, rows: slice, z: ComplexArray, tiers: IntArray, space: _Space) -> Block:
+    def _far(self, rows: slice, z: ComplexArray, nodes: ComplexArray, tiers: IntArray, space: _Space) -> Block:
         """A block with what far elements do to its points, by one Gauss rule each; a tier of -1 leaves one out."""
         if (tiers < 0).all():
             return self._zero(rows, len(z))
         few = skeleton(z)
         block = self._zero(rows, len(few.at))
+        by_run = self._far_by_products if self._far_sums is None else self._far_by_loops
         for run in self._runs(tiers):
             if tiers[run.start] >= 0:
-                self._far_run(block, z[few.at], int(tiers[run.start]), run)
+                by_run(block, z[few.at], nodes[run], int(tiers[run.start]), run)
         return Block(rows=rows, F=few.extend(block.F, space.F), G=few.extend(block.G, space.G))
 
     def _zero(self, rows: slice, points: int) -> Block:
@@ -242,23 +246,22 @@ class Influence:
         nodes, elements = len(self.nodes), len(self.traction_elements)
         return Block(rows=rows, F=np.zeros((4, nodes, points)), G=np.zeros((3, 3, elements, points)))
 
-    def _far_run(self, block: Block, z: ComplexArray, tier: int, run: slice) -> None:
-        """Every point with every element of a run, by one Gauss rule."""
-        if self._far_sums is None:
-            self._far_by_products(block, z, tier, run)
-            return
-        rule, zeta, tangent = self._rules[tier]
+    def _far_by_loops(self, block: Block, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice) -> None:
+        """Every point with every element of a run, by one Gauss rule, in machine code."""
+        assert self._far_sums is not None
+        rule, tangent = self._rules[tier]
         self._far_sums(
-            block.F, block.G, z, self.mesh.elements, run.start, run.stop, int(self._slot[run.start]),
-            zeta, tangent, rule.weighted, self._factors,
+            block.F, block.G, z, self.mesh.elements[run], int(self._slot[run.start]),
+            rule.shapes.T @ nodes.T, tangent[:, run], rule.weighted, self._factors,
         )  # fmt: skip
 
-    def _far_by_products(self, block: Block, z: ComplexArray, tier: int, run: slice) -> None:
+    def _far_by_products(self, block: Block, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice) -> None:
         """The same by products of matrices, a cacheful at a time."""
-        rule, zeta, tangent = self._rules[tier]
+        rule, tangent = self._rules[tier]
         middle, _ = disc(z)
+        zeta = rule.shapes.T @ (nodes - middle).T
         with_U = bool(self._slot[run.start] >= 0)
-        polynomials = kernels.numerator_polynomials(zeta[:, run] - middle, tangent[:, run])
+        polynomials = kernels.numerator_polynomials(zeta, tangent[:, run])
         powers = kernels.point_powers(z - middle)
         step = max(1, CACHE_SIZE // (len(z) * len(zeta)))
         for first in range(0, run.stop - run.start, step):
@@ -290,7 +293,7 @@ class Influence:
 
     def _regular(self, tau: ComplexArray, tier: int) -> Components:
         """Pairs (p, 3), each by itself, with one Gauss rule."""
-        rule, _, _ = self._rules[tier]
+        rule, _ = self._rules[tier]
         integrands = kernels.numerators(rule.shapes.T @ tau.T, rule.derivatives.T @ tau.T)
         return kernels.regular(integrands, rule, self._factors, with_U=True)
 

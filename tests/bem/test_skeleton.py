@@ -72,15 +72,31 @@ def test_a_change_of_units_changes_no_more_than_round_off_does(size):
     ],
     ids=["circle", "strip", "graded plate with a hole"],
 )
-def test_blocks_with_a_skeleton_and_every_pair_by_itself_agree(loops, points, monkeypatch):
+@pytest.mark.parametrize("first", [0, 40, 150])
+def test_blocks_with_a_skeleton_and_every_pair_by_itself_agree(loops, first, points, monkeypatch):
     """Both are good to the tolerance of one integral, of those of order one."""
     mesh = mesh_of(*loops)
     source = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(0, len(mesh.elements), 2))
     values = values_of(mesh, {}, lambda at: 0 * at, lambda at, normals: 0 * normals)
     collocation = place_equations(mesh, number_unknowns(mesh, values), source.nodes).collocation
-    rows = slice(40, 40 + points)
+    rows = slice(first, first + points)
     block = source.block(collocation, rows)
     monkeypatch.setattr(influence, "RATIO", 0.0)
     pairs = source.block(collocation, rows)
     assert abs(block.F - pairs.F).max() <= 3 * TOLERANCE
     assert abs(block.G - pairs.G).max() <= 3 * TOLERANCE
+
+
+@pytest.mark.parametrize("by_numba", [False, True])
+@pytest.mark.parametrize("ratio", [1e6, 1e9])
+def test_short_elements_keep_their_digits(ratio, by_numba):
+    """F u = 0 for translations, as good in a block of the shortest elements as anywhere."""
+    half = np.geomspace(1, ratio, 25)
+    ends = np.append(0, np.cumsum(np.concatenate([half, half[::-1]]))) / (2 * half.sum())
+    mesh = mesh_of(rectangle(2, 1, ends, ends))
+    source = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.zeros(0, int), by_numba=by_numba)
+    values = values_of(mesh, {}, lambda at: 0 * at, lambda at, normals: 0 * normals)
+    collocation = place_equations(mesh, number_unknowns(mesh, values), source.nodes).collocation
+    for first in range(0, len(collocation), 16):
+        block = source.block(collocation, slice(first, min(first + 16, len(collocation))))
+        assert abs(block.F.sum(axis=1)).max() < 1e-14
