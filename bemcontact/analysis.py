@@ -4,30 +4,28 @@ import json
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import asdict, dataclass, field
+from enum import Enum
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 import bemcontact
+from bemcontact import remarks
 from bemcontact.assessment.certificate import Certificate, certify
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.residual import Residuals, residuals
-from bemcontact.bem.condense import Body, body_of
+from bemcontact.bem.condense import body_of
 from bemcontact.bem.condense import condense as condense_body
 from bemcontact.bem.recovery import BoundaryState, boundary_state
 from bemcontact.contact import CondensedContact, ContactSolution, Weights
 from bemcontact.errors import ProblemError
-from bemcontact.formulations import FORMULATIONS, FormulationOptions
+from bemcontact.formulations import FORMULATIONS, OPTIONS, Equilibrium, FormulationOptions, Rows, Start
+from bemcontact.formulations.starts import RandomStarts, StartChoice, search_from
 from bemcontact.problem.problem import Problem
 
-FEW_POINTS = 5
-"""Points under pressure below which a contact is not resolved: three make a parabola, two more its ends."""
-SMOOTH = 0.2
-"""Sine of the angle at the end of a zone below which the boundary goes on smoothly."""
-LARGE_PRESSURE = 0.5
-"""Peak pressure over Young's modulus beyond which nothing is left of small displacements."""
+Name = TypeVar("Name", bound=Enum)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -47,6 +45,7 @@ class Result:
     degrees_of_freedom : two for each node of the mesh, or None likewise
     notes : what a person should know: of the condensation, of the solver, of the mesh
     seconds : spent on each stage
+    starts : where the searches from random starts ended, if several were asked for
     """
 
     problem: Problem | None
@@ -61,6 +60,7 @@ class Result:
     degrees_of_freedom: int | None
     notes: tuple[str, ...]
     seconds: dict[str, float]
+    starts: RandomStarts | None = None
 
     def __repr__(self) -> str:
         """One line: name, formulation, verdict, peak."""
@@ -122,6 +122,8 @@ class Result:
             "objective": self.objective,
             "iterations": solution.iterations,
             "polished": solution.polished,
+            "search": None if solution.search is None else asdict(solution.search),
+            "starts": None if self.starts is None else self.starts.to_dict(),
             "scales": contact.scales._asdict(),
             "residuals": {
                 "penetration": judged.penetration,
@@ -207,14 +209,28 @@ def solve(
     problem: Problem | CondensedContact,
     formulation: str = "qp3",
     weights: Weights | str = Weights.TRIBUTARY,
+    *,
+    penalty: float = 1.0,
+    rows: Rows | str = Rows.STIFFNESS,
+    equilibrium: Equilibrium | str = Equilibrium.CONSTRAINT,
+    start: Start | str = "null",
+    seed: int | None = None,
+    starts: int | None = None,
 ) -> Result:
     """Solve a contact problem by one formulation, and judge the answer.
 
     Parameters
     ----------
     problem : Problem or CondensedContact
-    formulation : "qp3" (a convex program, then polished) or "complementarity" (the direct solver)
-    weights : the J of QP3's objective, a `Weights` or its name: "tributary", "consistent" or "element_length"
+    formulation : "qp3" (a convex program, then polished), "complementarity" (the direct solver), or "qp1" and "qp2" (a
+        local solver over pressures and displacements, then polished)
+    weights : the J of the objective, a `Weights` or its name: "tributary", "consistent" or "element_length"
+    penalty : μ of QP2, free of units
+    rows : how QP1 and QP2 write the equations, a `Rows` or its name: "stiffness" or "compliance"
+    equilibrium : of QP2, for bodies with free rigid motions: "constraint", or "penalty" as in [SS92]
+    start : of QP1 and QP2: "null", "random", or a `Start` with a pressure (n,) [p] and a displacement (n,) [L]
+    seed : of random starts, 0 if not given
+    starts : how many random starts; the answer is that of the best end, `Result.starts` has all of them
 
     Returns
     -------
@@ -224,14 +240,14 @@ def solve(
     Raises
     ------
     ProblemError
-        If the problem has no answer, or `formulation` or `weights` are unknown.
+        If the problem has no answer, a name is unknown, or the formulation has no use for an option.
     NotConvexError
         If the formulation needs a convex program and this is none.
     """
     _check_kind(problem)
-    if formulation not in FORMULATIONS:
-        raise ProblemError(f"there is no formulation '{formulation}'; take one of {', '.join(FORMULATIONS)}")
-    weights = _weights(weights)
+    options = _options(formulation, weights, penalty, rows, equilibrium)
+    choice = StartChoice(start=start, seed=seed, count=starts)
+    choice.ensure_used(formulation, "start" in OPTIONS[formulation])
     watch = _Stopwatch()
     condensation = None
     if isinstance(problem, CondensedContact):
@@ -243,7 +259,7 @@ def solve(
             condensation = condense_body(body)
         contact = condensation.contact
     with watch.stage("solution"):
-        solution = FORMULATIONS[formulation](contact, FormulationOptions(weights=weights))
+        solution, ends = choice.search(contact, FORMULATIONS[formulation], options)
     boundary = None
     if condensation is not None:
         with watch.stage("recovery"):
@@ -253,16 +269,16 @@ def solve(
         certificate = certify(contact, solution, judged)
         where = footprint(contact, solution)
         touching = contact.touching(solution.pressure, solution.displacement)
-        notes = (*contact.notes, *solution.notes, *_notes_of(touching))
+        notes = (*contact.notes, *solution.notes, *remarks.of_few_points(touching))
         if condensation is not None:
-            notes += (*_notes_of_zone_ends(condensation.body, touching), *_notes_of_size(condensation.body, where))
+            notes += (*remarks.of_zone_ends(condensation.body, touching), *remarks.of_size(condensation.body, where))
     gap = contact.initial_gap + solution.displacement
     return Result(
         problem=problem if isinstance(problem, Problem) else None,
         contact=contact,
         solution=solution,
-        weights=weights,
-        objective=float(solution.pressure @ contact.weight_matrix(weights) @ gap),
+        weights=options.weights,
+        objective=float(solution.pressure @ contact.weight_matrix(options.weights) @ gap),
         residuals=judged,
         certificate=certificate,
         footprint=where,
@@ -270,48 +286,65 @@ def solve(
         degrees_of_freedom=None if condensation is None else condensation.body.mesh.degrees_of_freedom,
         notes=notes,
         seconds=watch.seconds,
+        starts=ends,
     )
 
 
-def _notes_of(touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Say if too few points carry pressure to show its course."""
-    carrying = int(np.count_nonzero(touching))
-    if 0 < carrying < FEW_POINTS:
-        yield (
-            f"pressure acts on {carrying} contact point{'s' if carrying > 1 else ''} only: the mesh is too coarse "
-            "there to tell how it is distributed; shorten the elements"
-        )
+def random_starts(
+    problem: Problem | CondensedContact,
+    formulation: str = "qp1",
+    weights: Weights | str = Weights.TRIBUTARY,
+    *,
+    count: int = 100,
+    seed: int = 0,
+    penalty: float = 1.0,
+    rows: Rows | str = Rows.STIFFNESS,
+    equilibrium: Equilibrium | str = Equilibrium.CONSTRAINT,
+) -> RandomStarts:
+    """Solve QP1 or QP2 from random starts and tell which minima were found, and how often; nothing is polished.
+
+    Parameters
+    ----------
+    problem : Problem or CondensedContact
+    formulation : "qp1" or "qp2"
+    weights, penalty, rows, equilibrium : as of `solve`
+    count, seed : of the starts; the same seed gives the same starts
+
+    Returns
+    -------
+    RandomStarts
+
+    Raises
+    ------
+    ProblemError
+        As of `solve`.
+    """
+    _check_kind(problem)
+    options = _options(formulation, weights, penalty, rows, equilibrium)
+    StartChoice(start="random", seed=seed, count=count).ensure_used(formulation, "start" in OPTIONS[formulation])
+    contact = problem if isinstance(problem, CondensedContact) else condense(problem)
+    return search_from(contact, FORMULATIONS[formulation], options, count, seed)
 
 
-def _notes_of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Say where contact reaches the end of a zone although the boundary goes on smoothly."""
-    mesh, points = body.mesh, body.points
-    in_zone = np.isin(np.arange(len(mesh.elements)), points.element)
-    turn = np.sum(mesh.normals[mesh.before, 2] * mesh.tangents[:, 0], axis=1) / mesh.jacobians[:, 0]
-    smooth_end = (in_zone != in_zone[mesh.before]) & (abs(turn) < SMOOTH)
-    for i in np.flatnonzero(touching):
-        if points.node[i] < len(mesh.elements) and smooth_end[points.node[i]]:
-            x, y = mesh.nodes[points.node[i]]
-            yield (
-                f"contact reaches the end of the zone '{list(body.problem.contact_zones)[points.zone[i]]}' at "
-                f"({x:.5g}, {y:.5g}), where the boundary goes on smoothly; make the zone longer"
-            )
+def _options(
+    formulation: str, weights: Weights | str, penalty: float, rows: Rows | str, equilibrium: Equilibrium | str
+) -> FormulationOptions:
+    """Read the options, and refuse those that the formulation has no use for."""
+    if formulation not in FORMULATIONS:
+        raise ProblemError(f"there is no formulation '{formulation}'; take one of {', '.join(FORMULATIONS)}")
+    options = FormulationOptions(
+        weights=_named(Weights, weights, "weights"),
+        penalty=penalty,
+        rows=_named(Rows, rows, "rows"),
+        equilibrium=_named(Equilibrium, equilibrium, "ways of equilibrium"),
+    )
+    options.ensure_used(formulation, *OPTIONS[formulation])
+    return options
 
 
-def _notes_of_size(body: Body, where: Footprint) -> Iterator[str]:
-    """Say if the pressure is too large for small displacements."""
-    modulus = body.problem.material.young_modulus
-    if where.peak is not None and where.peak.pressure > LARGE_PRESSURE * modulus:
-        yield (
-            f"the peak pressure is {where.peak.pressure / modulus:.2g} times Young's modulus: displacements are not "
-            "small, and the linear answer means little"
-        )
-
-
-def _weights(weights: Weights | str) -> Weights:
-    """Read the name of weights."""
+def _named(kind: type[Name], name: Name | str, what: str) -> Name:
+    """Read a name of a kind."""
     try:
-        return Weights(weights)
+        return kind(name)
     except ValueError:
-        names = ", ".join(item.value for item in Weights)
-        raise ProblemError(f"there are no weights '{weights}'; take one of {names}") from None
+        raise ProblemError(f"no {what} '{name}'; take one of {', '.join(item.value for item in kind)}") from None

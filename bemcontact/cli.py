@@ -9,7 +9,6 @@ import sys
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from enum import StrEnum
 from importlib.metadata import PackageNotFoundError, version
 from io import TextIOWrapper
 from pathlib import Path
@@ -21,6 +20,7 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 from bemcontact.errors import BemContactError, NotConvexError, ProblemError, SpecError
+from bemcontact.option_names import EquilibriumOption, Formulation, RowsOption, StartOption, WeightsOption
 
 UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 STANDARD_OUTPUT = Path("-")
@@ -34,21 +34,6 @@ app = typer.Typer(
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-
-class Formulation(StrEnum):
-    """Statements of the contact problem that can be solved."""
-
-    QP3 = "qp3"
-    COMPLEMENTARITY = "complementarity"
-
-
-class WeightsOption(StrEnum):
-    """Names of `bemcontact.contact.Weights`, known without importing it."""
-
-    TRIBUTARY = "tributary"
-    CONSISTENT = "consistent"
-    ELEMENT_LENGTH = "element_length"
 
 
 SpecArgument = Annotated[Path, typer.Argument(metavar="SPEC", help="Problem to read, a YAML file.", show_default=False)]
@@ -138,8 +123,18 @@ def solve(
     spec: SpecArgument,
     formulation: Annotated[Formulation, typer.Option(help="Statement of the contact problem.")] = Formulation.QP3,
     weights: Annotated[
-        WeightsOption, typer.Option(help="Weights of QP3's objective; complementarity has none.")
+        WeightsOption, typer.Option(help="Weights of the objective; complementarity has none.")
     ] = WeightsOption.TRIBUTARY,
+    penalty: Annotated[float, typer.Option(metavar="μ", help="qp2: less weighs the equations more.")] = 1.0,
+    rows: Annotated[
+        RowsOption, typer.Option(help="qp1, qp2: equations in terms of pressure or of displacement.")
+    ] = RowsOption.STIFFNESS,
+    equilibrium: Annotated[
+        EquilibriumOption, typer.Option(help="qp2, free bodies: exact, or penalised as in the paper.")
+    ] = EquilibriumOption.CONSTRAINT,
+    start: Annotated[StartOption, typer.Option(help="qp1, qp2: where the local solver starts.")] = StartOption.NULL,
+    seed: Annotated[int | None, typer.Option(min=0, metavar="S", help="Of random starts, else 0.")] = None,
+    starts: Annotated[int | None, typer.Option(min=1, metavar="N", help="Random starts: best of all ends.")] = None,
     refine: RefineOption = 1,
     overrides: SetOption = None,
     figure: FigureOption = None,
@@ -156,12 +151,16 @@ def solve(
 
     Pressures are per UNDEFORMED length. The exit status is 0 only if the solution is certified.
 
+    qp3 is convex, complementarity direct; qp1 and qp2 are left to a local solver.
+
     [bold]Examples[/bold]
       bemcontact solve models/cylinder_on_plane.yaml
       bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
       bemcontact solve models/cylinder_on_plane.yaml --refine 3
       bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
+      bemcontact solve models/cylinder_on_plane.yaml --formulation qp1
+      bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --start random --starts 20
     """
     with _told(spec, overrides), _busy("solving"):
         json_claim = None if json_file == STANDARD_OUTPUT else json_file
@@ -171,7 +170,17 @@ def solve(
         from bemcontact.report import output, text
 
         problem = spec_file.load(spec, overrides or ()).refined(refine)
-        result = analysis.solve(problem, formulation=formulation.value, weights=weights.value)
+        result = analysis.solve(
+            problem,
+            formulation=formulation.value,
+            weights=weights.value,
+            penalty=penalty,
+            rows=rows.value,
+            equilibrium=equilibrium.value,
+            start=start.value,
+            seed=seed,
+            starts=starts,
+        )
         if figure:
             from bemcontact.report import figures
 

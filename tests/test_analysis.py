@@ -6,11 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import bemcontact
+from bemcontact.formulations import FORMULATIONS as FORMULATIONS_BY_NAME
+from bemcontact.formulations import FormulationOptions
 from bemcontact.problem import Problem
 
 PEAK, HALF_WIDTH = 183.335, 2.7685
 """The cylinder by finite elements on four meshes, per undeformed length; see the description in the model."""
-FORMULATIONS = ("qp3", "complementarity")
+FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
 
 
 @pytest.fixture(scope="module")
@@ -203,15 +205,30 @@ def test_renumbered_problem():
 
 @pytest.mark.parametrize("refine", [1, 2])
 def test_formulations_agree(cylinder, refine):
-    """QP3 after its polish and the direct solver to 1e-9 of the peak, free rigid motions or none."""
+    """QP1, QP2 and QP3 after their polish and the direct solver to 1e-9 of the peak, free rigid motions or none."""
     held = stepped_part().with_value("conditions.left.displacement.y", 0).refined(refine)
     held = held.with_value("contact_zones.base.surface.center", [1, -59.98])
     for problem in (cylinder.refined(refine), stepped_part().refined(refine), held):
-        first, second = (bemcontact.solve(problem, formulation) for formulation in FORMULATIONS)
-        difference = abs(first.solution.pressure - second.solution.pressure).max()
-        assert difference < 1e-9 * second.footprint.peak.pressure
-        assert first.certified
-        assert second.certified
+        *programs, direct = (bemcontact.solve(problem, formulation) for formulation in FORMULATIONS)
+        assert direct.certified
+        for result in programs:
+            assert result.certified
+            difference = abs(result.solution.pressure - direct.solution.pressure).max()
+            assert difference < 1e-9 * direct.footprint.peak.pressure
+
+
+@pytest.mark.parametrize("formulation", ["qp1", "qp2"])
+@pytest.mark.parametrize("modulus", [1e3, 2e6, 2e11])
+def test_stiffness_of_the_material_does_not_matter(cylinder, formulation, modulus):
+    """The load grown with E gives the same pattern: pressures over E to 1e-9 before any polish, in equal iterations."""
+    factor = modulus / 1000
+    problem = cylinder.with_value("material.young_modulus", modulus).with_value(
+        "conditions.top.pressure", 50.625 * factor
+    )
+    condensed = bemcontact.condense(problem)
+    solution = FORMULATIONS_BY_NAME[formulation](condensed, FormulationOptions(polish=False))
+    reference = bemcontact.solve(cylinder, "complementarity").solution.pressure
+    assert abs(solution.pressure / factor - reference).max() < 1e-9 * reference.max()
 
 
 def test_no_contact_is_an_answer():
@@ -296,6 +313,16 @@ contact_zones:
     edges: seat
     surface: {kind: polyline, points: [[-2, 0.5858], [0, -0.4142], [2, 0.5858]]}
 """
+
+
+@pytest.mark.parametrize("formulation", ["qp1", "qp2"])
+def test_wide_gaps_do_not_drown_the_pressure(formulation):
+    """The wheel laid far into a groove, three free motions, gaps of thousands of scales: the direct solver's answer."""
+    problem = bemcontact.loads(WHEEL)
+    result, direct = (bemcontact.solve(problem, name) for name in (formulation, "complementarity"))
+    assert result.certified
+    peak = direct.footprint.peak.pressure
+    assert abs(result.solution.pressure - direct.solution.pressure).max() < 1e-9 * peak
 
 
 def test_polish_leaves_no_dust_of_the_solver():

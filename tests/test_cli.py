@@ -13,11 +13,11 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import bemcontact
-from bemcontact import analysis, cli, spec
+from bemcontact import analysis, cli, option_names, spec
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.contact import CondensedContact, Weights
 from bemcontact.errors import NotConvexError, SingularSystemError
-from bemcontact.formulations import FORMULATIONS
+from bemcontact.formulations import FORMULATIONS, Equilibrium, Rows
 
 BLOCK = """\
 name: block on a table
@@ -97,9 +97,11 @@ def test_version_is_said():
     assert answer.stdout.startswith("bemcontact")
 
 
-def test_options_name_the_weights_and_formulations_of_the_library():
-    assert [*cli.WeightsOption] == [weights.value for weights in Weights]
-    assert [*cli.Formulation] == [*FORMULATIONS]
+def test_options_name_the_choices_of_the_library():
+    assert [*option_names.WeightsOption] == [weights.value for weights in Weights]
+    assert [*option_names.RowsOption] == [rows.value for rows in Rows]
+    assert [*option_names.EquilibriumOption] == [equilibrium.value for equilibrium in Equilibrium]
+    assert [*option_names.Formulation] == [*FORMULATIONS]
 
 
 def test_solve_says_it_in_a_short_table(block: Path):
@@ -112,7 +114,7 @@ def test_solve_says_it_in_a_short_table(block: Path):
     assert max(map(len, answer.stdout.splitlines())) <= 100
 
 
-@pytest.mark.parametrize("formulation", ["qp3", "complementarity"])
+@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_json_on_standard_output_is_all_that_is_there(block: Path, formulation: str):
     answer = run("solve", block, "--json", "-", "--formulation", formulation)
     found = json.loads(answer.stdout)
@@ -411,6 +413,61 @@ def test_errors_found_after_reading_name_the_file(block: Path, command: str, old
 
 def test_a_condensed_problem_is_written_as_npz_only(block: Path):
     assert_refused(run("condense", block, "--out", block.with_suffix(".txt")), r"--out: .*end the file name")
+
+
+def test_search_and_starts_are_told(block: Path):
+    """Uniform compression; the block is free to rise, so that a start far off may end lifted if that is let happen."""
+    options = ("--formulation", "qp2", "--equilibrium", "penalty", "--start", "random", "--seed", 1, "--starts", 12)
+    answer = run("solve", block, *options)
+    words = " ".join(answer.stdout.split())
+    assert answer.exit_code == 0, answer.stderr
+    assert "of 12 random starts (seed 1) end at the contact state" in words
+    assert "penalty 1 (" in words
+    assert "convex for no penalty" in words
+    found = json.loads(run("solve", block, "--json", "-", *options).stdout)
+    assert found["pressure"] == pytest.approx([3.0] * 9, rel=1e-9)
+    assert found["search"]["penalty"]["value"] == 1
+    assert sum(end["count"] for end in found["starts"]["ends"]) == 12
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--formulation", "qp1", "--rows", "compliance"),
+        ("--formulation", "qp1", "--start", "random", "--seed", "3"),
+        ("--formulation", "qp2", "--penalty", "1e-3"),
+        ("--formulation", "qp2", "--rows", "compliance", "--penalty", "10"),
+    ],
+)
+def test_each_option_leads_to_the_same_solution(block: Path, options: tuple[str, ...]):
+    found = json.loads(run("solve", block, "--json", "-", *options).stdout)
+    assert found["certified"] is True
+    assert found["pressure"] == pytest.approx([3.0] * 9, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("options", "pattern"),
+    [
+        (("--penalty", "2"), "qp3 has no use for the option 'penalty'"),
+        (("--formulation", "qp1", "--penalty", "2"), "qp1 has no use for the option 'penalty'"),
+        (("--formulation", "qp1", "--equilibrium", "penalty"), "no use for the option 'equilibrium'"),
+        (("--formulation", "complementarity", "--weights", "consistent"), "no use for the option 'weights'"),
+        (("--start", "random"), "qp3 has no use for the option 'start'"),
+        (("--formulation", "qp1", "--starts", "4"), "add start random"),
+        (("--formulation", "qp2", "--penalty", "0"), "finite number above zero"),
+        (("--formulation", "qp2", "--penalty", "nan"), "finite number above zero"),
+        (("--formulation", "qp2", "--rows", "compliance", "--equilibrium", "penalty"), "stiffness rows only"),
+    ],
+)
+def test_options_that_mean_nothing_are_refused(block: Path, options: tuple[str, ...], pattern: str):
+    assert_refused(run("solve", block, *options), pattern)
+
+
+def test_a_penalty_that_leaves_no_minimum_is_refused(block: Path):
+    held = BLOCK.replace("left: {displacement: {x: 0}}", "left: {displacement: {x: 0, y: 0}}")
+    block.write_text(held, encoding="utf-8")
+    options = ("--formulation", "qp2", "--weights", "consistent", "--penalty", "1e9")
+    assert_refused(run("solve", block, *options), "no minimum with consistent weights .* falls without end")
 
 
 def test_weights_are_said_to_mean_nothing_to_complementarity():

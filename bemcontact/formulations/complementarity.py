@@ -88,15 +88,21 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     Parameters
     ----------
     condensed : CondensedContact
-    options : `max_iterations` limits the pivots of Lemke's method; the rest does not concern this solver
+    options : `max_iterations` limits the pivots of Lemke's method; the rest has no meaning here and must not be set
 
     Returns
     -------
     ContactSolution
         p is exactly zero off the contact set. With `Status.INFEASIBLE` p = 0, and the notes say in which motion the
         load carries the body away.
+
+    Raises
+    ------
+    ProblemError
+        An option has no meaning here, such as weights.
     """
     options = options or FormulationOptions()
+    options.ensure_used("complementarity")
     problem = scaled(condensed)
     if note := escape_note(condensed, problem):
         return _without_contact(condensed, note)

@@ -1,25 +1,107 @@
 """What a formulation is: a function from a condensed contact problem to a solution of it."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
+from enum import Enum
 from typing import Protocol
 
-from bemcontact.contact import CondensedContact, ContactSolution, Weights
+import numpy as np
+
+from bemcontact.contact import Array, CondensedContact, ContactSolution, Weights
+from bemcontact.errors import ProblemError
+
+
+class Rows(Enum):
+    """How the equations K u_n = B p + r, (12), are written in QP1 and QP2."""
+
+    STIFFNESS = "stiffness"
+    """p = S (u_n - Δ1) - V load: their residual is an error of pressure. The default."""
+    COMPLIANCE = "compliance"
+    """u_n = Δ1 + M p + R a with the amplitudes a as free variables: their residual is an error of displacement."""
+
+
+class Equilibrium(Enum):
+    """How QP2 keeps a body with free rigid motions in equilibrium."""
+
+    CONSTRAINT = "constraint"
+    """ℓᵀp = -load holds exactly. The default."""
+    PENALTY = "penalty"
+    """Only penalised, with all the rest of (12), as in [SS92]: a body lifted off its support is a stationary point."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Start:
+    """Where a local solver starts, in the user's units.
+
+    Parameters
+    ----------
+    pressure : (n,) p [p]
+    displacement : (n,) u_n [L]
+    label : what it is called in reports
+    """
+
+    pressure: Array
+    displacement: Array
+    label: str = "given point"
+
+    def __post_init__(self) -> None:
+        """Refuse what is no pair of equally long vectors of finite numbers; make them read-only."""
+        for name in ("pressure", "displacement"):
+            vector = np.array(getattr(self, name), float, ndmin=1)
+            if vector.ndim != 1 or not np.isfinite(vector).all():
+                raise ProblemError(f"the {name} of a start needs finite numbers, one for each contact point")
+            vector.setflags(write=False)
+            object.__setattr__(self, name, vector)
+        if self.pressure.shape != self.displacement.shape:
+            raise ProblemError(
+                f"a start needs one pressure and one displacement for each contact point; found {self.pressure.size} "
+                f"pressures and {self.displacement.size} displacements"
+            )
+
+    def ensure_fits(self, size: int) -> None:
+        """Refuse a start for another number of contact points."""
+        if self.pressure.size != size:
+            raise ProblemError(
+                f"the start has {self.pressure.size} contact points and the problem {size}; give one pressure and one "
+                "displacement for each, in the order of the problem's points"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
 class FormulationOptions:
-    """How a statement is solved.
+    """How a statement is solved; a formulation refuses an option that it has no use for.
 
     Parameters
     ----------
-    weights : the J of the objective; the complementarity problem has none and ignores it
+    weights : the J of the objective; the complementarity problem has none
     polish : whether the active-set step follows the solver
     max_iterations : limit of the solver's own count, or None for the solver's own limit
+    penalty : μ of QP2, free of units: a thousandth weighs the equations a thousand times more
+    rows : how QP1 and QP2 write the equations
+    equilibrium : how QP2 keeps a body with free rigid motions in equilibrium
+    start : of QP1 and QP2, or None for the null vector
     """
 
     weights: Weights = Weights.TRIBUTARY
     polish: bool = True
     max_iterations: int | None = None
+    penalty: float = 1.0
+    rows: Rows = Rows.STIFFNESS
+    equilibrium: Equilibrium = Equilibrium.CONSTRAINT
+    start: Start | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse a penalty that divides by nothing."""
+        if not (math.isfinite(self.penalty) and self.penalty > 0):
+            raise ProblemError(f"the penalty must be a finite number above zero; found {self.penalty!r}")
+
+    def ensure_used(self, formulation: str, *used: str) -> None:
+        """Refuse options that were set and that a formulation has no use for; `polish` and the limit concern all."""
+        for item in fields(self):
+            if item.name in ("polish", "max_iterations", *used) or getattr(self, item.name) == item.default:
+                continue
+            takes = f"; it takes {', '.join(used)}" if used else ""
+            raise ProblemError(f"{formulation} has no use for the option '{item.name}'{takes}; leave it out")
 
 
 class Formulation(Protocol):

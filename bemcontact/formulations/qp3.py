@@ -19,6 +19,8 @@ from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import ScaledContact, scaled, unscaled
 
+OPTIONS = ("weights",)
+"""Those of `FormulationOptions` that have a meaning here."""
 ITERATIONS = 200
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR, or negative eigenvalue, that is round-off; by the scaling the numbers are of size one."""
@@ -141,11 +143,12 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         The Hessian has a negative eigenvalue on the equilibrium space; with the tributary weights, one of more than a
         hundredth of the largest.
     ProblemError
-        The problem does not carry the weights asked for.
+        The problem does not carry the weights asked for, or an option has no meaning for QP3.
     SolverError
         Clarabel broke down.
     """
     options = options or FormulationOptions()
+    options.ensure_used("qp3", *OPTIONS)
     J = condensed.weight_matrix(options.weights)
     J = J / np.abs(J).max()
     problem = scaled(condensed)

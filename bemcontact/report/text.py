@@ -15,7 +15,7 @@ from rich.text import Text
 from bemcontact.analysis import Result
 from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.bem.condense import Body
-from bemcontact.contact import CondensedContact, Status
+from bemcontact.contact import CondensedContact, LocalSearch, Status
 from bemcontact.problem import Circle, Edge, Field, Plane, Polyline, Problem, Units
 
 NEGLIGIBLE = 1e-9
@@ -107,6 +107,26 @@ def verdict(result: Result) -> str:
     return ending + result.certificate.words
 
 
+def search_in_words(search: LocalSearch) -> str:
+    """Say how a local solver came to its end: from where, in how many iterations, over what curvature."""
+    positive, zero, negative = search.inertia
+    sentences = [
+        f"from the {search.start} {search.phase_one_iterations} + {search.phase_two_iterations} iterations",
+        f"{search.working_set_changes} changes of the working set",
+        f"Hessian with {positive} positive, {zero} zero, {negative} negative eigenvalues",
+    ]
+    if (penalty := search.penalty) is not None:
+        sentences.append(f"penalty {number(penalty.value)} ({number(penalty.raw)} in the units of the problem)")
+        match penalty.convexity_limit:
+            case None:
+                sentences.append("convex for every penalty")
+            case 0.0:
+                sentences.append("convex for no penalty")
+            case limit:
+                sentences.append(f"convex up to a penalty of {number(limit)}")
+    return ", ".join(sentences)
+
+
 def problem_summary(body: Body) -> RenderableType:
     """Tell what is seen in a problem: edges, zones, mesh, loads, what holds the body, remarks.
 
@@ -163,6 +183,10 @@ def result_summary(result: Result) -> RenderableType:
     force = vector(found.resultant.force, per_thickness(units), scale=pressed)
     _add(facts, "Resultant", f"{force}, of the rigid surfaces on the body")
     _add(facts, "Residuals", _residuals(result))
+    if result.solution.search is not None:
+        _add(facts, "Search", search_in_words(result.solution.search))
+    if result.starts is not None:
+        _add(facts, "Starts", str(result.starts))
     for note in result.notes:
         _add(facts, "Note", note)
     style = "bold green" if result.certified else "bold red"

@@ -11,7 +11,7 @@ from bemcontact.contact import CondensedContact, Status
 from bemcontact.formulations import FORMULATIONS, FormulationOptions
 
 
-@pytest.mark.parametrize("name", ["qp3", "complementarity"])
+@pytest.mark.parametrize("name", FORMULATIONS)
 def test_every_formulation_solves_and_bears_its_name(name):
     """One point with interference 3 and compliance 2: p = 3/2."""
     solution = FORMULATIONS[name](CondensedContact.from_compliance([[2.0]], [-3.0]), FormulationOptions())

@@ -1,0 +1,156 @@
+"""Second order at a first-order point: whether xᵀHx >= 0 on the critical cone.
+
+A first-order point of a quadratic programme is a local minimiser exactly if H is copositive on its critical cone
+{d : E d = 0, W d >= 0}, E the equalities and the constraints with a nonzero multiplier, W the other active ones
+(Majthay, Math. Programming 1 (1971) 359-365; Contesse, Numer. Math. 34 (1980) 331-332). Deciding this is co-NP-hard in
+general (Murty and Kabadi 1987), so the search is bounded and may end undecided.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import LinAlgError, cho_factor, eigh, qr
+from scipy.optimize import nnls
+
+Array = NDArray[np.float64]
+
+PROBES = 8
+DESCENTS = 30
+
+
+@dataclass(frozen=True, kw_only=True)
+class CriticalCone:
+    """{d : d_i = 0 outside `free`, E d = 0, W d >= 0}, the rows of length about one.
+
+    Parameters
+    ----------
+    free : (f,) int array
+        Variables that no bound with a multiplier fixes.
+    equal : (e, f) array
+        E, full rank not required.
+    weak : (w, f) array
+        W, signed so that feasible means >= 0.
+    """
+
+    free: NDArray[np.intp]
+    equal: Array
+    weak: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curvature:
+    """What the search found.
+
+    Parameters
+    ----------
+    copositive : bool or None
+        Whether H is copositive on the cone; None if the bound of the search came first.
+    direction : (n,) array or None
+        A direction of the cone with negative curvature, of length one.
+    """
+
+    copositive: bool | None
+    direction: Array | None = None
+
+
+def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
+    """Decide copositivity of H on the cone, within `faces` faces.
+
+    First by a Cholesky factorisation on the null space of E, then by descent from the negative eigenvectors projected
+    onto the cone, then by all faces: a lowest direction of the cone lies inside one face and is an eigenvector there.
+    """
+    N = null_space(cone.equal, cone.free.size)
+    reduced = N.T @ H[np.ix_(cone.free, cone.free)] @ N
+    zero = 1e-9 * float(np.abs(H).max(initial=0.0))
+    if _positive_semidefinite(reduced, zero):
+        return Curvature(copositive=True)
+    weak = cone.weak @ N
+    copositive, found = False, _probe(reduced, weak, zero)
+    if found is None:
+        copositive, found = _search_faces(reduced, weak, zero, faces)
+    if found is None:
+        return Curvature(copositive=copositive)
+    direction = np.zeros(H.shape[0])
+    direction[cone.free] = N @ found
+    return Curvature(copositive=False, direction=direction)
+
+
+def null_space(rows: Array, n: int) -> Array:
+    """An orthonormal basis of {d : rows d = 0}."""
+    if rows.shape[0] == 0 or n == 0:
+        return np.eye(n)
+    factors: Any = qr(rows.T, pivoting=True)
+    diagonal = np.abs(np.diag(factors[1]))
+    return factors[0][:, int(np.count_nonzero(diagonal > 1e-9 * max(float(diagonal[0]), 1e-300))) :]
+
+
+def _positive_semidefinite(matrix: Array, zero: float) -> bool:
+    """Whether no eigenvalue is below -zero, by Cholesky of the shifted matrix."""
+    if matrix.shape[0] == 0:
+        return True
+    try:
+        cho_factor(matrix + zero * np.eye(matrix.shape[0]))
+    except LinAlgError:
+        return float(eigh(matrix, eigvals_only=True, subset_by_index=(0, 0))[0]) >= -zero
+    return True
+
+
+def _projected(weak: Array, d: Array) -> Array:
+    """The nearest point of {d : W d >= 0}."""
+    if weak.shape[0] == 0:
+        return d
+    try:
+        y, _ = nnls(weak.T, -d)
+    except RuntimeError:  # SciPy's iteration limit: this start is given up, the faces are still to come
+        return np.zeros_like(d)
+    return d + weak.T @ y
+
+
+def _probe(reduced: Array, weak: Array, zero: float) -> Array | None:
+    """Projected descent from a few negative eigenvectors and their mixtures."""
+    eigenvalues, vectors = eigh(reduced)
+    size = float(np.abs(eigenvalues).max())
+    negative = vectors[:, eigenvalues < -zero]
+    shown = negative[:, :PROBES]
+    mixed = negative @ np.random.default_rng(0).standard_normal((negative.shape[1], PROBES))
+    for start in np.hstack([shown, -shown, mixed]).T:
+        d = start
+        for _ in range(DESCENTS):
+            d = _projected(weak, d)
+            length = float(np.linalg.norm(d))
+            if length < 1e-9:
+                break
+            d = d / length
+            if _falls(reduced, weak, d, zero):
+                return d
+            d = d - reduced @ d / size
+    return None
+
+
+def _falls(reduced: Array, weak: Array, d: Array, zero: float) -> bool:
+    """Whether the unit direction is in the cone and has negative curvature."""
+    return float(d @ reduced @ d) < -zero and bool(np.all(weak @ d >= -1e-11))
+
+
+def _search_faces(reduced: Array, weak: Array, zero: float, faces: int) -> tuple[bool | None, Array | None]:
+    """All faces on whose span the form is not positive semidefinite, until one holds a falling direction."""
+    stack: list[tuple[int, ...]] = [()]
+    seen = 0
+    while stack:
+        if seen >= faces:
+            return None, None
+        face = stack.pop()
+        seen += 1
+        basis = null_space(weak[list(face)], reduced.shape[0])
+        if basis.shape[1] == 0:
+            continue
+        eigenvalues, vectors = eigh(basis.T @ reduced @ basis)
+        for column in np.flatnonzero(eigenvalues < -zero):
+            for d in (basis @ vectors[:, column], -(basis @ vectors[:, column])):
+                if _falls(reduced, weak, d, zero):
+                    return False, d
+        if eigenvalues[0] < -zero:
+            stack += [(*face, i) for i in range(face[-1] + 1 if face else 0, weak.shape[0])]
+    return True, None

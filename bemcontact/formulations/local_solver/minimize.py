@@ -1,0 +1,118 @@
+"""`minimize_qp`: the data read and scaled, the walk, and its end in the units of the data."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bemcontact.errors import ProblemError
+from bemcontact.formulations.local_solver.progress import Progress
+from bemcontact.formulations.local_solver.result import QPOptions, QPResult
+from bemcontact.formulations.local_solver.statement import Scales, Statement, equilibrate, no_scales, numbers, read
+from bemcontact.formulations.local_solver.walk import Finding, Inertia, active, inertia, walk
+
+
+def minimize_qp(
+    H: Any,
+    c: ArrayLike,
+    A: Any = None,
+    cl: ArrayLike | None = None,
+    cu: ArrayLike | None = None,
+    bl: ArrayLike | None = None,
+    bu: ArrayLike | None = None,
+    x0: ArrayLike | None = None,
+    options: QPOptions | None = None,
+    working_set: ArrayLike | None = None,
+) -> QPResult:
+    """Find a local minimiser of cᵀx + xᵀHx/2 over cl <= A x <= cu, bl <= x <= bu, H of any inertia.
+
+    An inertia-controlling active-set method (Gill, Murray, Saunders and Wright, SIAM Review 33 (1991) 1-36).
+
+    Parameters
+    ----------
+    H : (n, n) array or sparse matrix
+        Symmetric.
+    c : (n,) array
+        Linear term.
+    A : (m, n) array or sparse matrix, optional
+        Rows.
+    cl, cu : (m,) arrays, optional
+        Bounds of the rows, infinite where there is none; cl = cu is an equality.
+    bl, bu : (n,) arrays, optional
+        Bounds of the variables, likewise.
+    x0 : (n,) array, optional
+        Start; the null vector if absent. It is moved to the nearest point between bl and bu.
+    options : QPOptions, optional
+        Tolerances, limits, log.
+    working_set : (n + m,) int array, optional
+        Start of the working set, as in `QPResult.working_set`; all that is active at x0 if absent.
+
+    Returns
+    -------
+    QPResult
+        The point, what is claimed of it, and what shows it.
+
+    Raises
+    ------
+    ProblemError
+        The data do not state a quadratic programme.
+    """
+    options = options or QPOptions()
+    _check(options)
+    stated = read(H, c, A, cl, cu, bl, bu)
+    n = stated.c.size
+    start = np.zeros(n) if x0 is None else numbers("x0", x0, n)
+    start = np.clip(start, stated.lower[:n], stated.upper[:n])
+    scales = equilibrate(stated) if options.scale else no_scales(stated)
+    progress = Progress(statement=scales.apply(stated), options=options, x=start / scales.variables)
+    sides = active(progress)
+    if working_set is not None:
+        sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
+    finding, reduced_start = walk(progress, sides)
+    return _result(stated, scales, progress, finding, reduced_start)
+
+
+def _check(options: QPOptions) -> None:
+    """Refuse options without sense."""
+    for name in ("feasibility_tolerance", "optimality_tolerance"):
+        value = getattr(options, name)
+        if not 0.0 < value < 1e-2:
+            raise ProblemError(f"{name} is {value}: give a number between 0 and 0.01, such as 1e-9")
+    if options.max_iterations is not None and options.max_iterations < 0:
+        raise ProblemError(f"max_iterations is {options.max_iterations}: give a number >= 0, or None")
+    if options.search < 0:
+        raise ProblemError(f"search is {options.search}: give the number of faces to examine, >= 0")
+
+
+def _wanted(working_set: ArrayLike, size: int) -> NDArray[np.bool_]:
+    """Which constraints a warm start names."""
+    wanted = np.asarray(working_set)
+    if wanted.shape != (size,) or not np.isin(wanted, (-1, 0, 1, 2)).all():
+        raise ProblemError(f"working_set must be ({size},) integers of -1, 0, 1, 2, as in QPResult.working_set")
+    return wanted != 0
+
+
+def _result(stated: Statement, scales: Scales, progress: Progress, finding: Finding, start: Inertia) -> QPResult:
+    """All of it in the units of the data."""
+    n = stated.c.size
+    x = np.clip(scales.variables * progress.x, stated.lower[:n], stated.upper[:n])
+    multipliers = scales.multipliers(finding.multipliers) / scales.objective
+    return QPResult(
+        x=x,
+        status=finding.status,
+        objective=stated.objective(x),
+        bound_multipliers=multipliers[:n],
+        constraint_multipliers=multipliers[n:],
+        working_set=finding.sides,
+        phase_one_iterations=progress.iterations[0],
+        phase_two_iterations=progress.iterations[1],
+        working_set_changes=progress.changes,
+        inertia=inertia(stated.H, float(np.abs(stated.H).max(initial=0.0))),
+        reduced_inertia_start=start,
+        reduced_inertia_end=finding.reduced_end,
+        weakly_active=finding.weak,
+        ray=None if finding.ray is None else scales.variables * finding.ray,
+        certificate=None if finding.certificate is None else scales.multipliers(finding.certificate),
+        violation=float(stated.violation(stated.values(x)).max(initial=0.0)),
+        log=tuple(progress.lines),
+    )

@@ -1,0 +1,147 @@
+"""What `minimize_qp` is told and what it answers: options, status, lines of the log, result."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class QPStatus(StrEnum):
+    """How a run ended; the value is the text to print."""
+
+    LOCAL_MINIMISER = "local minimiser"
+    UNDECIDED = "second-order undecided"
+    UNBOUNDED = "unbounded"
+    INFEASIBLE = "infeasible"
+    ITERATION_LIMIT = "iteration limit"
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogLine:
+    """One iteration: what moved and what entered or left the working set.
+
+    Parameters
+    ----------
+    phase : int
+        1 (sum of infeasibilities) or 2 (objective).
+    iteration : int
+        Number of the iteration, both phases counted together.
+    value : float
+        Sum of infeasibilities (phase 1) or objective (phase 2), in scaled units.
+    step : float
+        Length of the step along the direction.
+    added, dropped : int or None
+        Constraints, variables first, then rows; None if there was none, or a temporary one.
+    working : int
+        Size of the working set, temporary constraints included.
+    nonpositive : int
+        Non-positive eigenvalues of the reduced Hessian: 0 or 1; 0 in phase 1.
+    """
+
+    phase: int
+    iteration: int
+    value: float
+    step: float
+    added: int | None
+    dropped: int | None
+    working: int
+    nonpositive: int
+
+    def __str__(self) -> str:
+        """One line of a table."""
+        added = "-" if self.added is None else str(self.added)
+        dropped = "-" if self.dropped is None else str(self.dropped)
+        return (
+            f"{self.phase} {self.iteration:6d}  {self.value:16.9e}  step {self.step:9.2e}"
+            f"  +{added:>5s} -{dropped:>5s}  |W| {self.working:5d}  non-positive {self.nonpositive}"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class QPOptions:
+    """Options of `minimize_qp`.
+
+    Parameters
+    ----------
+    max_iterations : int or None
+        Bound on the iterations of both phases; None means 1000 + 20 (n + m).
+    feasibility_tolerance : float
+        A constraint counts as satisfied within this, relative to max(1, its bound) in scaled units.
+    optimality_tolerance : float
+        A gradient or multiplier counts as zero within this, relative to the gradient's terms in scaled units.
+    scale : bool
+        Equilibrate rows and variables by powers of two, which changes no digit of the data.
+    search : int
+        Most faces of the critical cone that are examined behind zero multipliers before "undecided" is said.
+    log : callable or None
+        Called with each `LogLine` as it is made.
+    """
+
+    max_iterations: int | None = None
+    feasibility_tolerance: float = 1e-9
+    optimality_tolerance: float = 1e-9
+    scale: bool = True
+    search: int = 2000
+    log: Callable[[LogLine], None] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class QPResult:
+    """What `minimize_qp` found; all of it in the units of the data, save the log.
+
+    Parameters
+    ----------
+    x : (n,) array
+        The last point.
+    status : QPStatus
+        What is claimed of it.
+    objective : float
+        cᵀx + xᵀHx/2.
+    bound_multipliers, constraint_multipliers : (n,) and (m,) arrays
+        H x + c = bound_multipliers + Aᵀ constraint_multipliers; >= 0 at a lower, <= 0 at an upper bound.
+    working_set : (n + m,) int8 array
+        0 free, -1 at lower, +1 at upper, 2 equality; variables first, then rows.
+    phase_one_iterations, phase_two_iterations : int
+        Iterations of each phase.
+    working_set_changes : int
+        Constraints added and dropped, temporary ones included.
+    inertia : (int, int, int)
+        Positive, zero and negative eigenvalues of H.
+    reduced_inertia_start, reduced_inertia_end : (int, int, int)
+        The same of ZᵀHZ on the null space of the working set, at the start of phase 2 and at the end.
+    weakly_active : int array
+        Active inequalities whose multiplier is about zero, numbered as in `working_set`.
+    ray : (n,) array or None
+        If unbounded: x + t ray is feasible for all t >= 0 and the objective falls to -inf on it.
+    certificate : (n + m,) array or None
+        If infeasible: y with [I; A]ᵀy = 0 and Σ_{y>0} y lower + Σ_{y<0} y upper > 0 (Farkas); variables first.
+    violation : float
+        Largest violation of a constraint at x.
+    log : tuple of LogLine
+        Each iteration.
+    """
+
+    x: NDArray[np.float64]
+    status: QPStatus
+    objective: float
+    bound_multipliers: NDArray[np.float64]
+    constraint_multipliers: NDArray[np.float64]
+    working_set: NDArray[np.int8]
+    phase_one_iterations: int
+    phase_two_iterations: int
+    working_set_changes: int
+    inertia: tuple[int, int, int]
+    reduced_inertia_start: tuple[int, int, int]
+    reduced_inertia_end: tuple[int, int, int]
+    weakly_active: NDArray[np.intp]
+    ray: NDArray[np.float64] | None
+    certificate: NDArray[np.float64] | None
+    violation: float
+    log: tuple[LogLine, ...]
+
+    @property
+    def iterations(self) -> int:
+        """Iterations of both phases."""
+        return self.phase_one_iterations + self.phase_two_iterations

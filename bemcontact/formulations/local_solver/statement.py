@@ -1,0 +1,217 @@
+"""The quadratic programme as stated, checked on entry, and its equilibration."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
+
+from bemcontact.errors import ProblemError
+
+Array = NDArray[np.float64]
+
+RUIZ_SWEEPS = 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Statement:
+    """min cᵀx + xᵀHx/2 over lower <= [x; A x] <= upper: a bound is a constraint whose normal is a unit vector.
+
+    Parameters
+    ----------
+    H : (n, n) array
+        Symmetric, of any inertia.
+    c : (n,) array
+        Linear term.
+    A : (m, n) array
+        Rows.
+    lower, upper : (n + m,) arrays
+        Bounds of the variables, then of the rows; infinite where there is none.
+    """
+
+    H: Array
+    c: Array
+    A: Array
+    lower: Array
+    upper: Array
+
+    def gradient(self, x: Array) -> Array:
+        """H x + c."""
+        return self.H @ x + self.c
+
+    def objective(self, x: Array) -> float:
+        """cᵀx + xᵀHx/2."""
+        return float(x @ (self.c + 0.5 * (self.H @ x)))
+
+    def values(self, x: Array) -> Array:
+        """[x; A x]."""
+        return np.concatenate([x, self.A @ x])
+
+    def transposed(self, y: Array) -> Array:
+        """[I; A]ᵀ y."""
+        n = self.c.size
+        return y[:n] + self.A.T @ y[n:]
+
+    def normal(self, constraint: int) -> Array:
+        """Gradient of one constraint."""
+        n = self.c.size
+        if constraint >= n:
+            return self.A[constraint - n]
+        unit = np.zeros(n)
+        unit[constraint] = 1.0
+        return unit
+
+    def violation(self, values: Array) -> Array:
+        """How far each constraint is outside its bounds; 0 inside."""
+        return np.maximum(np.maximum(self.lower - values, values - self.upper), 0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scales:
+    """x = variables * scaled x; scaled rows = rows * A * variables; scaled objective = objective * objective."""
+
+    variables: Array
+    rows: Array
+    objective: float
+
+    def apply(self, statement: Statement) -> Statement:
+        """The statement in scaled variables and rows; exact, since every factor is a power of two."""
+        D, E = self.variables, self.rows
+        of_constraints = np.concatenate([1.0 / D, E])
+        return Statement(
+            H=self.objective * (D[:, None] * statement.H * D),
+            c=self.objective * D * statement.c,
+            A=E[:, None] * statement.A * D,
+            lower=of_constraints * statement.lower,
+            upper=of_constraints * statement.upper,
+        )
+
+    def multipliers(self, scaled: Array) -> Array:
+        """Multipliers of the constraints in the units of the data (objective not rescaled)."""
+        return scaled * np.concatenate([1.0 / self.variables, self.rows])
+
+
+def no_scales(statement: Statement) -> Scales:
+    """All factors one."""
+    m, n = statement.A.shape
+    return Scales(variables=np.ones(n), rows=np.ones(m), objective=1.0)
+
+
+def equilibrate(statement: Statement) -> Scales:
+    """Factors that bring the rows and columns of A to size one, columns outside A by H (Ruiz, RAL-TR-2001-034)."""
+    m, n = statement.A.shape
+    D, E = np.ones(n), np.ones(m)
+    H, A = np.abs(statement.H), np.abs(statement.A)
+    for _ in range(RUIZ_SWEEPS):
+        hessian = (H * D).max(axis=1, initial=0.0) * D
+        linear = E[:, None] * A * D
+        rows = linear.max(axis=0, initial=0.0)
+        D = D / _root(np.where(rows > 0.0, rows, hessian / _top(hessian)))
+        E = E / _root(linear.max(axis=1, initial=0.0))
+    D = _power_of_two(D)
+    D = D * _smaller_unit(statement, D, E)
+    length = np.linalg.norm(statement.A * D, axis=1)
+    E = _power_of_two(1.0 / np.where(length > 0.0, length, 1.0))
+    size = max(float((D[:, None] * H * D).max(initial=0.0)), float(np.abs(D * statement.c).max(initial=0.0)))
+    return Scales(variables=D, rows=E, objective=float(_power_of_two(np.array(1.0 / _top(np.array([size]))))))
+
+
+def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
+    """A unit of length that makes the largest bound about one, if all are smaller: tolerances are relative to one."""
+    bounds = np.abs(np.concatenate([statement.lower, statement.upper]))
+    sizes = bounds * np.tile(np.concatenate([1.0 / D, E]), 2)
+    largest = float(sizes[np.isfinite(bounds)].max(initial=0.0))
+    return float(_power_of_two(np.array(largest))) if 0.0 < largest < 1.0 else 1.0
+
+
+def _top(sizes: Array) -> float:
+    """The largest size, 1 if all are zero."""
+    return float(sizes.max(initial=0.0)) or 1.0
+
+
+def _root(sizes: Array) -> Array:
+    """Square roots, 1 where there is nothing to scale."""
+    return np.sqrt(np.where(sizes > 0.0, sizes, 1.0))
+
+
+def _power_of_two(factors: Array) -> Array:
+    """Nearest powers of two."""
+    return np.exp2(np.round(np.log2(factors)))
+
+
+def read(
+    H: Any, c: ArrayLike, A: Any, cl: ArrayLike | None, cu: ArrayLike | None, bl: ArrayLike | None, bu: ArrayLike | None
+) -> Statement:
+    """Check what was given and put it in one form.
+
+    Raises
+    ------
+    ProblemError
+        A shape, a NaN, an unsymmetric H, or a lower bound above its upper bound: what, where, and the way out.
+    """
+    linear = numbers("c", c, None)
+    n = linear.size
+    hessian = _matrix("H", H, n)
+    if hessian.shape[0] != n:
+        raise ProblemError(f"H has {hessian.shape[0]} rows, but c has {n} entries: H must be ({n}, {n})")
+    difference = np.abs(hessian - hessian.T).max(initial=0.0)
+    if difference > 1e-10 * np.abs(hessian).max(initial=0.0):
+        raise ProblemError(f"H is not symmetric: H - H' has entries up to {difference:.3g}; give (H + H') / 2")
+    rows = np.zeros((0, n)) if A is None else _matrix("A", A, n)
+    m = rows.shape[0]
+    if A is None and (cl is not None or cu is not None):
+        raise ProblemError("cl or cu is given without A: give the rows A that they bound, or use bl and bu")
+    lower = np.concatenate([_bound("bl", bl, n, -np.inf), _bound("cl", cl, m, -np.inf)])
+    upper = np.concatenate([_bound("bu", bu, n, np.inf), _bound("cu", cu, m, np.inf)])
+    _order(lower[:n], upper[:n], "bl", "bu")
+    _order(lower[n:], upper[n:], "cl", "cu")
+    return Statement(H=0.5 * (hessian + hessian.T), c=linear, A=rows, lower=lower, upper=upper)
+
+
+def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
+    """Read a finite vector.
+
+    Raises
+    ------
+    ProblemError
+        Not a vector of `size` finite numbers.
+    """
+    vector = np.array(given, dtype=float)
+    if vector.ndim != 1 or (size is not None and vector.size != size):
+        expected = "one-dimensional" if size is None else f"of shape ({size},)"
+        raise ProblemError(f"{name} has shape {vector.shape}: it must be {expected}")
+    if not np.all(np.isfinite(vector)):
+        raise ProblemError(f"{name}[{int(np.argmin(np.isfinite(vector)))}] is not finite: give finite numbers")
+    return vector
+
+
+def _matrix(name: str, given: Any, columns: int) -> Array:
+    """A finite dense matrix with the given number of columns, from a dense or a sparse one."""
+    matrix = np.array(given.toarray() if sparse.issparse(given) else given, dtype=float)
+    if matrix.ndim != 2 or matrix.shape[1] != columns:
+        raise ProblemError(f"{name} has shape {matrix.shape}: it needs {columns} columns, one for each entry of c")
+    if not np.all(np.isfinite(matrix)):
+        raise ProblemError(f"{name} has entries that are not finite: give finite numbers")
+    return matrix
+
+
+def _bound(name: str, given: ArrayLike | None, size: int, absent: float) -> Array:
+    """A vector of bounds; infinite in the harmless direction only."""
+    if given is None:
+        return np.full(size, absent)
+    bound = np.array(given, dtype=float)
+    if bound.shape != (size,):
+        raise ProblemError(f"{name} has shape {bound.shape}: it must be ({size},), with {absent} where there is none")
+    wrong = np.isnan(bound) | (bound == -absent)
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        raise ProblemError(f"{name}[{i}] is {bound[i]}: give a number, or {absent} for no bound")
+    return bound
+
+
+def _order(lower: Array, upper: Array, low: str, up: str) -> None:
+    """Refuse a lower bound above its upper bound."""
+    if (lower > upper).any():
+        i = int(np.argmax(lower > upper))
+        raise ProblemError(f"{low}[{i}] = {lower[i]} exceeds {up}[{i}] = {upper[i]}: no x satisfies both; change one")

@@ -1,0 +1,119 @@
+"""Claims checked from the data: first-order conditions, rays, certificates; nothing is believed from the factors."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.formulations.local_solver.dead_point import CriticalCone
+from bemcontact.formulations.local_solver.progress import Progress
+from bemcontact.formulations.local_solver.statement import Statement
+
+Array = NDArray[np.float64]
+
+WEAK = 10.0
+"""Multipliers below this many optimality tolerances are treated as zero in the critical cone."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FirstOrder:
+    """First-order conditions at a point, in scaled units.
+
+    Parameters
+    ----------
+    holds : bool
+        Feasible, stationary, multipliers of the right sign and only on active constraints, all within tolerance.
+    strong, weak : bool arrays (n + m,)
+        Active constraints: equalities and those with a multiplier, and the others.
+    sides : (n + m,) int8 array
+        Which bound each active constraint is at (2: equality).
+    """
+
+    holds: bool
+    strong: NDArray[np.bool_]
+    weak: NDArray[np.bool_]
+    sides: NDArray[np.int8]
+
+    def cone(self, statement: Statement) -> CriticalCone:
+        """The critical cone with normals of length one, turned inwards."""
+        n = statement.c.size
+        free = np.flatnonzero(~self.strong[:n])
+        rows = statement.A[:, free] / np.maximum(np.linalg.norm(statement.A, axis=1), 1e-300)[:, None]
+        inwards = np.where(self.sides == 1, -1.0, 1.0)
+        weak_bounds = np.flatnonzero(self.weak[:n])
+        bounds = np.zeros((weak_bounds.size, free.size))
+        bounds[np.arange(weak_bounds.size), np.searchsorted(free, weak_bounds)] = inwards[weak_bounds]
+        weak_rows = (inwards[n:, None] * rows)[self.weak[n:]]
+        return CriticalCone(free=free, equal=rows[self.strong[n:]], weak=np.vstack([bounds, weak_rows]))
+
+
+def first_order(progress: Progress, multipliers: Array, zero: float) -> FirstOrder:
+    """Recompute the first-order conditions at the point from the data."""
+    statement, x = progress.statement, progress.x
+    values = statement.values(x)
+    at_lower = values <= statement.lower + progress.slack
+    at_upper = values >= statement.upper - progress.slack
+    equality = statement.lower == statement.upper
+    sides = np.where(equality, 2, np.where(at_lower, -1, np.where(at_upper, 1, 0))).astype(np.int8)
+    nearer = values - statement.lower > statement.upper - values
+    sides[at_lower & at_upper & ~equality & nearer] = 1
+    feasible = bool(np.all(statement.violation(values) <= 2.0 * progress.slack))
+    residual = float(np.abs(statement.gradient(x) - statement.transposed(multipliers)).max(initial=0.0))
+    signs = np.where(equality, 0.0, np.where(sides == 0, np.abs(multipliers), sides * multipliers))
+    empty = np.concatenate([np.zeros(x.size, dtype=bool), ~statement.A.any(axis=1)])
+    strong = (equality | ((sides != 0) & (np.abs(multipliers) > WEAK * zero))) & ~empty
+    return FirstOrder(
+        holds=feasible and residual <= 2.0 * zero and float(signs.max(initial=0.0)) <= 2.0 * zero,
+        strong=strong,
+        weak=(sides != 0) & ~strong & ~empty,
+        sides=sides,
+    )
+
+
+def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
+    """The ray, with rounding removed, if it is one: recession direction along which the objective falls without end."""
+    statement = progress.statement
+    d = np.where(np.abs(ray) > 1e-13 * np.abs(ray).max(initial=0.0), ray, 0.0)
+    d = d / np.linalg.norm(d)
+    along = statement.values(d)
+    within = 1e-9
+    falls = np.isfinite(statement.lower) & (along < -within)
+    rises = np.isfinite(statement.upper) & (along > within)
+    if falls.any() or rises.any():
+        return None
+    curvature = float(d @ statement.H @ d)
+    slope = float(statement.gradient(progress.x) @ d)
+    size = float(np.abs(statement.H).max(initial=0.0))
+    zero = 1e-12 * max(10, d.size) * size
+    gradient = max(float(np.abs(statement.gradient(progress.x)).max(initial=0.0)), 1e-3)
+    if curvature < -zero or (abs(curvature) <= zero and slope < -progress.options.optimality_tolerance * gradient):
+        return d
+    return None
+
+
+def separates(statement: Statement, certificate: Array) -> bool:
+    """Whether [I; A]ᵀy = 0 while y lower (y > 0) and y upper (y < 0) sum to more than zero: no x is feasible.
+
+    Each component of the combination is held against its own terms, so that a column of small numbers counts too.
+    """
+    y = certificate
+    used = y != 0.0
+    bounds = np.where(y > 0.0, statement.lower, statement.upper)[used]
+    if not np.all(np.isfinite(bounds)):
+        return False
+    terms = y[used] * bounds
+    n = statement.c.size
+    sizes = np.abs(y[:n]) + np.abs(statement.A).T @ np.abs(y[n:])
+    cancels = np.abs(statement.transposed(y)) <= 1e-11 * max(10, n) * sizes
+    return bool(np.all(cancels)) and float(terms.sum()) > 1e-10 * float(np.abs(terms).sum())
+
+
+def certified(statement: Statement, certificate: Array) -> Array | None:
+    """The certificate if it separates, its bound multipliers recomputed so that [I; A]ᵀy = 0 to the last digits."""
+    n = statement.c.size
+    y = np.where(np.abs(certificate) > 1e-11 * np.abs(certificate).max(initial=0.0), certificate, 0.0)
+    y[:n] = 0.0
+    y[:n] = -statement.transposed(y)
+    noise = 1e-11 * max(10, n) * (np.abs(statement.A).T @ np.abs(y[n:]))
+    y[:n] = np.where(np.abs(y[:n]) > noise, y[:n], 0.0)
+    return y if separates(statement, y) else None

@@ -1,0 +1,85 @@
+"""QP1, (27)-(29): the work of the pressure in the gap over displacements and pressures, from a local solver.
+
+    minimise   pᵀJ(ε + u_n)    over u_n, p
+    subject to K u_n = B p + r,  ε + u_n >= 0,  p >= 0
+
+Its Hessian [[0, Jᵀ], [J, 0]] is indefinite. On the equations it is that of QP3, so that QP1 is convex on what they
+leave free wherever QP3 is. For bodies with free rigid motions K is singular, and the stiffness rows contain
+equilibrium.
+"""
+
+from dataclasses import replace
+
+from bemcontact.contact import CondensedContact, ContactSolution
+from bemcontact.formulations.formulation import FormulationOptions, Rows
+from bemcontact.formulations.program import (
+    Program,
+    contact_equations,
+    equilibrium,
+    lower_bounds,
+    no_equations,
+    scaled_weights,
+    solution,
+)
+from bemcontact.formulations.qp3 import smallest_eigenvalue
+from bemcontact.formulations.scaling import scaled
+
+OPTIONS = ("weights", "rows", "start")
+"""Those of `FormulationOptions` that have a meaning here."""
+
+
+def statement(condensed: CondensedContact, options: FormulationOptions) -> Program:
+    """Write (27)-(29) on the scaled problem.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    options : weights and rows
+
+    Returns
+    -------
+    Program
+        Over (u_n, p), or (u_n, p, a) with the compliance rows, which need ℓᵀp = -load beside them.
+
+    Raises
+    ------
+    ProblemError
+        The problem does not carry the weights asked for.
+    """
+    equations = contact_equations(condensed, options.rows)
+    size = equations.matrix.shape[1]
+    if options.rows is Rows.COMPLIANCE:
+        equations = equations.and_also(equilibrium(scaled(condensed), size))
+    return Program(
+        weights=scaled_weights(condensed, options.weights),
+        penalised=no_equations(size),
+        penalty=1.0,
+        equations=equations.of_unit_size,
+        lower=lower_bounds(condensed, size),
+    )
+
+
+def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+    """Find a local minimum of QP1, then polish it if it is the contact state.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    options : weights, rows, start, whether to polish, limit of the solver's iterations
+
+    Returns
+    -------
+    ContactSolution
+        `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state; with `smallest_eigenvalue` of the
+        Hessian on the equations.
+
+    Raises
+    ------
+    ProblemError
+        The problem does not carry the weights asked for, or an option has no meaning for QP1.
+    """
+    options = options or FormulationOptions()
+    options.ensure_used("qp1", *OPTIONS)
+    program = statement(condensed, options)
+    eigenvalue = smallest_eigenvalue(scaled(condensed), scaled_weights(condensed, options.weights))
+    return replace(solution(condensed, options, "qp1", program), smallest_eigenvalue=eigenvalue)

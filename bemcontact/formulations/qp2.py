@@ -1,0 +1,231 @@
+"""QP2, (30)-(34): QP1 with the equations penalised, over displacements and pressures, from a local solver.
+
+    minimise   pᵀJ(ε + u_n) + (1/μ)|K u_n - B p - r|²    over u_n, p
+    subject to ε + u_n >= 0,  p >= 0,  ℓᵀp = -load
+
+on the scaled problem, where μ = 1 weighs an error of T in the equations like the work of T on U. With positive diagonal
+weights and a compliance that is a P-matrix the contact state is the only stationary point, whatever μ is; but only with
+equilibrium as a constraint. Where it is penalised as all the rest, as [SS92] has it, p = 0 with the body lifted far
+enough is another one: the residual then is balanced by no force, and small changes of p and u_n improve nothing.
+
+Convexity. On the equilibrium space p = Z z, s = K u_n - B p - r the quadratic is zᵀW z + zᵀD s + (1/μ)|s|² with
+W = ZᵀJM Z and D = W (stiffness rows, s = Z t) or D = ZᵀJ (compliance rows). Its least value over s is
+zᵀ(W - (μ/4) D Dᵀ)z, so that QP2 is convex up to the smallest eigenvalue of (2(W + Wᵀ), D Dᵀ). A product pᵀJR a that
+equilibrium does not make vanish is a saddle for every μ.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import eigvalsh
+
+from bemcontact.contact import Array, CondensedContact, ContactSolution, Penalty, Status, Weights
+from bemcontact.errors import ProblemError
+from bemcontact.formulations.formulation import Equilibrium, FormulationOptions, Rows
+from bemcontact.formulations.program import (
+    Program,
+    contact_equations,
+    equilibrium,
+    lower_bounds,
+    no_equations,
+    scaled_weights,
+    solution,
+)
+from bemcontact.formulations.scaling import scaled
+
+OPTIONS = ("weights", "penalty", "rows", "equilibrium", "start")
+"""Those of `FormulationOptions` that have a meaning here."""
+NEGLIGIBLE = 1e-10
+"""Entry of ZᵀJR that is round-off; by the scaling the numbers are of size one."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Ray:
+    """A direction of two contact points along which QP2 falls without end, once μ is above a limit.
+
+    Parameters
+    ----------
+    pressed, opened : contact points whose pressure grows and whose gap opens
+    direction : (2n,) over (u_n, p), scaled, for the μ asked for
+    limit : the largest μ, free of units, up to which no two points make such a ray
+    """
+
+    pressed: int
+    opened: int
+    direction: Array
+    limit: float
+
+
+def statement(condensed: CondensedContact, options: FormulationOptions) -> Program:
+    """Write (30)-(34) on the scaled problem.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    options : weights, penalty, rows, equilibrium
+
+    Returns
+    -------
+    Program
+        Over (u_n, p), or (u_n, p, a) with the compliance rows.
+
+    Raises
+    ------
+    ProblemError
+        The problem does not carry the weights asked for, or the rows do not contain the equilibrium to be penalised.
+    """
+    penalised = contact_equations(condensed, options.rows)
+    size = penalised.matrix.shape[1]
+    exact = no_equations(size)
+    if options.equilibrium is Equilibrium.CONSTRAINT:
+        exact = equilibrium(scaled(condensed), size).of_unit_size
+    elif options.rows is Rows.COMPLIANCE and condensed.free_motions:
+        raise ProblemError(
+            "equilibrium can be penalised with the stiffness rows only, which contain it; the compliance rows need it "
+            "as a constraint"
+        )
+    return Program(
+        weights=scaled_weights(condensed, options.weights),
+        penalised=penalised,
+        penalty=options.penalty,
+        equations=exact,
+        lower=lower_bounds(condensed, size),
+    )
+
+
+def penalty_unit(condensed: CondensedContact, options: FormulationOptions) -> float:
+    """The μ in the user's units that is 1 in scaled ones: T/(U max J) for stiffness rows, U/(T max J) for others.
+
+    It is that of pᵀJδ + (1/μ)|K u_n - B p - r|² with K, B, r, J as they are. Where a change of units multiplies
+    lengths, it changes; so do not compare μ between problems by it.
+    """
+    U, T = condensed.scales
+    weight = float(np.abs(condensed.weight_matrix(options.weights)).max())
+    return (T / U if options.rows is Rows.STIFFNESS else U / T) / weight
+
+
+def convexity_limit(condensed: CondensedContact, options: FormulationOptions) -> float:
+    """The largest μ, free of units, for which QP2 is convex.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    options : weights, rows, equilibrium
+
+    Returns
+    -------
+    float
+        Zero if QP2 is convex for none, infinite if equilibrium leaves no pressure free.
+    """
+    problem, J = scaled(condensed), scaled_weights(condensed, options.weights)
+    n, k = problem.rigid_motions.shape
+    Z = np.linalg.qr(problem.equilibrium, mode="complete")[0][:, k:]
+    lifted = options.equilibrium is Equilibrium.PENALTY and k > 0
+    if lifted or np.abs(Z.T @ J @ problem.rigid_motions).max(initial=0.0) > NEGLIGIBLE:
+        return 0.0
+    if n == k:
+        return np.inf
+    W = Z.T @ J @ problem.compliance @ Z
+    if eigvalsh(W + W.T, subset_by_index=(0, 0))[0] <= 0:
+        return 0.0
+    if options.rows is Rows.STIFFNESS:  # with w = Wᵀz the pencil is that of W⁻¹ alone
+        inverse = np.linalg.inv(W)
+        return float(eigvalsh(2 * (inverse + inverse.T), subset_by_index=(0, 0))[0])
+    D = Z.T @ J
+    return float(eigvalsh(2 * (W + W.T), D @ D.T, subset_by_index=(0, 0))[0])
+
+
+def two_point_ray(condensed: CondensedContact, options: FormulationOptions) -> Ray | None:
+    """Find p growing by β at i and u_n by α at j, J_ij < 0, such that αβ J_ij + (1/μ)|α K e_j - β B e_i|² < 0.
+
+    For given i, j the quadratic form in α, β > 0 is somewhere negative if μ > 2(|K e_j||B e_i| - K e_j·B e_i)/(-J_ij).
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    options : weights, penalty, rows, equilibrium
+
+    Returns
+    -------
+    Ray or None
+        The one of the lowest limit; None if μ is not above it, or equilibrium lets no single pressure grow.
+    """
+    n, J = condensed.size, scaled_weights(condensed, options.weights)
+    if not (J < 0).any() or (condensed.free_motions and options.equilibrium is Equilibrium.CONSTRAINT):
+        return None
+    E = contact_equations(condensed, options.rows).matrix
+    K, B = E[:, :n], -E[:, n : 2 * n]
+    lengths = np.outer(np.linalg.norm(B, axis=0), np.linalg.norm(K, axis=0))
+    limits = np.where(J < 0, 2 * (lengths - B.T @ K) / np.where(J < 0, -J, 1.0), np.inf)
+    i, j = map(int, np.unravel_index(np.argmin(limits), limits.shape))
+    if options.penalty <= limits[i, j]:
+        return None
+    direction = np.zeros(2 * n)
+    direction[j], direction[n + i] = np.linalg.norm(B[:, i]), np.linalg.norm(K[:, j])
+    return Ray(pressed=i, opened=j, direction=direction, limit=float(limits[i, j]))
+
+
+def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+    """Find a local minimum of QP2, then polish it if it is the contact state.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    options : weights, penalty, rows, equilibrium, start, whether to polish, limit of the solver's iterations
+
+    Returns
+    -------
+    ContactSolution
+        `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state; with the penalty and the limit of
+        convexity in `search`.
+
+    Raises
+    ------
+    ProblemError
+        QP2 has no minimum, as with the consistent weights and a large penalty; the problem does not carry the weights
+        asked for; the rows do not contain the equilibrium to be penalised.
+    """
+    options = options or FormulationOptions()
+    options.ensure_used("qp2", *OPTIONS)
+    program = statement(condensed, options)
+    unit = penalty_unit(condensed, options)
+    if ray := two_point_ray(condensed, options):
+        raise ProblemError(_unbounded(condensed, options, ray, unit))
+    limit = convexity_limit(condensed, options)
+    penalty = Penalty(
+        value=options.penalty,
+        raw=options.penalty * unit,
+        convexity_limit=limit if np.isfinite(limit) else None,
+        convexity_limit_raw=limit * unit if np.isfinite(limit) else None,
+    )
+    found = solution(condensed, options, "qp2", program, penalty)
+    if found.status is Status.UNBOUNDED and options.weights is Weights.CONSISTENT:
+        raise ProblemError(f"QP2 has no minimum with consistent weights: {found.notes[-1]}; take the tributary weights")
+    return replace(found, notes=(*found.notes, *_notes(condensed, options, found)))
+
+
+def _unbounded(condensed: CondensedContact, options: FormulationOptions, ray: Ray, unit: float) -> str:
+    """Tell of a ray in words."""
+    (x, y), (v, w) = condensed.points[ray.pressed], condensed.points[ray.opened]
+    return (
+        f"QP2 has no minimum with {options.weights.value} weights and penalty {options.penalty:.3g} "
+        f"({options.penalty * unit:.3g} in the units of the problem): it falls without end as the pressure grows at "
+        f"contact point {ray.pressed} ({x:.5g}, {y:.5g}) and the gap opens at point {ray.opened} ({v:.5g}, {w:.5g}), "
+        f"whose common weight is negative; take a penalty of at most {ray.limit:.3g} ({ray.limit * unit:.3g}), or the "
+        "tributary weights"
+    )
+
+
+def _notes(condensed: CondensedContact, options: FormulationOptions, found: ContactSolution) -> tuple[str, ...]:
+    """What to know of equilibrium that is only penalised."""
+    if options.equilibrium is Equilibrium.CONSTRAINT:
+        return ()
+    if not condensed.free_motions:
+        return ("conditions hold all rigid motions: there is no equilibrium of a free body to be penalised",)
+    if found.status is not Status.LOCAL_MINIMUM:
+        return ()
+    state = "lifted off its support" if not found.pressure.any() else "out of equilibrium"
+    return (
+        f"equilibrium was only penalised, and the body was left {state}, where no small change helps; keep "
+        "equilibrium as a constraint, or take another start",
+    )

@@ -1,0 +1,242 @@
+"""Random starts of the local solver, and what is found from many of them: which ends, and how often each."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from bemcontact.contact import Array, CondensedContact, ContactSolution, Status
+from bemcontact.errors import ProblemError
+from bemcontact.formulations.formulation import Formulation, FormulationOptions, Start
+from bemcontact.formulations.program import contact_residual
+
+SPREAD = 2.0
+"""Largest random pressure over T, and size of a random displacement over U."""
+SAME = 1e-6
+"""Difference of pressures over T, and of displacements over U, relative to their size, below which ends are one."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class End:
+    """Where searches ended.
+
+    Parameters
+    ----------
+    solution : of the first search that ended here, not polished
+    count : how many did
+    first_start : number of the first start that led here, from 0
+    objective : scaled, of the statement itself; zero at the contact state
+    residual : of the contact conditions and equations, relative to the scales; it tells the contact state
+    iterations : least and most of those who did
+    """
+
+    solution: ContactSolution
+    count: int
+    first_start: int
+    objective: float
+    residual: float
+    iterations: tuple[int, int]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as numbers and texts, ready for JSON."""
+        numbers = ("count", "first_start", "objective", "residual")
+        return {
+            "status": self.solution.status.name.lower(),
+            **{name: getattr(self, name) for name in numbers},
+            "iterations": list(self.iterations),
+            "pressure": self.solution.pressure.tolist(),
+            "normal_displacement": self.solution.displacement.tolist(),
+        }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RandomStarts:
+    """What was found from random starts.
+
+    Parameters
+    ----------
+    formulation : name of the statement
+    count, seed : of the starts
+    ends : the nearest to the contact state first
+    """
+
+    formulation: str
+    count: int
+    seed: int
+    ends: tuple[End, ...]
+
+    @property
+    def solved(self) -> int:
+        """How many searches ended at a contact state."""
+        return sum(end.count for end in self.ends if end.solution.status is Status.SOLVED)
+
+    def __str__(self) -> str:
+        """One line for each end: how often, where."""
+        head = f"{self.solved} of {self.count} random starts (seed {self.seed}) end at the contact state"
+        lines = [
+            f"{end.count} x {end.solution.status.name.lower().replace('_', ' ')}, objective {end.objective:.1e}, "
+            f"residual {end.residual:.1e}, {end.iterations[0]} to {end.iterations[1]} iterations"
+            for end in self.ends
+        ]
+        return "\n".join([head, *lines])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as numbers, lists and texts, ready for JSON."""
+        return {
+            "formulation": self.formulation,
+            "count": self.count,
+            "seed": self.seed,
+            "solved": self.solved,
+            "ends": [end.to_dict() for end in self.ends],
+        }
+
+
+def random_points(condensed: CondensedContact, count: int, seed: int = 0) -> tuple[Start, ...]:
+    """Draw starts: pressures even in [0, 2T], displacements normal with deviation 2U, the body moved likewise.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    count : how many, at least 1
+    seed : the same seed gives the same starts, in any units, and fewer starts are the first of more
+
+    Returns
+    -------
+    tuple of Start
+
+    Raises
+    ------
+    ProblemError
+        A count below 1, or a negative seed.
+    """
+    _ensure_drawable(count, seed)
+    rng = np.random.default_rng(seed)
+    U, T = condensed.scales
+    motions = condensed.rigid_motions / np.abs(condensed.rigid_motions).max(axis=0, initial=0.0)
+    points = []
+    for number in range(count):
+        pressure = rng.uniform(0.0, SPREAD, condensed.size)
+        displacement = SPREAD * (rng.standard_normal(condensed.size) + motions @ rng.standard_normal(motions.shape[1]))
+        label = f"random point {number}, seed {seed}"
+        points.append(Start(pressure=pressure * T, displacement=displacement * U, label=label))
+    return tuple(points)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StartChoice:
+    """Which start a person asked for, checked before there is a problem to fit it.
+
+    Parameters
+    ----------
+    start : "null", "random", or a Start
+    seed, count : of random starts, None for 0 and 1
+    """
+
+    start: Start | str = "null"
+    seed: int | None = None
+    count: int | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse an unknown start, and a seed or a count without random starts."""
+        if not isinstance(self.start, Start) and self.start not in ("null", "random"):
+            raise ProblemError(f"there is no start '{self.start}'; take null, random, or a Start of your own")
+        if self.start != "random" and (self.seed is not None or self.count is not None):
+            raise ProblemError("a seed or a number of starts says nothing without random starts; add start random")
+        _ensure_drawable(1 if self.count is None else self.count, self.seed or 0)
+
+    def ensure_used(self, formulation: str, used: bool) -> None:
+        """Refuse a start for a formulation whose solver chooses its own."""
+        if self.start != "null" and not used:
+            raise ProblemError(
+                f"{formulation} has no use for the option 'start', its solver finds its own; leave it out"
+            )
+
+    def search(
+        self, condensed: CondensedContact, solve: Formulation, options: FormulationOptions
+    ) -> tuple[ContactSolution, RandomStarts | None]:
+        """Solve from the start; of several random ones from the first that led to the best end, with all the ends."""
+        if self.start == "null":
+            return solve(condensed, options), None
+        if isinstance(self.start, Start):
+            return solve(condensed, replace(options, start=self.start)), None
+        points = random_points(condensed, self.count or 1, self.seed or 0)
+        if self.count is None:
+            return solve(condensed, replace(options, start=points[0])), None
+        found = search_from(condensed, solve, options, self.count, self.seed or 0)
+        return solve(condensed, replace(options, start=points[found.ends[0].first_start])), found
+
+
+def search_from(
+    condensed: CondensedContact,
+    solve: Formulation,
+    options: FormulationOptions | None = None,
+    count: int = 100,
+    seed: int = 0,
+) -> RandomStarts:
+    """Solve a statement from random starts, without polish, and sort the ends.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    solve : `qp1.solve` or `qp2.solve`
+    options : of the statement; its start is replaced, and nothing is polished, which would hide where a search ended
+    count, seed : of `random_points`
+
+    Returns
+    -------
+    RandomStarts
+
+    Raises
+    ------
+    ProblemError
+        As `solve` and `random_points`.
+    """
+    options = replace(options or FormulationOptions(), polish=False)
+    ends: list[End] = []
+    name = ""
+    for number, start in enumerate(random_points(condensed, count, seed)):
+        found = solve(condensed, replace(options, start=start))
+        name = found.formulation
+        same = next((i for i, end in enumerate(ends) if _same(condensed, end.solution, found)), None)
+        if same is None:
+            ends.append(_end(condensed, found, number))
+            continue
+        least, most = ends[same].iterations
+        iterations = min(least, found.iterations), max(most, found.iterations)
+        ends[same] = replace(ends[same], count=ends[same].count + 1, iterations=iterations)
+    ordered = tuple(sorted(ends, key=lambda end: (end.solution.status is not Status.SOLVED, end.residual)))
+    return RandomStarts(formulation=name, count=count, seed=seed, ends=ordered)
+
+
+def _ensure_drawable(count: int, seed: int) -> None:
+    """Refuse numbers that draw nothing."""
+    if count < 1 or seed < 0:
+        raise ProblemError(f"random starts need a count of at least 1 and a seed of at least 0; found {count}, {seed}")
+
+
+def _end(condensed: CondensedContact, found: ContactSolution, number: int) -> End:
+    """The first search that ended here."""
+    if found.search is None:
+        raise ProblemError(f"{found.formulation} has no start to choose; take qp1 or qp2")
+    return End(
+        solution=found,
+        count=1,
+        first_start=number,
+        objective=found.search.objective,
+        residual=contact_residual(condensed, found),
+        iterations=(found.iterations, found.iterations),
+    )
+
+
+def _same(condensed: CondensedContact, one: ContactSolution, other: ContactSolution) -> bool:
+    """Whether two searches ended at one point in one way; a body that nothing holds counts as one wherever it is."""
+    U, T = condensed.scales
+    R, ell = condensed.rigid_motions, condensed.equilibrium
+    apart = one.displacement - other.displacement
+    apart = apart - R @ np.linalg.solve(ell.T @ R, ell.T @ apart)
+    near = _near(one.pressure / T, other.pressure / T)
+    return near and one.status is other.status and bool(np.abs(apart).max() <= SAME * U)
+
+
+def _near(one: Array, other: Array) -> bool:
+    return bool(np.abs(one - other).max() <= SAME * (1.0 + np.abs(one).max()))

@@ -1,0 +1,232 @@
+"""The local solver beside its peers on the same quadratic programs, and its time per iteration as they grow.
+
+    python tests/benchmarks/local_solver.py [FOLDER] [--limit SECONDS] [--only NAME ...] [--nodes N ...] [--sizes N ...]
+
+FOLDER holds instances as .npz files. QP1 and QP2 of random half-planes, raw and scaled, and programs without a
+minimiser, are added to them. Every solver starts at the null vector; every point is judged from x.
+Set OPENBLAS_NUM_THREADS=1.
+"""
+
+import argparse
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from judgement import FIRST_ORDER, SECOND_ORDER, Judgement, judge
+from peers import PEERS, Answer, Claim, Peer, run
+from qp_instance import Instance, contact_instances, half_plane, qp1, qp2, read_folder, status_instances
+from rich.console import Console
+from rich.table import Table
+from scipy.linalg import qr
+
+from bemcontact.formulations.local_solver import QPResult, QPStatus, minimize_qp
+
+RIGHT = 1e-6
+"""Largest error of u_n and of p, each over its own largest entry, of a contact solution that is right."""
+WRONG = 1e-3
+"""The same, of one that is false if its solver calls it optimal."""
+
+CLAIMS = {
+    QPStatus.LOCAL_MINIMISER: Claim.OPTIMAL,
+    QPStatus.INFEASIBLE: Claim.INFEASIBLE,
+    QPStatus.UNBOUNDED: Claim.UNBOUNDED,
+}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trial:
+    """One solver on one instance."""
+
+    instance: Instance
+    answer: Answer
+    judgement: Judgement
+
+    @property
+    def first_order(self) -> bool:
+        return self.judgement.verdict in FIRST_ORDER
+
+    @property
+    def second_order(self) -> bool:
+        return self.judgement.verdict in SECOND_ORDER
+
+    @property
+    def false_claim(self) -> bool:
+        """Optimal where x is no local minimiser, or far from the only one; infeasible or unbounded where it is not."""
+        claim, expected = self.answer.claim, self.instance.expected
+        if claim is Claim.NOTHING:
+            return False
+        return claim.value != expected or self.falsely_optimal or (claim is Claim.OPTIMAL and not self.second_order)
+
+    @property
+    def named_right(self) -> bool:
+        return self.answer.claim.value == self.instance.expected
+
+    @property
+    def right(self) -> bool:
+        return self.judgement.error <= RIGHT
+
+    @property
+    def falsely_optimal(self) -> bool:
+        """Called optimal, though far from the only right answer: stationary to the judge's tolerance or not."""
+        return self.answer.claim is Claim.OPTIMAL and bool(self.instance.truth) and not self.judgement.error <= WRONG
+
+
+def solve_locally(instance: Instance) -> QPResult:
+    """Call ours with its defaults from the null vector."""
+    return minimize_qp(instance.H, instance.c, instance.A, instance.cl, instance.cu, instance.bl, instance.bu)
+
+
+def ours(instance: Instance) -> Answer:
+    result = solve_locally(instance)
+    return Answer(x=result.x, claim=CLAIMS.get(result.status, Claim.NOTHING), says=result.status.value)
+
+
+OURS = Peer(name="bemcontact", package="bemcontact", solve=ours)
+
+
+def trials(peer: Peer, instances: list[Instance], limit: float) -> list[Trial]:
+    return [
+        Trial(instance=instance, answer=(answer := run(peer, instance, limit)), judgement=judge(instance, answer.x))
+        for instance in instances
+    ]
+
+
+def count(done: list[Trial], measure: Callable[[Trial], bool], counts: Callable[[Trial], bool]) -> str:
+    """How many of those that count have the property, as "7/9"."""
+    among = [trial for trial in done if counts(trial)]
+    return f"{sum(map(measure, among))}/{len(among)}" if among else ""
+
+
+def of_group(*groups: str) -> Callable[[Trial], bool]:
+    return lambda trial: trial.instance.group in groups
+
+
+def nonconvex(trial: Trial) -> bool:
+    return trial.instance.group not in ("convex", "degenerate", "status", "contact", "scaled contact")
+
+
+def known(trial: Trial) -> bool:
+    return nonconvex(trial) and np.isfinite(trial.instance.best)
+
+
+COLUMNS: dict[str, tuple[Callable[[Trial], bool], Callable[[Trial], bool]]] = {
+    "KKT": (lambda trial: trial.first_order, nonconvex),
+    "second order": (lambda trial: trial.second_order, nonconvex),
+    "global": (lambda trial: trial.judgement.is_global, known),
+    "convex": (lambda trial: trial.judgement.is_global, of_group("convex")),
+    "degenerate": (lambda trial: trial.judgement.is_global, of_group("degenerate")),
+    "status": (lambda trial: trial.named_right, of_group("status")),
+    "contact right": (lambda trial: trial.right, of_group("contact")),
+    "contact falsely optimal": (lambda trial: trial.falsely_optimal, of_group("contact")),
+    "scaled contact right": (lambda trial: trial.right, of_group("scaled contact")),
+    "false claims": (lambda trial: trial.false_claim, lambda trial: True),
+}
+"""Heading -> (what is counted, among which trials)."""
+
+
+def time_ratio(ours_done: list[Trial], done: list[Trial]) -> str:
+    """Geometric mean of our times over those of a solver, where both came to a first-order point."""
+    both = [(a, b) for a, b in zip(ours_done, done, strict=True) if a.first_order and b.first_order]
+    ratios = [a.answer.seconds / b.answer.seconds for a, b in both]
+    return f"{statistics.geometric_mean(ratios):.2f}" if ratios else ""
+
+
+def comparison(peers: list[Peer], instances: list[Instance], limit: float) -> tuple[Table, list[list[Trial]]]:
+    """The table, a row for each solver, and the trials of each that is installed; ours is the first."""
+    table = Table(title=f"{len(instances)} programs from x = 0, at most {limit:g} s each; judged from x")
+    for heading in ("solver", *COLUMNS, "median ms", "our time / its"):
+        table.add_column(heading, justify="left" if heading == "solver" else "right")
+    all_done: list[list[Trial]] = []
+    for peer in (OURS, *peers):
+        if not peer.installed:
+            table.add_row(peer.name, "absent")
+            continue
+        all_done.append(done := trials(peer, instances, limit))
+        median = statistics.median(trial.answer.seconds for trial in done)
+        counts = [count(done, measure, among) for measure, among in COLUMNS.values()]
+        table.add_row(peer.name, *counts, f"{1e3 * median:.3f}", time_ratio(all_done[0], done))
+    return table, all_done
+
+
+def shortfalls(done: list[Trial]) -> list[str]:
+    """A line for each program on which a solver made a false claim, found no answer, or a contact that is not right."""
+    return [
+        f"{trial.instance.group:14s} {trial.instance.name:28s} {trial.judgement.verdict.value:40s}"
+        f" error {trial.judgement.error:8.1e}  says: {trial.answer.says}"
+        for trial in done
+        if trial.false_claim or not (trial.named_right and (trial.right or not trial.instance.truth))
+    ]
+
+
+def best_of_three(action: Callable[[], object]) -> float:
+    """Shortest of three runs, in seconds."""
+    seconds = []
+    for _ in range(3):
+        begin = time.perf_counter()
+        action()
+        seconds.append(time.perf_counter() - begin)
+    return min(seconds)
+
+
+def growth(sizes: list[int]) -> Table:
+    """Time per iteration on QP1 and QP2 of n contact nodes, over matrix operations with as many rows as unknowns."""
+    table = Table(title="time per iteration; matrix operations of order 2n, the number of unknowns")
+    for heading in ("program", "unknowns", "iterations", "seconds", "ms each", "/GEMV", "/GEMM", "/QR", "order in n"):
+        table.add_column(heading, justify="left" if heading == "program" else "right")
+    for statement in (qp1, qp2):
+        before: tuple[int, float] | None = None
+        for n in sizes:
+            contact = half_plane(n, 1e3, seed=0)
+            instance = statement(contact, contact.stiffness_rows)
+            before = _add_growth(table, instance, before)
+    return table
+
+
+def _add_growth(table: Table, instance: Instance, before: tuple[int, float] | None) -> tuple[int, float]:
+    """A row of the table, with the order seen since the row before."""
+    begin = time.perf_counter()
+    result = solve_locally(instance)
+    seconds = time.perf_counter() - begin
+    each = seconds / max(1, result.iterations)
+    matrix = np.random.default_rng(0).standard_normal(instance.H.shape)
+    operations = (lambda: matrix @ matrix[0], lambda: matrix @ matrix, lambda: qr(matrix))
+    ratios = [f"{each / best_of_three(operation):.3g}" for operation in operations]
+    order = f"{np.log(each / before[1]) / np.log(len(matrix) / before[0]):.2f}" if before else ""
+    table.add_row(
+        instance.name, str(len(matrix)), str(result.iterations), f"{seconds:.3f}", f"{1e3 * each:.3f}", *ratios, order
+    )
+    return len(matrix), each
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    names = [peer.name for peer in PEERS]
+    parser.add_argument("folder", nargs="?", type=Path, help="instances as .npz files")
+    parser.add_argument("--limit", type=float, default=10, help="seconds for one program")
+    parser.add_argument("--only", nargs="*", default=names, choices=names, help="peers to run beside ours")
+    parser.add_argument("--nodes", nargs="*", type=int, default=[11, 21, 41], help="contact nodes of the half-planes")
+    parser.add_argument("--seeds", type=int, default=2, help="random half-planes of each kind")
+    parser.add_argument("--sizes", nargs="*", type=int, default=[50, 100, 200], help="contact nodes for the growth")
+    parser.add_argument("--details", action="store_true", help="name the programs on which a solver fell short")
+    return parser.parse_args()
+
+
+def main() -> None:
+    given = arguments()
+    console = Console(width=220)
+    instances = list(read_folder(given.folder)) if given.folder else []
+    instances += [*status_instances(), *contact_instances(given.nodes, given.seeds)]
+    peers = [peer for peer in PEERS if peer.name in given.only]
+    table, all_done = comparison(peers, instances, given.limit)
+    console.print(table)
+    if given.details:
+        for name, done in zip((OURS, *(peer for peer in peers if peer.installed)), all_done, strict=True):
+            console.print(f"[bold]{name.name}[/bold]", *shortfalls(done), sep="\n")
+    console.print(growth(given.sizes))
+
+
+if __name__ == "__main__":
+    main()

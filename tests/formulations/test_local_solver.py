@@ -1,0 +1,395 @@
+"""The local solver: every claim of a result checked again from the data of the problem."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from scipy.optimize import linprog
+
+from bemcontact.errors import ProblemError
+from bemcontact.formulations.local_solver import QPOptions, QPResult, QPStatus, minimize_qp
+
+INF = np.inf
+
+
+def random_qp(seed):
+    """A small programme: any inertia, whole numbers (degenerate) or not, redundant and contradictory rows."""
+    rng = np.random.default_rng(seed)
+    n, m = int(rng.integers(1, 6)), int(rng.integers(0, 6))
+    whole = rng.random() < 0.5
+
+    def draw(*shape):
+        return rng.integers(-2, 3, shape).astype(float) if whole else rng.standard_normal(shape)
+
+    B = draw(n, n)
+    b = B[:, :1]
+    H = [B + B.T, B @ B.T, np.zeros((n, n)), b @ b.T - B[:, -1:] @ B[:, -1:].T][int(rng.integers(4))]
+    A = draw(m, n)
+    if m > 1 and rng.random() < 0.4:
+        A[-1] = A[0] * rng.choice([-1.0, 2.0])
+
+    def interval(k):
+        low, high = -np.abs(draw(k)), np.abs(draw(k))
+        low[rng.random(k) < 0.3], high[rng.random(k) < 0.3] = -INF, INF
+        fixed = rng.random(k) < 0.15
+        low[fixed] = high[fixed] = 0.0
+        shift = draw(k) * (rng.random() < 0.4)
+        return low + shift, high + shift
+
+    (bl, bu), (cl, cu) = interval(n), interval(m)
+    return H, draw(n), A, cl, cu, bl, bu
+
+
+def constraints(A, cl, cu, bl, bu):
+    """[I; A] with its bounds."""
+    return np.vstack([np.eye(bl.size), A]), np.concatenate([bl, cl]), np.concatenate([bu, cu])
+
+
+def assert_first_order(H, c, A, cl, cu, bl, bu, result):
+    """Feasible, stationary, multipliers of the right sign on active constraints only: to 1e-8, data of size one."""
+    G, low, high = constraints(A, cl, cu, bl, bu)
+    values = G @ result.x
+    assert np.all(values >= low - 1e-8)
+    assert np.all(values <= high + 1e-8)
+    multipliers = np.concatenate([result.bound_multipliers, result.constraint_multipliers])
+    assert_allclose(G.T @ multipliers, H @ result.x + c, atol=1e-8)
+    assert np.all(multipliers[np.abs(values - low) > 1e-7] <= 1e-8)
+    assert np.all(multipliers[np.abs(values - high) > 1e-7] >= -1e-8)
+
+
+def cone_of(H, c, A, cl, cu, bl, bu, x):
+    """Normals of the equalities and of the active inequalities (inwards) at x."""
+    G, low, high = constraints(A, cl, cu, bl, bu)
+    values = G @ x
+    fixed = low == high
+    at_low, at_high = (np.abs(values - low) < 1e-7) & ~fixed, (np.abs(values - high) < 1e-7) & ~fixed
+    return G[fixed], np.vstack([G[at_low], -G[at_high]])
+
+
+def lowest_curvature_on_faces(H, equal, inwards, gradient):
+    """Exhaustive: the least dᵀHd of a unit d in {E d = 0, W d >= 0, gᵀd = 0}, among the eigenvectors on every face."""
+    lowest = 0.0
+    scale = max(1.0, float(np.abs(gradient).max()))
+    for face in product([False, True], repeat=inwards.shape[0]):
+        rows = np.vstack([equal, inwards[list(face)], gradient[None] / scale])
+        _, s, V = np.linalg.svd(rows)
+        N = V[int(np.sum(s > 1e-8)) :].T
+        if N.shape[1] == 0:
+            continue
+        eigenvalues, vectors = np.linalg.eigh(N.T @ H @ N)
+        for value, vector in zip(eigenvalues, (N @ vectors).T, strict=True):
+            for d in (vector, -vector):
+                if np.all(inwards @ d >= -1e-9):
+                    lowest = min(lowest, float(value))
+    return lowest
+
+
+def first_order_values(H, c, A, cl, cu, bl, bu):
+    """Exhaustive: the objective at every stationary point of every working set that is feasible."""
+    G, low, high = constraints(A, cl, cu, bl, bu)
+    choices = [
+        [2] if a == b else [0] + [-1] * bool(np.isfinite(a)) + [1] * bool(np.isfinite(b))
+        for a, b in zip(low, high, strict=True)
+    ]
+    found = []
+    for sides in product(*choices):
+        sides = np.array(sides)
+        W = sides != 0
+        if W.sum() > c.size and not np.any(sides == 2):
+            continue
+        right = np.where(sides == 1, high, low)[W]
+        K = np.block([[H, G[W].T], [G[W], np.zeros((W.sum(), W.sum()))]])
+        x = np.linalg.lstsq(K, np.concatenate([-c, right]), rcond=1e-11)[0][: c.size]
+        if np.all(G @ x >= low - 1e-8) and np.all(G @ x <= high + 1e-8):
+            found.append(float(c @ x + 0.5 * x @ H @ x))
+    return np.array(found)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.integers(0, 10**9))
+def test_every_claim_of_a_random_programme_holds(seed):
+    H, c, A, cl, cu, bl, bu = random_qp(seed)
+    result = minimize_qp(H, c, A, cl, cu, bl, bu)
+    G, low, high = constraints(A, cl, cu, bl, bu)
+    if result.status is QPStatus.INFEASIBLE:
+        assert_separates(G, low, high, result.certificate)
+    elif result.status is QPStatus.UNBOUNDED:
+        assert_ray(H, c, G, low, high, result)
+    else:
+        assert result.status is QPStatus.LOCAL_MINIMISER
+        assert_first_order(H, c, A, cl, cu, bl, bu, result)
+        equal, inwards = cone_of(H, c, A, cl, cu, bl, bu, result.x)
+        assert lowest_curvature_on_faces(H, equal, inwards, H @ result.x + c) > -1e-7
+
+
+def assert_separates(G, low, high, y):
+    """Farkas: [I; A]ᵀy = 0 and the bounds that y uses sum to more than zero."""
+    assert y is not None
+    used = np.where(y > 0.0, low, high)[y != 0.0]
+    assert_allclose(G.T @ y, 0.0, atol=1e-9 * np.abs(y).sum())
+    assert float(y[y != 0.0] @ used) > 1e-9 * np.abs(y).sum()
+
+
+def assert_ray(H, c, G, low, high, result):
+    """A feasible x, ray a recession direction, objective quadratic to -inf or linear to -inf."""
+    d, x = result.ray, result.x
+    assert d is not None
+    assert np.all(G @ x >= low - 1e-8)
+    assert np.all(G @ x <= high + 1e-8)
+    assert np.all((G @ d)[np.isfinite(low)] >= -1e-9 * np.abs(d).max())
+    assert np.all((G @ d)[np.isfinite(high)] <= 1e-9 * np.abs(d).max())
+    curvature, slope = d @ H @ d, (H @ x + c) @ d
+    assert curvature < -1e-9 or (abs(curvature) < 1e-12 and slope < -1e-9)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_value_is_one_of_all_first_order_values(seed):
+    """All working sets enumerated, n <= 5."""
+    H, c, A, cl, cu, bl, bu = random_qp(seed)
+    A, cl, cu = A[:2], cl[:2], cu[:2]
+    bl, bu = np.maximum(bl, -3.0), np.minimum(bu, 5.0)
+    result = minimize_qp(H, c, A, cl, cu, bl, bu)
+    values = first_order_values(H, c, A, cl, cu, bl, bu)
+    if result.status is QPStatus.INFEASIBLE:
+        assert values.size == 0
+    else:
+        assert result.status is QPStatus.LOCAL_MINIMISER
+        assert np.abs(values - result.objective).min() < 1e-8
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_convex_programmes_reach_the_least_value_of_all_working_sets(seed):
+    H, c, A, cl, cu, bl, bu = random_qp(seed)
+    H = H @ H
+    A, cl, cu = A[:2], cl[:2], cu[:2]
+    result = minimize_qp(H, c, A, cl, cu, np.maximum(bl, -3.0), np.minimum(bu, 5.0))
+    values = first_order_values(H, c, A, cl, cu, np.maximum(bl, -3.0), np.minimum(bu, 5.0))
+    if values.size:
+        assert_allclose(result.objective, values.min(), atol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_infeasibility_agrees_with_linear_programming(seed):
+    rng = np.random.default_rng(seed)
+    A = rng.integers(-2, 3, (5, 3)).astype(float)
+    cl = rng.integers(-1, 3, 5).astype(float)
+    result = minimize_qp(-np.eye(3), np.ones(3), A, cl, cl + 2.0, np.full(3, -1.0), np.full(3, 1.0))
+    feasible = linprog(np.zeros(3), np.vstack([A, -A]), np.concatenate([cl + 2.0, -cl]), bounds=(-1, 1)).status == 0
+    assert (result.status is QPStatus.INFEASIBLE) == (not feasible)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_units_of_variables_rows_and_objective_change_no_answer(seed):
+    """Powers of two are removed exactly by the equilibration, so the runs are the same to the last digit."""
+    H, c, A, cl, cu, bl, bu = random_qp(seed)
+    rng = np.random.default_rng(seed)
+    D, E = 4.0 ** rng.integers(-6, 7, c.size), 2.0 ** rng.integers(-12, 13, cl.size)
+    plain = minimize_qp(H, c, A, cl, cu, bl, bu)
+    scaled = minimize_qp(
+        1024.0 * D[:, None] * H * D, 1024.0 * D * c, E[:, None] * A * D, E * cl, E * cu, bl / D, bu / D
+    )
+    assert scaled.status is plain.status
+    if plain.status is QPStatus.LOCAL_MINIMISER and np.linalg.eigvalsh(H)[0] > -1e-12:
+        assert_allclose(scaled.objective, 1024.0 * plain.objective, rtol=1e-8, atol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_order_of_variables_and_rows_changes_no_status_and_no_convex_value(seed):
+    H, c, A, cl, cu, bl, bu = random_qp(seed)
+    H = H @ H
+    rng = np.random.default_rng(seed)
+    v, r = rng.permutation(c.size), rng.permutation(cl.size)
+    plain = minimize_qp(H, c, A, cl, cu, bl, bu)
+    moved = minimize_qp(H[np.ix_(v, v)], c[v], A[np.ix_(r, v)], cl[r], cu[r], bl[v], bu[v])
+    assert moved.status is plain.status
+    if plain.status is QPStatus.LOCAL_MINIMISER:
+        assert_allclose(moved.objective, plain.objective, atol=1e-8)
+
+
+def test_scaling_off_gives_the_same_minimiser():
+    H, c = np.array([[2.0, 0.5], [0.5, 1.0]]), np.array([1.0, -3.0])
+    for scale in (True, False):
+        result = minimize_qp(H, c, options=QPOptions(scale=scale))
+        assert_allclose(result.x, np.linalg.solve(H, -c), rtol=1e-12)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-7, 1e-12])
+def test_equalities_with_tiny_right_hand_sides_are_met_to_their_own_size(unit):
+    """The least u·p with u = M p + q, u, p >= 0: the complementarity problem, where u is in small units."""
+    n = 12
+    x = np.linspace(-1.0, 1.0, n)
+    M = np.exp(-np.abs(x[:, None] - x)) + np.eye(n)
+    q = x**2 - 0.4
+    H = np.block([[np.zeros((n, n)), np.eye(n)], [np.eye(n), np.zeros((n, n))]])
+    A = np.hstack([np.eye(n), -unit * M])
+    result = minimize_qp(H, np.zeros(2 * n), A, unit * q, unit * q, np.zeros(2 * n))
+    u, p = result.x[:n] / unit, result.x[n:]
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(u, M @ p + q, atol=1e-12)
+    assert_allclose(np.minimum(u, p), 0.0, atol=1e-12)
+
+
+def test_minus_xy_over_the_quadrant_is_unbounded_from_its_dead_point():
+    """At 0 the gradient and all multipliers vanish; along (1, 1) the objective is -t²."""
+    result = minimize_qp(np.array([[0.0, -1.0], [-1.0, 0.0]]), np.zeros(2), bl=np.zeros(2))
+    assert result.status is QPStatus.UNBOUNDED
+    assert_allclose(result.ray / result.ray[0], [1.0, 1.0])
+
+
+def test_xy_over_the_quadrant_has_its_minimiser_at_the_dead_point():
+    """On the quadrant xy >= 0: copositive though indefinite."""
+    result = minimize_qp(np.array([[0.0, 1.0], [1.0, 0.0]]), np.zeros(2), bl=np.zeros(2))
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(result.weakly_active, [0, 1])
+    assert result.inertia == (1, 0, 1)
+
+
+def test_dead_point_of_minus_xy_in_a_box_is_left_for_the_corner():
+    """-xy over [0, 1] x [0, 2] has its least value -2 at (1, 2)."""
+    result = minimize_qp(np.array([[0.0, -1.0], [-1.0, 0.0]]), np.zeros(2), bl=np.zeros(2), bu=np.array([1.0, 2.0]))
+    assert_allclose(result.x, [1.0, 2.0])
+
+
+def test_saddle_without_constraints_is_unbounded_along_the_negative_eigenvector():
+    result = minimize_qp(np.diag([1.0, -1.0]), np.zeros(2))
+    assert result.status is QPStatus.UNBOUNDED
+    assert_allclose(np.abs(result.ray), [0.0, 1.0], atol=1e-12)
+    assert result.reduced_inertia_start == (1, 0, 1)
+
+
+def test_flat_direction_with_a_slope_is_an_unbounded_ray():
+    result = minimize_qp(np.diag([1.0, 0.0]), np.array([0.0, -1.0]), bl=np.zeros(2))
+    assert result.status is QPStatus.UNBOUNDED
+    assert_allclose(result.ray, [0.0, 1.0], atol=1e-12)
+
+
+@pytest.mark.parametrize("size", [5, 8])
+def test_the_horn_form_is_copositive_and_the_bounded_search_says_when_it_stops(size):
+    """Horn's form (Hall and Newman 1963) is copositive, but not a sum of a semidefinite and a nonnegative one."""
+    row = np.array([1.0, -1.0, 1.0, 1.0, -1.0])
+    H = np.eye(size)
+    H[:5, :5] = [np.roll(row, i) for i in range(5)]
+    proved = minimize_qp(H, np.zeros(size), bl=np.zeros(size))
+    assert proved.status is QPStatus.LOCAL_MINIMISER
+    stopped = minimize_qp(H, np.zeros(size), bl=np.zeros(size), options=QPOptions(search=2))
+    assert stopped.status is QPStatus.UNDECIDED
+
+
+BEALE = (
+    [-0.75, 150.0, -0.02, 6.0],
+    [[0.25, -60.0, -0.04, 9.0], [0.5, -90.0, -0.02, 3.0], [0.0, 0.0, 1.0, 0.0]],
+    [0.0, 0.0, 1.0],
+    -0.05,
+)
+"""Beale, Naval Research Logistics Quarterly 2 (1955) 269-275; optimum -1/20."""
+
+CHVATAL = (
+    [-10.0, 57.0, 9.0, 24.0],
+    [[0.5, -5.5, -2.5, 9.0], [0.5, -1.5, -0.5, 1.0], [1.0, 0.0, 0.0, 0.0]],
+    [0.0, 0.0, 1.0],
+    -1.0,
+)
+"""Chvatal, Linear Programming (1983), page 31; optimum -1."""
+
+KUHN = (
+    [-2.0, -3.0, 1.0, 12.0],
+    [[-2.0, -9.0, 1.0, 9.0], [1.0 / 3.0, 1.0, -1.0 / 3.0, -2.0], [2.0, 3.0, -1.0, -12.0]],
+    [0.0, 0.0, 2.0],
+    -2.0,
+)
+"""Kuhn's example, in Balinski and Tucker, SIAM Review 11 (1969) 347-377, with its bound on the objective: -2."""
+
+
+@pytest.mark.parametrize("cycling", [BEALE, CHVATAL, KUHN], ids=["Beale", "Chvatal", "Kuhn"])
+def test_cycling_linear_programmes_end_at_their_published_optimum(cycling):
+    c, A, cu, best = cycling
+    result = minimize_qp(np.zeros((4, 4)), c, A, None, cu, np.zeros(4))
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(result.objective, best, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_very_degenerate_vertex_is_left_or_proved_optimal(seed):
+    """60 rows through the origin in 6 dimensions, no bound elsewhere: the answer agrees with linear programming."""
+    rng = np.random.default_rng(seed)
+    A, c = rng.integers(-2, 3, (60, 6)).astype(float), rng.standard_normal(6)
+    A[:, 0] = np.abs(A[:, 0])  # the cone holds (1, 0, ..., 0)
+    result = minimize_qp(np.zeros((6, 6)), c, A, np.zeros(60), None, np.full(6, -1.0), np.full(6, 1.0))
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(result.objective, linprog(c, -A, np.zeros(60), bounds=(-1, 1)).fun, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_warm_start_from_the_solution_changes_nothing(seed):
+    rng = np.random.default_rng(seed)
+    B, c, A = rng.standard_normal((8, 8)), rng.standard_normal(8), rng.standard_normal((4, 8))
+    data = B + B.T, c, A, np.full(4, -1.0), np.full(4, 1.0), np.full(8, -1.0), np.full(8, 1.0)
+    cold = minimize_qp(*data)
+    warm = minimize_qp(*data, x0=cold.x, working_set=cold.working_set)
+    assert cold.working_set_changes > 0
+    assert warm.working_set_changes == 0
+    assert warm.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(warm.x, cold.x, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_reduced_hessian_has_one_nonpositive_eigenvalue_at_most_and_the_objective_never_rises(seed):
+    rng = np.random.default_rng(seed)
+    B, c, A = rng.standard_normal((20, 20)), rng.standard_normal(20), rng.standard_normal((10, 20))
+    lines = []
+    result = minimize_qp(
+        B + B.T,
+        c,
+        A,
+        np.full(10, -1.0),
+        np.full(10, 1.0),
+        np.full(20, -1.0),
+        np.full(20, 1.0),
+        options=QPOptions(log=lines.append),
+    )
+    assert tuple(lines) == result.log
+    assert len(lines) == result.iterations == result.phase_one_iterations + result.phase_two_iterations
+    values = np.array([line.value for line in lines if line.phase == 2])
+    assert np.all(np.diff(values) <= 1e-9)
+    assert {line.nonpositive for line in lines} <= {0, 1}
+    assert "step" in str(lines[0])
+    eigenvalues = np.linalg.eigvalsh(B + B.T)
+    assert result.inertia == (int(np.sum(eigenvalues > 0)), 0, int(np.sum(eigenvalues < 0)))
+    assert result.reduced_inertia_end[2] == 0
+
+
+def test_the_iteration_limit_is_a_status_and_not_a_claim():
+    result = minimize_qp(-np.eye(6), np.ones(6), bl=-np.ones(6), bu=np.ones(6), options=QPOptions(max_iterations=2))
+    assert result.status is QPStatus.ITERATION_LIMIT
+    assert result.iterations == 2
+
+
+def test_a_start_outside_the_bounds_is_moved_to_them():
+    result = minimize_qp(np.eye(2), np.zeros(2), bl=[1.0, -1.0], bu=[2.0, 1.0], x0=[9.0, -9.0])
+    assert isinstance(result, QPResult)
+    assert_allclose(result.x, [1.0, 0.0], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"H": [[1.0, 2.0], [0.0, 1.0]]}, "not symmetric"),
+        ({"H": [[1.0]]}, "H has shape"),
+        ({"c": [np.nan, 0.0]}, "not finite"),
+        ({"bl": [2.0, 0.0], "bu": [1.0, 1.0]}, "exceeds"),
+        ({"cl": [0.0]}, "without A"),
+        ({"A": [[1.0]]}, "columns"),
+        ({"bl": [INF, 0.0]}, "give a number"),
+        ({"x0": [1.0]}, "x0 has shape"),
+        ({"working_set": [3, 0]}, "working_set"),
+        ({"options": QPOptions(optimality_tolerance=0.0)}, "optimality_tolerance"),
+        ({"options": QPOptions(search=-1)}, "search"),
+        ({"options": QPOptions(max_iterations=-1)}, "max_iterations"),
+    ],
+)
+def test_bad_input_is_refused_with_what_and_why(change, message):
+    with pytest.raises(ProblemError, match=message):
+        minimize_qp(**({"H": np.eye(2), "c": np.zeros(2)} | change))

@@ -1,0 +1,228 @@
+"""QP2: its objective, the penalty and its limits, and equilibrium that is only penalised."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import null_space
+
+from bemcontact.analysis import solve as judged
+from bemcontact.contact import CondensedContact, Status, Weights
+from bemcontact.errors import ProblemError
+from bemcontact.formulations import complementarity, qp2
+from bemcontact.formulations.formulation import Equilibrium, FormulationOptions, Rows, Start
+
+PENALISED = FormulationOptions(equilibrium=Equilibrium.PENALTY)
+
+
+def random_contact(seed: int, n: int, k: int, **fields) -> CondensedContact:
+    """Unsymmetric compliance with sym(JM) positive definite, and a load that some p >= 0 carries."""
+    rng = np.random.default_rng(seed)
+    A, S = rng.standard_normal((2, n, n))
+    J = rng.uniform(0.3, 1.5, n)
+    R = rng.standard_normal((n, k))
+    carried = np.maximum(rng.standard_normal(n), 0.0)
+    problem = CondensedContact.from_compliance(
+        (A @ A.T / n + 0.05 * np.eye(n) + 0.1 * (S - S.T)) / J[:, None],
+        rng.standard_normal(n),
+        J,
+        rigid_motions=R,
+        motion_load=-(J[:, None] * R).T @ carried,
+    )
+    return replace(problem, **fields)
+
+
+def resting(n: int = 7) -> CondensedContact:
+    """A body that only a plane holds, pressed down: one free motion, away from the plane at all points."""
+    rng = np.random.default_rng(8)
+    A = rng.standard_normal((n, n))
+    return CondensedContact.from_compliance(
+        A @ A.T / n + 0.1 * np.eye(n), rng.uniform(0, 1, n), rigid_motions=np.ones(n), motion_load=-n
+    )
+
+
+@pytest.mark.parametrize("length", [1.0, 0.1])
+@pytest.mark.parametrize("stress", [1.0, 1e3])
+@pytest.mark.parametrize("k", [0, 2])
+def test_objective_in_the_units_of_the_user(k, length, stress):
+    """F2 = pᵀJδ + (1/μ)|K u_n - B p - r|² with the raw μ, over U T max J: pins the objective, and what raw means."""
+    rng = np.random.default_rng(3)
+    one = random_contact(1, 8, k)
+    condensed = CondensedContact.from_compliance(
+        one.compliance * length / stress,
+        one.offset * length,
+        one.weights * length,
+        rigid_motions=one.rigid_motions,
+        motion_load=one.motion_load * stress * length,
+    )
+    U, T = condensed.scales
+    options = FormulationOptions(penalty=0.3)
+    program = qp2.statement(condensed, options)
+    raw = 0.3 * qp2.penalty_unit(condensed, options)
+    K, B, r = condensed.stiffness_rows
+    for _ in range(4):
+        u_n, p = rng.standard_normal((2, 8))
+        x, error = np.concatenate([u_n, p]), K @ (u_n * U) - B @ (p * T) - r
+        work = (p * T) @ (condensed.weights * (condensed.initial_gap + u_n * U))
+        expected = (work + error @ error / raw) / (U * T * condensed.weights.max())
+        assert program.value(x) == pytest.approx(expected, rel=1e-10)
+        quadratic = 0.5 * x @ program.hessian @ x + program.linear @ x
+        constant = program.value(np.zeros(16))  # no pressure, no work: (1/μ)|r|²
+        assert quadratic + constant == pytest.approx(program.value(x), rel=1e-9)
+
+
+@pytest.mark.parametrize("penalty", [1e-2, 1.0, 100.0])
+@pytest.mark.parametrize("rows", [*Rows])
+@pytest.mark.parametrize("k", [0, 1, 2, 3])
+def test_agrees_with_the_direct_solver(k, rows, penalty):
+    """The contact state is the only stationary point, whatever μ is; 1e-9 polished, 1e-10 as the solver leaves it."""
+    for seed in range(2):
+        problem = random_contact(seed, 12, k)
+        direct = complementarity.solve(problem)
+        peak, U = direct.pressure.max(), problem.scales.displacement
+        for polish in (False, True):
+            solution = qp2.solve(problem, FormulationOptions(rows=rows, penalty=penalty, polish=polish))
+            assert solution.status is Status.SOLVED
+            np.testing.assert_allclose(solution.pressure, direct.pressure, atol=1e-10 * peak)
+            np.testing.assert_allclose(solution.displacement, direct.displacement, atol=1e-10 * U)
+
+
+@pytest.mark.parametrize("rows", [*Rows])
+@pytest.mark.parametrize("k", [0, 1, 2])
+def test_limit_of_convexity(k, rows):
+    """On the null space of its equations QP2's Hessian is semidefinite a little below the limit, and not above it."""
+    problem = random_contact(6, 7, k)
+    limit = qp2.convexity_limit(problem, FormulationOptions(rows=rows))
+    assert limit > 0
+    for factor, convex in ((0.999, True), (1.001, False)):
+        program = qp2.statement(problem, FormulationOptions(rows=rows, penalty=factor * limit))
+        free = null_space(program.equations.matrix) if k else np.eye(len(program.lower))
+        values = np.linalg.eigvalsh(free.T @ program.hessian @ free)
+        assert (values[0] >= -1e-13 * values[-1]) == convex
+
+
+def test_penalty_and_its_limit_are_told():
+    problem = random_contact(6, 7, 1)
+    options = FormulationOptions(penalty=0.5)
+    search = qp2.solve(problem, options).search
+    assert search is not None
+    penalty = search.penalty
+    assert penalty is not None
+    assert penalty.value == 0.5
+    assert penalty.raw == 0.5 * qp2.penalty_unit(problem, options)
+    assert penalty.convexity_limit == qp2.convexity_limit(problem, options)
+    assert penalty.convexity_limit_raw == pytest.approx(penalty.convexity_limit * penalty.raw / 0.5, rel=1e-15)
+
+
+@pytest.mark.parametrize("penalty", [0.0, -1.0, np.inf, np.nan])
+def test_a_penalty_that_is_none_is_refused(penalty):
+    with pytest.raises(ProblemError, match="finite number above zero"):
+        FormulationOptions(penalty=penalty)
+
+
+def negative_corner() -> CondensedContact:
+    """One quadratic element: J = [[4, 2, -1], [2, 16, 2], [-1, 2, 4]]/30."""
+    J = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30
+    M = np.array([[2.0, 0.0, 1.0], [0.0, 0.5, 0.0], [1.0, 0.0, 2.0]])
+    return replace(CondensedContact.from_compliance(M, [-1.0, 0.2, 0.6], J.sum(axis=1)), consistent_weights=J)
+
+
+@pytest.mark.parametrize("rows", [*Rows])
+def test_the_ray_of_consistent_weights(rows):
+    """Above the limit the ray keeps all bounds and has negative curvature; just below, no pair of points does."""
+    problem = negative_corner()
+    options = FormulationOptions(weights=Weights.CONSISTENT, rows=rows, penalty=1e6)
+    ray = qp2.two_point_ray(problem, options)
+    assert ray is not None
+    assert (ray.direction >= 0).all()
+    program = qp2.statement(problem, options)
+    assert ray.direction @ program.hessian @ ray.direction < 0
+    below = replace(options, penalty=ray.limit * (1 - 1e-9))
+    assert qp2.two_point_ray(problem, below) is None
+    hessian = qp2.statement(problem, below).hessian
+    for i, j in np.ndindex(3, 3):
+        opened, pressed, mixed = hessian[i, i], hessian[3 + j, 3 + j], hessian[i, 3 + j]
+        assert mixed >= -np.sqrt(opened * pressed) * (1 + 1e-12)
+    at = replace(options, penalty=ray.limit * (1 + 1e-6))
+    curvature = qp2.two_point_ray(problem, at).direction
+    assert curvature @ qp2.statement(problem, at).hessian @ curvature < 0
+
+
+def test_consistent_weights_above_their_limit_are_refused():
+    with pytest.raises(
+        ProblemError, match=r"no minimum with consistent weights .* falls without end .* take a penalty"
+    ):
+        qp2.solve(negative_corner(), FormulationOptions(weights=Weights.CONSISTENT, penalty=1e6))
+
+
+def test_consistent_weights_below_their_limit_are_left_as_they_are():
+    solution = qp2.solve(negative_corner(), FormulationOptions(weights=Weights.CONSISTENT, penalty=1e-3))
+    assert solution.status is Status.SOLVED
+    assert not solution.polished
+
+
+def test_a_lifted_body_is_stationary_but_not_the_solution():
+    """Without pressure, far off: Kᵀ times the residual V load is zero, and Jδ is more than the penalty asks of p."""
+    problem = resting()
+    lifted = Start(pressure=np.zeros(7), displacement=np.full(7, 1e3))
+    result = judged(problem, "qp2", equilibrium="penalty", start=lifted)
+    solution = result.solution
+    assert solution.status is Status.LOCAL_MINIMUM
+    assert not solution.pressure.any()
+    assert solution.search.objective > 0.1
+    assert not result.certified
+    assert not solution.polished
+    assert any("stationary but not the solution" in note for note in result.notes)
+    assert any("lifted off its support" in note for note in result.notes)
+    exact = judged(problem, "qp2", start=lifted)
+    assert exact.certified
+    assert solution.search.penalty.convexity_limit == 0.0
+
+
+def slender(n: int = 20) -> CondensedContact:
+    """A cantilever of unit length and stiffness on a surface that asks for the same pressure at all points."""
+    x = np.linspace(0.05, 1.0, n)
+    least, most = np.minimum.outer(x, x), np.maximum.outer(x, x)
+    M = least**2 * (3 * most - least) / 6
+    return CondensedContact.from_compliance(M, -M.sum(axis=1))
+
+
+def test_compliance_rows_of_a_slender_body_hide_errors_of_pressure():
+    """At cond M = 1e6 a tiny objective goes with a wrong pressure: never told as solved, but made so by the polish."""
+    problem = slender()
+    assert np.linalg.cond(problem.compliance) > 1e5
+    rough = qp2.solve(problem, FormulationOptions(rows=Rows.COMPLIANCE, polish=False))
+    assert rough.search.objective < 1e-6
+    assert np.abs(rough.pressure - 1).max() > 0.1
+    assert rough.status is Status.NO_SOLUTION_FOUND
+    assert "cannot tell from the 0" in rough.notes[0]
+    polished = qp2.solve(problem, FormulationOptions(rows=Rows.COMPLIANCE))
+    assert polished.status is Status.SOLVED
+    np.testing.assert_allclose(polished.pressure, 1, atol=1e-9)
+
+
+def test_stiffness_rows_of_a_slender_body_do_not():
+    """The same body to 1e-8 without a polish; the pressure is known only as well as cond M · eps = 1e-10 allows."""
+    solution = qp2.solve(slender(), FormulationOptions(polish=False))
+    assert solution.status is Status.SOLVED
+    np.testing.assert_allclose(solution.pressure, 1, atol=1e-8)
+
+
+def test_penalised_equilibrium_finds_the_solution_from_near_it():
+    problem = resting()
+    direct = complementarity.solve(problem)
+    start = Start(pressure=direct.pressure * 1.01, displacement=direct.displacement)
+    solution = qp2.solve(problem, replace(PENALISED, start=start, polish=False))
+    assert solution.status is Status.SOLVED
+    np.testing.assert_allclose(solution.pressure, direct.pressure, atol=1e-10 * direct.pressure.max())
+
+
+def test_penalised_equilibrium_of_a_held_body_is_told_to_be_nothing():
+    solution = qp2.solve(random_contact(0, 5, 0), PENALISED)
+    assert solution.status is Status.SOLVED
+    assert "no equilibrium of a free body" in solution.notes[0]
+
+
+def test_compliance_rows_do_not_contain_equilibrium():
+    with pytest.raises(ProblemError, match="stiffness rows only"):
+        qp2.solve(resting(), replace(PENALISED, rows=Rows.COMPLIANCE))

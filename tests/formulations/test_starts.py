@@ -1,0 +1,159 @@
+"""Starts: given, random, many at once."""
+
+import itertools
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import bemcontact
+from bemcontact.contact import CondensedContact, Status
+from bemcontact.errors import ProblemError
+from bemcontact.formulations import complementarity, qp1, qp2
+from bemcontact.formulations.formulation import Equilibrium, FormulationOptions, Start
+from bemcontact.formulations.starts import random_points, search_from
+
+P_MATRIX = np.array([[1.0, -3.0, 0.0], [0.0, 1.0, -3.0], [0.0, 0.0, 1.0]])
+"""Triangular with positive diagonal, so a P-matrix, but far from positive definite."""
+
+
+def resting() -> CondensedContact:
+    """A body that only a plane holds, pressed down: one free motion, away from the plane at all points."""
+    A = np.random.default_rng(8).standard_normal((7, 7))
+    gap = np.random.default_rng(9).uniform(0, 1, 7)
+    return CondensedContact.from_compliance(
+        A @ A.T / 7 + 0.1 * np.eye(7), gap, rigid_motions=np.ones(7), motion_load=-7.0
+    )
+
+
+def test_random_points_are_repeatable_and_free_of_units():
+    """Fewer starts are the first of more, and a change of units scales them."""
+    problem = resting()
+    few, many = random_points(problem, 2, seed=4), random_points(problem, 5, seed=4)
+    np.testing.assert_array_equal(few[1].displacement, many[1].displacement)
+    assert (many[0].pressure >= 0).all()
+    assert not np.array_equal(many[0].pressure, many[1].pressure)
+    stiff = CondensedContact.from_compliance(
+        problem.compliance / 1e3, problem.offset, rigid_motions=problem.rigid_motions, motion_load=-7e3
+    )
+    np.testing.assert_allclose(random_points(stiff, 1, seed=4)[0].pressure, many[0].pressure * 1e3, rtol=1e-12)
+
+
+@pytest.mark.parametrize("solve", [qp1.solve, qp2.solve])
+def test_a_strictly_monotone_problem_has_one_end(solve):
+    problem = resting()
+    found = search_from(problem, solve, count=25)
+    (end,) = found.ends
+    assert (found.solved, end.count, end.first_start) == (25, 25, 0)
+    assert end.residual < 1e-10
+    assert end.objective == pytest.approx(0, abs=1e-10)
+    direct = complementarity.solve(problem)
+    np.testing.assert_allclose(end.solution.pressure, direct.pressure, atol=1e-10 * direct.pressure.max())
+
+
+def test_penalised_equilibrium_has_a_second_end():
+    """The lifted body: one end wherever it is lifted to, F2 > 0, counted apart and put last."""
+    found = search_from(resting(), qp2.solve, FormulationOptions(equilibrium=Equilibrium.PENALTY), count=60)
+    best, lifted = found.ends
+    assert best.solution.status is Status.SOLVED
+    assert lifted.solution.status is Status.LOCAL_MINIMUM
+    assert not lifted.solution.pressure.any()
+    assert lifted.objective > 0.1
+    assert best.count + lifted.count == 60
+    assert lifted.count > 0
+    assert str(found).startswith(f"{best.count} of 60 random starts (seed 0) end at the contact state\n")
+
+
+@pytest.mark.parametrize("solve", [qp1.solve, qp2.solve])
+def test_a_p_matrix_has_one_end(solve):
+    """Every first-order point of QP1 and QP2 is the solution for a P-matrix of any definiteness (row sufficient)."""
+    rng = np.random.default_rng(0)
+    for _ in range(3):
+        problem = CondensedContact.from_compliance(P_MATRIX, rng.standard_normal(3))
+        found = search_from(problem, solve, count=15)
+        assert [end.solution.status for end in found.ends] == [Status.SOLVED]
+        truth = complementarity.solve(problem).pressure
+        np.testing.assert_allclose(found.ends[0].solution.pressure, truth, atol=1e-9)
+
+
+def test_a_matrix_that_is_not_p_has_all_its_ends_named():
+    """M = [[1, 2], [2, 1]], q = (-1, -1): contact at either point alone or at both; by enumeration, three solutions."""
+    M, q = np.array([[1.0, 2.0], [2.0, 1.0]]), np.array([-1.0, -1.0])
+    truths = []
+    for bits in itertools.product([False, True], repeat=2):
+        A = np.flatnonzero(bits)
+        p = np.zeros(2)
+        p[A] = np.linalg.solve(M[np.ix_(A, A)], -q[A])
+        if min(p.min(), (q + M @ p).min()) >= 0:
+            truths.append(p)
+    assert len(truths) == 3
+    found = search_from(CondensedContact.from_compliance(M, q), qp1.solve, count=40)
+    assert len(found.ends) > 1
+    for end in found.ends:
+        assert end.solution.status is Status.SOLVED
+        assert any(np.abs(end.solution.pressure - truth).max() < 1e-10 for truth in truths)
+
+
+def test_the_library_function_and_the_option_agree():
+    problem = resting()
+    found = bemcontact.random_starts(problem, "qp2", count=10, seed=2, equilibrium="penalty")
+    result = bemcontact.solve(problem, "qp2", equilibrium="penalty", start="random", seed=2, starts=10)
+    assert result.certified
+    assert result.starts is not None
+    assert [end.count for end in result.starts.ends] == [end.count for end in found.ends]
+    data = json.loads(result.to_json())
+    assert data["starts"]["solved"] == found.solved
+    assert sum(end["count"] for end in data["starts"]["ends"]) == 10
+    assert data["search"]["start"] == f"random point {found.ends[0].first_start}, seed 2"
+
+
+def test_one_random_start_is_the_first_of_many():
+    problem = resting()
+    one = bemcontact.solve(problem, "qp1", start="random", seed=5)
+    assert one.certified
+    assert one.starts is None
+    assert one.solution.search.start == "random point 0, seed 5"
+    again = qp1.solve(problem, FormulationOptions(start=random_points(problem, 1, 5)[0]))
+    assert again.iterations == one.solution.iterations
+
+
+@pytest.mark.parametrize(
+    ("asked", "pattern"),
+    [
+        ({"formulation": "qp3", "start": "random"}, "no use for the option 'start'"),
+        ({"formulation": "complementarity", "start": "random"}, "no use for the option 'start'"),
+        ({"formulation": "qp1", "seed": 1}, "without random starts"),
+        ({"formulation": "qp1", "starts": 3}, "without random starts"),
+        ({"formulation": "qp1", "start": "zero"}, "no start 'zero'"),
+        ({"formulation": "qp1", "start": "random", "starts": 0}, "count of at least 1"),
+        ({"formulation": "qp1", "start": "random", "seed": -1}, "seed of at least 0"),
+        ({"formulation": "qp1", "start": Start(pressure=np.zeros(2), displacement=np.zeros(2))}, "2 contact points"),
+        ({"formulation": "qp1", "start": 3}, "take null, random"),
+        ({"formulation": "qp2", "rows": "diagonal"}, "take one of stiffness, compliance"),
+        ({"formulation": "qp2", "equilibrium": "none"}, "take one of constraint, penalty"),
+        ({"formulation": "qp3", "equilibrium": "penalty"}, "no use for the option 'equilibrium'"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(asked, pattern):
+    with pytest.raises(ProblemError, match=pattern):
+        bemcontact.solve(resting(), **asked)
+
+
+@pytest.mark.parametrize(
+    ("pressure", "displacement"), [([1.0], [1.0, 2.0]), ([np.nan], [0.0]), (np.zeros((2, 2)), np.zeros((2, 2)))]
+)
+def test_a_start_of_no_meaning_is_refused(pressure, displacement):
+    with pytest.raises(ProblemError, match="start needs"):
+        Start(pressure=np.array(pressure), displacement=np.array(displacement))
+
+
+def test_random_starts_are_for_local_solvers():
+    with pytest.raises(ProblemError, match="no use for the option 'start'"):
+        bemcontact.random_starts(resting(), "qp3")
+
+
+def test_nothing_is_polished():
+    """A polish would turn the lifted body into the solution."""
+    found = search_from(resting(), qp1.solve, replace(FormulationOptions(), polish=True), count=2)
+    assert not any(end.solution.polished for end in found.ends)
