@@ -83,11 +83,13 @@ class Block:
     F : (4, N, R) by components in the order of `kernels.T_ORDER`; multiplies displacement at the nodes
     G : (3, 3, e, R) by components in the order of `kernels.U_ORDER`; multiplies traction times Jacobian at the three
         local nodes of the elements that `Influence` was asked for
+    known : (2, R) what the tractions do that `Influence` was told, along x and y
     """
 
     rows: slice
     F: Array
     G: Array
+    known: Array
 
 
 class _Space(NamedTuple):
@@ -106,12 +108,14 @@ class Influence:
     mesh : Mesh
     poisson_ratio : effective one, of plane strain
     traction_elements : (e,) elements whose columns of G are wanted, ascending
+    known : (m, 3, 2) tractions times Jacobian of which only the sum G t is wanted, or None
     by_numba : whether to sum the far part by machine code where numba is installed; None: if the mesh is large enough
     """
 
     mesh: Mesh
     poisson_ratio: float
     traction_elements: IntArray
+    known: Array | None = None
     by_numba: bool | None = None
 
     @property
@@ -131,11 +135,26 @@ class Influence:
         return self.nodes[self.mesh.elements]
 
     @cached_property
+    def _known(self) -> Array:
+        """The same (2, 3, m), zeros if there are none."""
+        return np.zeros((2, 3, len(self.mesh.elements))) if self.known is None else self.known.transpose(2, 1, 0)
+
+    @cached_property
+    def _loaded(self) -> IntArray:
+        """Elements whose U is needed, for a column or for the sum, ascending."""
+        loaded: NDArray[np.bool_] = np.any(self._known, axis=(0, 1))
+        loaded[self.traction_elements] = True
+        return np.flatnonzero(loaded)
+
+    @cached_property
     def _slot(self) -> IntArray:
+        """(m,) place of each element in `_loaded`, -1 if none."""
+        return _places(self._loaded, len(self.mesh.elements))
+
+    @cached_property
+    def _column(self) -> IntArray:
         """(m,) place of each element in `traction_elements`, -1 if none."""
-        slot = np.full(len(self.mesh.elements), -1)
-        slot[self.traction_elements] = np.arange(len(self.traction_elements))
-        return slot
+        return _places(self.traction_elements, len(self.mesh.elements))
 
     @cached_property
     def _factors(self) -> kernels.Factors:
@@ -231,20 +250,26 @@ class Influence:
 
     def _far(self, rows: slice, z: ComplexArray, nodes: ComplexArray, tiers: IntArray, space: _Space) -> Block:
         """A block with what far elements do to its points, by one Gauss rule each; a tier of -1 leaves one out."""
+        columns = len(self.traction_elements)
         if (tiers < 0).all():
-            return self._zero(rows, len(z))
+            return self._zero(rows, len(z), columns)
         few = skeleton(z)
-        block = self._zero(rows, len(few.at))
+        part = self._zero(rows, len(few.at), len(self._loaded))
         by_run = self._far_by_products if self._far_sums is None else self._far_by_loops
         for run in self._runs(tiers):
             if tiers[run.start] >= 0:
-                by_run(block, z[few.at], nodes[run], int(tiers[run.start]), run)
-        return Block(rows=rows, F=few.extend(block.F, space.F), G=few.extend(block.G, space.G))
+                by_run(part, z[few.at], nodes[run], int(tiers[run.start]), run)
+        return Block(
+            rows=rows,
+            F=few.extend(part.F, space.F),
+            G=few.extend(part.G[:, :, self._slot[self.traction_elements]], space.G),
+            known=_sums(self._known[..., self._loaded], part.G) @ few.weights,
+        )
 
-    def _zero(self, rows: slice, points: int) -> Block:
-        """A block for so many points."""
-        nodes, elements = len(self.nodes), len(self.traction_elements)
-        return Block(rows=rows, F=np.zeros((4, nodes, points)), G=np.zeros((3, 3, elements, points)))
+    def _zero(self, rows: slice, points: int, columns: int) -> Block:
+        """A block for so many points, with G for so many elements."""
+        F, G = np.zeros((4, len(self.nodes), points)), np.zeros((3, 3, columns, points))
+        return Block(rows=rows, F=F, G=G, known=np.zeros((2, points)))
 
     def _far_by_loops(self, block: Block, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice) -> None:
         """Every point with every element of a run, by one Gauss rule, in machine code."""
@@ -268,7 +293,10 @@ class Influence:
             some = polynomials[..., first : first + step]
             integrands = (some.reshape(6, -1).T @ powers).reshape(*some.shape[1:], len(z))
             part = slice(run.start + first, run.start + first + some.shape[-1])
-            self._add(block, part, kernels.regular(integrands, rule, self._factors, with_U=with_U))
+            result = kernels.regular(integrands, rule, self._factors, with_U=with_U)
+            self._add_to_rows(block, part, result.T)
+            if result.U is not None:
+                block.G[:, :, _successive(self._slot[part])] = result.U
 
     def _near(self, block: Block, collocation: Collocation, element: IntArray) -> None:
         """Every point of the block with some elements, each pair by the rule that its own root asks for."""
@@ -289,7 +317,13 @@ class Influence:
                 result = kernels.components(kernels.near_singular(tau[at], part), self._factors)
             T[..., at], U[..., at] = result
         shape = (len(element), len(base))
-        self._add(block, element, Components(T.reshape(4, 3, *shape), U.reshape(3, 3, *shape)))
+        T, U = T.reshape(4, 3, *shape), U.reshape(3, 3, *shape)
+        self._add_to_rows(block, element, T)
+        column = self._column[element]
+        wanted, known = column >= 0, self._known[..., element]
+        block.G[:, :, column[wanted]] = U[:, :, wanted]
+        if known.any():
+            np.add(block.known, _sums(known, U), out=block.known)
 
     def _regular(self, tau: ComplexArray, tier: int) -> Components:
         """Pairs (p, 3), each by itself, with one Gauss rule."""
@@ -305,19 +339,12 @@ class Influence:
         at = np.searchsorted(element, their) * block.F.shape[-1] + row
         return at, kernels.components(kernels.singular(self.element_nodes[their], local), self._factors)
 
-    def _add(self, block: Block, element: IntArray | slice, result: Components) -> None:
-        """Add the integrals over some elements (e, R)."""
+    def _add_to_rows(self, block: Block, element: IntArray | slice, T: Array) -> None:
+        """Add the integrals of T over some elements (4, 3, e, R)."""
         start, middle, end = self.mesh.elements[element].T
-        block.F[:, _successive(start)] += result.T[:, 0]
-        block.F[:, _successive(middle)] = result.T[:, 1]
-        block.F[:, _successive(end)] += result.T[:, 2]
-        if result.U is not None:
-            slot = self._slot[element]
-            wanted = slot >= 0
-            if wanted.all():
-                block.G[:, :, _successive(slot)] = result.U
-            else:
-                block.G[:, :, slot[wanted]] = result.U[:, :, wanted]
+        block.F[:, _successive(start)] += T[:, 0]
+        block.F[:, _successive(middle)] = T[:, 1]
+        block.F[:, _successive(end)] += T[:, 2]
 
     def _turn_corners(self, block: Block, collocation: Collocation) -> None:
         """The free term at nodes between two elements."""
@@ -331,6 +358,20 @@ class Influence:
         """Minus the interior angle (m,) at the start node of each element."""
         tangents = self.mesh.tangents[..., 0] + 1j * self.mesh.tangents[..., 1]
         return kernels.corner_term(tangents[self.mesh.before, 2], tangents[:, 0]).imag
+
+
+def _places(of: IntArray, count: int) -> IntArray:
+    """Where each of so many things stands in a list of some, -1 if nowhere."""
+    places = np.full(count, -1)
+    places[of] = np.arange(len(of))
+    return places
+
+
+def _sums(traction: Array, U: Array) -> Array:
+    """G t (2, R) of tractions times Jacobian (2, 3, e), with U (3, 3, e, R)."""
+    x, y = traction.reshape(2, -1)
+    xx, yy, xy = U.reshape(3, len(x), U.shape[-1])
+    return np.stack([x @ xx + y @ xy, x @ xy + y @ yy])
 
 
 def _within(index: IntArray, rows: slice) -> NDArray[np.bool_]:

@@ -183,14 +183,15 @@ class System:
 
     @cached_property
     def influence(self) -> Influence:
-        """The integrals, for those columns of G that something multiplies."""
+        """The integrals, with columns of G for unknown tractions and pressures and the sum for known ones."""
         needed: NDArray[np.bool_] = np.any(self.unknowns.traction >= 0, axis=(1, 2))
-        needed |= np.any(self._known_traction != 0, axis=(1, 2))
         needed[self.points.element] = True
+        jacobians = self.mesh.jacobians / (2 * self.mesh.size)
         return Influence(
             mesh=self.mesh,
             poisson_ratio=self.material.effective_poisson_ratio,
             traction_elements=np.flatnonzero(needed),
+            known=self._known_traction * jacobians[..., None],
         )
 
     @cached_property
@@ -272,7 +273,9 @@ class System:
             if not used.all():
                 f, g = ([part[:, used] for part in parts] for parts in (f, g))
             first = int(index[used][0])
-            yield Rows(slice(first, first + int(used.sum())), [*self._left(f, g)], self._right(f, g))
+            yield Rows(
+                slice(first, first + int(used.sum())), [*self._left(f, g)], self._right(f, g, block.known[axis, used])
+            )
 
     def _left(self, F: Sequence[Array], G: Sequence[Array]) -> Iterator[Array]:
         """Columns of the unknowns: x displacements, y displacements, tractions."""
@@ -283,13 +286,10 @@ class System:
             x, y = self._unit_tractions
             yield -(x.times(G[0]) + y.times(G[1]))
 
-    def _right(self, F: Sequence[Array], G: Sequence[Array]) -> Array:
-        """The right sides b, b_i (1 + n, q)."""
-        known = self._known_traction[self.influence.traction_elements] * self._jacobians[..., None]
-        t, u = known.transpose(2, 1, 0).reshape(2, -1), self._known_displacement.T
-        b = t[0] @ G[0] + t[1] @ G[1]
-        if u.any():
-            b -= u[0] @ F[0] + u[1] @ F[1]
+    def _right(self, F: Sequence[Array], G: Sequence[Array], known: Array) -> Array:
+        """The right sides b, b_i (1 + n, q); known tractions do `known` (q,)."""
+        u = self._known_displacement.T
+        b = known - (u[0] @ F[0] + u[1] @ F[1]) if u.any() else known
         x, y = self._unit_pressures
         return np.vstack([b, x.times(G[0]) + y.times(G[1])])
 
