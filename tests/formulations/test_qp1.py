@@ -114,7 +114,7 @@ def test_all_statements_have_one_solution(seed, k, rows):
 @pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6), (0.7, 2.1e11)])
 @pytest.mark.parametrize("formulation", ["qp1", "qp2"])
 def test_units_do_not_matter(formulation, length, stress, k):
-    """The scaled problem is the same, so the iterations are, and the pressure to 1e-12."""
+    """The scaled problem is the same but for round-off, which may decide ties on the way but not the pressure."""
     problem = random_contact(5, 12, k)
     other = CondensedContact.from_compliance(
         problem.compliance * length / stress,
@@ -124,7 +124,6 @@ def test_units_do_not_matter(formulation, length, stress, k):
         motion_load=problem.motion_load * stress * length,
     )
     one, two = (FORMULATIONS[formulation](p, NOT_POLISHED) for p in (problem, other))
-    assert one.iterations == two.iterations
     np.testing.assert_allclose(two.pressure / stress, one.pressure, atol=1e-12 * one.pressure.max())
 
 
