@@ -7,14 +7,14 @@ general (Murty and Kabadi 1987), so the search is bounded and may end undecided.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgError, cho_factor, eigh, qr
 from scipy.optimize import nnls
 
-Array = NDArray[np.float64]
+from bemcontact.formulations.local_solver.factorisations import is_definite, orthogonal
+from bemcontact.formulations.local_solver.statement import Array
+from bemcontact.formulations.local_solver.working_set import DEPENDENT
 
 PROBES = 8
 DESCENTS = 30
@@ -81,20 +81,12 @@ def null_space(rows: Array, n: int) -> Array:
     """An orthonormal basis of {d : rows d = 0}."""
     if rows.shape[0] == 0 or n == 0:
         return np.eye(n)
-    factors: Any = qr(rows.T, pivoting=True)
-    diagonal = np.abs(np.diag(factors[1]))
-    return factors[0][:, int(np.count_nonzero(diagonal > 1e-9 * max(float(diagonal[0]), 1e-300))) :]
+    return orthogonal(rows, DEPENDENT)[1]
 
 
 def _positive_semidefinite(matrix: Array, zero: float) -> bool:
     """Whether no eigenvalue is below -zero, by Cholesky of the shifted matrix."""
-    if matrix.shape[0] == 0:
-        return True
-    try:
-        cho_factor(matrix + zero * np.eye(matrix.shape[0]))
-    except LinAlgError:
-        return float(eigh(matrix, eigvals_only=True, subset_by_index=(0, 0))[0]) >= -zero
-    return True
+    return is_definite(matrix + zero * np.eye(matrix.shape[0])) or float(np.linalg.eigvalsh(matrix)[0]) >= -zero
 
 
 def _projected(weak: Array, d: Array) -> Array:
@@ -110,7 +102,7 @@ def _projected(weak: Array, d: Array) -> Array:
 
 def _probe(reduced: Array, weak: Array, zero: float) -> Array | None:
     """Projected descent from a few negative eigenvectors and their mixtures."""
-    eigenvalues, vectors = eigh(reduced)
+    eigenvalues, vectors = np.linalg.eigh(reduced)
     size = float(np.abs(eigenvalues).max())
     negative = vectors[:, eigenvalues < -zero]
     shown = negative[:, :PROBES]
@@ -146,7 +138,7 @@ def _search_faces(reduced: Array, weak: Array, zero: float, faces: int) -> tuple
         basis = null_space(weak[list(face)], reduced.shape[0])
         if basis.shape[1] == 0:
             continue
-        eigenvalues, vectors = eigh(basis.T @ reduced @ basis)
+        eigenvalues, vectors = np.linalg.eigh(basis.T @ reduced @ basis)
         for column in np.flatnonzero(eigenvalues < -zero):
             for d in (basis @ vectors[:, column], -(basis @ vectors[:, column])):
                 if _falls(reduced, weak, d, zero):

@@ -9,7 +9,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult
 from bemcontact.formulations.local_solver.statement import Scales, Statement, equilibrate, no_scales, numbers, read
-from bemcontact.formulations.local_solver.walk import Finding, Inertia, active, inertia, walk
+from bemcontact.formulations.local_solver.walk import Finding, Inertia, inertia, walk
 
 
 def minimize_qp(
@@ -62,10 +62,10 @@ def minimize_qp(
     stated = read(H, c, A, cl, cu, bl, bu)
     n = stated.c.size
     start = np.zeros(n) if x0 is None else numbers("x0", x0, n)
-    start = np.clip(start, stated.lower[:n], stated.upper[:n])
+    start = np.minimum(np.maximum(start, stated.lower[:n]), stated.upper[:n])
     scales = equilibrate(stated) if options.scale else no_scales(stated)
     progress = Progress(statement=scales.apply(stated), options=options, x=start / scales.variables)
-    sides = active(progress)
+    sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
     finding, reduced_start = walk(progress, sides)
@@ -95,7 +95,7 @@ def _wanted(working_set: ArrayLike, size: int) -> NDArray[np.bool_]:
 def _result(stated: Statement, scales: Scales, progress: Progress, finding: Finding, start: Inertia) -> QPResult:
     """All of it in the units of the data."""
     n = stated.c.size
-    x = np.clip(scales.variables * progress.x, stated.lower[:n], stated.upper[:n])
+    x = np.minimum(np.maximum(scales.variables * progress.x, stated.lower[:n]), stated.upper[:n])
     multipliers = scales.multipliers(finding.multipliers) / scales.objective
     return QPResult(
         x=x,

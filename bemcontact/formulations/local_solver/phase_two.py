@@ -5,16 +5,16 @@ Gill, Murray, Saunders and Wright, SIAM Review 33 (1991) 1-36; Gill and Wong, Ma
 
 from dataclasses import dataclass
 from enum import Enum, auto
+from math import sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.formulations.local_solver.factors import Factors
-from bemcontact.formulations.local_solver.phase_one import wrong_sign
+from bemcontact.formulations.local_solver.pricing import wrong_sign
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import Block, nearest
-
-Array = NDArray[np.float64]
+from bemcontact.formulations.local_solver.reduced_hessian import ReducedHessian
+from bemcontact.formulations.local_solver.statement import Array, Sides, largest
+from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, WorkingSet
 
 
 class Ending(Enum):
@@ -34,104 +34,141 @@ class Outcome:
     ray: Array | None = None
 
 
-def zero_gradient(progress: Progress) -> float:
-    """Size of a gradient or multiplier that counts as zero: relative to the terms that make it up."""
-    product = progress.statement.H @ progress.x
-    size = max(float(np.abs(product).max(initial=0.0)), float(np.abs(progress.statement.c).max(initial=0.0)))
-    return progress.options.optimality_tolerance * max(size, 1e-3)
+class Descent:
+    """The walk of phase two from a feasible point.
 
+    Parameters
+    ----------
+    progress : Progress
+        The point; it is put on the bounds of the working set.
+    sides : (n + m,) int8 array
+        Working set to begin with.
 
-def descend(progress: Progress, factors: Factors) -> Outcome:
-    """Walk until no constraint can be dropped with profit, or for ever."""
-    dropped: int | None = None
-    repeated = idle = moved = 0
-    while not progress.exhausted:
-        gradient = progress.statement.gradient(progress.x)
-        zero = zero_gradient(progress)
-        if factors.pending is not None:
-            outcome = _follow_curvature(progress, factors, gradient, zero, dropped)
-            dropped = None
-            if outcome is not None:
-                return outcome
-            continue
-        if np.abs(factors.Z.T @ gradient).max(initial=0.0) > 0.1 * zero:
-            full = _newton_step(progress, factors, gradient, dropped)
-            dropped = None
-            repeated = repeated + 1 if full else 0
-            if repeated > 3:  # a whole Newton step ends at a stationary point, unless the factors have drifted
+    Attributes
+    ----------
+    working, hessian
+        The constraints held, and the Hessian on what they leave free.
+    """
+
+    def __init__(self, progress: Progress, sides: Sides) -> None:
+        self.progress = progress
+        self._renew(sides)
+        progress.place(self.working.onto(progress.x))
+
+    def _renew(self, sides: Sides) -> None:
+        """All factors from the data, temporary rows on the directions without positive curvature: O(n³)."""
+        self.working = WorkingSet(self.progress.statement, sides)
+        self.hessian = ReducedHessian(self.progress.statement, self.working.null_space)
+        for direction in self.hessian.left_over.T:
+            self.working.fix(direction, TEMPORARY)
+
+    def run(self) -> Outcome:
+        """Walk until no constraint can be dropped with profit, or for ever."""
+        progress = self.progress
+        dropped: int | None = None
+        whole = idle = moved = 0
+        while not progress.exhausted:
+            working, hessian = self.working, self.hessian
+            if hessian.pending is not None:
+                outcome = self._follow_curvature(hessian.pending, dropped)
+                dropped = None
+                if outcome is not None:
+                    return outcome
+                continue
+            newton, place = self._next(working.multipliers(progress.gradient), whole)
+            if newton:
+                whole = whole + 1 if self._newton_step(dropped) else 0
+                dropped = None
+                continue
+            if place is None:
+                return Outcome(ending=Ending.STATIONARY)
+            idle, moved = (idle + 1 if progress.iterations[1] == moved else 0), progress.iterations[1]
+            if idle > 2 * working.number + 10:  # constraints come and go without a step: multipliers are noise
                 return Outcome(ending=Ending.INACCURATE)
-            continue
-        repeated = 0
-        idle, moved = (idle + 1 if progress.iterations[1] == moved else 0), progress.iterations[1]
-        position, _ = wrong_sign(progress, factors, gradient, zero)
-        if position is None:
-            return Outcome(ending=Ending.STATIONARY)
-        if idle > 2 * len(factors.ids) + 10:  # constraints come and go without a step: multipliers are noise
-            return Outcome(ending=Ending.INACCURATE)
-        dropped = factors.drop(position)
-        progress.changes += dropped < 0
-    return Outcome(ending=Ending.LIMIT)
+            whole = 0
+            dropped, direction = working.drop(place)
+            hessian.enter(direction)
+            progress.changes += dropped < 0
+        return Outcome(ending=Ending.LIMIT)
 
+    def _next(self, multipliers: Array, whole: int) -> tuple[bool, int | None]:
+        """Whether to take a Newton step; else the place of a constraint to drop, if there is one.
 
-def _newton_step(progress: Progress, factors: Factors, gradient: Array, dropped: int | None) -> bool:
-    """Towards the minimiser on the working set, as far as the constraints allow; whether all the way."""
-    direction = factors.newton(gradient)
-    along = progress.statement.values(direction)
-    block = nearest(progress, along, float(np.linalg.norm(direction)), factors.sides == 0)
-    if block is not None and block.step > 1.0:
-        block = None
-    _advance(progress, factors, direction, along, 1.0 if block is None else block.step, block, dropped)
-    return block is None
+        First by one tolerance for all, which is quick; where that finds nothing, each component by its own. A whole
+        Newton step ends at a stationary point: what a third one leaves over is rounding.
+        """
+        progress, working = self.progress, self.working
+        n, least = working.free.size, progress.least_index
+        reduced = multipliers[:n] * working.free
+        if whole < 3 and largest(reduced) > 0.1 * progress.zero:
+            return True, None
+        place = wrong_sign(working, multipliers, progress.zero, least_index=least)
+        if place is not None:
+            return False, place
+        zero = progress.fine_zero(multipliers[n:], working.W)
+        if whole < 3 and (np.abs(reduced) > zero).any():
+            return True, None
+        zeros = np.concatenate([zero, zero @ np.abs(working.N)])
+        return False, wrong_sign(working, multipliers, zeros, least_index=least)
 
+    def _newton_step(self, dropped: int | None) -> bool:
+        """Towards the minimiser on the working set, as far as the constraints allow; whether all the way."""
+        direction = self.hessian.newton(self.progress.gradient)
+        along = self.progress.statement.values(direction)
+        length = sqrt(direction @ direction)
+        block = nearest(self.progress, along, length, self.working.idle)
+        if block is not None and block.step > 1.0:
+            block = None
+        self._advance(direction, along, length, 1.0 if block is None else block.step, block, dropped)
+        return block is None
 
-def _follow_curvature(
-    progress: Progress, factors: Factors, gradient: Array, zero: float, dropped: int | None
-) -> Outcome | None:
-    """Along the direction of non-positive curvature downhill to the next constraint; None if the walk goes on."""
-    direction = factors.curvature_direction()
-    slope = float(gradient @ direction)
-    curvature = float(direction @ progress.statement.H @ direction)
-    curved = curvature < -factors.curvature_tolerance
-    if abs(slope) <= zero and not curved:
-        factors.fix_pending()
+    def _follow_curvature(self, direction: Array, dropped: int | None) -> Outcome | None:
+        """Along the direction of non-positive curvature downhill to the next constraint; None if the walk goes on."""
+        slope, curvature = float(self.progress.gradient @ direction), self.hessian.curvature
+        level = abs(slope) <= self.progress.zero and abs(slope) <= self._fine_slope(direction)
+        if level and curvature == 0.0:
+            self.working.fix(direction, FLAT)
+            self.hessian.leave(direction)
+            return None
+        along = self.progress.statement.values(direction)
+        signs = (1.0, -1.0) if level else (-np.sign(slope),)
+        blocks = [(sign, nearest(self.progress, sign * along, 1.0, self.working.idle)) for sign in signs]
+        best: tuple[float, float, Block] | None = None
+        for sign, block in blocks:
+            if block is None:
+                return Outcome(ending=Ending.UNBOUNDED, ray=sign * direction)
+            change = block.step * (sign * slope + 0.5 * block.step * curvature)
+            if best is None or change < best[0]:
+                best = (change, sign, block)
+        assert best is not None
+        _, sign, block = best
+        self._advance(sign * direction, sign * along, 1.0, block.step, block, dropped)
         return None
-    signs = [-np.sign(slope)] if abs(slope) > zero else [1.0, -1.0]
-    best: tuple[float, Array, Array, Block] | None = None
-    for sign in signs:
-        d = sign * direction
-        along = progress.statement.values(d)
-        block = nearest(progress, along, 1.0, factors.sides == 0)
-        if block is None:
-            return Outcome(ending=Ending.UNBOUNDED, ray=d)
-        change = block.step * sign * slope + 0.5 * block.step**2 * curvature
-        if best is None or change < best[0]:
-            best = (change, d, along, block)
-    assert best is not None
-    _, d, along, block = best
-    _advance(progress, factors, d, along, block.step, block, dropped)
-    return None
 
+    def _fine_slope(self, direction: Array) -> float:
+        """The slope along a direction that counts as zero."""
+        of_rows = self.working.multipliers(self.progress.gradient)[direction.size :]
+        return float(np.abs(direction) @ self.progress.fine_zero(of_rows, self.working.W))
 
-def _advance(
-    progress: Progress,
-    factors: Factors,
-    direction: Array,
-    along: Array,
-    step: float,
-    block: Block | None,
-    dropped: int | None,
-) -> None:
-    """Take the step, and the constraint that ended it."""
-    nonpositive = int(factors.pending is not None)
-    progress.move(direction, along, step)
-    if block is not None:
-        factors.add(block.constraint, block.side)
-    progress.write(
-        phase=2,
-        value=progress.statement.objective(progress.x),
-        step=step,
-        added=None if block is None else block.constraint,
-        dropped=dropped,
-        working=len(factors.ids),
-        nonpositive=nonpositive,
-    )
+    def _advance(
+        self, direction: Array, along: Array, length: float, step: float, block: Block | None, dropped: int | None
+    ) -> None:
+        """Take the step, and the constraint that ended it."""
+        progress, working = self.progress, self.working
+        nonpositive = int(self.hessian.pending is not None)
+        progress.move(direction, along, step, length)
+        if block is not None:
+            self.hessian.leave(working.add(block.constraint, block.side))
+            if block.constraint < working.free.size:
+                self.hessian.clear(block.constraint)
+        if working.worn:
+            self._renew(working.sides)
+        progress.write(
+            phase=2,
+            value=progress.objective,
+            step=step,
+            added=None if block is None else block.constraint,
+            dropped=dropped,
+            working=working.number,
+            nonpositive=nonpositive,
+        )

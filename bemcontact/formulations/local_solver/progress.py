@@ -3,14 +3,11 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bemcontact.formulations.local_solver.result import LogLine, QPOptions
-from bemcontact.formulations.local_solver.statement import Statement
+from bemcontact.formulations.local_solver.statement import Array, Statement, largest
 
-Array = NDArray[np.float64]
-
-STALLED = 30
+STALLED = 100
 """Steps of length zero in a row after which least-index rules take over, which cannot cycle (Bland 1977)."""
 
 
@@ -24,15 +21,23 @@ class Progress:
         The scaled problem.
     options : QPOptions
         Tolerances, limit and log.
-    x, values : arrays
-        The point and [x; A x].
+    x, values, gradient : arrays
+        The point, [x; A x], and H x + c.
+    slack, lowest, highest : (n + m,) arrays
+        Tolerance of each constraint, and its bounds with the tolerance added.
+    zero : float
+        Size of a gradient or multiplier that counts as zero: relative to the terms that make it up.
     """
 
     statement: Statement
     options: QPOptions
     x: Array
     values: Array = field(init=False)
+    gradient: Array = field(init=False)
+    zero: float = field(init=False)
     slack: Array = field(init=False)
+    lowest: Array = field(init=False)
+    highest: Array = field(init=False)
     limit: int = field(init=False)
     iterations: list[int] = field(default_factory=lambda: [0, 0])
     changes: int = 0
@@ -40,14 +45,29 @@ class Progress:
     lines: list[LogLine] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        lower, upper = self.statement.lower, self.statement.upper
-        size = np.maximum(
-            np.where(np.isfinite(lower), np.abs(lower), 0.0), np.where(np.isfinite(upper), np.abs(upper), 0.0)
-        )
+        lower, upper = np.abs(self.statement.lower), np.abs(self.statement.upper)
+        size = np.maximum(np.where(lower < np.inf, lower, 1.0), np.where(upper < np.inf, upper, 1.0))
         self.slack = self.options.feasibility_tolerance * np.maximum(1.0, size)
+        self.lowest, self.highest = self.statement.lower - self.slack, self.statement.upper + self.slack
         chosen = self.options.max_iterations
         self.limit = 1000 + 20 * lower.size if chosen is None else chosen
-        self.values = self.statement.values(self.x)
+        self.place(self.x)
+
+    @property
+    def objective(self) -> float:
+        """cᵀx + xᵀHx/2."""
+        return 0.5 * float(self.x @ (self.gradient + self.statement.c))
+
+    def fine_zero(self, of_rows: Array, rows: Array) -> Array:
+        """For each component of the gradient the size that counts as zero, relative to its own terms (n,).
+
+        Where variables differ in size by many orders, small ones are not to be judged by the terms of large ones.
+        """
+        H, c, _ = self.statement.absolute
+        terms = H @ np.abs(self.x) + c
+        if of_rows.size:
+            terms = terms + np.abs(of_rows) @ np.abs(rows)
+        return np.maximum(self.options.optimality_tolerance * terms, 1e-14 * largest(terms))
 
     @property
     def exhausted(self) -> bool:
@@ -62,13 +82,22 @@ class Progress:
     def place(self, x: Array) -> None:
         """Move without a step: after a correction."""
         self.x, self.values = x, self.statement.values(x)
+        self._look()
 
-    def move(self, direction: Array, along: Array, step: float) -> None:
-        """Take a step; `along` is [d; A d]."""
-        moved = step * float(np.abs(direction).max(initial=0.0))
-        self.stalled = 0 if moved > 1e-11 * max(1.0, float(np.abs(self.x).max(initial=0.0))) else self.stalled + 1
-        self.x = self.x + step * direction
-        self.values = self.values + step * along
+    def move(self, direction: Array, along: Array, step: float, length: float) -> None:
+        """Take a step; `along` is [d; A d], `length` that of the direction."""
+        self.stalled = 0 if step * length > 1e-11 else self.stalled + 1
+        if step > 0.0:
+            self.x = self.x + step * direction
+            self.values = self.values + step * along
+            self._look()
+
+    def _look(self) -> None:
+        """The gradient at the point."""
+        product = self.statement.H @ self.x
+        self.gradient = product + self.statement.c
+        terms = max(largest(product), self.statement.slope, 1e-3)
+        self.zero = self.options.optimality_tolerance * terms
 
     def write(
         self,

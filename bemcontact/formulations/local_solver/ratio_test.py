@@ -1,20 +1,18 @@
 """How far a direction leads to the next constraint."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.formulations.local_solver.progress import Progress
-
-Array = NDArray[np.float64]
+from bemcontact.formulations.local_solver.statement import Array
 
 PARALLEL = 1e-10
 """A normal whose product with the unit direction is below this is parallel to the constraint."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Block:
+class Block(NamedTuple):
     """The constraint that ends a step: its number, the side reached (-1 lower, +1 upper, 2 equality), and the step."""
 
     constraint: int
@@ -29,22 +27,28 @@ def nearest(progress: Progress, along: Array, length: float, eligible: NDArray[n
     constraints met until then, the one that is met most steeply (Harris, Math. Programming 5 (1973) 1-28). When the run
     has stalled: the lowest number among the ties.
     """
-    statement = progress.statement
-    towards = np.where(along < 0.0, statement.lower, statement.upper)
-    met = np.flatnonzero(eligible & (np.abs(along) > PARALLEL * length) & np.isfinite(towards))
-    if met.size == 0:
+    statement, values = progress.statement, progress.values
+    speed = np.abs(along)
+    met = eligible & (speed > PARALLEL * length)
+    room = np.where(along < 0.0, values - statement.lower, statement.upper - values)
+    ratios = np.where(met, (room + progress.slack) / np.maximum(speed, PARALLEL * length), np.inf)
+    furthest = ratios[ratios.argmin()]
+    if furthest == np.inf:
         return None
-    speed = np.abs(along[met])
-    room = np.abs(towards[met] - progress.values[met])
-    room[(towards[met] - progress.values[met]) * along[met] < 0.0] = 0.0
-    ratios = room / speed
     if progress.least_index:
-        chosen = int(np.flatnonzero(ratios <= ratios.min() + 1e-13 * max(1.0, ratios.min()))[0])
+        constraint = _lowest_of_the_first(room, speed, met)
     else:
-        candidates = ratios <= ((room + progress.slack[met]) / speed).min()
-        chosen = int(np.argmax(np.where(candidates, speed, -1.0)))
-    constraint = int(met[chosen])
-    return Block(constraint=constraint, side=side_reached(progress, constraint, along), step=float(ratios[chosen]))
+        constraint = int(np.where(met & (room <= furthest * speed), speed, -1.0).argmax())
+    step = max(float(room[constraint]), 0.0) / float(speed[constraint])
+    return Block(constraint=constraint, side=side_reached(progress, constraint, along), step=step)
+
+
+def _lowest_of_the_first(room: Array, speed: Array, met: NDArray[np.bool_]) -> int:
+    """The lowest number among the constraints that are met first."""
+    among = np.flatnonzero(met)
+    ratios = np.maximum(room[among], 0.0) / speed[among]
+    least = float(ratios.min())
+    return int(among[np.flatnonzero(ratios <= least + 1e-13 * max(1.0, least))[0]])
 
 
 def side_reached(progress: Progress, constraint: int, along: Array) -> int:

@@ -1,6 +1,8 @@
 """The quadratic programme as stated, checked on entry, and its equilibration."""
 
 from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -10,8 +12,16 @@ from scipy import sparse
 from bemcontact.errors import ProblemError
 
 Array = NDArray[np.float64]
+Sides = NDArray[np.int8]
 
 RUIZ_SWEEPS = 6
+EPS = float(np.finfo(float).eps)
+
+
+def largest(numbers: Array) -> float:
+    """The largest absolute value, 0 if there is none."""
+    sizes = np.abs(numbers)
+    return float(sizes[sizes.argmax()]) if sizes.size else 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,9 +46,28 @@ class Statement:
     lower: Array
     upper: Array
 
-    def gradient(self, x: Array) -> Array:
-        """H x + c."""
-        return self.H @ x + self.c
+    @cached_property
+    def slope(self) -> float:
+        """The largest entry of c."""
+        return largest(self.c)
+
+    @cached_property
+    def absolute(self) -> tuple[Array, Array, Array]:
+        """|H|, |c|, |A|: what rounding is measured by."""
+        return np.abs(self.H), np.abs(self.c), np.abs(self.A)
+
+    @cached_property
+    def equality(self) -> NDArray[np.bool_]:
+        """Which constraints have one bound for both sides (n + m,)."""
+        return self.lower == self.upper
+
+    @cached_property
+    def empty(self) -> NDArray[np.bool_]:
+        """Which constraints are rows of zeros (n + m,)."""
+        n = self.c.size
+        found = np.zeros(self.lower.size, dtype=bool)
+        found[n:] = ~self.A.any(axis=1)
+        return found
 
     def objective(self, x: Array) -> float:
         """cᵀx + xᵀHx/2."""
@@ -46,12 +75,12 @@ class Statement:
 
     def values(self, x: Array) -> Array:
         """[x; A x]."""
-        return np.concatenate([x, self.A @ x])
+        return np.concatenate([x, self.A @ x]) if self.A.shape[0] else x
 
     def transposed(self, y: Array) -> Array:
         """[I; A]ᵀ y."""
         n = self.c.size
-        return y[:n] + self.A.T @ y[n:]
+        return y[:n] + y[n:] @ self.A
 
     def normal(self, constraint: int) -> Array:
         """Gradient of one constraint."""
@@ -61,6 +90,19 @@ class Statement:
         unit = np.zeros(n)
         unit[constraint] = 1.0
         return unit
+
+    def sides_reached(self, values: Array, slack: Array) -> Sides:
+        """Which bound each constraint is at, within its slack; the nearer of two; 2 for an equality."""
+        lower, upper = np.abs(values - self.lower), np.abs(values - self.upper)
+        sides = np.where(lower <= upper, -1, 1).astype(np.int8)
+        sides[np.minimum(lower, upper) > slack] = 0
+        sides[self.equality & (sides != 0)] = 2
+        return sides
+
+    def rounding(self, d: Array) -> float:
+        """What dᵀHd could be by rounding alone."""
+        size = np.abs(d)
+        return 10.0 * sqrt(d.size) * EPS * float(size @ (self.absolute[0] @ size))
 
     def violation(self, values: Array) -> Array:
         """How far each constraint is outside its bounds; 0 inside."""
@@ -101,20 +143,29 @@ def no_scales(statement: Statement) -> Scales:
 def equilibrate(statement: Statement) -> Scales:
     """Factors that bring the rows and columns of A to size one, columns outside A by H (Ruiz, RAL-TR-2001-034)."""
     m, n = statement.A.shape
-    D, E = np.ones(n), np.ones(m)
-    H, A = np.abs(statement.H), np.abs(statement.A)
+    H, c, A = statement.absolute
+    outside = ~A.any(axis=0)
+    D, E, linear, hessian = np.ones(n), np.ones(m), A, H
     for _ in range(RUIZ_SWEEPS):
-        hessian = (H * D).max(axis=1, initial=0.0) * D
+        columns, rows = np.maximum.reduce(linear, axis=0, initial=0.0), np.maximum.reduce(linear, axis=1, initial=0.0)
+        if outside.any():
+            sizes = np.maximum.reduce(hessian, axis=1)
+            columns = np.where(outside, sizes / _top(sizes), columns)
+        columns[columns == 0.0] = 1.0
+        rows[rows == 0.0] = 1.0
+        D, E = D / np.sqrt(columns), E / np.sqrt(rows)
+        if _near_one(columns) and _near_one(rows):
+            break
         linear = E[:, None] * A * D
-        rows = linear.max(axis=0, initial=0.0)
-        D = D / _root(np.where(rows > 0.0, rows, hessian / _top(hessian)))
-        E = E / _root(linear.max(axis=1, initial=0.0))
+        if outside.any():
+            hessian = D[:, None] * H * D
     D = _power_of_two(D)
     D = D * _smaller_unit(statement, D, E)
-    length = np.linalg.norm(statement.A * D, axis=1)
+    scaled = A * D
+    length = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))
     E = _power_of_two(1.0 / np.where(length > 0.0, length, 1.0))
-    size = max(float((D[:, None] * H * D).max(initial=0.0)), float(np.abs(D * statement.c).max(initial=0.0)))
-    return Scales(variables=D, rows=E, objective=float(_power_of_two(np.array(1.0 / _top(np.array([size]))))))
+    size = max(float((D[:, None] * H * D).max(initial=0.0)), largest(D * c))
+    return Scales(variables=D, rows=E, objective=float(_power_of_two(np.array(1.0 / (size or 1.0)))))
 
 
 def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
@@ -130,9 +181,9 @@ def _top(sizes: Array) -> float:
     return float(sizes.max(initial=0.0)) or 1.0
 
 
-def _root(sizes: Array) -> Array:
-    """Square roots, 1 where there is nothing to scale."""
-    return np.sqrt(np.where(sizes > 0.0, sizes, 1.0))
+def _near_one(sizes: Array) -> bool:
+    """Whether another sweep would change little."""
+    return sizes.size == 0 or bool(sizes[sizes.argmax()] < 1.5 and sizes[sizes.argmin()] > 0.6)
 
 
 def _power_of_two(factors: Array) -> Array:

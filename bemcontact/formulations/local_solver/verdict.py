@@ -38,7 +38,7 @@ class FirstOrder:
         """The critical cone with normals of length one, turned inwards."""
         n = statement.c.size
         free = np.flatnonzero(~self.strong[:n])
-        rows = statement.A[:, free] / np.maximum(np.linalg.norm(statement.A, axis=1), 1e-300)[:, None]
+        rows = statement.A[:, free]
         inwards = np.where(self.sides == 1, -1.0, 1.0)
         weak_bounds = np.flatnonzero(self.weak[:n])
         bounds = np.zeros((weak_bounds.size, free.size))
@@ -47,25 +47,24 @@ class FirstOrder:
         return CriticalCone(free=free, equal=rows[self.strong[n:]], weak=np.vstack([bounds, weak_rows]))
 
 
-def first_order(progress: Progress, multipliers: Array, zero: float) -> FirstOrder:
-    """Recompute the first-order conditions at the point from the data."""
+def first_order(progress: Progress, multipliers: Array) -> FirstOrder:
+    """Recompute the first-order conditions at the point from the data, each component against its own terms."""
     statement, x = progress.statement, progress.x
+    n = x.size
     values = statement.values(x)
-    at_lower = values <= statement.lower + progress.slack
-    at_upper = values >= statement.upper - progress.slack
-    equality = statement.lower == statement.upper
-    sides = np.where(equality, 2, np.where(at_lower, -1, np.where(at_upper, 1, 0))).astype(np.int8)
-    nearer = values - statement.lower > statement.upper - values
-    sides[at_lower & at_upper & ~equality & nearer] = 1
-    feasible = bool(np.all(statement.violation(values) <= 2.0 * progress.slack))
-    residual = float(np.abs(statement.gradient(x) - statement.transposed(multipliers)).max(initial=0.0))
-    signs = np.where(equality, 0.0, np.where(sides == 0, np.abs(multipliers), sides * multipliers))
-    empty = np.concatenate([np.zeros(x.size, dtype=bool), ~statement.A.any(axis=1)])
-    strong = (equality | ((sides != 0) & (np.abs(multipliers) > WEAK * zero))) & ~empty
+    sides = statement.sides_reached(values, 2.0 * progress.slack)
+    feasible = bool((statement.violation(values) <= 2.0 * progress.slack).all())
+    residual = np.abs(progress.gradient - statement.transposed(multipliers))
+    zero = progress.fine_zero(multipliers[n:], statement.A)
+    zeros = np.concatenate([zero, np.full(values.size - n, progress.zero)])
+    size = np.abs(multipliers)
+    wrong = np.where(statement.equality, 0.0, np.where(sides == 0, size, sides * multipliers))
+    held = (sides != 0) & ~statement.empty
+    strong = held & (statement.equality | (size > WEAK * zeros))
     return FirstOrder(
-        holds=feasible and residual <= 2.0 * zero and float(signs.max(initial=0.0)) <= 2.0 * zero,
+        holds=feasible and bool((residual <= 2.0 * progress.zero).all()) and bool((wrong <= 2.0 * zeros).all()),
         strong=strong,
-        weak=(sides != 0) & ~strong & ~empty,
+        weak=held & ~strong,
         sides=sides,
     )
 
@@ -76,17 +75,15 @@ def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
     d = np.where(np.abs(ray) > 1e-13 * np.abs(ray).max(initial=0.0), ray, 0.0)
     d = d / np.linalg.norm(d)
     along = statement.values(d)
-    within = 1e-9
+    within = np.concatenate([np.zeros(d.size), 1e-10 * (statement.absolute[2] @ np.abs(d))])
     falls = np.isfinite(statement.lower) & (along < -within)
     rises = np.isfinite(statement.upper) & (along > within)
     if falls.any() or rises.any():
         return None
     curvature = float(d @ statement.H @ d)
-    slope = float(statement.gradient(progress.x) @ d)
-    size = float(np.abs(statement.H).max(initial=0.0))
-    zero = 1e-12 * max(10, d.size) * size
-    gradient = max(float(np.abs(statement.gradient(progress.x)).max(initial=0.0)), 1e-3)
-    if curvature < -zero or (abs(curvature) <= zero and slope < -progress.options.optimality_tolerance * gradient):
+    slope = float(progress.gradient @ d)
+    zero = statement.rounding(d)
+    if curvature < -zero or (curvature <= zero and slope < -float(np.abs(d) @ progress.fine_zero(d[:0], statement.A))):
         return d
     return None
 

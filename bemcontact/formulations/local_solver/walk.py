@@ -4,19 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigvalsh
 
 from bemcontact.formulations.local_solver.dead_point import examine
-from bemcontact.formulations.local_solver.factors import Factors
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility
-from bemcontact.formulations.local_solver.phase_two import Ending, descend, zero_gradient
+from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import nearest
 from bemcontact.formulations.local_solver.result import QPStatus
+from bemcontact.formulations.local_solver.statement import Array, Sides
 from bemcontact.formulations.local_solver.verdict import FirstOrder, certified, cleaned_ray, first_order
 
-Array = NDArray[np.float64]
-Sides = NDArray[np.int8]
 Inertia = tuple[int, int, int]
 
 FAILURES = 6
@@ -83,36 +80,35 @@ def walk(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
         if progress.exhausted and failures + sum(progress.iterations):
             break
         # phase one ends within the tolerance; equalities are met as exactly as the arithmetic allows
-        sides = np.where(progress.statement.lower == progress.statement.upper, 2, sides).astype(np.int8)
-        factors = Factors(progress.statement, sides, curved=True)
-        progress.place(progress.x + factors.onto(progress.values))
-        start = start or reduced_inertia(factors)
-        found = _second_phase(progress, factors)
+        sides = np.where(progress.statement.equality, 2, sides).astype(np.int8)
+        descent = Descent(progress, sides)
+        start = start or reduced_inertia(descent)
+        found = _second_phase(progress, descent)
         if isinstance(found, Finding):
             return found, start
         sides, failures = found.sides, failures + found.failed
     return _finding(progress, QPStatus.ITERATION_LIMIT, sides), start or (0, 0, 0)
 
 
-def _second_phase(progress: Progress, factors: Factors) -> Finding | Restart:
+def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
     """Descend, then check what the end of the descent suggests."""
-    outcome = descend(progress, factors)
+    outcome = descent.run()
     if outcome.ending is Ending.LIMIT:
-        return _finding(progress, QPStatus.ITERATION_LIMIT, factors.sides)
+        return _finding(progress, QPStatus.ITERATION_LIMIT, descent.working.sides)
     if outcome.ending is Ending.UNBOUNDED and outcome.ray is not None:
         ray = cleaned_ray(progress, outcome.ray)
         if ray is None:
-            return Restart(sides=factors.sides, failed=True)
-        return _finding(progress, QPStatus.UNBOUNDED, factors.sides, ray=ray)
-    multipliers = _refined(progress, factors)
-    conditions = first_order(progress, multipliers, zero_gradient(progress))
+            return Restart(sides=descent.working.sides, failed=True)
+        return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
+    multipliers = _refined(progress, descent)
+    conditions = first_order(progress, multipliers)
     if outcome.ending is Ending.INACCURATE or not conditions.holds:
-        return Restart(sides=factors.sides, failed=True)
-    return _second_order(progress, factors, conditions, multipliers)
+        return Restart(sides=descent.working.sides, failed=True)
+    return _second_order(progress, descent, conditions, multipliers)
 
 
 def _second_order(
-    progress: Progress, factors: Factors, conditions: FirstOrder, multipliers: Array
+    progress: Progress, descent: Descent, conditions: FirstOrder, multipliers: Array
 ) -> Finding | Restart:
     """A minimiser if H is copositive on the critical cone; else leave along the direction that shows it is not."""
     cone = conditions.cone(progress.statement)
@@ -120,9 +116,9 @@ def _second_order(
     if curvature.direction is None:
         return Finding(
             status=QPStatus.LOCAL_MINIMISER if curvature.copositive else QPStatus.UNDECIDED,
-            sides=factors.sides,
+            sides=descent.working.sides,
             multipliers=multipliers,
-            reduced_end=reduced_inertia(factors),
+            reduced_end=reduced_inertia(descent),
             weak=np.flatnonzero(conditions.weak),
         )
     direction = curvature.direction
@@ -131,9 +127,9 @@ def _second_order(
     if block is None:
         ray = cleaned_ray(progress, direction)
         if ray is None:
-            return Restart(sides=factors.sides, failed=True)
-        return _finding(progress, QPStatus.UNBOUNDED, factors.sides, ray=ray)
-    progress.move(direction, along, block.step)
+            return Restart(sides=descent.working.sides, failed=True)
+        return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
+    progress.move(direction, along, block.step, 1.0)
     progress.write(
         phase=2,
         value=progress.statement.objective(progress.x),
@@ -143,7 +139,7 @@ def _second_order(
         working=int(np.count_nonzero(conditions.strong)) + 1,
         nonpositive=1,
     )
-    return Restart(sides=active(progress), failed=block.step <= 0.0)
+    return Restart(sides=progress.statement.sides_reached(progress.values, progress.slack), failed=block.step <= 0.0)
 
 
 def _finding(
@@ -154,48 +150,48 @@ def _finding(
         status=status,
         sides=sides,
         multipliers=np.zeros(progress.values.size),
-        reduced_end=reduced_inertia(Factors(progress.statement, sides, curved=True)),
+        reduced_end=reduced_inertia(Descent(progress, sides)),
         weak=np.zeros(0, dtype=np.intp),
         ray=ray,
         certificate=certificate,
     )
 
 
-def active(progress: Progress) -> Sides:
-    """The side of each constraint that the point is on; 0 for the others."""
-    statement, values = progress.statement, progress.values
-    lower = np.abs(values - statement.lower) <= progress.slack
-    upper = np.abs(values - statement.upper) <= progress.slack
-    sides = np.where(lower, -1, np.where(upper, 1, 0))
-    return np.where((sides != 0) & (statement.lower == statement.upper), 2, sides).astype(np.int8)
-
-
-def _refined(progress: Progress, factors: Factors) -> Array:
+def _refined(progress: Progress, descent: Descent) -> Array:
     """Refine the equations of the working set from the data, twice; multipliers of all constraints."""
-    for _ in range(2):
-        progress.place(progress.x + factors.onto(progress.values))
-        progress.place(progress.x + factors.newton(progress.statement.gradient(progress.x)))
-    ids = np.array(factors.ids, dtype=np.intp)
-    real = ids >= 0
+    working = descent.working
+    for _ in range(2 if descent.hessian.size else 1):
+        progress.place(working.onto(progress.x))
+        if descent.hessian.size:
+            progress.place(progress.x + descent.hessian.newton(progress.gradient))
+    n, found = working.free.size, working.multipliers(progress.gradient)
+    real = working.ids >= 0
     multipliers = np.zeros(progress.values.size)
-    multipliers[ids[real]] = factors.multipliers(progress.statement.gradient(progress.x))[real]
+    multipliers[:n] = found[:n] * ~working.free
+    multipliers[working.ids[real]] = found[n:][real]
     return multipliers
 
 
 def inertia(matrix: Array, size: float) -> Inertia:
     """Numbers of positive, zero and negative eigenvalues; zero is relative to `size`."""
-    eigenvalues = eigvalsh(matrix) if matrix.shape[0] else np.zeros(0)
+    eigenvalues = np.linalg.eigvalsh(matrix) if matrix.shape[0] else np.zeros(0)
     zero = 1e-12 * max(10, matrix.shape[0]) * size
     negative, positive = int(np.sum(eigenvalues < -zero)), int(np.sum(eigenvalues > zero))
     return positive, matrix.shape[0] - positive - negative, negative
 
 
-def reduced_inertia(factors: Factors) -> Inertia:
-    """Inertia of the reduced Hessian on the null space of the constraints that are not temporary."""
-    temporary = np.array(factors.ids, dtype=np.intp) < 0
-    if factors.pending is None and not temporary.any():
-        return factors.Z.shape[1], 0, 0  # its Cholesky factor exists
-    Z = np.hstack([factors.Z, factors.Y[:, temporary]])
-    if factors.pending is not None:
-        Z = np.column_stack([Z, factors.pending[0]])
-    return inertia(Z.T @ factors.statement.H @ Z, factors.size)
+def reduced_inertia(descent: Descent) -> Inertia:
+    """Inertia of the reduced Hessian on the null space of the constraints that are not temporary.
+
+    H is definite on the columns of Z and conjugate between them and the directions left over (Sylvester).
+    """
+    working, hessian = descent.working, descent.hessian
+    others = working.N[:, working.ids < 0]
+    if hessian.pending is not None:
+        others = np.column_stack([others, hessian.pending])
+    if others.shape[1] == 0:
+        return hessian.size, 0, 0
+    H = descent.progress.statement.H
+    others = others - hessian.Z @ (hessian.Z.T @ (H @ others))
+    positive, zero, negative = inertia(others.T @ H @ others, float(np.abs(H).max(initial=0.0)))
+    return hessian.size + positive, zero, negative

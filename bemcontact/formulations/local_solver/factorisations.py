@@ -1,0 +1,49 @@
+"""The few dense factorisations that everything here is made of, straight from LAPACK and BLAS."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import get_blas_funcs, get_lapack_funcs
+
+from bemcontact.formulations.local_solver.statement import Array
+
+geqp3, orgqr, trtri, pstrf, potrf = get_lapack_funcs(("geqp3", "orgqr", "trtri", "pstrf", "potrf"), dtype=np.float64)
+ger: Any = get_blas_funcs("ger", dtype=np.float64)
+
+
+def add_rank_one(matrix: Array, factor: float, column: Array, row: Array) -> None:
+    """Add factor column rowᵀ to a column-major matrix in place."""
+    if row.size:
+        ger(factor, column, row, a=matrix, overwrite_x=0, overwrite_y=0, overwrite_a=1)
+
+
+def inverse_triangle(R: Array) -> Array:
+    """Inverse of an upper triangle of full rank."""
+    return np.triu(trtri(R)[0]) if R.shape[0] else R
+
+
+def pivoted_cholesky(matrix: Array, zero: float) -> tuple[Array, NDArray[np.intp], int]:
+    """R, the order of rows and columns, and the rank: RᵀR is the leading part of that order."""
+    factor, pivots, rank, _ = pstrf(matrix, tol=zero)
+    # LAPACK does not hold the first pivot against the tolerance
+    rank = int(rank) if matrix.diagonal().max() > zero else 0
+    return factor[:rank, :rank], pivots - 1, rank
+
+
+def is_definite(matrix: Array) -> bool:
+    """Whether a symmetric matrix has a Cholesky factor."""
+    return matrix.shape[0] == 0 or potrf(matrix)[1] == 0
+
+
+def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDArray[np.intp]]:
+    """Pivoted QR of rowsᵀ: bases of the range and of the null space, the triangle, and the independent rows."""
+    m, n = rows.shape
+    if m == 0 or n == 0:
+        return np.zeros((n, 0)), np.eye(n), np.zeros((0, 0)), np.zeros(0, dtype=np.intp)
+    reflectors, pivots, tau, *_ = geqp3(rows.T)
+    rank = int(np.count_nonzero(np.abs(reflectors.diagonal()) > tolerance))
+    full = np.zeros((n, n), order="F")
+    full[:, : min(m, n)] = reflectors[:, : min(m, n)]
+    Q = orgqr(full, tau, lwork=32 * n)[0]
+    return Q[:, :rank], Q[:, rank:], np.triu(reflectors[:rank, :rank]), pivots[:rank].astype(np.intp) - 1

@@ -1,0 +1,33 @@
+"""Which constraint of the working set is to go: the one whose multiplier has the wrong sign most of all."""
+
+import numpy as np
+
+from bemcontact.formulations.local_solver.statement import Array
+from bemcontact.formulations.local_solver.working_set import TEMPORARY, WorkingSet
+
+
+def wrong_sign(working: WorkingSet, multipliers: Array, zero: float | Array, *, least_index: bool) -> int | None:
+    """The place of the constraint to drop; None if all signs are right.
+
+    Parameters
+    ----------
+    multipliers : (n + r,) array
+        As from `WorkingSet.multipliers`.
+    zero : float or (n + r,) array
+        Size of a multiplier that counts as zero.
+    least_index : bool
+        Take the constraint of the lowest number among those with a wrong sign (Bland 1977).
+    """
+    wrong = working.signs * multipliers
+    n, ids = working.free.size, working.ids
+    if working.temporary:
+        of_temporary = np.where(ids == TEMPORARY, np.inf, np.abs(multipliers[n:]))
+        wrong[n:] = np.where(ids < 0, of_temporary, wrong[n:])
+    wrong = np.where(wrong > zero, wrong, 0.0)
+    place = int(wrong.argmax())
+    if wrong[place] == 0.0:
+        return None
+    if least_index:
+        numbers = np.concatenate([np.arange(n), ids])
+        return int(np.where(wrong > 0.0, numbers, numbers.max() + 1).argmin())
+    return place

@@ -1,0 +1,191 @@
+"""The working set, with the shortest right inverse of its rows, updated when it changes by one constraint.
+
+Bounds of the working set fix their variables; only rows need algebra. With W the rows on the variables that are free,
+
+    W N = I,   N = Wᵀ(WWᵀ)⁻¹:
+
+Nᵀg are the multipliers of the rows in the least-squares sense, and g - Wᵀ Nᵀg holds the multipliers of the fixed
+variables beside the reduced gradient of the free ones. When a constraint enters or leaves, N changes by a matrix of
+rank one (Greville, SIAM Review 2 (1960) 15-22).
+"""
+
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.formulations.local_solver.factorisations import add_rank_one, inverse_triangle, orthogonal
+from bemcontact.formulations.local_solver.statement import Array, Sides, Statement
+
+EQUALITY = 2
+TEMPORARY, FLAT = -1, -2
+"""Numbers of rows that only fix a direction; FLAT once both its slope and its curvature were found zero."""
+
+DEPENDENT = 1e-9
+"""A normal whose part outside the span of the others is below this counts as dependent."""
+
+WEAR = 1e-8
+"""Relative size of a refinement that shows that the factors want renewal."""
+
+
+class WorkingSet:
+    """The constraints that are held, changed in place by `add` and `drop`.
+
+    Parameters
+    ----------
+    statement : Statement
+        The scaled problem.
+    sides : (n + m,) int8 array
+        Wanted working set: 0 free, -1 lower, +1 upper, 2 equality. Dependent rows are left out.
+
+    Attributes
+    ----------
+    sides : (n + m,) int8 array
+        What is held.
+    idle : (n + m,) bool array
+        Constraints that are not held.
+    free : (n,) bool array
+        Variables that are not fixed by a bound; the first part of `idle`.
+    number : int
+        How many constraints are held, temporary ones included.
+    worn : bool
+        Whether rounding has piled up so far that the factors should be made anew.
+    N, W : (n, r) and (r, n) arrays
+        Right inverse, zero in the rows of fixed variables; normals of the rows held, on all variables.
+    ids : (r,) int array
+        Constraint of each row of W; `TEMPORARY` or `FLAT` for one that is none.
+    signs : (n + r,) array
+        -1 for a variable or row at its lower bound, +1 at its upper, 0 for any other.
+    temporary : int
+        How many rows of W are no constraints.
+    """
+
+    def __init__(self, statement: Statement, sides: Sides) -> None:
+        n, A = statement.c.size, statement.A
+        self.statement = statement
+        self.sides = sides.copy()
+        self.idle = sides == 0
+        self.free = self.idle[:n]
+        self._N, self._W = np.zeros((n, n), order="F"), np.zeros((n, n))
+        self._ids, self._signs = np.zeros(n, dtype=np.intp), np.zeros(2 * n)
+        free, rows = np.flatnonzero(self.free), np.flatnonzero(sides[n:])
+        Y, self.null_space, T, kept = orthogonal(A[rows][:, free], DEPENDENT)
+        self._resize(r := kept.size)
+        if r < rows.size:
+            left_out = n + np.delete(rows, kept)
+            self.sides[left_out], self.idle[left_out] = 0, True
+        self.number = n - free.size + r
+        self.temporary, self.worn = 0, False
+        self._ids[:r] = n + rows[kept]
+        self._W[:r] = A[rows[kept]]
+        self._signs[:n] = np.where(self.sides[:n] == EQUALITY, 0, self.sides[:n])
+        self._signs[n : n + r] = np.where(self.sides[self.ids] == EQUALITY, 0, self.sides[self.ids])
+        if r:
+            self._N[free, :r] = Y @ inverse_triangle(T).T
+        self.null_space = _spread(self.null_space, free, n)
+
+    def _resize(self, rows: int) -> None:
+        """Look at the leading columns of N and rows of W."""
+        self.size = rows
+        self.N, self.W, self.ids = self._N[:, :rows], self._W[:rows], self._ids[:rows]
+        self.signs = self._signs[: self.free.size + rows]
+
+    def multipliers(self, gradient: Array) -> Array:
+        """Of the fixed variables, beside the reduced gradient of the free ones, and of the rows (n + r,)."""
+        if self.size == 0:
+            return gradient
+        of_rows = gradient @ self.N
+        correction = (gradient - of_rows @ self.W) @ self.N
+        self.worn = self.worn or correction @ correction > WEAR**2 * (of_rows @ of_rows)
+        of_rows += correction
+        return np.concatenate([gradient - of_rows @ self.W, of_rows])
+
+    def add(self, constraint: int, side: int) -> Array:
+        """One constraint enters, whose normal is not in the span of the others; returns its normal: O(n²)."""
+        n = self.free.size
+        normal = self.statement.normal(constraint)
+        sign = side if side != EQUALITY else 0
+        if constraint >= n:
+            self._append(normal, constraint, sign, self._hold(normal, normal @ self.N))
+        else:
+            if self.size:
+                self._hold(normal, self.N[constraint].copy())
+                self.N[constraint] = 0.0
+            self._signs[constraint] = sign
+        self.sides[constraint], self.idle[constraint] = side, False
+        self.number += 1
+        return normal
+
+    def fix(self, direction: Array, kind: int) -> None:
+        """A temporary row enters, with a direction of the null space as its normal."""
+        self._append(direction, kind, 0, self._hold(direction, direction @ self.N))
+        self.number += 1
+        self.temporary += 1
+
+    def _hold(self, normal: Array, along: Array) -> Array:
+        """N loses what it has along the normal, by the normal's part outside the span; the new column of N."""
+        outside = normal * self.free
+        if self.size:
+            outside -= (along @ self.W) * self.free
+            outside -= (outside @ self.N) @ self.W * self.free
+        inverse = outside / (outside @ normal)
+        add_rank_one(self.N, -1.0, inverse, along)
+        return inverse
+
+    def _append(self, normal: Array, constraint: int, sign: int, inverse: Array) -> None:
+        """One more row of W and column of N."""
+        r, n = self.size, self.free.size
+        self._N[:, r], self._W[r], self._ids[r], self._signs[n + r] = inverse, normal, constraint, sign
+        self._resize(r + 1)
+
+    def drop(self, place: int) -> tuple[int, Array]:
+        """A fixed variable (place < n) or the row at place - n leaves; its number and the direction that is free now.
+
+        The direction has length one, and the shortest of those that change no other constraint: O(n²).
+        """
+        n = self.free.size
+        if place < n:
+            direction, constraint = self._along_variable(place), place
+            self._signs[place] = 0.0
+        else:
+            direction, constraint = self._N[:, place - n].copy(), self._forget(place - n)
+        if self.size:
+            direction -= self.N @ (self.W @ direction)
+        if constraint >= 0:
+            self.sides[constraint], self.idle[constraint] = 0, True
+        self.number -= 1
+        direction /= sqrt(direction @ direction)
+        if self.size:
+            add_rank_one(self.N, -1.0, direction, direction @ self.N)
+        return constraint, direction
+
+    def _along_variable(self, variable: int) -> Array:
+        """The direction that changes a fixed variable and no row."""
+        direction = -(self.N @ self.W[:, variable]) if self.size else np.zeros(self.free.size)
+        direction[variable] = 1.0
+        return direction
+
+    def _forget(self, row: int) -> int:
+        """The last row takes the place of this one."""
+        constraint, n, last = int(self._ids[row]), self.free.size, self.size - 1
+        self._N[:, row], self._W[row], self._ids[row] = self._N[:, last], self._W[last], self._ids[last]
+        self._signs[n + row] = self._signs[n + last]
+        self.temporary -= constraint < 0
+        self._resize(last)
+        return constraint
+
+    def onto(self, x: Array) -> Array:
+        """The nearest point on the bounds of the working set."""
+        n, lower, upper = self.free.size, self.statement.lower, self.statement.upper
+        targets = np.where(self.sides == 1, upper, lower)
+        x = np.where(self.free, x, targets[:n])
+        real = self.ids >= 0
+        lack = np.where(real, targets[self.ids], 0.0) - np.where(real, self.W @ x, 0.0)
+        return x + self.N @ lack
+
+
+def _spread(columns: Array, free: NDArray[np.intp], n: int) -> Array:
+    """Columns on the free variables as columns on all."""
+    full = np.zeros((n, columns.shape[1]))
+    full[free] = columns
+    return full

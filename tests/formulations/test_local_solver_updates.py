@@ -1,0 +1,168 @@
+"""The updated working set and reduced Hessian against what defines them, after many changes."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from bemcontact.formulations.local_solver.factorisations import orthogonal
+from bemcontact.formulations.local_solver.reduced_hessian import ReducedHessian
+from bemcontact.formulations.local_solver.statement import Statement
+from bemcontact.formulations.local_solver.working_set import TEMPORARY, WorkingSet
+
+
+def statement(seed, n=12, m=10, *, definite):
+    """Random data with unit bounds; rows of length one."""
+    rng = np.random.default_rng(seed)
+    B, A = rng.standard_normal((n, n)), rng.standard_normal((m, n))
+    A = A / np.linalg.norm(A, axis=1)[:, None]
+    H = B @ B.T + np.eye(n) if definite else B + B.T
+    return Statement(H=H, c=rng.standard_normal(n), A=A, lower=-np.ones(n + m), upper=np.ones(n + m))
+
+
+def start(data, sides):
+    """The two parts as phase two makes them."""
+    working = WorkingSet(data, np.array(sides, dtype=np.int8))
+    hessian = ReducedHessian(data, working.null_space)
+    for direction in hessian.left_over.T:
+        working.fix(direction, TEMPORARY)
+    return working, hessian
+
+
+def assert_defined(data, working, hessian):
+    """W N = I with N the shortest; W Z = 0, ZᵀHZ = I; the pending direction conjugate, of no positive curvature."""
+    n, scale = data.c.size, np.abs(data.H).max()
+    N, W, Z, free = working.N, working.W, hessian.Z, working.free
+    assert_allclose(W @ N, np.eye(working.size), atol=1e-9)
+    assert_allclose(N[free], np.linalg.pinv(W[:, free]), atol=1e-8 * max(1.0, np.abs(N).max(initial=0.0)))
+    assert not N[~free].any()
+    assert not Z[~free].any()
+    real = working.ids[working.ids >= 0]
+    assert_allclose(W[working.ids >= 0], data.A[real - n])
+    assert working.number == working.size + np.count_nonzero(~free)
+    assert_allclose(W @ Z, 0.0, atol=1e-10 * max(1.0, np.abs(Z).max(initial=0.0)))
+    assert_allclose(Z.T @ data.H @ Z, np.eye(hessian.size), atol=1e-9)
+    directions = hessian.size + (hessian.pending is not None)
+    assert directions + working.number == n
+    if hessian.pending is not None:
+        d = hessian.pending
+        assert_allclose(np.linalg.norm(d), 1.0)
+        assert_allclose(W @ d, 0.0, atol=1e-10)
+        assert_allclose(Z.T @ data.H @ d, 0.0, atol=1e-9 * scale)
+        assert d @ data.H @ d <= 1e-12 * scale
+
+
+def change_at_random(data, working, hessian, rng):
+    """Drop or add one constraint, by the rules of the method: an addition if a direction is pending."""
+    idle, n = np.flatnonzero(working.idle), data.c.size
+    slopes = np.concatenate([np.eye(n), data.A])[idle]
+    if hessian.pending is not None:
+        hit = int(idle[np.argmax(np.abs(slopes @ hessian.pending))])
+    elif working.number and (rng.random() < 0.5 or hessian.size < 2):
+        places = np.concatenate([np.flatnonzero(~working.free), n + np.arange(working.size)])
+        hessian.enter(working.drop(int(rng.choice(places)))[1])
+        return
+    else:
+        size = np.linalg.norm(slopes @ hessian.Z, axis=1)
+        hit = int(rng.choice(idle[size > 0.2 * size.max()]))
+    hessian.leave(working.add(hit, int(rng.choice([-1, 1]))))
+    if hit < n:
+        hessian.clear(hit)
+
+
+@pytest.mark.parametrize("definite", [True, False])
+@pytest.mark.parametrize("seed", range(5))
+def test_two_hundred_updates_keep_what_defines_the_factors(seed, definite):
+    data = statement(seed, definite=definite)
+    rng = np.random.default_rng(seed)
+    sides = np.zeros(22)
+    sides[[0, 3, 5, 13, 15]] = -1
+    working, hessian = start(data, sides)
+    assert_defined(data, working, hessian)
+    for _ in range(200):
+        change_at_random(data, working, hessian, rng)
+        assert_defined(data, working, hessian)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_multipliers_are_those_of_least_squares(seed):
+    """λ minimises |g - Wᵀλ| over the free variables; the fixed ones take what is left."""
+    data = statement(seed, definite=True)
+    sides = np.zeros(22)
+    sides[[1, 4, 13, 15, 20]] = [-1, 1, 1, -1, 2]
+    working, _ = start(data, sides)
+    g = np.random.default_rng(seed).standard_normal(12)
+    found = working.multipliers(g)
+    expected = np.linalg.lstsq(working.W[:, working.free].T, g[working.free], rcond=None)[0]
+    assert_allclose(found[12:], expected, atol=1e-12)
+    assert_allclose(found[:12], g - working.W.T @ expected, atol=1e-12)
+    assert_allclose(working.signs[[1, 4]], [-1.0, 1.0])
+    assert sorted(working.signs[12:]) == [-1.0, 0.0, 1.0]
+
+
+def test_worn_factors_are_noticed_and_answers_stay_right_until_they_are_renewed():
+    """An error of 1e-6 put into N is mended in each answer to its square, and seen."""
+    data = statement(0, definite=True)
+    sides = np.zeros(22)
+    sides[[12, 14, 17]] = -1
+    working, _ = start(data, sides)
+    g = np.random.default_rng(1).standard_normal(12)
+    right = working.multipliers(g)
+    assert not working.worn
+    working.N[:] *= 1.0 + 1e-6
+    assert_allclose(working.multipliers(g), right, atol=1e-10)
+    assert working.worn
+    _, direction = working.drop(12)
+    assert_allclose(working.W @ direction, 0.0, atol=1e-10)
+
+
+def test_dependent_rows_stay_out_of_the_working_set():
+    """Two variables fixed and a row in their span; then two rows of which one is twice the other."""
+    fixed = Statement(
+        H=np.eye(3),
+        c=np.zeros(3),
+        A=np.array([[0.6, 0.8, 0.0]]),
+        lower=np.zeros(4),
+        upper=np.array([1.0, 1.0, 1.0, 0.0]),
+    )
+    working = WorkingSet(fixed, np.array([-1, -1, 0, 2], dtype=np.int8))
+    assert working.size == 0
+    assert working.sides.tolist() == [-1, -1, 0, 0]
+    assert working.idle.tolist() == [False, False, True, True]
+    twice = Statement(
+        H=np.eye(2), c=np.zeros(2), A=np.array([[1.0, 0.0], [2.0, 0.0]]), lower=np.zeros(4), upper=np.ones(4)
+    )
+    assert WorkingSet(twice, np.array([0, 0, -1, -1], dtype=np.int8)).size == 1
+
+
+def test_a_start_in_a_saddle_fixes_the_nonpositive_directions():
+    """diag(1, -1, 0) without constraints: one positive direction is free, two are fixed for a while."""
+    data = Statement(
+        H=np.diag([1.0, -1.0, 0.0]), c=np.zeros(3), A=np.zeros((0, 3)), lower=np.zeros(3), upper=np.ones(3)
+    )
+    working, hessian = start(data, np.zeros(3))
+    assert hessian.size == 1
+    assert working.ids.tolist() == [TEMPORARY, TEMPORARY]
+    assert working.temporary == 2
+
+
+def test_the_newton_step_ends_where_the_gradient_on_the_working_set_vanishes():
+    data = statement(3, definite=True)
+    sides = np.zeros(22)
+    sides[[2, 13, 18]] = -1
+    working, hessian = start(data, sides)
+    x = working.onto(np.zeros(12))
+    x = x + hessian.newton(data.H @ x + data.c)
+    assert_allclose(working.multipliers(data.H @ x + data.c)[:12][working.free], 0.0, atol=1e-12)
+    assert_allclose(x[2], -1.0)
+    assert_allclose(data.A[[1, 6]] @ x, -1.0, atol=1e-12)
+
+
+def test_the_pivoted_factorisation_gives_both_spaces():
+    """Rank 2 of three rows: bases orthonormal, the range orthogonal to the null space, the rows rebuilt."""
+    rows = np.array([[1.0, 2.0, 0.0, 1.0], [0.0, 1.0, 1.0, 0.0], [1.0, 3.0, 1.0, 1.0]])
+    Y, Z, T, kept = orthogonal(rows, 1e-9)
+    assert (Y.shape, Z.shape, kept.size) == ((4, 2), (4, 2), 2)
+    Q = np.hstack([Y, Z])
+    assert_allclose(Q.T @ Q, np.eye(4), atol=1e-15)
+    assert_allclose(Y @ T, rows[kept].T, atol=1e-15)
+    assert_allclose(rows @ Z, 0.0, atol=1e-15)
