@@ -16,6 +16,9 @@ from bemcontact.formulations.local_solver.factorisations import is_definite, ort
 from bemcontact.formulations.local_solver.statement import Array
 from bemcontact.formulations.local_solver.working_set import DEPENDENT
 
+ZERO = 1e-11
+"""A curvature below this counts as none, in units in which the rows of |H| have size one."""
+SWEEPS = 4
 PROBES = 8
 DESCENTS = 30
 
@@ -61,20 +64,36 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     First by a Cholesky factorisation on the null space of E, then by descent from the negative eigenvectors projected
     onto the cone, then by all faces: a lowest direction of the cone lies inside one face and is an eigenvector there.
     """
-    N = null_space(cone.equal, cone.free.size)
-    reduced = N.T @ H[np.ix_(cone.free, cone.free)] @ N
-    zero = 1e-9 * float(np.abs(H).max(initial=0.0))
-    if _positive_semidefinite(reduced, zero):
+    units = _units(np.abs(H[np.ix_(cone.free, cone.free)]))
+    equal, weak = _normalised(cone.equal * units), _normalised(cone.weak * units)
+    N = null_space(equal, cone.free.size)
+    reduced = N.T @ (units[:, None] * H[np.ix_(cone.free, cone.free)] * units) @ N
+    if _positive_semidefinite(reduced):
         return Curvature(copositive=True)
-    weak = cone.weak @ N
-    copositive, found = False, _probe(reduced, weak, zero)
+    weak = weak @ N
+    copositive, found = False, _probe(reduced, weak)
     if found is None:
-        copositive, found = _search_faces(reduced, weak, zero, faces)
+        copositive, found = _search_faces(reduced, weak, faces)
     if found is None:
         return Curvature(copositive=copositive)
     direction = np.zeros(H.shape[0])
-    direction[cone.free] = N @ found
-    return Curvature(copositive=False, direction=direction)
+    direction[cone.free] = units * (N @ found)
+    return Curvature(copositive=False, direction=direction / np.linalg.norm(direction))
+
+
+def _units(size: Array) -> Array:
+    """Units of the variables in which the rows of |H| have size one, so that small curvatures count as large ones."""
+    units = np.ones(size.shape[0])
+    for _ in range(SWEEPS):
+        rows = ((units[:, None] * size) * units).max(axis=1, initial=0.0)
+        units = units / np.sqrt(np.where(rows > 0.0, rows, 1.0))
+    return units
+
+
+def _normalised(rows: Array) -> Array:
+    """Rows of length one."""
+    length = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    return rows / np.where(length > 0.0, length, 1.0)[:, None]
 
 
 def null_space(rows: Array, n: int) -> Array:
@@ -84,9 +103,9 @@ def null_space(rows: Array, n: int) -> Array:
     return orthogonal(rows, DEPENDENT)[1]
 
 
-def _positive_semidefinite(matrix: Array, zero: float) -> bool:
-    """Whether no eigenvalue is below -zero, by Cholesky of the shifted matrix."""
-    return is_definite(matrix + zero * np.eye(matrix.shape[0])) or float(np.linalg.eigvalsh(matrix)[0]) >= -zero
+def _positive_semidefinite(matrix: Array) -> bool:
+    """Whether no eigenvalue is below -ZERO, by Cholesky of the shifted matrix."""
+    return is_definite(matrix + ZERO * np.eye(matrix.shape[0])) or float(np.linalg.eigvalsh(matrix)[0]) >= -ZERO
 
 
 def _projected(weak: Array, d: Array) -> Array:
@@ -100,11 +119,11 @@ def _projected(weak: Array, d: Array) -> Array:
     return d + weak.T @ y
 
 
-def _probe(reduced: Array, weak: Array, zero: float) -> Array | None:
+def _probe(reduced: Array, weak: Array) -> Array | None:
     """Projected descent from a few negative eigenvectors and their mixtures."""
     eigenvalues, vectors = np.linalg.eigh(reduced)
     size = float(np.abs(eigenvalues).max())
-    negative = vectors[:, eigenvalues < -zero]
+    negative = vectors[:, eigenvalues < -ZERO]
     shown = negative[:, :PROBES]
     mixed = negative @ np.random.default_rng(0).standard_normal((negative.shape[1], PROBES))
     for start in np.hstack([shown, -shown, mixed]).T:
@@ -115,18 +134,18 @@ def _probe(reduced: Array, weak: Array, zero: float) -> Array | None:
             if length < 1e-9:
                 break
             d = d / length
-            if _falls(reduced, weak, d, zero):
+            if _falls(reduced, weak, d):
                 return d
             d = d - reduced @ d / size
     return None
 
 
-def _falls(reduced: Array, weak: Array, d: Array, zero: float) -> bool:
+def _falls(reduced: Array, weak: Array, d: Array) -> bool:
     """Whether the unit direction is in the cone and has negative curvature."""
-    return float(d @ reduced @ d) < -zero and bool(np.all(weak @ d >= -1e-11))
+    return float(d @ reduced @ d) < -ZERO and bool(np.all(weak @ d >= -1e-11))
 
 
-def _search_faces(reduced: Array, weak: Array, zero: float, faces: int) -> tuple[bool | None, Array | None]:
+def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None, Array | None]:
     """All faces on whose span the form is not positive semidefinite, until one holds a falling direction."""
     stack: list[tuple[int, ...]] = [()]
     seen = 0
@@ -139,10 +158,10 @@ def _search_faces(reduced: Array, weak: Array, zero: float, faces: int) -> tuple
         if basis.shape[1] == 0:
             continue
         eigenvalues, vectors = np.linalg.eigh(basis.T @ reduced @ basis)
-        for column in np.flatnonzero(eigenvalues < -zero):
+        for column in np.flatnonzero(eigenvalues < -ZERO):
             for d in (basis @ vectors[:, column], -(basis @ vectors[:, column])):
-                if _falls(reduced, weak, d, zero):
+                if _falls(reduced, weak, d):
                     return False, d
-        if eigenvalues[0] < -zero:
+        if eigenvalues[0] < -ZERO:
             stack += [(*face, i) for i in range(face[-1] + 1 if face else 0, weak.shape[0])]
     return True, None

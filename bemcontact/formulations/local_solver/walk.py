@@ -111,16 +111,13 @@ def _second_order(
     progress: Progress, descent: Descent, conditions: FirstOrder, multipliers: Array
 ) -> Finding | Restart:
     """A minimiser if H is copositive on the critical cone; else leave along the direction that shows it is not."""
+    if _strict(descent, conditions):
+        return _minimiser(descent, conditions, multipliers, QPStatus.LOCAL_MINIMISER)
     cone = conditions.cone(progress.statement)
     curvature = examine(progress.statement.H, cone, faces=progress.options.search)
     if curvature.direction is None:
-        return Finding(
-            status=QPStatus.LOCAL_MINIMISER if curvature.copositive else QPStatus.UNDECIDED,
-            sides=descent.working.sides,
-            multipliers=multipliers,
-            reduced_end=reduced_inertia(descent),
-            weak=np.flatnonzero(conditions.weak),
-        )
+        status = QPStatus.LOCAL_MINIMISER if curvature.copositive else QPStatus.UNDECIDED
+        return _minimiser(descent, conditions, multipliers, status)
     direction = curvature.direction
     along = progress.statement.values(direction)
     block = nearest(progress, along, 1.0, ~conditions.strong)
@@ -140,6 +137,32 @@ def _second_order(
         nonpositive=1,
     )
     return Restart(sides=progress.statement.sides_reached(progress.values, progress.slack), failed=block.step <= 0.0)
+
+
+def _strict(descent: Descent, conditions: FirstOrder) -> bool:
+    """Whether all that is held has a multiplier, nothing else is active, and H is definite on what is left free.
+
+    Recomputed: with W N = I and W Z = 0 the columns of Z span the null space, and Zᵀ H Z = I.
+    """
+    working, hessian = descent.working, descent.hessian
+    if working.temporary or conditions.weak.any() or (working.idle == conditions.strong).any():
+        return False
+    Z, n = hessian.Z, working.free.size
+    inverse = np.abs(working.W @ working.N - np.eye(working.size)).max(initial=0.0) < 1e-6
+    null = np.abs(working.W @ Z).max(initial=0.0) <= 1e-9 * np.abs(Z).max(initial=0.0)
+    definite = np.abs(Z.T @ (descent.progress.statement.H @ Z) - np.eye(hessian.size)).max(initial=0.0) < 1e-3
+    return bool(inverse and null and definite) and hessian.size + working.number == n
+
+
+def _minimiser(descent: Descent, conditions: FirstOrder, multipliers: Array, status: QPStatus) -> Finding:
+    """What can be said at a first-order point."""
+    return Finding(
+        status=status,
+        sides=descent.working.sides,
+        multipliers=multipliers,
+        reduced_end=reduced_inertia(descent),
+        weak=np.flatnonzero(conditions.weak),
+    )
 
 
 def _finding(
