@@ -1,12 +1,10 @@
-from bemcontact.analysis import Result as Result
 from bemcontact.analysis import condense as condense
 from bemcontact.analysis import random_starts as random_starts
 from bemcontact.analysis import solve as solve
+from bemcontact.choices import Equilibrium as Equilibrium
+from bemcontact.choices import Rows as Rows
+from bemcontact.choices import Weights as Weights
 from bemcontact.contact import CondensedContact as CondensedContact
-from bemcontact.contact import ContactSolution as ContactSolution
-from bemcontact.contact import LocalSearch as LocalSearch
-from bemcontact.contact import Status as Status
-from bemcontact.contact import Weights as Weights
 from bemcontact.errors import BemContactError as BemContactError
 from bemcontact.errors import NotConvexError as NotConvexError
 from bemcontact.errors import ProblemError as ProblemError
@@ -14,8 +12,6 @@ from bemcontact.errors import SingularSystemError as SingularSystemError
 from bemcontact.errors import SolverError as SolverError
 from bemcontact.errors import SpecError as SpecError
 from bemcontact.formulations.complementarity import solve_lcp as solve_lcp
-from bemcontact.formulations.formulation import Equilibrium as Equilibrium
-from bemcontact.formulations.formulation import Rows as Rows
 from bemcontact.formulations.formulation import Start as Start
 from bemcontact.formulations.local_solver import QPOptions as QPOptions
 from bemcontact.formulations.local_solver import QPResult as QPResult
@@ -23,6 +19,10 @@ from bemcontact.formulations.local_solver import QPStatus as QPStatus
 from bemcontact.formulations.local_solver import minimize_qp as minimize_qp
 from bemcontact.formulations.starts import RandomStarts as RandomStarts
 from bemcontact.problem.problem import Problem as Problem
+from bemcontact.result import Result as Result
+from bemcontact.solution import ContactSolution as ContactSolution
+from bemcontact.solution import LocalSearch as LocalSearch
+from bemcontact.solution import Status as Status
 from bemcontact.spec import load as load
 from bemcontact.spec import loads as loads
 from bemcontact.spec import schema as schema

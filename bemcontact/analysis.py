@@ -1,162 +1,28 @@
-"""From a problem to a judged result: condense, solve, assess, recover. The only file that sees both halves."""
+"""From a problem to a judged result: condense, solve, assess, recover. The only file that sets both halves to work."""
 
-import json
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, TypeVar
+from typing import TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
-import bemcontact
 from bemcontact import remarks
-from bemcontact.assessment.certificate import Certificate, certify
-from bemcontact.assessment.footprint import Footprint, footprint
-from bemcontact.assessment.residual import Residuals, residuals
+from bemcontact.assessment.certificate import certify
+from bemcontact.assessment.footprint import footprint
+from bemcontact.assessment.residual import residuals
 from bemcontact.bem.condense import body_of
 from bemcontact.bem.condense import condense as condense_body
-from bemcontact.bem.recovery import BoundaryState, boundary_state
-from bemcontact.contact import CondensedContact, ContactSolution, Weights
+from bemcontact.bem.recovery import boundary_state
+from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, Weights
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
-from bemcontact.formulations import FORMULATIONS, OPTIONS, Equilibrium, FormulationOptions, Rows, Start
+from bemcontact.formulations import FORMULATIONS, OPTIONS, FormulationOptions, Start
 from bemcontact.formulations.starts import RandomStarts, StartChoice, search_from
 from bemcontact.problem.problem import Problem
+from bemcontact.result import Result
 
 Name = TypeVar("Name", bound=Enum)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Result:
-    """A contact solution, judged.
-
-    Parameters
-    ----------
-    problem : what was asked, or None if a condensed problem was
-    contact : the condensed problem
-    solution : what the formulation found
-    weights : of the objective
-    objective : pᵀJδ with these weights, recomputed [p L²]
-    residuals, certificate : the judgement, recomputed from the condensed problem
-    footprint : contact intervals, peak, resultant
-    boundary : displacement and traction on the whole boundary, or None if no boundary stands behind `contact`
-    degrees_of_freedom : two for each node of the mesh, or None likewise
-    notes : what a person should know: of the condensation, of the solver, of the mesh
-    seconds : spent on each stage
-    starts : where the searches from random starts ended, if several were asked for
-    """
-
-    problem: Problem | None
-    contact: CondensedContact
-    solution: ContactSolution
-    weights: Weights
-    objective: float
-    residuals: Residuals
-    certificate: Certificate
-    footprint: Footprint
-    boundary: BoundaryState | None
-    degrees_of_freedom: int | None
-    notes: tuple[str, ...]
-    seconds: dict[str, float]
-    starts: RandomStarts | None = None
-
-    def __repr__(self) -> str:
-        """One line: name, formulation, verdict, peak."""
-        peak = "no contact" if self.footprint.peak is None else f"peak pressure {self.footprint.peak.pressure:.6g}"
-        verdict = "certified" if self.certified else self.certificate.kind.value
-        return f"<Result of {self.contact.name!r} by {self.solution.formulation}: {verdict}, {peak}>"
-
-    @property
-    def certified(self) -> bool:
-        """Whether this is proved to be the solution, and the only one."""
-        return self.certificate.certified
-
-    @property
-    def touching(self) -> NDArray[np.bool_]:
-        """Which contact points (n,) are in contact, by `CondensedContact.touching`."""
-        return self.contact.touching(self.solution.pressure, self.solution.displacement)
-
-    @property
-    def equilibrium_slack(self) -> float | None:
-        """How far the discrete equations are from equilibrium, relative to the loads; None without a boundary."""
-        return None if self.boundary is None else self.boundary.equilibrium_slack
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give all of it as numbers, lists and texts, ready for JSON."""
-        contact, solution, judged = self.contact, self.solution, self.residuals
-        return {
-            "name": contact.name,
-            "version": bemcontact.__version__,
-            "formulation": solution.formulation,
-            "solver": solution.solver,
-            "status": solution.status.name.lower(),
-            "certified": self.certified,
-            "units": dict(contact.units),
-            "dof": self.degrees_of_freedom,
-            "contact_nodes": contact.size,
-            "free_rigid_motions": contact.free_motions,
-            "motion_names": list(contact.motion_names),
-            "motion_load": contact.motion_load.tolist(),
-            "rigid_amplitudes": solution.rigid_amplitudes.tolist(),
-            "notes": list(self.notes),
-            "nodes": contact.points.tolist(),
-            "normals": contact.normals.tolist(),
-            "zone": [contact.zone_names[i] for i in contact.zone],
-            "weights": self.weights.value,
-            "tributary_lengths": contact.weights.tolist(),
-            "initial_gap": contact.initial_gap.tolist(),
-            "pressure": solution.pressure.tolist(),
-            "gap": (contact.initial_gap + solution.displacement).tolist(),
-            "normal_displacement": solution.displacement.tolist(),
-            "resultant": list(self.footprint.resultant.force),
-            "resultant_moment": self.footprint.resultant.moment,
-            "intervals": [
-                {"zone": interval.zone, "start": list(interval.start), "end": list(interval.end)}
-                for interval in self.footprint.intervals
-            ],
-            "peak": None
-            if self.footprint.peak is None
-            else {"pressure": self.footprint.peak.pressure, "at": list(self.footprint.peak.at)},
-            "objective": self.objective,
-            "iterations": solution.iterations,
-            "polished": solution.polished,
-            "search": None if solution.search is None else asdict(solution.search),
-            "starts": None if self.starts is None else self.starts.to_dict(),
-            "scales": contact.scales._asdict(),
-            "residuals": {
-                "penetration": judged.penetration,
-                "tension": judged.tension,
-                "complementarity": judged.complementarity,
-                "equilibrium": judged.equilibrium,
-                "stiffness_rows": judged.stiffness_rows,
-                "balance": judged.balance,
-                "force_balance": judged.force_balance,
-                "work": judged.work,
-                "equilibrium_slack": self.equilibrium_slack,
-            },
-            "certificate": {
-                "kind": self.certificate.kind.value,
-                "smallest_eigenvalue": self.certificate.smallest_eigenvalue,
-                "error_bound": self.certificate.error_bound,
-                "words": self.certificate.words,
-            },
-            "convexity": solution.smallest_eigenvalue,
-            "boundary": None
-            if self.boundary is None
-            else {
-                "points": self.boundary.points.tolist(),
-                "displacement": self.boundary.displacement.tolist(),
-                "traction": self.boundary.traction.tolist(),
-                "edge": [self.boundary.edge_names[i] for i in self.boundary.edge],
-            },
-            "seconds": self.seconds,
-        }
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Write `to_dict` as JSON; every number in it is finite."""
-        return json.dumps(self.to_dict(), indent=indent, allow_nan=False, ensure_ascii=False)
 
 
 @dataclass
@@ -207,13 +73,13 @@ def _check_kind(problem: object, *kinds: type) -> None:
 
 def solve(
     problem: Problem | CondensedContact,
-    formulation: str = "qp3",
+    formulation: str = FormulationName.QP3,
     weights: Weights | str = Weights.TRIBUTARY,
     *,
     penalty: float = 1.0,
     rows: Rows | str = Rows.STIFFNESS,
     equilibrium: Equilibrium | str = Equilibrium.CONSTRAINT,
-    start: Start | str = "null",
+    start: Start | str = StartName.NULL,
     seed: int | None = None,
     starts: int | None = None,
 ) -> Result:
@@ -292,7 +158,7 @@ def solve(
 
 def random_starts(
     problem: Problem | CondensedContact,
-    formulation: str = "qp1",
+    formulation: str = FormulationName.QP1,
     weights: Weights | str = Weights.TRIBUTARY,
     *,
     count: int = 100,
@@ -321,7 +187,9 @@ def random_starts(
     """
     _check_kind(problem)
     options = _options(formulation, weights, penalty, rows, equilibrium)
-    StartChoice(start="random", seed=seed, count=count).ensure_used(formulation, "start" in OPTIONS[formulation])
+    StartChoice(start=StartName.RANDOM, seed=seed, count=count).ensure_used(
+        formulation, "start" in OPTIONS[formulation]
+    )
     contact = problem if isinstance(problem, CondensedContact) else condense(problem)
     return search_from(contact, FORMULATIONS[formulation], options, count, seed)
 

@@ -19,8 +19,9 @@ from rich.console import Console, RenderableType
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
+from bemcontact import output
+from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, Weights
 from bemcontact.errors import BemContactError, NotConvexError, ProblemError, SpecError
-from bemcontact.option_names import EquilibriumOption, Formulation, RowsOption, StartOption, WeightsOption
 
 UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 STANDARD_OUTPUT = Path("-")
@@ -121,18 +122,20 @@ def check(
 @app.command()
 def solve(
     spec: SpecArgument,
-    formulation: Annotated[Formulation, typer.Option(help="Statement of the contact problem.")] = Formulation.QP3,
+    formulation: Annotated[
+        FormulationName, typer.Option(help="Statement of the contact problem.")
+    ] = FormulationName.QP3,
     weights: Annotated[
-        WeightsOption, typer.Option(help="Weights of the objective; complementarity has none.")
-    ] = WeightsOption.TRIBUTARY,
+        Weights, typer.Option(help="Weights of the objective; complementarity has none.")
+    ] = Weights.TRIBUTARY,
     penalty: Annotated[float, typer.Option(metavar="μ", help="qp2: less weighs the equations more.")] = 1.0,
     rows: Annotated[
-        RowsOption, typer.Option(help="qp1, qp2: equations in terms of pressure or of displacement.")
-    ] = RowsOption.STIFFNESS,
+        Rows, typer.Option(help="qp1, qp2: equations in terms of pressure or of displacement.")
+    ] = Rows.STIFFNESS,
     equilibrium: Annotated[
-        EquilibriumOption, typer.Option(help="qp2, free bodies: exact, or penalised as in the paper.")
-    ] = EquilibriumOption.CONSTRAINT,
-    start: Annotated[StartOption, typer.Option(help="qp1, qp2: where the local solver starts.")] = StartOption.NULL,
+        Equilibrium, typer.Option(help="qp2, free bodies: exact, or penalised as in the paper.")
+    ] = Equilibrium.CONSTRAINT,
+    start: Annotated[StartName, typer.Option(help="qp1, qp2: where the local solver starts.")] = StartName.NULL,
     seed: Annotated[int | None, typer.Option(min=0, metavar="S", help="Of random starts, else 0.")] = None,
     starts: Annotated[int | None, typer.Option(min=1, metavar="N", help="Random starts: best of all ends.")] = None,
     refine: RefineOption = 1,
@@ -167,17 +170,17 @@ def solve(
         _claim(spec, {"--figure": figure, "--json": json_claim, "--vtk": vtk_file})
         from bemcontact import analysis
         from bemcontact import spec as spec_file
-        from bemcontact.report import output, text
+        from bemcontact.report import text
 
         problem = spec_file.load(spec, overrides or ()).refined(refine)
         result = analysis.solve(
             problem,
-            formulation=formulation.value,
-            weights=weights.value,
+            formulation=formulation,
+            weights=weights,
             penalty=penalty,
-            rows=rows.value,
-            equilibrium=equilibrium.value,
-            start=start.value,
+            rows=rows,
+            equilibrium=equilibrium,
+            start=start,
             seed=seed,
             starts=starts,
         )
@@ -221,11 +224,10 @@ def condense(
         _claim(spec, {"--out": out})
         from bemcontact import analysis
         from bemcontact import spec as spec_file
-        from bemcontact.report import output, text
+        from bemcontact.report import text
 
         condensed = analysis.condense(spec_file.load(spec, overrides or ()).refined(refine))
-        with output.whole_file(out) as temporary:
-            condensed.save(temporary)
+        condensed.save(out)
     with _told(spec):
         _show(text.condensed_summary(condensed, out))
 
@@ -245,8 +247,6 @@ def schema() -> None:
 
 def _claim(spec: Path, outputs: Mapping[str, Path | None]) -> None:
     """Refuse files (by option) that cannot be written, or that would overwrite another, before any work is done."""
-    from bemcontact.report import output
-
     claimed = {spec.resolve(): "the spec itself"}
     for option, path in outputs.items():
         if path is None:

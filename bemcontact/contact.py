@@ -1,14 +1,12 @@
-"""The waist of the package: a condensed contact problem, and a solution of one.
+"""The waist of the package: a condensed contact problem.
 
-The boundary-element core makes a `CondensedContact`; the formulations turn it into a `ContactSolution`; neither side
-knows the other. Lengths and stresses are in the user's units throughout.
+The boundary-element core makes a `CondensedContact`; the formulations turn it into a solution; neither side knows the
+other. Lengths and stresses are in the user's units throughout.
 """
 
 import os
-import uuid
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from enum import Enum
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -18,6 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linprog
 
+from bemcontact import output
+from bemcontact.choices import Weights
 from bemcontact.errors import ProblemError
 
 Array = NDArray[np.float64]
@@ -27,29 +27,6 @@ FILE_FORMAT = "bemcontact.condensed.1"
 
 INTERFERENCE = 1e-6
 """Part of the widest gap that counts as interference; a linear program knows no less."""
-
-
-class Weights(Enum):
-    """How the objective integrates p δ over the contact zone: the J of [SS92] (24)-(26)."""
-
-    TRIBUTARY = "tributary"
-    """Diagonal, the length that belongs to each point: Σ w p is the resultant. The default."""
-    CONSISTENT = "consistent"
-    """∫ h hᵀ ds, (24)-(25): has negative entries, so that objective = 0 certifies nothing."""
-    ELEMENT_LENGTH = "element_length"
-    """Diagonal, the element length once per node, (26) read word for word: makes QP3 indefinite on uniform meshes."""
-
-
-class Status(Enum):
-    """How a solver ended; each value is the sentence that tells what to do."""
-
-    SOLVED = "solved"
-    LOCAL_MINIMUM = "a local minimum whose objective is not zero: not the contact state; try another start or QP3"
-    ITERATION_LIMIT = "stopped at the iteration limit; raise the limit or start from another point"
-    INFEASIBLE = "no pressure satisfies the constraints; check that the load presses the body onto its support"
-    UNBOUNDED = "the objective has no lower bound; use the tributary weights"
-    NO_SOLUTION_FOUND = "no solution was found, and no proof that there is none; try another formulation or start"
-    NUMERICAL_FAILURE = "the solver broke down numerically; check the mesh for very short elements"
 
 
 class ContactScales(NamedTuple):
@@ -78,6 +55,15 @@ class Gauge(NamedTuple):
     free_displacement: Array
     shift_load: Array
     shift_pressure: Array
+
+
+def freeze_arrays(of: Any) -> None:
+    """Make the arrays of a frozen dataclass its own and read-only."""
+    for item in fields(of):
+        if isinstance(array := getattr(of, item.name), np.ndarray):
+            frozen = array.copy()
+            frozen.setflags(write=False)
+            object.__setattr__(of, item.name, frozen)
 
 
 def fix_gauge(
@@ -180,11 +166,7 @@ class CondensedContact:
                 raise ProblemError(f"{key} has entries that are not finite numbers")
         if not (self.weights > 0).all():
             raise ProblemError(f"weights must be positive; the smallest is {self.weights.min():.3g}")
-        for item in fields(self):
-            if isinstance(array := getattr(self, item.name), np.ndarray):
-                frozen = array.copy()
-                frozen.setflags(write=False)
-                object.__setattr__(self, item.name, frozen)
+        freeze_arrays(self)
 
     @classmethod
     def from_compliance(
@@ -310,19 +292,12 @@ class CondensedContact:
         """K u_n = B p + r, (12), with K = S, B = I, r = S Δ1 + V load; [S, V] the top of [[M, R], [ℓᵀ, 0]]⁻¹."""
         n, k = self.rigid_motions.shape
         U, T = self.scales
-        bordered = np.block([[self.compliance * (T / U), self.rigid_motions], [self._unit_rows.T, np.zeros((k, k))]])
+        row_scale = np.abs(self.equilibrium).max(axis=0, initial=0.0)
+        unit_rows = (self.equilibrium / row_scale).T
+        bordered = np.block([[self.compliance * (T / U), self.rigid_motions], [unit_rows, np.zeros((k, k))]])
         inverse = np.linalg.inv(bordered.T).T.astype(float)  # accurate as a left inverse, which is how K is used
-        S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / self._row_scale
+        S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / row_scale
         return StiffnessRows(S, np.eye(n), S @ self.free_displacement + V @ self.motion_load)
-
-    @cached_property
-    def _row_scale(self) -> Array:
-        """Largest entry of each equilibrium row."""
-        return np.abs(self.equilibrium).max(axis=0, initial=0.0)
-
-    @property
-    def _unit_rows(self) -> Array:
-        return self.equilibrium / self._row_scale
 
     def gap(self, pressure: Array, rigid_amplitudes: Array) -> Array:
         """δ = ε + Δ1 + M p + R a, (n,) [L], from p (n,) [p] and a (k,)."""
@@ -348,19 +323,13 @@ class CondensedContact:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write all of it as one ``.npz`` file, whole or not at all; `OSError` where that cannot be."""
-        path = Path(path)
         arrays: dict[str, Any] = {"format": np.array(FILE_FORMAT)}
         for item in fields(self):
             value = getattr(self, item.name)
             if value is not None:
                 arrays[item.name] = np.array(sorted(value.items())) if isinstance(value, Mapping) else np.array(value)
-        beside = path.with_name(f".{path.name}.{uuid.uuid4().hex}")
-        try:
-            with open(beside, "xb") as stream:
-                np.savez_compressed(stream, **arrays)
-            os.replace(beside, path)
-        finally:
-            beside.unlink(missing_ok=True)
+        with output.whole_file(Path(path)) as temporary, open(temporary, "xb") as stream:
+            np.savez_compressed(stream, **arrays)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
@@ -377,88 +346,3 @@ class CondensedContact:
         texts = {key: tuple(map(str, stored.pop(key))) for key in ("zone_names", "notes", "motion_names")}
         units = {str(key): str(label) for key, label in stored.pop("units").reshape(-1, 2)}
         return cls(name=str(stored.pop("name")), units=units, **texts, **stored)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Penalty:
-    """The μ of QP2, and up to which one QP2 is convex.
-
-    Parameters
-    ----------
-    value, raw : μ, free of units, and in the user's units, where (1/μ)|K u_n - B p - r|² is added to pᵀJδ
-    convexity_limit, convexity_limit_raw : the largest convex one, likewise: zero if QP2 is convex for none, None if for
-        all
-    """
-
-    value: float
-    raw: float
-    convexity_limit: float | None
-    convexity_limit_raw: float | None
-
-
-@dataclass(frozen=True, kw_only=True)
-class LocalSearch:
-    """How a local solver came to its end; inertias count positive, zero and negative eigenvalues.
-
-    Parameters
-    ----------
-    start : what it started from
-    phase_one_iterations, phase_two_iterations : to a feasible point, and from there down
-    working_set_changes : constraints that entered or left the working set
-    inertia : of the Hessian
-    reduced_inertia_start, reduced_inertia_end : of the Hessian on what the working set leaves free, in phase two
-    weakly_active : active constraints with a multiplier of about zero
-    objective : scaled, in the end; its best value is zero with weights that are not negative
-    penalty : of QP2, else None
-    """
-
-    start: str
-    phase_one_iterations: int
-    phase_two_iterations: int
-    working_set_changes: int
-    inertia: tuple[int, int, int]
-    reduced_inertia_start: tuple[int, int, int]
-    reduced_inertia_end: tuple[int, int, int]
-    weakly_active: int
-    objective: float
-    penalty: Penalty | None = None
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ContactSolution:
-    """What a formulation found; nothing in it is believed until `bemcontact.assessment` has recomputed it.
-
-    Parameters
-    ----------
-    formulation : name of the statement that was solved
-    solver : name of the program that solved it
-    status : how it ended
-    pressure : (n,) p [p]
-    displacement : (n,) u_n [L], the solver's own (it need not satisfy the equations)
-    rigid_amplitudes : (k,) a
-    iterations : of the solver, as it counts them
-    polished : whether the active-set step after the solver improved the result and was kept
-    smallest_eigenvalue : of the scaled Hessian on the equilibrium space, where the formulation looked at it
-    search : how a local solver came to its end, if one was used
-    notes : what a person should know
-    """
-
-    formulation: str
-    solver: str
-    status: Status
-    pressure: Array
-    displacement: Array
-    rigid_amplitudes: Array
-    iterations: int
-    polished: bool = False
-    smallest_eigenvalue: float | None = None
-    search: LocalSearch | None = None
-    notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make arrays read-only."""
-        for item in fields(self):
-            if isinstance(array := getattr(self, item.name), np.ndarray):
-                frozen = array.copy()
-                frozen.setflags(write=False)
-                object.__setattr__(self, item.name, frozen)

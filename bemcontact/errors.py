@@ -1,6 +1,6 @@
 """What can go wrong, as types: `BemContactError` and its leaves.
 
-Not converging is no error but a `bemcontact.contact.Status`; an error means that the question has no answer as asked.
+Not converging is no error but a `bemcontact.solution.Status`; an error means that the question has no answer as asked.
 """
 
 from collections.abc import Sequence

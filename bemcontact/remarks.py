@@ -30,8 +30,7 @@ def of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     """Say where contact reaches the end of a zone although the boundary goes on smoothly."""
     mesh, points = body.mesh, body.points
     in_zone = np.isin(np.arange(len(mesh.elements)), points.element)
-    turn = np.sum(mesh.normals[mesh.before, 2] * mesh.tangents[:, 0], axis=1) / mesh.jacobians[:, 0]
-    smooth_end = (in_zone != in_zone[mesh.before]) & (abs(turn) < SMOOTH)
+    smooth_end = (in_zone != in_zone[mesh.before]) & (abs(mesh.turns) < SMOOTH)
     for i in np.flatnonzero(touching):
         if points.node[i] < len(mesh.elements) and smooth_end[points.node[i]]:
             x, y = mesh.nodes[points.node[i]]

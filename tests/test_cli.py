@@ -13,11 +13,11 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import bemcontact
-from bemcontact import analysis, cli, option_names, spec
+from bemcontact import analysis, cli, spec
 from bemcontact.assessment.certificate import CertificateKind
-from bemcontact.contact import CondensedContact, Weights
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import NotConvexError, SingularSystemError
-from bemcontact.formulations import FORMULATIONS, Equilibrium, Rows
+from bemcontact.formulations import FORMULATIONS
 
 BLOCK = """\
 name: block on a table
@@ -95,13 +95,6 @@ def test_version_is_said():
     answer = run("--version")
     assert answer.exit_code == 0
     assert answer.stdout.startswith("bemcontact")
-
-
-def test_options_name_the_choices_of_the_library():
-    assert [*option_names.WeightsOption] == [weights.value for weights in Weights]
-    assert [*option_names.RowsOption] == [rows.value for rows in Rows]
-    assert [*option_names.EquilibriumOption] == [equilibrium.value for equilibrium in Equilibrium]
-    assert [*option_names.Formulation] == [*FORMULATIONS]
 
 
 def test_solve_says_it_in_a_short_table(block: Path):

@@ -25,7 +25,8 @@ from numpy.typing import NDArray
 from scipy.linalg import eigvalsh
 
 from bemcontact.assessment.residual import Residuals
-from bemcontact.contact import Array, CondensedContact, ContactSolution
+from bemcontact.contact import Array, CondensedContact
+from bemcontact.solution import ContactSolution
 
 TOLERANCE = 1e-10
 """Residuals allowed: a thousand times above the round-off of the gap, a thousand below what shows in a result."""

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.contact import Array, CondensedContact, ContactSolution
+from bemcontact.contact import Array, CondensedContact
+from bemcontact.solution import ContactSolution
 
 Point = tuple[float, float]
 OPEN_NODES = 3

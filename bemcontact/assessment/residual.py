@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bemcontact.contact import Array, CondensedContact, ContactSolution
+from bemcontact.contact import Array, CondensedContact
+from bemcontact.solution import ContactSolution
 
 
 @dataclass(frozen=True, kw_only=True)

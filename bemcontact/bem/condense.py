@@ -54,11 +54,15 @@ class Body:
     seen: RigidMotions
     unseen: RigidMotions
 
+    @cached_property
+    def forces(self) -> Array:
+        """What the prescribed tractions do at each (element, local node), (m, 3, 2) [p L]."""
+        return self.mesh.tributary[..., None] * self.values.traction
+
     def motion_load(self, motions: RigidMotions) -> Array:
         """Work (k,) of the applied loads in rigid motions [p L], with tributary weights as in all of equilibrium."""
-        forces = self.mesh.tributary[..., None] * self.values.traction
-        at = self.mesh.nodes[self.mesh.elements]
-        return motions.work(at, forces) + motions.work_of(self.particular.force, self.particular.moment)
+        work = motions.work(self.mesh.nodes[self.mesh.elements], self.forces)
+        return work + motions.work_of(self.particular.force, self.particular.moment)
 
     def true_motion_load(self, motions: RigidMotions) -> Array:
         """The same (k,) on the curves themselves, to round-off: whether loads balance is no matter of the mesh."""
@@ -73,8 +77,7 @@ class Body:
     @cached_property
     def load_magnitude(self) -> float:
         """Sum of the magnitudes of all loads [p L]."""
-        forces = self.mesh.tributary[..., None] * self.values.traction
-        return float(np.hypot(forces[..., 0], forces[..., 1]).sum() + self.particular.magnitude)
+        return float(np.hypot(self.forces[..., 0], self.forces[..., 1]).sum() + self.particular.magnitude)
 
     def normal_motion(self, motions: RigidMotions) -> Array:
         """R (n, k): rigid motions seen along the rigid normals at the contact points."""
@@ -108,7 +111,7 @@ def body_of(problem: Problem) -> Body:
     mesh = build(problem)
     values = boundary_values(problem, mesh)
     points = contact_points(problem, mesh, values)
-    motions = free_rigid_motions(mesh.nodes, values.displacement_given)
+    motions = free_rigid_motions(mesh, values.displacement_given)
     seen, unseen = _split_by_contact(points, motions)
     body = Body(
         problem=problem, mesh=mesh, values=values, points=points, motions=motions, seen=seen, unseen=unseen,

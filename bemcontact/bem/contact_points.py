@@ -75,8 +75,7 @@ class ContactPoints:
     def consistent(self) -> Array:
         """(n, n) [L]: Σ over elements of ∫ h hᵀ |dx/dξ| dξ, [SS92] (24)-(25)."""
         xi, weights = quadrature.gauss_legendre(ARC_ORDER)
-        N, dN = shape_functions.values(xi), shape_functions.derivatives(xi)
-        tangents = np.einsum("gk,mkx->mgx", dN, self.mesh.nodes[self.mesh.elements])
+        N, tangents = shape_functions.values(xi), self.mesh.tangents_at(xi)
         jacobian = np.hypot(tangents[..., 0], tangents[..., 1])
         local = np.einsum("gk,gl,mg,g->mkl", N, N, jacobian, weights)
         J = np.zeros((len(self), len(self)))
@@ -97,8 +96,7 @@ def _half_lengths(mesh: Mesh) -> Array:
     xi, weights = quadrature.gauss_legendre(ARC_ORDER)
     halves = []
     for shift in (-0.5, 0.5):
-        dN = shape_functions.derivatives(xi / 2 + shift)
-        tangents = np.einsum("gk,mkx->mgx", dN, mesh.nodes[mesh.elements])
+        tangents = mesh.tangents_at(xi / 2 + shift)
         halves.append(np.hypot(tangents[..., 0], tangents[..., 1]) @ weights / 2)
     return np.column_stack(halves)
 

@@ -4,8 +4,8 @@ Rows are computed in blocks of neighbouring points. What far elements do to a bl
 Gauss rule each, to a few of its points (`skeleton`); pairs near to each other get the rule, or the closed form, that
 the root of their own element map asks for.
 
-Lengths here are dimensionless, over L0 = 2 diameters of the body, which also keeps ln r away from the degenerate
-scale; stresses are over the shear modulus.
+Lengths here are dimensionless, over the `reference_length` L0 of the mesh, which also keeps ln r away from the
+degenerate scale; stresses are over the shear modulus.
 """
 
 import itertools
@@ -118,15 +118,10 @@ class Influence:
     known: Array | None = None
     by_numba: bool | None = None
 
-    @property
-    def length(self) -> float:
-        """L0 [L], by which lengths are divided."""
-        return 2 * self.mesh.size
-
     @cached_property
     def nodes(self) -> ComplexArray:
         """Nodes (N,) as x + iy, over L0."""
-        x = (self.mesh.nodes - self.mesh.center) / self.length
+        x = (self.mesh.nodes - self.mesh.center) / self.mesh.reference_length
         return x[:, 0] + 1j * x[:, 1]
 
     @cached_property

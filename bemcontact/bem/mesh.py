@@ -61,11 +61,15 @@ class Mesh:
         """Diameter of the bounding box [L]."""
         return float(np.hypot(*np.ptp(self.nodes, axis=0)))
 
+    @property
+    def reference_length(self) -> float:
+        """L0 = 2 diameters [L], over which the lengths in the integral equations are dimensionless."""
+        return 2 * self.size
+
     @cached_property
     def tangents(self) -> Array:
         """dx/dξ (m, 3, 2) [L] at each (element, local node)."""
-        derivatives = shape_functions.derivatives(shape_functions.NODES)
-        return np.einsum("lk,mkx->mlx", derivatives, self.nodes[self.elements])
+        return self.tangents_at(shape_functions.NODES)
 
     @cached_property
     def jacobians(self) -> Array:
@@ -78,10 +82,19 @@ class Mesh:
         rotated = np.stack([self.tangents[..., 1], -self.tangents[..., 0]], axis=-1)
         return rotated / self.jacobians[..., None]
 
+    @property
+    def turns(self) -> Array:
+        """Sine (m,) of the angle by which the boundary turns to the right where each element starts."""
+        return np.sum(self.normals[self.before, 2] * self.tangents[:, 0], axis=1) / self.jacobians[:, 0]
+
     @cached_property
     def tributary(self) -> Array:
         """Length (m, 3) [L] that belongs to each (element, local node): (1/3, 4/3, 1/3) |dx/dξ|."""
         return shape_functions.INTEGRALS * self.jacobians
+
+    def tangents_at(self, xi: Array) -> Array:
+        """dx/dξ (m, q, 2) [L] at the local coordinates ξ (q,) of each element."""
+        return np.einsum("gk,mkx->mgx", shape_functions.derivatives(xi), self.nodes[self.elements])
 
 
 def build(problem: Problem) -> Mesh:
@@ -119,9 +132,8 @@ def along_curve(edge: Edge) -> tuple[Array, Array, Array]:
     ends = edge.breakpoints(1)
     xi, weights = quadrature.gauss_legendre(CURVE_ORDER)
     fractions = ((ends[:-1, None] + ends[1:, None]) / 2 + np.diff(ends)[:, None] / 2 * xi).ravel()
-    directions = edge.directions(fractions)
     lengths = (np.diff(ends)[:, None] / 2 * weights).ravel() * edge.length
-    return edge.points(fractions), np.column_stack([directions[:, 1], -directions[:, 0]]), lengths
+    return edge.points(fractions), edge.normals(fractions), lengths
 
 
 def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[str]) -> Mesh:

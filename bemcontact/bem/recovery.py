@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.bem.condense import Condensation
+from bemcontact.bem.rigid_motions import all_rigid_motions
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -73,8 +74,7 @@ def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes
 def _force_balance(condensation: Condensation, traction: Array) -> float:
     """Resultant force and moment of everything that acts on the body, over the sum of the magnitudes."""
     body = condensation.body
-    mesh, motions = body.mesh, body.motions
-    every = type(motions)(coefficients=np.eye(3), center=motions.center, radius=motions.radius)
+    mesh, every = body.mesh, all_rigid_motions(body.mesh)
     forces = mesh.tributary[..., None] * traction
     volume = body.particular
     resultant = every.work(mesh.nodes[mesh.elements], forces) + every.work_of(volume.force, volume.moment)

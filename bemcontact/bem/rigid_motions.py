@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bemcontact.bem.mesh import Mesh
+
 Array = NDArray[np.float64]
 
 HELD = 1e-9
@@ -68,12 +70,17 @@ class RigidMotions:
         return f"rotation {sense} about ({x:.4g}, {y:.4g})"
 
 
-def free_rigid_motions(points: Array, prescribed: NDArray[np.bool_]) -> RigidMotions:
+def all_rigid_motions(mesh: Mesh) -> RigidMotions:
+    """Both translations, and the rotation about the middle of the body."""
+    return RigidMotions(coefficients=np.eye(3), center=mesh.center, radius=mesh.size / 2)
+
+
+def free_rigid_motions(mesh: Mesh, prescribed: NDArray[np.bool_]) -> RigidMotions:
     """Find the rigid motions that leave every prescribed displacement component at rest.
 
     Parameters
     ----------
-    points : (N, 2) nodes [L]
+    mesh : Mesh
     prescribed : (N, 2) whether the displacement of a node along an axis is prescribed
 
     Returns
@@ -81,13 +88,11 @@ def free_rigid_motions(points: Array, prescribed: NDArray[np.bool_]) -> RigidMot
     RigidMotions
         Translations first where there are any.
     """
-    center = (points.min(axis=0) + points.max(axis=0)) / 2
-    radius = float(np.hypot(*np.ptp(points, axis=0))) / 2
-    every = RigidMotions(coefficients=np.eye(3), center=center, radius=radius)
-    rows = every.displacement(points)[prescribed]
+    every = all_rigid_motions(mesh)
+    rows = every.displacement(mesh.nodes)[prescribed]
     _, values, vectors = np.linalg.svd(np.vstack([rows, np.zeros((3, 3))]))
     free = values <= HELD * max(1.0, values[0])
-    return RigidMotions(coefficients=_reduced(vectors[free]), center=center, radius=radius)
+    return RigidMotions(coefficients=_reduced(vectors[free]), center=every.center, radius=every.radius)
 
 
 def _reduced(basis: Array) -> Array:

@@ -73,9 +73,7 @@ def number_unknowns(mesh: Mesh, values: BoundaryValues) -> Unknowns:
 
 def _continues_straight(mesh: Mesh) -> NDArray[np.bool_]:
     """Whether each element (m,) goes on in the direction of the one before it, on the same edge."""
-    before = mesh.before
-    turn = np.sum(mesh.normals[before, 2] * mesh.tangents[:, 0], axis=1) / mesh.jacobians[:, 0]
-    return (mesh.edge == mesh.edge[before]) & (abs(turn) < STRAIGHT)
+    return (mesh.edge == mesh.edge[mesh.before]) & (abs(mesh.turns) < STRAIGHT)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -186,7 +184,7 @@ class System:
         """The integrals, with columns of G for unknown tractions and pressures and the sum for known ones."""
         needed: NDArray[np.bool_] = np.any(self.unknowns.traction >= 0, axis=(1, 2))
         needed[self.points.element] = True
-        jacobians = self.mesh.jacobians / (2 * self.mesh.size)
+        jacobians = self.mesh.jacobians / self.length
         return Influence(
             mesh=self.mesh,
             poisson_ratio=self.material.effective_poisson_ratio,
@@ -212,7 +210,7 @@ class System:
     @property
     def length(self) -> float:
         """L0 [L]."""
-        return self.influence.length
+        return self.mesh.reference_length
 
     @property
     def stress(self) -> float:

@@ -87,14 +87,20 @@ def true_resultant(problem: Problem) -> tuple[Array, float]:
         area += float(flux.sum()) / 2
         moments += flux @ points / 3
     force, moment = np.zeros(2), 0.0
-    if gravity := problem.loads.gravity:
-        b = gravity.density * np.array(gravity.acceleration)
-        force, moment = force + area * b, moment + float(moments[0] * b[1] - moments[1] * b[0])
-    if turning := problem.loads.centrifugal:
-        density, axis = turning.density * turning.angular_velocity**2, np.array(turning.center)
-        force = force + density * (moments - area * axis)
-        moment += density * float(axis[0] * moments[1] - axis[1] * moments[0])
+    for load in (problem.loads.gravity, problem.loads.centrifugal):
+        if load:
+            its_force, its_moment = _resultant(load, area, moments)
+            force, moment = force + its_force, moment + its_moment
     return force, moment
+
+
+def _resultant(load: Gravity | Centrifugal, area: float, moments: Array) -> tuple[Array, float]:
+    """Resultant (2,) and moment about the origin on a body of that area with the first moments ∫ x dA, ∫ y dA (2,)."""
+    if isinstance(load, Gravity):
+        b = load.density * np.array(load.acceleration)
+        return area * b, float(moments[0] * b[1] - moments[1] * b[0])
+    density, axis = load.density * load.angular_velocity**2, np.array(load.center)
+    return density * (moments - area * axis), float(density * (axis[0] * moments[1] - axis[1] * moments[0]))
 
 
 def _gravity(gravity: Gravity, material: Material, mesh: Mesh) -> ParticularSolution:
@@ -104,12 +110,13 @@ def _gravity(gravity: Gravity, material: Material, mesh: Mesh) -> ParticularSolu
     alpha = -(1 - 2 * nu) / (2 * material.shear_modulus * (3 - 4 * nu))
     x = mesh.nodes - mesh.center
     gradient = 2 * alpha * np.einsum("i,mkj->mkij", b, x[mesh.elements])
-    area, first_moment = _moments_of_area(mesh)
+    area, moments = _moments_of_area(mesh)
+    force, moment = _resultant(gravity, area, moments)
     return ParticularSolution(
         displacement=alpha * np.sum(x * x, axis=1)[:, None] * b,
         traction=_traction(gradient, material, mesh),
-        force=area * b,
-        moment=float(first_moment[0] * b[1] - first_moment[1] * b[0]),
+        force=force,
+        moment=moment,
         magnitude=area * float(np.hypot(*b)),
     )
 
@@ -124,12 +131,13 @@ def _centrifugal(centrifugal: Centrifugal, material: Material, mesh: Mesh) -> Pa
     r2 = np.sum(x * x, axis=1)
     at = x[mesh.elements]
     gradient = gamma * (r2[mesh.elements][..., None, None] * np.eye(2) + 2 * np.einsum("mki,mkj->mkij", at, at))
-    area, first_moment = _moments_of_area(mesh)
+    area, moments = _moments_of_area(mesh)
+    force, moment = _resultant(centrifugal, area, moments)
     return ParticularSolution(
         displacement=gamma * r2[:, None] * x,
         traction=_traction(gradient, material, mesh),
-        force=density * (first_moment - area * axis),
-        moment=float(density * (axis[0] * first_moment[1] - axis[1] * first_moment[0])),
+        force=force,
+        moment=moment,
         magnitude=density * area * float(np.sqrt(r2.max())),
     )
 
@@ -159,7 +167,7 @@ def _moments_of_area(mesh: Mesh) -> tuple[float, Array]:
     """Area [L²] and its first moments ∫ x dA, ∫ y dA (2,) [L³], by Green's theorem on the elements, exactly."""
     xi, weights = quadrature.gauss_legendre(EXACT_ORDER)
     points = np.einsum("gk,mkx->mgx", shape_functions.values(xi), mesh.nodes[mesh.elements] - mesh.center)
-    tangents = np.einsum("gk,mkx->mgx", shape_functions.derivatives(xi), mesh.nodes[mesh.elements])
+    tangents = mesh.tangents_at(xi)
     flux = points[..., 0] * tangents[..., 1] - points[..., 1] * tangents[..., 0]
     area = float(np.einsum("mg,g->", flux, weights)) / 2
     moments = np.einsum("mgx,mg,g->x", points, flux, weights) / 3

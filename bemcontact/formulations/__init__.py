@@ -2,22 +2,23 @@
 
 from collections.abc import Mapping
 
+from bemcontact.choices import FormulationName
 from bemcontact.formulations import complementarity, qp1, qp2, qp3
-from bemcontact.formulations.formulation import Equilibrium, Formulation, FormulationOptions, Rows, Start
+from bemcontact.formulations.formulation import Formulation, FormulationOptions, Start
 
 FORMULATIONS: Mapping[str, Formulation] = {
-    "qp1": qp1.solve,
-    "qp2": qp2.solve,
-    "qp3": qp3.solve,
-    "complementarity": complementarity.solve,
+    FormulationName.QP1: qp1.solve,
+    FormulationName.QP2: qp2.solve,
+    FormulationName.QP3: qp3.solve,
+    FormulationName.COMPLEMENTARITY: complementarity.solve,
 }
 
 OPTIONS: Mapping[str, tuple[str, ...]] = {
-    "qp1": qp1.OPTIONS,
-    "qp2": qp2.OPTIONS,
-    "qp3": qp3.OPTIONS,
-    "complementarity": (),
+    FormulationName.QP1: qp1.OPTIONS,
+    FormulationName.QP2: qp2.OPTIONS,
+    FormulationName.QP3: qp3.OPTIONS,
+    FormulationName.COMPLEMENTARITY: (),
 }
 """Those of `FormulationOptions` that have a meaning for a statement, beside those that concern all."""
 
-__all__ = ["FORMULATIONS", "OPTIONS", "Equilibrium", "Formulation", "FormulationOptions", "Rows", "Start"]
+__all__ = ["FORMULATIONS", "OPTIONS", "Formulation", "FormulationOptions", "Start"]

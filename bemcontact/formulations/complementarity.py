@@ -10,12 +10,14 @@ from numpy.typing import ArrayLike
 from scipy.linalg import qr
 from scipy.optimize import nnls
 
-from bemcontact.contact import Array, CondensedContact, ContactSolution, IntArray, Status
+from bemcontact.choices import FormulationName
+from bemcontact.contact import Array, CondensedContact, IntArray
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, BoolArray, first_active_set, primal_dual
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
+from bemcontact.solution import ContactSolution, Status
 
 ACCEPTED = 1e-11
 """Residual of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
@@ -102,7 +104,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         An option has no meaning here, such as weights.
     """
     options = options or FormulationOptions()
-    options.ensure_used("complementarity")
+    options.ensure_used(FormulationName.COMPLEMENTARITY)
     problem = scaled(condensed)
     if note := escape_note(condensed, problem):
         return _without_contact(condensed, note)
@@ -112,7 +114,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         return _without_contact(condensed, "the path of pivots ended on a ray that proves that no pressure will do")
     p, u_n, a = unscaled(condensed, found.end.pressure, found.end.amplitudes)
     return ContactSolution(
-        formulation="complementarity",
+        formulation=FormulationName.COMPLEMENTARITY,
         solver=found.method,
         status=found.status,
         pressure=p,
@@ -238,7 +240,7 @@ def _search(problem: ScaledContact, pivot_limit: int | None) -> _Found:
 def _without_contact(condensed: CondensedContact, note: str) -> ContactSolution:
     """The free body, p = 0, as the answer to a problem that has none."""
     return ContactSolution(
-        formulation="complementarity",
+        formulation=FormulationName.COMPLEMENTARITY,
         solver=ACTIVE_SET,
         status=Status.INFEASIBLE,
         pressure=np.zeros(condensed.size),

@@ -2,31 +2,14 @@
 
 import math
 from dataclasses import dataclass, fields
-from enum import Enum
 from typing import Protocol
 
 import numpy as np
 
-from bemcontact.contact import Array, CondensedContact, ContactSolution, Weights
+from bemcontact.choices import Equilibrium, Rows, Weights
+from bemcontact.contact import Array, CondensedContact
 from bemcontact.errors import ProblemError
-
-
-class Rows(Enum):
-    """How the equations K u_n = B p + r, (12), are written in QP1 and QP2."""
-
-    STIFFNESS = "stiffness"
-    """p = S (u_n - Δ1) - V load: their residual is an error of pressure. The default."""
-    COMPLIANCE = "compliance"
-    """u_n = Δ1 + M p + R a with the amplitudes a as free variables: their residual is an error of displacement."""
-
-
-class Equilibrium(Enum):
-    """How QP2 keeps a body with free rigid motions in equilibrium."""
-
-    CONSTRAINT = "constraint"
-    """ℓᵀp = -load holds exactly. The default."""
-    PENALTY = "penalty"
-    """Only penalised, with all the rest of (12), as in [SS92]: a body lifted off its support is a stationary point."""
+from bemcontact.solution import ContactSolution
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

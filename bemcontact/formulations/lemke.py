@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.contact import Array, Status
+from bemcontact.contact import Array
+from bemcontact.solution import Status
 
 PIVOT = 1e-11
 TIE = 1e-12

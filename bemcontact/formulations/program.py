@@ -9,11 +9,13 @@ from functools import cached_property
 
 import numpy as np
 
-from bemcontact.contact import Array, CondensedContact, ContactSolution, LocalSearch, Penalty, Status, Weights
+from bemcontact.choices import Rows, Weights
+from bemcontact.contact import Array, CondensedContact
 from bemcontact.formulations.complementarity import escape_note, polish
-from bemcontact.formulations.formulation import FormulationOptions, Rows, Start
+from bemcontact.formulations.formulation import FormulationOptions, Start
 from bemcontact.formulations.local_solver import QPOptions, QPResult, QPStatus, minimize_qp
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
+from bemcontact.solution import ContactSolution, LocalSearch, Penalty, Status
 
 SOLUTION = 1e-6
 """Residual up to which the end of a search is near the contact state, so that a polish is its due."""
@@ -96,12 +98,6 @@ class Program:
         residual = self.penalised.matrix @ x - self.penalised.right
         work = x[n : 2 * n] @ self.weights @ (x[:n] - self.lower[:n])
         return float(work + residual @ residual / self.penalty)
-
-
-def scaled_weights(condensed: CondensedContact, weights: Weights) -> Array:
-    """J (n, n) over its largest entry."""
-    J = condensed.weight_matrix(weights)
-    return J / np.abs(J).max()
 
 
 def contact_equations(condensed: CondensedContact, rows: Rows) -> Equations:

@@ -10,19 +10,20 @@ equilibrium.
 
 from dataclasses import replace
 
-from bemcontact.contact import CondensedContact, ContactSolution
-from bemcontact.formulations.formulation import FormulationOptions, Rows
+from bemcontact.choices import FormulationName, Rows
+from bemcontact.contact import CondensedContact
+from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.program import (
     Program,
     contact_equations,
     equilibrium,
     lower_bounds,
     no_equations,
-    scaled_weights,
     solution,
 )
 from bemcontact.formulations.qp3 import smallest_eigenvalue
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scaled, scaled_weights
+from bemcontact.solution import ContactSolution
 
 OPTIONS = ("weights", "rows", "start")
 """Those of `FormulationOptions` that have a meaning here."""
@@ -79,7 +80,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         The problem does not carry the weights asked for, or an option has no meaning for QP1.
     """
     options = options or FormulationOptions()
-    options.ensure_used("qp1", *OPTIONS)
+    options.ensure_used(FormulationName.QP1, *OPTIONS)
     program = statement(condensed, options)
     eigenvalue = smallest_eigenvalue(scaled(condensed), scaled_weights(condensed, options.weights))
-    return replace(solution(condensed, options, "qp1", program), smallest_eigenvalue=eigenvalue)
+    return replace(solution(condensed, options, FormulationName.QP1, program), smallest_eigenvalue=eigenvalue)

@@ -19,19 +19,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import eigvalsh
 
-from bemcontact.contact import Array, CondensedContact, ContactSolution, Penalty, Status, Weights
+from bemcontact.choices import Equilibrium, FormulationName, Rows, Weights
+from bemcontact.contact import Array, CondensedContact
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.formulation import Equilibrium, FormulationOptions, Rows
+from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.program import (
     Program,
     contact_equations,
     equilibrium,
     lower_bounds,
     no_equations,
-    scaled_weights,
     solution,
 )
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scaled, scaled_weights
+from bemcontact.solution import ContactSolution, Penalty, Status
 
 OPTIONS = ("weights", "penalty", "rows", "equilibrium", "start")
 """Those of `FormulationOptions` that have a meaning here."""
@@ -119,7 +120,7 @@ def convexity_limit(condensed: CondensedContact, options: FormulationOptions) ->
     """
     problem, J = scaled(condensed), scaled_weights(condensed, options.weights)
     n, k = problem.rigid_motions.shape
-    Z = np.linalg.qr(problem.equilibrium, mode="complete")[0][:, k:]
+    Z = problem.equilibrium_space
     lifted = options.equilibrium is Equilibrium.PENALTY and k > 0
     if lifted or np.abs(Z.T @ J @ problem.rigid_motions).max(initial=0.0) > NEGLIGIBLE:
         return 0.0
@@ -186,7 +187,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         asked for; the rows do not contain the equilibrium to be penalised.
     """
     options = options or FormulationOptions()
-    options.ensure_used("qp2", *OPTIONS)
+    options.ensure_used(FormulationName.QP2, *OPTIONS)
     program = statement(condensed, options)
     unit = penalty_unit(condensed, options)
     if ray := two_point_ray(condensed, options):
@@ -198,7 +199,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         convexity_limit=limit if np.isfinite(limit) else None,
         convexity_limit_raw=limit * unit if np.isfinite(limit) else None,
     )
-    found = solution(condensed, options, "qp2", program, penalty)
+    found = solution(condensed, options, FormulationName.QP2, program, penalty)
     if found.status is Status.UNBOUNDED and options.weights is Weights.CONSISTENT:
         raise ProblemError(f"QP2 has no minimum with consistent weights: {found.notes[-1]}; take the tributary weights")
     return replace(found, notes=(*found.notes, *_notes(condensed, options, found)))

@@ -13,11 +13,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import eigvalsh
 
-from bemcontact.contact import Array, CondensedContact, ContactSolution, Status, Weights
+from bemcontact.choices import FormulationName, Weights
+from bemcontact.contact import Array, CondensedContact
 from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.formulation import FormulationOptions
-from bemcontact.formulations.scaling import ScaledContact, scaled, unscaled
+from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_weights, unscaled
+from bemcontact.solution import ContactSolution, Status
 
 OPTIONS = ("weights",)
 """Those of `FormulationOptions` that have a meaning here."""
@@ -108,11 +110,10 @@ def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
     float or None
         Dimensionless; None if equilibrium leaves no pressure free (n = k).
     """
-    R, ell = problem.rigid_motions, problem.equilibrium
+    R, Z = problem.rigid_motions, problem.equilibrium_space
     n, k = R.shape
     if n == k:
         return None
-    Z = np.linalg.qr(ell, mode="complete")[0][:, k:]
     weighted = J @ problem.compliance
     hessian = Z.T @ (weighted + weighted.T) @ Z
     coupling = Z.T @ J @ R
@@ -148,10 +149,8 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         Clarabel broke down.
     """
     options = options or FormulationOptions()
-    options.ensure_used("qp3", *OPTIONS)
-    J = condensed.weight_matrix(options.weights)
-    J = J / np.abs(J).max()
-    problem = scaled(condensed)
+    options.ensure_used(FormulationName.QP3, *OPTIONS)
+    problem, J = scaled(condensed), scaled_weights(condensed, options.weights)
     eigenvalue = smallest_eigenvalue(problem, J)
     work = objective(problem, J)
     notes = []
@@ -169,7 +168,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     if found.status is Status.INFEASIBLE and (note := escape_note(condensed, problem)):
         notes.append(note)
     solution = ContactSolution(
-        formulation="qp3",
+        formulation=FormulationName.QP3,
         solver="Clarabel",
         status=found.status,
         pressure=p,

@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from bemcontact.choices import Weights
 from bemcontact.contact import Array, CondensedContact
 
 
@@ -36,6 +37,11 @@ class ScaledContact:
     def equilibrium(self) -> Array:
         """ℓ = J R (n, k)."""
         return self.weights[:, None] * self.rigid_motions
+
+    @property
+    def equilibrium_space(self) -> Array:
+        """Z (n, n - k), an orthonormal basis of {p : ℓᵀp = 0}."""
+        return np.linalg.qr(self.equilibrium, mode="complete")[0][:, self.rigid_motions.shape[1] :]
 
     def gap(self, pressure: Array, amplitudes: Array) -> Array:
         """δ = q + M p + R a, (n,)."""
@@ -70,6 +76,12 @@ def scaled(condensed: CondensedContact) -> ScaledContact:
         motion_load=condensed.motion_load / (motion * weight * T),
         weights=condensed.weights / weight,
     )
+
+
+def scaled_weights(condensed: CondensedContact, weights: Weights) -> Array:
+    """J (n, n) over its largest entry."""
+    J = condensed.weight_matrix(weights)
+    return J / np.abs(J).max()
 
 
 def scaled_point(condensed: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array]:

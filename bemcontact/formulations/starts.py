@@ -5,10 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from bemcontact.contact import Array, CondensedContact, ContactSolution, Status
+from bemcontact.choices import StartName
+from bemcontact.contact import Array, CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.formulation import Formulation, FormulationOptions, Start
 from bemcontact.formulations.program import contact_residual
+from bemcontact.solution import ContactSolution, Status
 
 SPREAD = 2.0
 """Largest random pressure over T, and size of a random displacement over U."""
@@ -83,7 +85,7 @@ class RandomStarts:
     def to_dict(self) -> dict[str, Any]:
         """Give it as numbers, lists and texts, ready for JSON."""
         return {
-            "formulation": self.formulation,
+            "formulation": str(self.formulation),
             "count": self.count,
             "seed": self.seed,
             "solved": self.solved,
@@ -128,25 +130,25 @@ class StartChoice:
 
     Parameters
     ----------
-    start : "null", "random", or a Start
+    start : a `StartName` or its value, or a `Start`
     seed, count : of random starts, None for 0 and 1
     """
 
-    start: Start | str = "null"
+    start: Start | str = StartName.NULL
     seed: int | None = None
     count: int | None = None
 
     def __post_init__(self) -> None:
         """Refuse an unknown start, and a seed or a count without random starts."""
-        if not isinstance(self.start, Start) and self.start not in ("null", "random"):
-            raise ProblemError(f"there is no start '{self.start}'; take null, random, or a Start of your own")
-        if self.start != "random" and (self.seed is not None or self.count is not None):
+        if not isinstance(self.start, Start) and self.start not in [*StartName]:
+            raise ProblemError(f"there is no start '{self.start}'; take {', '.join(StartName)}, or a Start of your own")
+        if self.start != StartName.RANDOM and (self.seed is not None or self.count is not None):
             raise ProblemError("a seed or a number of starts says nothing without random starts; add start random")
         _ensure_drawable(1 if self.count is None else self.count, self.seed or 0)
 
     def ensure_used(self, formulation: str, used: bool) -> None:
         """Refuse a start for a formulation whose solver chooses its own."""
-        if self.start != "null" and not used:
+        if self.start != StartName.NULL and not used:
             raise ProblemError(
                 f"{formulation} has no use for the option 'start', its solver finds its own; leave it out"
             )
@@ -155,7 +157,7 @@ class StartChoice:
         self, condensed: CondensedContact, solve: Formulation, options: FormulationOptions
     ) -> tuple[ContactSolution, RandomStarts | None]:
         """Solve from the start; of several random ones from the first that led to the best end, with all the ends."""
-        if self.start == "null":
+        if self.start == StartName.NULL:
             return solve(condensed, options), None
         if isinstance(self.start, Start):
             return solve(condensed, replace(options, start=self.start)), None

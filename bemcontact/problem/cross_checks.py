@@ -78,10 +78,8 @@ def facing_complaints(boundary: Boundary, zones: Mapping[Path, ContactZone]) -> 
 def _facing(edge: Edge, surface: Plane | Circle | Polyline) -> tuple[float, float]:
     """Least distance of an edge from a surface, and the cosine between its outward and the surface's normal there."""
     fractions = np.linspace(0, 1, 8 * edge.elements + 1)
-    direction = edge.directions(fractions)
-    outward = np.column_stack([direction[:, 1], -direction[:, 0]])
     gap, normals = surface.closest(edge.points(fractions))
-    cosine = np.einsum("ki,ki->k", normals, outward)
+    cosine = np.einsum("ki,ki->k", normals, edge.normals(fractions))
     closest = np.argmin(np.abs(gap))
     return float(np.abs(gap[closest])), float(cosine[closest])
 

@@ -195,9 +195,14 @@ class Edge:
         return points
 
     def directions(self, fractions: Array) -> Array:
-        """Unit tangents (k, 2) at fractions (k,); the body is on their left, its outward normal is (d_y, -d_x)."""
+        """Unit tangents (k, 2) at fractions (k,); the body is on their left."""
         angle = self.curve.tangent_angle(np.asarray(fractions, float))
         return np.column_stack([np.cos(angle), np.sin(angle)])
+
+    def normals(self, fractions: Array) -> Array:
+        """Unit normals (k, 2) out of the body at fractions (k,)."""
+        directions = self.directions(fractions)
+        return np.column_stack([directions[:, 1], -directions[:, 0]])
 
     @cached_property
     def _coarse_breakpoints(self) -> Array:

@@ -112,11 +112,6 @@ class Problem(Stated):
         density = written.below(cls, "mesh").read(MeshDensity) or MeshDensity()
         return [*complaints, *mesh_complaints(body, boundary.path, density.refine)]
 
-    @property
-    def size(self) -> float:
-        """Diameter of the bounding box of the body [L]."""
-        return self.boundary.size
-
     def edge(self, name: str) -> Edge:
         """Find an edge by its name; `ProblemError` if there is none."""
         for edge in self.boundary.edges:

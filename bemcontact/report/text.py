@@ -12,11 +12,12 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from bemcontact.analysis import Result
 from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.bem.condense import Body
-from bemcontact.contact import CondensedContact, LocalSearch, Status
+from bemcontact.contact import CondensedContact
 from bemcontact.problem import Circle, Edge, Field, Plane, Polyline, Problem, Units
+from bemcontact.result import Result
+from bemcontact.solution import LocalSearch, Status
 
 NEGLIGIBLE = 1e-9
 """Share of the largest component, or of a scale, below which a component of a vector is written as zero."""
@@ -253,10 +254,8 @@ def _zone_table(body: Body) -> Table:
 
 def _total_load(body: Body) -> str:
     """Write the resultant of the prescribed tractions and of the body forces."""
-    tractions = body.mesh.tributary[..., None] * body.values.traction
-    x, y = tractions.sum(axis=(0, 1)) + body.particular.force
-    scale = float(np.hypot(tractions[..., 0], tractions[..., 1]).sum()) + body.particular.magnitude
-    return vector((float(x), float(y)), per_thickness(body.problem.units), scale=scale)
+    x, y = body.forces.sum(axis=(0, 1)) + body.particular.force
+    return vector((float(x), float(y)), per_thickness(body.problem.units), scale=body.load_magnitude)
 
 
 def _size(contact: CondensedContact) -> float:

@@ -4,27 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from contact_problems import random_contact
 
 from bemcontact.assessment.certificate import Certificate, CertificateKind, certify
 from bemcontact.assessment.residual import residuals
-from bemcontact.contact import CondensedContact, ContactSolution
+from bemcontact.contact import CondensedContact
 from bemcontact.formulations import complementarity, qp3
-
-
-def random_contact(seed: int, n: int = 8, k: int = 1) -> CondensedContact:
-    """Unsymmetric compliance with sym(JM) positive definite, and a load that some p >= 0 carries."""
-    rng = np.random.default_rng(seed)
-    A, S = rng.standard_normal((2, n, n))
-    J = rng.uniform(0.3, 1.5, n)
-    R = rng.standard_normal((n, k))
-    carried = np.maximum(rng.standard_normal(n), 0.0)
-    return CondensedContact.from_compliance(
-        (A @ A.T / n + 0.05 * np.eye(n) + 0.1 * (S - S.T)) / J[:, None],
-        rng.standard_normal(n),
-        J,
-        rigid_motions=R,
-        motion_load=-(J[:, None] * R).T @ carried,
-    )
+from bemcontact.solution import ContactSolution
 
 
 def judged(problem: CondensedContact, solution: ContactSolution) -> Certificate:
@@ -42,7 +28,7 @@ def moved(
 
 @pytest.mark.parametrize("k", [0, 1, 2, 3])
 def test_solution_is_certified(k):
-    problem = random_contact(0, k=k)
+    problem = random_contact(0, 8, k)
     certificate = judged(problem, complementarity.solve(problem))
     assert certificate.kind is CertificateKind.UNIQUE
     assert certificate.certified
@@ -56,7 +42,7 @@ def test_solution_is_certified(k):
 def test_error_is_never_above_the_bound(seed, k):
     """Fifty points around the solution, off by 1e-10 to 10 of its size, in and out of equilibrium."""
     rng = np.random.default_rng(seed)
-    problem = random_contact(seed, k=k)
+    problem = random_contact(seed, 8, k)
     exact = complementarity.solve(problem)
     peak = exact.pressure.max()
     bounds = 0
@@ -74,7 +60,7 @@ def test_error_is_never_above_the_bound(seed, k):
 @pytest.mark.parametrize("k", [0, 2])
 def test_bound_falls_with_the_error(k):
     """It is linear in the error near the solution: a thousandth of the change has about a thousandth of the bound."""
-    problem = random_contact(3, k=k)
+    problem = random_contact(3, 8, k)
     exact = complementarity.solve(problem)
     change = np.where(exact.pressure > 0, 1e-4, 0.0)
     large, small = (judged(problem, moved(problem, exact, s * change, np.zeros(k))).error_bound for s in (1.0, 1e-3))
@@ -103,7 +89,7 @@ def test_body_lifted_off_its_support_is_bounded_too():
 
 
 def test_wrong_pressure_is_no_solution():
-    problem = random_contact(1)
+    problem = random_contact(1, 8, 1)
     exact = complementarity.solve(problem)
     certificate = judged(problem, replace(exact, pressure=exact.pressure * 1.01))
     assert certificate.kind is CertificateKind.NOT_A_SOLUTION
@@ -152,7 +138,7 @@ def test_no_contact_is_certified():
 
 @pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6)])
 def test_units_do_not_matter(length, stress):
-    problem = random_contact(2)
+    problem = random_contact(2, 8, 1)
     other = CondensedContact.from_compliance(
         problem.compliance * length / stress,
         problem.offset * length,

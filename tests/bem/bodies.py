@@ -8,7 +8,7 @@ from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.condense import solve
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh, connected
-from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
+from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
 from bemcontact.bem.system import System
 from bemcontact.bem.volume_loads import particular_solution
 from bemcontact.problem.loads import Loads
@@ -104,7 +104,7 @@ def solved(
     mesh: Mesh, material: Material, values: BoundaryValues, loads: Loads | None = None
 ) -> tuple[np.ndarray, np.ndarray, System]:
     """Displacement (N, 2) and traction (m, 3, 2) of a body without contact, and its system."""
-    motions = free_rigid_motions(mesh.nodes, values.displacement_given)
+    motions = free_rigid_motions(mesh, values.displacement_given)
     system = system_of(mesh, material, values, motions, loads)
     displacement, traction = system.fields(solve(system)[:, 0])
     return displacement, traction, system
@@ -112,7 +112,7 @@ def solved(
 
 def without_rigid_motion(mesh: Mesh, difference: np.ndarray) -> np.ndarray:
     """Take the best-fitting rigid motion out of nodal displacements."""
-    every = free_rigid_motions(mesh.nodes, np.zeros((len(mesh.nodes), 2), bool))
+    every = all_rigid_motions(mesh)
     rows = every.displacement(mesh.nodes).reshape(-1, 3)
     fitted, *_ = np.linalg.lstsq(rows, difference.ravel(), rcond=None)
     return difference - (rows @ fitted).reshape(-1, 2)

@@ -4,13 +4,15 @@ import itertools
 
 import numpy as np
 import pytest
+from contact_problems import random_contact
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bemcontact.contact import CondensedContact, ContactSolution, Status
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.complementarity import escape_note, polish, solve, solve_lcp, standard_form
 from bemcontact.formulations.scaling import scaled
+from bemcontact.solution import ContactSolution, Status
 
 
 def murty(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -22,22 +24,6 @@ def fathi(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """M = L Lᵀ, q and the solution (1, 0, ..., 0): the same for a symmetric positive definite M (Fathi 1979)."""
     L = np.eye(n) + 2 * np.tril(np.ones((n, n)), -1)
     return L @ L.T, -np.ones(n), np.eye(n)[0]
-
-
-def random_contact(seed: int, n: int, k: int) -> CondensedContact:
-    """Unsymmetric compliance with sym(JM) positive definite, and a load that some p >= 0 carries."""
-    rng = np.random.default_rng(seed)
-    A, S = rng.standard_normal((2, n, n))
-    J = rng.uniform(0.3, 1.5, n)
-    R = rng.standard_normal((n, k))
-    carried = np.maximum(rng.standard_normal(n), 0.0)
-    return CondensedContact.from_compliance(
-        (A @ A.T / n + 0.05 * np.eye(n) + 0.1 * (S - S.T)) / J[:, None],
-        rng.standard_normal(n),
-        J,
-        rigid_motions=R,
-        motion_load=-(J[:, None] * R).T @ carried,
-    )
 
 
 def exhaustive(problem: CondensedContact) -> np.ndarray:

@@ -7,8 +7,14 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from bemcontact.contact import CondensedContact, Status
-from bemcontact.formulations import FORMULATIONS, FormulationOptions
+from bemcontact.choices import FormulationName
+from bemcontact.contact import CondensedContact
+from bemcontact.formulations import FORMULATIONS, OPTIONS, FormulationOptions
+from bemcontact.solution import Status
+
+
+def test_every_name_has_a_formulation_and_its_options():
+    assert [*FORMULATIONS] == [*OPTIONS] == [*FormulationName]
 
 
 @pytest.mark.parametrize("name", FORMULATIONS)

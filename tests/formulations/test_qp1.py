@@ -5,33 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from contact_problems import random_contact
 from scipy.linalg import null_space
 
-from bemcontact.contact import CondensedContact, Status, Weights
+from bemcontact.choices import Rows, Weights
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import FORMULATIONS, complementarity, qp1, qp3
-from bemcontact.formulations.formulation import FormulationOptions, Rows, Start
+from bemcontact.formulations.formulation import FormulationOptions, Start
 from bemcontact.formulations.scaling import scaled, scaled_point
+from bemcontact.solution import Status
 
 ROWS = [*Rows]
 NOT_POLISHED = FormulationOptions(polish=False)
-
-
-def random_contact(seed: int, n: int, k: int, **fields) -> CondensedContact:
-    """Unsymmetric compliance with sym(JM) positive definite, and a load that some p >= 0 carries."""
-    rng = np.random.default_rng(seed)
-    A, S = rng.standard_normal((2, n, n))
-    J = rng.uniform(0.3, 1.5, n)
-    R = rng.standard_normal((n, k))
-    carried = np.maximum(rng.standard_normal(n), 0.0)
-    problem = CondensedContact.from_compliance(
-        (A @ A.T / n + 0.05 * np.eye(n) + 0.1 * (S - S.T)) / J[:, None],
-        rng.standard_normal(n),
-        J,
-        rigid_motions=R,
-        motion_load=-(J[:, None] * R).T @ carried,
-    )
-    return replace(problem, **fields)
 
 
 def contact_sets(problem: CondensedContact) -> list[np.ndarray]:

@@ -4,41 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from contact_problems import random_contact, resting
 from scipy.linalg import null_space
 
 from bemcontact.analysis import solve as judged
-from bemcontact.contact import CondensedContact, Status, Weights
+from bemcontact.choices import Equilibrium, Rows, Weights
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity, qp2
-from bemcontact.formulations.formulation import Equilibrium, FormulationOptions, Rows, Start
+from bemcontact.formulations.formulation import FormulationOptions, Start
+from bemcontact.solution import Status
 
 PENALISED = FormulationOptions(equilibrium=Equilibrium.PENALTY)
-
-
-def random_contact(seed: int, n: int, k: int, **fields) -> CondensedContact:
-    """Unsymmetric compliance with sym(JM) positive definite, and a load that some p >= 0 carries."""
-    rng = np.random.default_rng(seed)
-    A, S = rng.standard_normal((2, n, n))
-    J = rng.uniform(0.3, 1.5, n)
-    R = rng.standard_normal((n, k))
-    carried = np.maximum(rng.standard_normal(n), 0.0)
-    problem = CondensedContact.from_compliance(
-        (A @ A.T / n + 0.05 * np.eye(n) + 0.1 * (S - S.T)) / J[:, None],
-        rng.standard_normal(n),
-        J,
-        rigid_motions=R,
-        motion_load=-(J[:, None] * R).T @ carried,
-    )
-    return replace(problem, **fields)
-
-
-def resting(n: int = 7) -> CondensedContact:
-    """A body that only a plane holds, pressed down: one free motion, away from the plane at all points."""
-    rng = np.random.default_rng(8)
-    A = rng.standard_normal((n, n))
-    return CondensedContact.from_compliance(
-        A @ A.T / n + 0.1 * np.eye(n), rng.uniform(0, 1, n), rigid_motions=np.ones(n), motion_load=-n
-    )
 
 
 @pytest.mark.parametrize("length", [1.0, 0.1])

@@ -4,31 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from contact_problems import random_contact
 
-from bemcontact.contact import CondensedContact, Status, Weights
+from bemcontact.choices import Weights
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import NotConvexError, ProblemError, SolverError
 from bemcontact.formulations import complementarity, qp3
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled
+from bemcontact.solution import Status
 
 UNPOLISHED = FormulationOptions(polish=False)
-
-
-def random_contact(seed: int, n: int, k: int, **fields) -> CondensedContact:
-    """Unsymmetric compliance with sym(JM) positive definite, and a load that some p >= 0 carries."""
-    rng = np.random.default_rng(seed)
-    A, S = rng.standard_normal((2, n, n))
-    J = rng.uniform(0.3, 1.5, n)
-    R = rng.standard_normal((n, k))
-    carried = np.maximum(rng.standard_normal(n), 0.0)
-    problem = CondensedContact.from_compliance(
-        (A @ A.T / n + 0.05 * np.eye(n) + 0.1 * (S - S.T)) / J[:, None],
-        rng.standard_normal(n),
-        J,
-        rigid_motions=R,
-        motion_load=-(J[:, None] * R).T @ carried,
-    )
-    return replace(problem, **fields)
 
 
 def balanced(problem, rng: np.random.Generator) -> np.ndarray:
@@ -143,7 +129,7 @@ def test_nonconvex_program_is_refused():
 
 def test_weights_that_couple_pressure_and_motion_are_refused():
     """Where ZᵀJR is not zero, pᵀJRa makes a saddle, however definite sym(JM) is."""
-    problem = random_contact(6, 6, 1, element_length_weights=np.arange(1.0, 7.0))
+    problem = replace(random_contact(6, 6, 1), element_length_weights=np.arange(1.0, 7.0))
     with pytest.raises(NotConvexError) as e:
         qp3.solve(problem, FormulationOptions(weights=Weights.ELEMENT_LENGTH))
     assert e.value.smallest_eigenvalue < -1e-3

@@ -6,25 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from contact_problems import resting
 
 import bemcontact
-from bemcontact.contact import CondensedContact, Status
+from bemcontact.choices import Equilibrium
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity, qp1, qp2
-from bemcontact.formulations.formulation import Equilibrium, FormulationOptions, Start
+from bemcontact.formulations.formulation import FormulationOptions, Start
 from bemcontact.formulations.starts import random_points, search_from
+from bemcontact.solution import Status
 
 P_MATRIX = np.array([[1.0, -3.0, 0.0], [0.0, 1.0, -3.0], [0.0, 0.0, 1.0]])
 """Triangular with positive diagonal, so a P-matrix, but far from positive definite."""
-
-
-def resting() -> CondensedContact:
-    """A body that only a plane holds, pressed down: one free motion, away from the plane at all points."""
-    A = np.random.default_rng(8).standard_normal((7, 7))
-    gap = np.random.default_rng(9).uniform(0, 1, 7)
-    return CondensedContact.from_compliance(
-        A @ A.T / 7 + 0.1 * np.eye(7), gap, rigid_motions=np.ones(7), motion_load=-7.0
-    )
 
 
 def test_random_points_are_repeatable_and_free_of_units():

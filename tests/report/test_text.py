@@ -10,9 +10,9 @@ from rich.console import Console, RenderableType
 from bemcontact import analysis
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.bem.condense import body_of
-from bemcontact.contact import Status
 from bemcontact.problem import Circle, Field, Plane, Polyline, Problem, Units
 from bemcontact.report import text
+from bemcontact.solution import Status
 
 
 def block() -> Problem:

@@ -13,6 +13,7 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from bemcontact.bem import shape_functions
+from bemcontact.bem.boundary_values import applied_traction
 from bemcontact.bem.mesh import Mesh
 from bemcontact.problem import AxisFields, Circle, Condition, Edge, Field, Plane, Polyline, Problem
 from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
@@ -113,12 +114,7 @@ def _spread(edge: Edge, size: float, spots: int, fewest: int = 2) -> tuple[Array
     """Choose points (k, 2) on an edge for symbols, about `spots` over the body's size, and the outward normals."""
     count = int(np.clip(round(spots * edge.length / size), fewest, spots))
     fractions = (np.arange(count) + 0.5) / count
-    return edge.points(fractions), _outward(edge, fractions)
-
-
-def _outward(edge: Edge, fractions: Array) -> Array:
-    directions = edge.directions(fractions)
-    return np.column_stack([directions[:, 1], -directions[:, 0]])
+    return edge.points(fractions), edge.normals(fractions)
 
 
 def _draw_supports(axes: Axes, problem: Problem) -> Iterator[Array]:
@@ -128,7 +124,7 @@ def _draw_supports(axes: Axes, problem: Problem) -> Iterator[Array]:
         held = problem.conditions.get(edge.name, FREE).displacement
         if len(held.given) == 2:
             fractions = np.linspace(0, 1, 61)
-            yield draw_ground(axes, edge.points(fractions), -_outward(edge, fractions), 0.025 * size, BLUE)
+            yield draw_ground(axes, edge.points(fractions), -edge.normals(fractions), 0.025 * size, BLUE)
             continue
         points, normals = _spread(edge, size, 8)
         for axis in held.given:
@@ -218,19 +214,15 @@ def _surface_line(surface: Plane | Circle | Polyline, facing: Array, size: float
 
 def _traction(problem: Problem, edge: str, points: Array, normals: Array) -> Array:
     """Prescribed traction (k, 2) at points of an edge with these outward normals."""
-    condition = problem.conditions.get(edge, FREE)
-    if condition.pressure is not None:
-        return -condition.pressure.at(points)[:, None] * normals
-    fields = (condition.traction.x, condition.traction.y)
-    return np.column_stack([field.at(points) if field else np.zeros(len(points)) for field in fields])
+    return applied_traction(problem.conditions.get(edge, FREE), points, normals)
 
 
 def _name(problem: Problem, edge: Edge) -> Name:
     """Prepare the text at an edge: its name, and what is prescribed there."""
     fractions = np.array([0.5, 0.4, 0.6, 0.25, 0.75, 0.12, 0.88])
-    anchors, outward = edge.points(fractions), _outward(edge, fractions)
+    anchors, outward = edge.points(fractions), edge.normals(fractions)
     ends = np.array([0.02, 0.98] if edge.length < SHORT * problem.boundary.size else [])
-    slanted = (_outward(edge, ends) + edge.directions(ends) * np.sign(ends - 0.5)[:, None]) / np.sqrt(2)
+    slanted = (edge.normals(ends) + edge.directions(ends) * np.sign(ends - 0.5)[:, None]) / np.sqrt(2)
     return Name(
         text="\n".join(
             [wrapped(edge.name, 28), *(_symbols(shortened(line, 40)) for line in prescribed(problem, edge))]

@@ -11,7 +11,6 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from bemcontact.analysis import Result
 from bemcontact.bem import shape_functions
 from bemcontact.bem.recovery import BoundaryState
 from bemcontact.contact import CondensedContact
@@ -34,6 +33,7 @@ from bemcontact.report.figures.page import (
     wrapped,
 )
 from bemcontact.report.text import number, units_of, with_unit
+from bemcontact.result import Result
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bemcontact.report import output
+from bemcontact import output
 
 
 def test_a_file_appears_when_the_block_ends(tmp_path: Path):

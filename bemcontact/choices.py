@@ -1,0 +1,53 @@
+"""What a person chooses among in stating and solving a problem.
+
+There are no numerics here, so that ``bemcontact --help`` lists the choices at once.
+"""
+
+from enum import StrEnum
+
+
+class FormulationName(StrEnum):
+    """Statements of the contact problem that can be solved."""
+
+    QP1 = "qp1"
+    QP2 = "qp2"
+    QP3 = "qp3"
+    COMPLEMENTARITY = "complementarity"
+
+
+class Weights(StrEnum):
+    """How the objective integrates p δ over the contact zone: the J of [SS92] (24)-(26)."""
+
+    TRIBUTARY = "tributary"
+    """Diagonal, the length that belongs to each point: Σ w p is the resultant. The default."""
+    CONSISTENT = "consistent"
+    """∫ h hᵀ ds, (24)-(25): has negative entries, so that objective = 0 certifies nothing."""
+    ELEMENT_LENGTH = "element_length"
+    """Diagonal, the element length once per node, (26) read word for word: makes QP3 indefinite on uniform meshes."""
+
+
+class Rows(StrEnum):
+    """How the equations K u_n = B p + r, (12), are written in QP1 and QP2."""
+
+    STIFFNESS = "stiffness"
+    """p = S (u_n - Δ1) - V load: their residual is an error of pressure. The default."""
+    COMPLIANCE = "compliance"
+    """u_n = Δ1 + M p + R a with the amplitudes a as free variables: their residual is an error of displacement."""
+
+
+class Equilibrium(StrEnum):
+    """How QP2 keeps a body with free rigid motions in equilibrium."""
+
+    CONSTRAINT = "constraint"
+    """ℓᵀp = -load holds exactly. The default."""
+    PENALTY = "penalty"
+    """Only penalised, with all the rest of (12), as in [SS92]: a body lifted off its support is a stationary point."""
+
+
+class StartName(StrEnum):
+    """Starts of the local solver that need no numbers."""
+
+    NULL = "null"
+    """No displacement and no pressure. The default."""
+    RANDOM = "random"
+    """Points drawn from a seed."""

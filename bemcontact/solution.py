@@ -1,0 +1,99 @@
+"""A solution of a condensed contact problem: what a formulation found, and how its solver ended."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from bemcontact.contact import Array, freeze_arrays
+
+
+class Status(Enum):
+    """How a solver ended; each value is the sentence that tells what to do."""
+
+    SOLVED = "solved"
+    LOCAL_MINIMUM = "a local minimum whose objective is not zero: not the contact state; try another start or QP3"
+    ITERATION_LIMIT = "stopped at the iteration limit; raise the limit or start from another point"
+    INFEASIBLE = "no pressure satisfies the constraints; check that the load presses the body onto its support"
+    UNBOUNDED = "the objective has no lower bound; use the tributary weights"
+    NO_SOLUTION_FOUND = "no solution was found, and no proof that there is none; try another formulation or start"
+    NUMERICAL_FAILURE = "the solver broke down numerically; check the mesh for very short elements"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Penalty:
+    """The μ of QP2, and up to which one QP2 is convex.
+
+    Parameters
+    ----------
+    value, raw : μ, free of units, and in the user's units, where (1/μ)|K u_n - B p - r|² is added to pᵀJδ
+    convexity_limit, convexity_limit_raw : the largest convex one, likewise: zero if QP2 is convex for none, None if for
+        all
+    """
+
+    value: float
+    raw: float
+    convexity_limit: float | None
+    convexity_limit_raw: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class LocalSearch:
+    """How a local solver came to its end; inertias count positive, zero and negative eigenvalues.
+
+    Parameters
+    ----------
+    start : what it started from
+    phase_one_iterations, phase_two_iterations : to a feasible point, and from there down
+    working_set_changes : constraints that entered or left the working set
+    inertia : of the Hessian
+    reduced_inertia_start, reduced_inertia_end : of the Hessian on what the working set leaves free, in phase two
+    weakly_active : active constraints with a multiplier of about zero
+    objective : scaled, in the end; its best value is zero with weights that are not negative
+    penalty : of QP2, else None
+    """
+
+    start: str
+    phase_one_iterations: int
+    phase_two_iterations: int
+    working_set_changes: int
+    inertia: tuple[int, int, int]
+    reduced_inertia_start: tuple[int, int, int]
+    reduced_inertia_end: tuple[int, int, int]
+    weakly_active: int
+    objective: float
+    penalty: Penalty | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactSolution:
+    """What a formulation found; nothing in it is believed until `bemcontact.assessment` has recomputed it.
+
+    Parameters
+    ----------
+    formulation : name of the statement that was solved
+    solver : name of the program that solved it
+    status : how it ended
+    pressure : (n,) p [p]
+    displacement : (n,) u_n [L], the solver's own (it need not satisfy the equations)
+    rigid_amplitudes : (k,) a
+    iterations : of the solver, as it counts them
+    polished : whether the active-set step after the solver improved the result and was kept
+    smallest_eigenvalue : of the scaled Hessian on the equilibrium space, where the formulation looked at it
+    search : how a local solver came to its end, if one was used
+    notes : what a person should know
+    """
+
+    formulation: str
+    solver: str
+    status: Status
+    pressure: Array
+    displacement: Array
+    rigid_amplitudes: Array
+    iterations: int
+    polished: bool = False
+    smallest_eigenvalue: float | None = None
+    search: LocalSearch | None = None
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
