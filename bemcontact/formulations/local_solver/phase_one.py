@@ -31,7 +31,7 @@ def reach_feasibility(progress: Progress, sides: Sides) -> tuple[Sides, Array | 
     working = WorkingSet(progress.statement, sides)
     while signs.any() and not progress.exhausted:
         gradient = progress.statement.transposed(signs)
-        zero = progress.options.optimality_tolerance * sqrt(signs @ signs)
+        zero = progress.options.optimality_tolerance * sqrt(signs.dot(signs))
         multipliers = working.multipliers(gradient)
         reduced = multipliers[: working.free.size] * working.free
         dropped = None
@@ -40,7 +40,7 @@ def reach_feasibility(progress: Progress, sides: Sides) -> tuple[Sides, Array | 
             if place is None:
                 return working.sides, _certificate(working, signs, multipliers)
             dropped, along = working.drop(place)
-            direction = -float(along @ gradient) * along
+            direction = -float(along.dot(gradient)) * along
         else:
             direction = -reduced
         working = _step(progress, working, signs, direction, dropped)
@@ -60,15 +60,15 @@ def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array
     n = working.free.size
     certificate = -signs
     certificate[working.ids] += multipliers[n:]
-    certificate[:n] += multipliers[:n] * ~working.free
+    certificate[:n] += multipliers[:n] * (1.0 - working.free)
     return certificate
 
 
 def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Array, dropped: int | None) -> WorkingSet:
     """Move along the direction to the constraint that ends the step and take it into the working set."""
-    length = sqrt(direction @ direction)
+    length = sqrt(direction.dot(direction))
     along = progress.statement.values(direction)
-    wall = nearest(progress, along, length, working.idle & (signs == 0.0))
+    wall = nearest(progress, along, length, working.held | (signs != 0.0))
     inner = _breakpoint(progress, signs, along, length)
     block = inner if wall is None or (inner is not None and inner.step <= wall.step) else wall
     if block is not None:

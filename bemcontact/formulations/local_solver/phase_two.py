@@ -52,6 +52,7 @@ class Descent:
 
     def __init__(self, progress: Progress, sides: Sides) -> None:
         self.progress = progress
+        self._refused: set[int] = set()
         self._renew(sides)
         progress.place(self.working.onto(progress.x))
 
@@ -99,6 +100,8 @@ class Descent:
         """
         progress, working = self.progress, self.working
         n, least = working.free.size, progress.least_index
+        if self._refused:
+            multipliers = np.where(np.isin(working.numbers, list(self._refused)), 0.0, multipliers)
         reduced = multipliers[:n] * working.free
         if whole < 3 and largest(reduced) > 0.1 * progress.zero:
             return True, None
@@ -115,8 +118,8 @@ class Descent:
         """Towards the minimiser on the working set, as far as the constraints allow; whether all the way."""
         direction = self.hessian.newton(self.progress.gradient)
         along = self.progress.statement.values(direction)
-        length = sqrt(direction @ direction)
-        block = nearest(self.progress, along, length, self.working.idle)
+        length = sqrt(direction.dot(direction))
+        block = nearest(self.progress, along, length, self.working.held)
         if block is not None and block.step > 1.0:
             block = None
         self._advance(direction, along, length, 1.0 if block is None else block.step, block, dropped)
@@ -124,7 +127,7 @@ class Descent:
 
     def _follow_curvature(self, direction: Array, dropped: int | None) -> Outcome | None:
         """Along the direction of non-positive curvature downhill to the next constraint; None if the walk goes on."""
-        slope, curvature = float(self.progress.gradient @ direction), self.hessian.curvature
+        slope, curvature = float(self.progress.gradient.dot(direction)), self.hessian.curvature
         level = abs(slope) <= self.progress.zero and abs(slope) <= self._fine_slope(direction)
         if level and curvature == 0.0:
             self.working.fix(direction, FLAT)
@@ -132,7 +135,7 @@ class Descent:
             return None
         along = self.progress.statement.values(direction)
         signs = (1.0, -1.0) if level else (-np.sign(slope),)
-        blocks = [(sign, nearest(self.progress, sign * along, 1.0, self.working.idle)) for sign in signs]
+        blocks = [(sign, nearest(self.progress, sign * along, 1.0, self.working.held)) for sign in signs]
         best: tuple[float, float, Block] | None = None
         for sign, block in blocks:
             if block is None:
@@ -144,6 +147,13 @@ class Descent:
         _, sign, block = best
         self._advance(sign * direction, sign * along, 1.0, block.step, block, dropped)
         return None
+
+    def _refuse(self, block: Block | None, step: float, dropped: int | None) -> None:
+        """A constraint that stops the step along its own release has no multiplier to speak of, until the point moves."""
+        if step > 0.0:
+            self._refused.clear()
+        elif block is not None and block.constraint == dropped:
+            self._refused.add(block.constraint)
 
     def _fine_slope(self, direction: Array) -> float:
         """The slope along a direction that counts as zero."""
@@ -157,6 +167,7 @@ class Descent:
         progress, working = self.progress, self.working
         nonpositive = int(self.hessian.pending is not None)
         progress.move(direction, along, step, length)
+        self._refuse(block, step, dropped)
         if block is not None:
             self.hessian.leave(working.add(block.constraint, block.side))
             if block.constraint < working.free.size:

@@ -28,6 +28,5 @@ def wrong_sign(working: WorkingSet, multipliers: Array, zero: float | Array, *, 
     if wrong[place] == 0.0:
         return None
     if least_index:
-        numbers = np.concatenate([np.arange(n), ids])
-        return int(np.where(wrong > 0.0, numbers, numbers.max() + 1).argmin())
+        return int(np.where(wrong > 0.0, working.numbers, working.held.size).argmin())
     return place

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bemcontact.formulations.local_solver.result import LogLine, QPOptions
-from bemcontact.formulations.local_solver.statement import Array, Statement, largest
+from bemcontact.formulations.local_solver.statement import EPS, Array, Statement, largest
 
 STALLED = 100
 """Steps of length zero in a row after which least-index rules take over, which cannot cycle (Bland 1977)."""
@@ -25,6 +25,8 @@ class Progress:
         The point, [x; A x], and H x + c.
     slack, lowest, highest : (n + m,) arrays
         Tolerance of each constraint, and its bounds with the tolerance added.
+    travelled : (n,) array
+        The largest size of each component so far: what its digits were lost against.
     zero : float
         Size of a gradient or multiplier that counts as zero: relative to the terms that make it up.
     """
@@ -35,6 +37,7 @@ class Progress:
     values: Array = field(init=False)
     gradient: Array = field(init=False)
     zero: float = field(init=False)
+    travelled: Array = field(init=False)
     slack: Array = field(init=False)
     lowest: Array = field(init=False)
     highest: Array = field(init=False)
@@ -51,12 +54,13 @@ class Progress:
         self.lowest, self.highest = self.statement.lower - self.slack, self.statement.upper + self.slack
         chosen = self.options.max_iterations
         self.limit = 1000 + 20 * lower.size if chosen is None else chosen
+        self.travelled = np.zeros(self.x.size)
         self.place(self.x)
 
     @property
     def objective(self) -> float:
         """cᵀx + xᵀHx/2."""
-        return 0.5 * float(self.x @ (self.gradient + self.statement.c))
+        return 0.5 * float(self.x.dot(self.gradient + self.statement.c))
 
     def fine_zero(self, of_rows: Array, rows: Array) -> Array:
         """For each component of the gradient the size that counts as zero, relative to its own terms (n,).
@@ -64,10 +68,11 @@ class Progress:
         Where variables differ in size by many orders, small ones are not to be judged by the terms of large ones.
         """
         H, c, _ = self.statement.absolute
-        terms = H @ np.abs(self.x) + c
+        terms = H.dot(np.abs(self.x)) + c
         if of_rows.size:
-            terms = terms + np.abs(of_rows) @ np.abs(rows)
-        return np.maximum(self.options.optimality_tolerance * terms, 1e-14 * largest(terms))
+            terms = terms + np.abs(of_rows).dot(np.abs(rows))
+        rounding = 100.0 * EPS * H.dot(self.travelled)
+        return np.maximum(self.options.optimality_tolerance * terms, np.maximum(rounding, 1e-14 * largest(terms)))
 
     @property
     def exhausted(self) -> bool:
@@ -94,7 +99,8 @@ class Progress:
 
     def _look(self) -> None:
         """The gradient at the point."""
-        product = self.statement.H @ self.x
+        self.travelled = np.maximum(self.travelled, np.abs(self.x))
+        product = self.statement.H.dot(self.x)
         self.gradient = product + self.statement.c
         terms = max(largest(product), self.statement.slope, 1e-3)
         self.zero = self.options.optimality_tolerance * terms

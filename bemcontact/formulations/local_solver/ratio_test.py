@@ -20,8 +20,8 @@ class Block(NamedTuple):
     step: float
 
 
-def nearest(progress: Progress, along: Array, length: float, eligible: NDArray[np.bool_]) -> Block | None:
-    """The first constraint met among the eligible, by Harris' two passes; None if the direction meets none.
+def nearest(progress: Progress, along: Array, length: float, held: NDArray[np.bool_]) -> Block | None:
+    """The first constraint met, those held aside, by Harris' two passes; None if the direction meets none.
 
     The first pass finds the longest step at which nothing is violated beyond its tolerance; the second takes, among the
     constraints met until then, the one that is met most steeply (Harris, Math. Programming 5 (1973) 1-28). When the run
@@ -29,26 +29,20 @@ def nearest(progress: Progress, along: Array, length: float, eligible: NDArray[n
     """
     statement, values = progress.statement, progress.values
     speed = np.abs(along)
-    met = eligible & (speed > PARALLEL * length)
-    room = np.where(along < 0.0, values - statement.lower, statement.upper - values)
-    ratios = np.where(met, (room + progress.slack) / np.maximum(speed, PARALLEL * length), np.inf)
-    furthest = ratios[ratios.argmin()]
+    away = held | (speed <= PARALLEL * length)
+    # the bound ahead has the quotient that is not negative
+    steps = np.maximum((statement.upper - values) / along, (statement.lower - values) / along)
+    steps[away] = np.inf
+    late = steps + progress.slack / speed
+    furthest = late[late.argmin()]
     if furthest == np.inf:
         return None
+    constraint = int((speed * (steps <= furthest)).argmax())
     if progress.least_index:
-        constraint = _lowest_of_the_first(room, speed, met)
-    else:
-        constraint = int(np.where(met & (room <= furthest * speed), speed, -1.0).argmax())
-    step = max(float(room[constraint]), 0.0) / float(speed[constraint])
+        least = float(steps[steps.argmin()])
+        constraint = int((steps <= least + 1e-13 * max(1.0, least)).argmax())
+    step = max(float(steps[constraint]), 0.0)
     return Block(constraint=constraint, side=side_reached(progress, constraint, along), step=step)
-
-
-def _lowest_of_the_first(room: Array, speed: Array, met: NDArray[np.bool_]) -> int:
-    """The lowest number among the constraints that are met first."""
-    among = np.flatnonzero(met)
-    ratios = np.maximum(room[among], 0.0) / speed[among]
-    least = float(ratios.min())
-    return int(among[np.flatnonzero(ratios <= least + 1e-13 * max(1.0, least))[0]])
 
 
 def side_reached(progress: Progress, constraint: int, along: Array) -> int:

@@ -58,20 +58,20 @@ class ReducedHessian:
 
     def newton(self, gradient: Array) -> Array:
         """-Z Zᵀg: to the minimiser on the working set."""
-        return -(self.Z @ (gradient @ self.Z))
+        return -self.Z.dot(gradient.dot(self.Z))
 
     def enter(self, direction: Array) -> None:
         """A direction joins the null space: Z gains it, or it is pending: O(n²)."""
-        d, product = direction, self.statement.H @ direction
-        curvature = float(d @ product)
+        d, product = direction, self.statement.H.dot(direction)
+        curvature = float(d.dot(product))
         for _ in range(2 if self.size else 0):
-            part = product @ self.Z
-            d = d - self.Z @ part
-            product = self.statement.H @ d
-            before, curvature = curvature, float(d @ product)
+            part = product.dot(self.Z)
+            d = d - self.Z.dot(part)
+            product = self.statement.H.dot(d)
+            before, curvature = curvature, float(d.dot(product))
             if abs(curvature) > 0.01 * abs(before):
                 break  # no digits were lost that a second turn would bring back
-        length = float(d @ d)
+        length = float(d.dot(d))
         rounding = 0.0 if curvature > 1e-8 * self._top * length else self.statement.rounding(d)
         if curvature > rounding:
             self._columns[:, self.size] = d / sqrt(curvature)
@@ -85,19 +85,19 @@ class ReducedHessian:
         pending, self.pending = self.pending, None
         if self.size == 0:
             return
-        along = normal @ self.Z
-        length = sqrt(along @ along)
+        along = normal.dot(self.Z)
+        length = sqrt(along.dot(along))
         if length == 0.0:
             return
         last = self._reflect(along, length)
         if pending is not None:
-            self.enter(length * pending - float(normal @ pending) * last)
+            self.enter(length * pending - float(normal.dot(pending)) * last)
 
     def _reflect(self, along: Array, length: float) -> Array:
         """Turn Z so that the normal meets its last column alone, and take that out; normalᵀ column = length."""
         sign = -1.0 if along[-1] > 0.0 else 1.0
         along[-1] -= sign * length
-        add_rank_one(self.Z, -2.0 / float(along @ along), self.Z @ along, along)
+        add_rank_one(self.Z, -2.0 / float(along.dot(along)), self.Z.dot(along), along)
         self.size -= 1
         return sign * self._columns[:, self.size]
 

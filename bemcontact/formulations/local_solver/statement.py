@@ -75,12 +75,12 @@ class Statement:
 
     def values(self, x: Array) -> Array:
         """[x; A x]."""
-        return np.concatenate([x, self.A @ x]) if self.A.shape[0] else x
+        return np.concatenate([x, self.A.dot(x)]) if self.A.shape[0] else x
 
     def transposed(self, y: Array) -> Array:
         """[I; A]ᵀ y."""
         n = self.c.size
-        return y[:n] + y[n:] @ self.A
+        return y[:n] + y[n:].dot(self.A)
 
     def normal(self, constraint: int) -> Array:
         """Gradient of one constraint."""
@@ -100,9 +100,10 @@ class Statement:
         return sides
 
     def rounding(self, d: Array) -> float:
-        """What dᵀHd could be by rounding alone."""
+        """What dᵀHd could be by rounding alone, of its terms and of the components of d, which are no better than d."""
         size = np.abs(d)
-        return 10.0 * sqrt(d.size) * EPS * float(size @ (self.absolute[0] @ size))
+        product = self.absolute[0].dot(size)
+        return 10.0 * sqrt(d.size) * EPS * float(size.dot(product) + largest(size) * largest(product * (size > 0.0)))
 
     def violation(self, values: Array) -> Array:
         """How far each constraint is outside its bounds; 0 inside."""

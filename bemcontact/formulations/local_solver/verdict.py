@@ -7,9 +7,7 @@ from numpy.typing import NDArray
 
 from bemcontact.formulations.local_solver.dead_point import CriticalCone
 from bemcontact.formulations.local_solver.progress import Progress
-from bemcontact.formulations.local_solver.statement import Statement
-
-Array = NDArray[np.float64]
+from bemcontact.formulations.local_solver.statement import EPS, Array, Statement, largest
 
 WEAK = 10.0
 """Multipliers below this many optimality tolerances are treated as zero in the critical cone."""
@@ -89,28 +87,30 @@ def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
 
 
 def separates(statement: Statement, certificate: Array) -> bool:
-    """Whether [I; A]ᵀy = 0 while y lower (y > 0) and y upper (y < 0) sum to more than zero: no x is feasible.
-
-    Each component of the combination is held against its own terms, so that a column of small numbers counts too.
-    """
+    """Whether [I; A]ᵀy = 0 while y lower (y > 0) and y upper (y < 0) sum to more than zero: no x is feasible."""
     y = certificate
     used = y != 0.0
     bounds = np.where(y > 0.0, statement.lower, statement.upper)[used]
     if not np.all(np.isfinite(bounds)):
         return False
     terms = y[used] * bounds
-    n = statement.c.size
-    sizes = np.abs(y[:n]) + np.abs(statement.A).T @ np.abs(y[n:])
-    cancels = np.abs(statement.transposed(y)) <= 1e-11 * max(10, n) * sizes
+    cancels = np.abs(statement.transposed(y)) <= _noise(statement, y)
     return bool(np.all(cancels)) and float(terms.sum()) > 1e-10 * float(np.abs(terms).sum())
+
+
+def _noise(statement: Statement, y: Array) -> Array:
+    """What each component of [I; A]ᵀy could be by rounding: of its own terms, and of its column's entries (n,)."""
+    n, A = statement.c.size, statement.absolute[2]
+    size = np.abs(y)
+    of_terms = 1e-11 * max(10, n) * (size[:n] + size[n:] @ A)
+    return np.maximum(of_terms, 4.0 * EPS * A.max(axis=0, initial=0.0) * float(size[n:].sum()))
 
 
 def certified(statement: Statement, certificate: Array) -> Array | None:
     """The certificate if it separates, its bound multipliers recomputed so that [I; A]ᵀy = 0 to the last digits."""
     n = statement.c.size
-    y = np.where(np.abs(certificate) > 1e-11 * np.abs(certificate).max(initial=0.0), certificate, 0.0)
+    y = np.where(np.abs(certificate) > 1e-11 * largest(certificate), certificate, 0.0)
     y[:n] = 0.0
     y[:n] = -statement.transposed(y)
-    noise = 1e-11 * max(10, n) * (np.abs(statement.A).T @ np.abs(y[n:]))
-    y[:n] = np.where(np.abs(y[:n]) > noise, y[:n], 0.0)
+    y[:n][np.abs(y[:n]) <= _noise(statement, np.concatenate([np.zeros(n), y[n:]]))] = 0.0
     return y if separates(statement, y) else None

@@ -120,7 +120,7 @@ def _second_order(
         return _minimiser(descent, conditions, multipliers, status)
     direction = curvature.direction
     along = progress.statement.values(direction)
-    block = nearest(progress, along, 1.0, ~conditions.strong)
+    block = nearest(progress, along, 1.0, conditions.strong)
     if block is None:
         ray = cleaned_ray(progress, direction)
         if ray is None:
@@ -145,7 +145,7 @@ def _strict(descent: Descent, conditions: FirstOrder) -> bool:
     Recomputed: with W N = I and W Z = 0 the columns of Z span the null space, and Zᵀ H Z = I.
     """
     working, hessian = descent.working, descent.hessian
-    if working.temporary or conditions.weak.any() or (working.idle == conditions.strong).any():
+    if working.temporary or conditions.weak.any() or (working.held != conditions.strong).any():
         return False
     Z, n = hessian.Z, working.free.size
     inverse = np.abs(working.W @ working.N - np.eye(working.size)).max(initial=0.0) < 1e-6
@@ -190,7 +190,7 @@ def _refined(progress: Progress, descent: Descent) -> Array:
     n, found = working.free.size, working.multipliers(progress.gradient)
     real = working.ids >= 0
     multipliers = np.zeros(progress.values.size)
-    multipliers[:n] = found[:n] * ~working.free
+    multipliers[:n] = found[:n] * (1.0 - working.free)
     multipliers[working.ids[real]] = found[n:][real]
     return multipliers
 

@@ -42,10 +42,10 @@ class WorkingSet:
     ----------
     sides : (n + m,) int8 array
         What is held.
-    idle : (n + m,) bool array
-        Constraints that are not held.
-    free : (n,) bool array
-        Variables that are not fixed by a bound; the first part of `idle`.
+    held : (n + m,) bool array
+        The same without sides.
+    free : (n,) array
+        1 for a variable that is not fixed by a bound, else 0.
     number : int
         How many constraints are held, temporary ones included.
     worn : bool
@@ -64,8 +64,8 @@ class WorkingSet:
         n, A = statement.c.size, statement.A
         self.statement = statement
         self.sides = sides.copy()
-        self.idle = sides == 0
-        self.free = self.idle[:n]
+        self.held = sides != 0
+        self.free = (~self.held[:n]).astype(float)
         self._N, self._W = np.zeros((n, n), order="F"), np.zeros((n, n))
         self._ids, self._signs = np.zeros(n, dtype=np.intp), np.zeros(2 * n)
         free, rows = np.flatnonzero(self.free), np.flatnonzero(sides[n:])
@@ -73,7 +73,7 @@ class WorkingSet:
         self._resize(r := kept.size)
         if r < rows.size:
             left_out = n + np.delete(rows, kept)
-            self.sides[left_out], self.idle[left_out] = 0, True
+            self.sides[left_out], self.held[left_out] = 0, False
         self.number = n - free.size + r
         self.temporary, self.worn = 0, False
         self._ids[:r] = n + rows[kept]
@@ -90,15 +90,20 @@ class WorkingSet:
         self.N, self.W, self.ids = self._N[:, :rows], self._W[:rows], self._ids[:rows]
         self.signs = self._signs[: self.free.size + rows]
 
+    @property
+    def numbers(self) -> NDArray[np.intp]:
+        """The constraint of each place (n + r,): the variables, then `ids`."""
+        return np.concatenate([np.arange(self.free.size), self.ids])
+
     def multipliers(self, gradient: Array) -> Array:
         """Of the fixed variables, beside the reduced gradient of the free ones, and of the rows (n + r,)."""
         if self.size == 0:
             return gradient
-        of_rows = gradient @ self.N
-        correction = (gradient - of_rows @ self.W) @ self.N
-        self.worn = self.worn or correction @ correction > WEAR**2 * (of_rows @ of_rows)
+        of_rows = gradient.dot(self.N)
+        correction = (gradient - of_rows.dot(self.W)).dot(self.N)
+        self.worn = self.worn or correction.dot(correction) > WEAR**2 * of_rows.dot(of_rows)
         of_rows += correction
-        return np.concatenate([gradient - of_rows @ self.W, of_rows])
+        return np.concatenate([gradient - of_rows.dot(self.W), of_rows])
 
     def add(self, constraint: int, side: int) -> Array:
         """One constraint enters, whose normal is not in the span of the others; returns its normal: O(n²)."""
@@ -106,19 +111,19 @@ class WorkingSet:
         normal = self.statement.normal(constraint)
         sign = side if side != EQUALITY else 0
         if constraint >= n:
-            self._append(normal, constraint, sign, self._hold(normal, normal @ self.N))
+            self._append(normal, constraint, sign, self._hold(normal, normal.dot(self.N)))
         else:
             if self.size:
                 self._hold(normal, self.N[constraint].copy())
                 self.N[constraint] = 0.0
-            self._signs[constraint] = sign
-        self.sides[constraint], self.idle[constraint] = side, False
+            self._signs[constraint], self.free[constraint] = sign, 0.0
+        self.sides[constraint], self.held[constraint] = side, True
         self.number += 1
         return normal
 
     def fix(self, direction: Array, kind: int) -> None:
         """A temporary row enters, with a direction of the null space as its normal."""
-        self._append(direction, kind, 0, self._hold(direction, direction @ self.N))
+        self._append(direction, kind, 0, self._hold(direction, direction.dot(self.N)))
         self.number += 1
         self.temporary += 1
 
@@ -126,9 +131,9 @@ class WorkingSet:
         """N loses what it has along the normal, by the normal's part outside the span; the new column of N."""
         outside = normal * self.free
         if self.size:
-            outside -= (along @ self.W) * self.free
-            outside -= (outside @ self.N) @ self.W * self.free
-        inverse = outside / (outside @ normal)
+            outside -= along.dot(self.W) * self.free
+            outside -= outside.dot(self.N).dot(self.W) * self.free
+        inverse = outside / outside.dot(normal)
         add_rank_one(self.N, -1.0, inverse, along)
         return inverse
 
@@ -146,22 +151,22 @@ class WorkingSet:
         n = self.free.size
         if place < n:
             direction, constraint = self._along_variable(place), place
-            self._signs[place] = 0.0
+            self._signs[place], self.free[place] = 0.0, 1.0
         else:
             direction, constraint = self._N[:, place - n].copy(), self._forget(place - n)
         if self.size:
-            direction -= self.N @ (self.W @ direction)
+            direction -= self.N.dot(self.W.dot(direction))
         if constraint >= 0:
-            self.sides[constraint], self.idle[constraint] = 0, True
+            self.sides[constraint], self.held[constraint] = 0, False
         self.number -= 1
-        direction /= sqrt(direction @ direction)
+        direction /= sqrt(direction.dot(direction))
         if self.size:
-            add_rank_one(self.N, -1.0, direction, direction @ self.N)
+            add_rank_one(self.N, -1.0, direction, direction.dot(self.N))
         return constraint, direction
 
     def _along_variable(self, variable: int) -> Array:
         """The direction that changes a fixed variable and no row."""
-        direction = -(self.N @ self.W[:, variable]) if self.size else np.zeros(self.free.size)
+        direction = -self.N.dot(self.W[:, variable]) if self.size else np.zeros(self.free.size)
         direction[variable] = 1.0
         return direction
 
@@ -178,7 +183,7 @@ class WorkingSet:
         """The nearest point on the bounds of the working set."""
         n, lower, upper = self.free.size, self.statement.lower, self.statement.upper
         targets = np.where(self.sides == 1, upper, lower)
-        x = np.where(self.free, x, targets[:n])
+        x = np.where(self.held[:n], targets[:n], x)
         real = self.ids >= 0
         lack = np.where(real, targets[self.ids], 0.0) - np.where(real, self.W @ x, 0.0)
         return x + self.N @ lack
