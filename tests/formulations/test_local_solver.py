@@ -183,7 +183,7 @@ def test_infeasibility_agrees_with_linear_programming(seed):
 
 @pytest.mark.parametrize("seed", range(20))
 def test_units_of_variables_rows_and_objective_change_no_answer(seed):
-    """Powers of two are removed exactly by the equilibration, so the runs are the same to the last digit."""
+    """Powers of two are removed by the equilibration save where a factor is a tie of rounding: same status and value."""
     H, c, A, cl, cu, bl, bu = random_qp(seed)
     rng = np.random.default_rng(seed)
     D, E = 4.0 ** rng.integers(-6, 7, c.size), 2.0 ** rng.integers(-12, 13, cl.size)
@@ -365,6 +365,53 @@ def test_the_iteration_limit_is_a_status_and_not_a_claim():
     result = minimize_qp(-np.eye(6), np.ones(6), bl=-np.ones(6), bu=np.ones(6), options=QPOptions(max_iterations=2))
     assert result.status is QPStatus.ITERATION_LIMIT
     assert result.iterations == 2
+
+
+def test_no_iteration_is_needed_to_know_an_optimal_start():
+    """(1, -1) is the minimiser of a bowl inside its box; one iteration less than none is asked for and none is used."""
+    H, c = np.array([[2.0, 1.0], [1.0, 3.0]]), np.array([-1.0, 2.0])
+    result = minimize_qp(H, c, x0=[1.0, -1.0], bl=[-2.0, -2.0], options=QPOptions(max_iterations=0))
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.iterations == 0
+    away = minimize_qp(H, c, x0=[0.0, 0.0], bl=[-2.0, -2.0], options=QPOptions(max_iterations=0))
+    assert away.status is QPStatus.ITERATION_LIMIT
+
+
+@pytest.mark.parametrize("coupling", [4e-3, 0.0])
+@pytest.mark.parametrize("curvature", [2e-6, 2e-10, 2e-12, 2e-16, 2e-24])
+def test_a_small_curvature_is_told_from_none_by_its_own_terms(coupling, curvature):
+    """½ x'Hx + c'x at (0, t) is curvature (t²/2 - 5e10 t), least at t = 5e10; the multiplier of x1 is coupling t."""
+    H = np.array([[2.0, coupling], [coupling, curvature]])
+    result = minimize_qp(H, np.array([0.0, -5e10 * curvature]), bl=np.zeros(2))
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(result.x, [0.0, 5e10], rtol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_variables_of_very_different_size_are_judged_each_by_its_own(seed):
+    """A complementarity problem in squares: |u - M p - q|² + u'p >= 0 is 0 at its solution alone; M is about 1e-6."""
+    rng = np.random.default_rng(seed)
+    n, small = 9, 1e-6
+    x = np.linspace(-1.0, 1.0, n)
+    M = small * (np.exp(-np.abs(x[:, None] - x)) + np.eye(n))
+    p = np.where(np.abs(x) < 0.6, rng.uniform(1e4, 2e5, n), 0.0)
+    u = np.where(p > 0.0, 0.0, rng.uniform(0.05, 0.2, n))
+    q = u - M @ p
+    G = np.hstack([np.eye(n), -M])
+    H = 2.0 * G.T @ G + np.block([[np.zeros((n, n)), np.eye(n)], [np.eye(n), np.zeros((n, n))]])
+    result = minimize_qp(H, -2.0 * G.T @ q, bl=np.zeros(2 * n))
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(result.x[:n], u, atol=1e-8 * u.max())
+    assert_allclose(result.x[n:], p, atol=1e-8 * p.max())
+
+
+@pytest.mark.parametrize("noise", [0.0, 3e-16])
+def test_noise_in_a_column_hides_no_contradiction(noise):
+    """x1 + x2 = 1 and x1 + x2 + noise x3 = 2 with x3 + x4 = 0: only x3 of 3e15 and more could reconcile the two."""
+    A = np.array([[1.0, 1.0, 0.0, 0.0], [1.0, 1.0, noise, 0.0], [0.0, 0.0, 1.0, 1.0]])
+    b = np.array([1.0, 2.0, 0.0])
+    result = minimize_qp(np.eye(4), np.zeros(4), A, b, b)
+    assert result.status is QPStatus.INFEASIBLE
 
 
 def test_a_start_outside_the_bounds_is_moved_to_them():

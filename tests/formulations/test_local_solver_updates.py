@@ -31,7 +31,8 @@ def start(data, sides):
 def assert_defined(data, working, hessian):
     """W N = I with N the shortest; W Z = 0, ZᵀHZ = I; the pending direction conjugate, of no positive curvature."""
     n, scale = data.c.size, np.abs(data.H).max()
-    N, W, Z, free = working.N, working.W, hessian.Z, working.free
+    N, W, Z, free = working.N, working.W, hessian.Z, ~working.held[: data.c.size]
+    assert_allclose(working.free, free)
     assert_allclose(W @ N, np.eye(working.size), atol=1e-9)
     assert_allclose(N[free], np.linalg.pinv(W[:, free]), atol=1e-8 * max(1.0, np.abs(N).max(initial=0.0)))
     assert not N[~free].any()
@@ -53,12 +54,12 @@ def assert_defined(data, working, hessian):
 
 def change_at_random(data, working, hessian, rng):
     """Drop or add one constraint, by the rules of the method: an addition if a direction is pending."""
-    idle, n = np.flatnonzero(working.idle), data.c.size
+    idle, n = np.flatnonzero(~working.held), data.c.size
     slopes = np.concatenate([np.eye(n), data.A])[idle]
     if hessian.pending is not None:
         hit = int(idle[np.argmax(np.abs(slopes @ hessian.pending))])
     elif working.number and (rng.random() < 0.5 or hessian.size < 2):
-        places = np.concatenate([np.flatnonzero(~working.free), n + np.arange(working.size)])
+        places = np.concatenate([np.flatnonzero(working.held[:n]), n + np.arange(working.size)])
         hessian.enter(working.drop(int(rng.choice(places)))[1])
         return
     else:
@@ -92,7 +93,7 @@ def test_multipliers_are_those_of_least_squares(seed):
     working, _ = start(data, sides)
     g = np.random.default_rng(seed).standard_normal(12)
     found = working.multipliers(g)
-    expected = np.linalg.lstsq(working.W[:, working.free].T, g[working.free], rcond=None)[0]
+    expected = np.linalg.lstsq(working.W[:, working.free > 0].T, g[working.free > 0], rcond=None)[0]
     assert_allclose(found[12:], expected, atol=1e-12)
     assert_allclose(found[:12], g - working.W.T @ expected, atol=1e-12)
     assert_allclose(working.signs[[1, 4]], [-1.0, 1.0])
@@ -127,7 +128,7 @@ def test_dependent_rows_stay_out_of_the_working_set():
     working = WorkingSet(fixed, np.array([-1, -1, 0, 2], dtype=np.int8))
     assert working.size == 0
     assert working.sides.tolist() == [-1, -1, 0, 0]
-    assert working.idle.tolist() == [False, False, True, True]
+    assert working.held.tolist() == [True, True, False, False]
     twice = Statement(
         H=np.eye(2), c=np.zeros(2), A=np.array([[1.0, 0.0], [2.0, 0.0]]), lower=np.zeros(4), upper=np.ones(4)
     )
@@ -152,7 +153,7 @@ def test_the_newton_step_ends_where_the_gradient_on_the_working_set_vanishes():
     working, hessian = start(data, sides)
     x = working.onto(np.zeros(12))
     x = x + hessian.newton(data.H @ x + data.c)
-    assert_allclose(working.multipliers(data.H @ x + data.c)[:12][working.free], 0.0, atol=1e-12)
+    assert_allclose(working.multipliers(data.H @ x + data.c)[:12][working.free > 0], 0.0, atol=1e-12)
     assert_allclose(x[2], -1.0)
     assert_allclose(data.A[[1, 6]] @ x, -1.0, atol=1e-12)
 

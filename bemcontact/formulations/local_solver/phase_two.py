@@ -48,10 +48,19 @@ class Descent:
     ----------
     working, hessian
         The constraints held, and the Hessian on what they leave free.
+    dropped : int or None
+        The constraint released for the next step.
+    changed : bool
+        Whether the working set has changed since the last whole Newton step.
+    whole, idle : int
+        Whole Newton steps in a row; releases since the last step.
     """
 
     def __init__(self, progress: Progress, sides: Sides) -> None:
         self.progress = progress
+        self.dropped: int | None = None
+        self.changed = False
+        self.whole = self.idle = 0
         self._refused: set[int] = set()
         self._renew(sides)
         progress.place(self.working.onto(progress.x))
@@ -65,34 +74,31 @@ class Descent:
 
     def run(self) -> Outcome:
         """Walk until no constraint can be dropped with profit, or for ever."""
-        progress = self.progress
-        dropped: int | None = None
-        whole = idle = moved = 0
-        while not progress.exhausted:
-            working, hessian = self.working, self.hessian
-            if hessian.pending is not None:
-                outcome = self._follow_curvature(hessian.pending, dropped)
-                dropped = None
-                if outcome is not None:
-                    return outcome
-                continue
-            newton, place = self._next(working.multipliers(progress.gradient), whole)
-            if newton:
-                whole = whole + 1 if self._newton_step(dropped) else 0
-                dropped = None
-                continue
-            if place is None:
-                return Outcome(ending=Ending.STATIONARY)
-            idle, moved = (idle + 1 if progress.iterations[1] == moved else 0), progress.iterations[1]
-            if idle > 2 * working.number + 10:  # constraints come and go without a step: multipliers are noise
-                return Outcome(ending=Ending.INACCURATE)
-            whole = 0
-            dropped, direction = working.drop(place)
-            hessian.enter(direction)
-            progress.changes += dropped < 0
-        return Outcome(ending=Ending.LIMIT)
+        while True:
+            newton = self.changed and not self.hessian.is_stationary(self.progress.gradient, 0.1 * self.progress.zero)
+            if self.hessian.pending is None and not newton:
+                newton, place = self._next(self.working.multipliers(self.progress.gradient))
+                if not newton:
+                    if place is None:
+                        return Outcome(ending=Ending.STATIONARY)
+                    if self.idle > 2 * self.working.number + 10:  # multipliers are noise: releases lead nowhere
+                        return Outcome(ending=Ending.INACCURATE)
+                    self._release(place)
+            if self.progress.exhausted:
+                return Outcome(ending=Ending.LIMIT)
+            if self.hessian.pending is None:
+                self._newton_step()
+            elif (outcome := self._follow_curvature(self.hessian.pending)) is not None:
+                return outcome
 
-    def _next(self, multipliers: Array, whole: int) -> tuple[bool, int | None]:
+    def _release(self, place: int) -> None:
+        """Drop a constraint; its direction joins the null space."""
+        self.dropped, direction = self.working.drop(place)
+        self.hessian.enter(direction)
+        self.progress.changes += self.dropped < 0
+        self.changed, self.whole, self.idle = True, 0, self.idle + 1
+
+    def _next(self, multipliers: Array) -> tuple[bool, int | None]:
         """Whether to take a Newton step; else the place of a constraint to drop, if there is one.
 
         First by one tolerance for all, which is quick; where that finds nothing, each component by its own. A whole
@@ -103,29 +109,30 @@ class Descent:
         if self._refused:
             multipliers = np.where(np.isin(working.numbers, list(self._refused)), 0.0, multipliers)
         reduced = multipliers[:n] * working.free
-        if whole < 3 and largest(reduced) > 0.1 * progress.zero:
+        if self.whole < 3 and largest(reduced) > 0.1 * progress.zero:
             return True, None
         place = wrong_sign(working, multipliers, progress.zero, least_index=least)
         if place is not None:
             return False, place
         zero = progress.fine_zero(multipliers[n:], working.W)
-        if whole < 3 and (np.abs(reduced) > zero).any():
+        if self.whole < 3 and (np.abs(reduced) > zero).any():
             return True, None
         zeros = np.concatenate([zero, zero @ np.abs(working.N)])
         return False, wrong_sign(working, multipliers, zeros, least_index=least)
 
-    def _newton_step(self, dropped: int | None) -> bool:
-        """Towards the minimiser on the working set, as far as the constraints allow; whether all the way."""
+    def _newton_step(self) -> None:
+        """Towards the minimiser on the working set, as far as the constraints allow."""
         direction = self.hessian.newton(self.progress.gradient)
         along = self.progress.statement.values(direction)
         length = sqrt(direction.dot(direction))
         block = nearest(self.progress, along, length, self.working.held)
-        if block is not None and block.step > 1.0:
-            block = None
-        self._advance(direction, along, length, 1.0 if block is None else block.step, block, dropped)
-        return block is None
+        if block is None or block.step > 1.0:
+            self.changed, self.whole = False, self.whole + 1
+            self._advance(direction, along, length, 1.0, None)
+        else:
+            self._advance(direction, along, length, block.step, block)
 
-    def _follow_curvature(self, direction: Array, dropped: int | None) -> Outcome | None:
+    def _follow_curvature(self, direction: Array) -> Outcome | None:
         """Along the direction of non-positive curvature downhill to the next constraint; None if the walk goes on."""
         slope, curvature = float(self.progress.gradient.dot(direction)), self.hessian.curvature
         level = abs(slope) <= self.progress.zero and abs(slope) <= self._fine_slope(direction)
@@ -134,10 +141,9 @@ class Descent:
             self.hessian.leave(direction)
             return None
         along = self.progress.statement.values(direction)
-        signs = (1.0, -1.0) if level else (-np.sign(slope),)
-        blocks = [(sign, nearest(self.progress, sign * along, 1.0, self.working.held)) for sign in signs]
         best: tuple[float, float, Block] | None = None
-        for sign, block in blocks:
+        for sign in (1.0, -1.0) if level else (-np.sign(slope),):
+            block = nearest(self.progress, sign * along, 1.0, self.working.held)
             if block is None:
                 return Outcome(ending=Ending.UNBOUNDED, ray=sign * direction)
             change = block.step * (sign * slope + 0.5 * block.step * curvature)
@@ -145,14 +151,14 @@ class Descent:
                 best = (change, sign, block)
         assert best is not None
         _, sign, block = best
-        self._advance(sign * direction, sign * along, 1.0, block.step, block, dropped)
+        self._advance(sign * direction, sign * along, 1.0, block.step, block)
         return None
 
-    def _refuse(self, block: Block | None, step: float, dropped: int | None) -> None:
-        """A constraint that stops the step along its own release has no multiplier to speak of, until the point moves."""
+    def _refuse(self, block: Block | None, step: float) -> None:
+        """A constraint that stops the step of its own release has no multiplier to speak of until the point moves."""
         if step > 0.0:
             self._refused.clear()
-        elif block is not None and block.constraint == dropped:
+        elif block is not None and block.constraint == self.dropped:
             self._refused.add(block.constraint)
 
     def _fine_slope(self, direction: Array) -> float:
@@ -160,15 +166,14 @@ class Descent:
         of_rows = self.working.multipliers(self.progress.gradient)[direction.size :]
         return float(np.abs(direction) @ self.progress.fine_zero(of_rows, self.working.W))
 
-    def _advance(
-        self, direction: Array, along: Array, length: float, step: float, block: Block | None, dropped: int | None
-    ) -> None:
+    def _advance(self, direction: Array, along: Array, length: float, step: float, block: Block | None) -> None:
         """Take the step, and the constraint that ended it."""
         progress, working = self.progress, self.working
         nonpositive = int(self.hessian.pending is not None)
         progress.move(direction, along, step, length)
-        self._refuse(block, step, dropped)
+        self._refuse(block, step)
         if block is not None:
+            self.changed, self.whole = True, 0
             self.hessian.leave(working.add(block.constraint, block.side))
             if block.constraint < working.free.size:
                 self.hessian.clear(block.constraint)
@@ -179,7 +184,8 @@ class Descent:
             value=progress.objective,
             step=step,
             added=None if block is None else block.constraint,
-            dropped=dropped,
+            dropped=self.dropped,
             working=working.number,
             nonpositive=nonpositive,
         )
+        self.dropped, self.idle = None, 0

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.formulations.local_solver.dead_point import examine
-from bemcontact.formulations.local_solver.phase_one import reach_feasibility
+from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import nearest
@@ -77,7 +77,7 @@ def walk(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
                 return _finding(progress, QPStatus.INFEASIBLE, sides, certificate=certificate), start or (0, 0, 0)
             failures += 1
             continue
-        if progress.exhausted and failures + sum(progress.iterations):
+        if progress.exhausted and violated_signs(progress).any():
             break
         # phase one ends within the tolerance; equalities are met as exactly as the arithmetic allows
         sides = np.where(progress.statement.equality, 2, sides).astype(np.int8)
