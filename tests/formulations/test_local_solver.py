@@ -183,7 +183,7 @@ def test_infeasibility_agrees_with_linear_programming(seed):
 
 @pytest.mark.parametrize("seed", range(20))
 def test_units_of_variables_rows_and_objective_change_no_answer(seed):
-    """Powers of two are removed by the equilibration save where a factor is a tie of rounding: same status and value."""
+    """The equilibration removes powers of two, save where a factor is a tie of rounding: same status, same value."""
     H, c, A, cl, cu, bl, bu = random_qp(seed)
     rng = np.random.default_rng(seed)
     D, E = 4.0 ** rng.integers(-6, 7, c.size), 2.0 ** rng.integers(-12, 13, cl.size)

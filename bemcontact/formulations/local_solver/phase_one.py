@@ -91,16 +91,17 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
 def _breakpoint(progress: Progress, signs: Array, along: Array, length: float) -> Block | None:
     """Where the sum of infeasibilities stops falling: the violated constraint that turns the slope."""
     statement = progress.statement
-    reduced = -signs * along
-    towards = (reduced > 1e-10 * length).nonzero()[0]
-    near = np.where(signs > 0.0, statement.upper, statement.lower)[towards]
-    far = np.where(signs > 0.0, statement.lower, statement.upper)[towards]
-    values, speed = progress.values[towards], reduced[towards]
-    steps = np.concatenate([np.abs(near - values) / speed, np.abs(far - values) / speed])
+    falling = -signs * along
+    towards = (falling > 1e-10 * length).nonzero()[0]
+    above, lower, upper = signs[towards] > 0.0, statement.lower[towards], statement.upper[towards]
+    values, speed = progress.values[towards], falling[towards]
+    near = np.where(above, values - upper, lower - values)
+    steps = np.concatenate([near, near + (upper - lower)])
+    speeds = np.concatenate([speed, speed])
+    steps /= speeds
     order = steps.argsort(kind="stable")
-    slope = -float(reduced.sum())
-    slopes = slope + np.concatenate([speed, speed])[order].cumsum()
-    turned = (slopes >= 1e-12 * slope).nonzero()[0]
+    slope = -float(falling.sum())
+    turned = (slope + speeds[order].cumsum() >= 1e-12 * slope).nonzero()[0]
     if turned.size == 0:
         return None
     at = int(order[turned[0]])

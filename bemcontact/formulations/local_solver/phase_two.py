@@ -171,6 +171,7 @@ class Descent:
         progress, working = self.progress, self.working
         nonpositive = int(self.hessian.pending is not None)
         progress.move(direction, along, step, length)
+        progress.look()
         self._refuse(block, step)
         if block is not None:
             self.changed, self.whole = True, 0

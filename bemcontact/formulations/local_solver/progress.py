@@ -87,17 +87,16 @@ class Progress:
     def place(self, x: Array) -> None:
         """Move without a step: after a correction."""
         self.x, self.values = x, self.statement.values(x)
-        self._look()
+        self.look()
 
     def move(self, direction: Array, along: Array, step: float, length: float) -> None:
-        """Take a step; `along` is [d; A d], `length` that of the direction."""
+        """Take a step; `along` is [d; A d], `length` that of the direction. The gradient waits for `look`."""
         self.stalled = 0 if step * length > 1e-11 else self.stalled + 1
         if step > 0.0:
             self.x = self.x + step * direction
             self.values = self.values + step * along
-            self._look()
 
-    def _look(self) -> None:
+    def look(self) -> None:
         """The gradient at the point."""
         self.travelled = np.maximum(self.travelled, np.abs(self.x))
         product = self.statement.H.dot(self.x)

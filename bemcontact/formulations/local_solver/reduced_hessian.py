@@ -79,7 +79,8 @@ class ReducedHessian:
             if abs(curvature) > 0.01 * abs(before):
                 break  # no digits were lost that a second turn would bring back
         length = float(d.dot(d))
-        rounding = 0.0 if curvature > 1e-8 * self._top * length else self.statement.rounding(d)
+        clear = abs(curvature) > 1e-8 * self._top * length
+        rounding = 0.0 if clear else self.statement.rounding(d)
         if curvature > rounding:
             self._columns[:, self.size] = d / sqrt(curvature)
             self.size += 1
