@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from bemcontact.formulations.local_solver.factorisations import is_definite, orthogonal
+from bemcontact.formulations.local_solver.factorisations import is_definite, orthogonal, unit_rows
 from bemcontact.formulations.local_solver.statement import Array
 from bemcontact.formulations.local_solver.working_set import DEPENDENT
 
@@ -65,7 +65,7 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     onto the cone, then by all faces: a lowest direction of the cone lies inside one face and is an eigenvector there.
     """
     units = _units(np.abs(H[np.ix_(cone.free, cone.free)]))
-    equal, weak = _normalised(cone.equal * units), _normalised(cone.weak * units)
+    equal, weak = unit_rows(cone.equal * units)[0], unit_rows(cone.weak * units)[0]
     N = null_space(equal, cone.free.size)
     reduced = N.T @ (units[:, None] * H[np.ix_(cone.free, cone.free)] * units) @ N
     if _positive_semidefinite(reduced):
@@ -88,12 +88,6 @@ def _units(size: Array) -> Array:
         rows = ((units[:, None] * size) * units).max(axis=1, initial=0.0)
         units = units / np.sqrt(np.where(rows > 0.0, rows, 1.0))
     return units
-
-
-def _normalised(rows: Array) -> Array:
-    """Rows of length one."""
-    length = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-    return rows / np.where(length > 0.0, length, 1.0)[:, None]
 
 
 def null_space(rows: Array, n: int) -> Array:

@@ -36,6 +36,13 @@ def is_definite(matrix: Array) -> bool:
     return matrix.shape[0] == 0 or potrf(matrix)[1] == 0
 
 
+def unit_rows(rows: Array) -> tuple[Array, Array]:
+    """Rows of length one, zero rows as they are, and the lengths."""
+    length = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    length[length == 0.0] = 1.0
+    return rows / length[:, None], length
+
+
 def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDArray[np.intp]]:
     """Pivoted QR of rowsᵀ: bases of the range and of the null space, the triangle, and the independent rows."""
     m, n = rows.shape

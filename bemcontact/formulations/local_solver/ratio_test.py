@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.statement import Array
 
-PARALLEL = 1e-10
-"""A normal whose product with the unit direction is below this is parallel to the constraint."""
+PARALLEL, FAINT = 1e-10, 1e-14
+"""A normal whose product with the unit direction is below this is parallel to the constraint; on a step so long that
+such a product would still lead out of its bounds, only what is rounding is."""
 
 
 class Block(NamedTuple):
@@ -27,12 +28,19 @@ def nearest(progress: Progress, along: Array, length: float, held: NDArray[np.bo
     constraints met until then, the one that is met most steeply (Harris, Math. Programming 5 (1973) 1-28). When the run
     has stalled: the lowest number among the ties.
     """
+    block = _first(progress, along, PARALLEL * length, held)
+    if block is None or block.step * length * PARALLEL > progress.options.feasibility_tolerance:
+        block = _first(progress, along, FAINT * length, held)
+    return block
+
+
+def _first(progress: Progress, along: Array, slow: float, held: NDArray[np.bool_]) -> Block | None:
+    """The first constraint met among those that are approached faster than `slow`."""
     statement, values = progress.statement, progress.values
     speed = np.abs(along)
-    away = held | (speed <= PARALLEL * length)
     # the bound ahead has the quotient that is not negative
     steps = np.maximum((statement.upper - values) / along, (statement.lower - values) / along)
-    steps[away] = np.inf
+    steps[held | (speed <= slow)] = np.inf
     late = steps + progress.slack / speed
     furthest = late[late.argmin()]
     if furthest == np.inf:

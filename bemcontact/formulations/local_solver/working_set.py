@@ -14,7 +14,7 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.formulations.local_solver.factorisations import add_rank_one, inverse_triangle, orthogonal
+from bemcontact.formulations.local_solver.factorisations import add_rank_one, inverse_triangle, orthogonal, unit_rows
 from bemcontact.formulations.local_solver.statement import Array, Sides, Statement
 
 EQUALITY = 2
@@ -22,7 +22,7 @@ TEMPORARY, FLAT = -1, -2
 """Numbers of rows that only fix a direction; FLAT once both its slope and its curvature were found zero."""
 
 DEPENDENT = 1e-9
-"""A normal whose part outside the span of the others is below this counts as dependent."""
+"""A normal whose part outside the span of the others is a smaller part of it counts as dependent."""
 
 WEAR = 1e-8
 """Relative size of a refinement that shows that the factors want renewal."""
@@ -69,7 +69,8 @@ class WorkingSet:
         self._N, self._W = np.zeros((n, n), order="F"), np.zeros((n, n))
         self._ids, self._signs = np.zeros(n, dtype=np.intp), np.zeros(2 * n)
         free, rows = np.flatnonzero(self.free), np.flatnonzero(sides[n:])
-        Y, self.null_space, T, kept = orthogonal(A[rows][:, free], DEPENDENT)
+        normals, length = unit_rows(A[rows][:, free])
+        Y, self.null_space, T, kept = orthogonal(normals, DEPENDENT)
         self._resize(r := kept.size)
         if r < rows.size:
             left_out = n + np.delete(rows, kept)
@@ -81,7 +82,7 @@ class WorkingSet:
         self._signs[:n] = np.where(self.sides[:n] == EQUALITY, 0, self.sides[:n])
         self._signs[n : n + r] = np.where(self.sides[self.ids] == EQUALITY, 0, self.sides[self.ids])
         if r:
-            self._N[free, :r] = Y @ inverse_triangle(T).T
+            self._N[free, :r] = Y @ inverse_triangle(T).T / length[kept]
         self.null_space = _spread(self.null_space, free, n)
 
     def _resize(self, rows: int) -> None:
