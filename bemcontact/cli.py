@@ -135,7 +135,9 @@ def solve(
     equilibrium: Annotated[
         Equilibrium, typer.Option(help="qp2, free bodies: exact, or penalised as in the paper.")
     ] = Equilibrium.CONSTRAINT,
-    start: Annotated[StartName, typer.Option(help="qp1, qp2: where the local solver starts.")] = StartName.NULL,
+    start: Annotated[
+        str, typer.Option(metavar="null|random|FILE", help="qp1, qp2: first point; a FILE that --json wrote.")
+    ] = "null",
     seed: Annotated[int | None, typer.Option(min=0, metavar="S", help="Of random starts, else 0.")] = None,
     starts: Annotated[int | None, typer.Option(min=1, metavar="N", help="Random starts: best of all ends.")] = None,
     refine: RefineOption = 1,
@@ -159,7 +161,6 @@ def solve(
     [bold]Examples[/bold]
       bemcontact solve models/cylinder_on_plane.yaml
       bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
-      bemcontact solve models/cylinder_on_plane.yaml --refine 3
       bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp1
@@ -170,6 +171,7 @@ def solve(
         _claim(spec, {"--figure": figure, "--json": json_claim, "--vtk": vtk_file})
         from bemcontact import analysis
         from bemcontact import spec as spec_file
+        from bemcontact.formulations import starts as starts_of
         from bemcontact.report import text
 
         problem = spec_file.load(spec, overrides or ()).refined(refine)
@@ -180,7 +182,7 @@ def solve(
             penalty=penalty,
             rows=rows,
             equilibrium=equilibrium,
-            start=start,
+            start=start if start in [*StartName] else starts_of.read_start(start),
             seed=seed,
             starts=starts,
         )

@@ -438,6 +438,35 @@ def test_each_option_leads_to_the_same_solution(block: Path, options: tuple[str,
     assert found["pressure"] == pytest.approx([3.0] * 9, rel=1e-9)
 
 
+def test_a_search_starts_from_a_file_of_results(block: Path, tmp_path: Path):
+    """From the contact state itself nothing has to enter or leave."""
+    before = tmp_path / "before.json"
+    run("solve", block, "--formulation", "qp1", "--json", before)
+    found = json.loads(run("solve", block, "--formulation", "qp1", "--start", before, "--json", "-").stdout)
+    assert found["search"]["start"] == "file before.json"
+    assert found["iterations"] < json.loads(before.read_text(encoding="utf-8"))["iterations"]
+    assert found["pressure"] == pytest.approx([3.0] * 9, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("content", "pattern"),
+    [
+        (None, "there is no such file"),
+        ("{", r":1:2: is no JSON"),
+        ("[1, 2]", "no list 'pressure' of numbers"),
+        ('{"pressure": [1.0]}', "no list 'normal_displacement'"),
+        ('{"pressure": [true], "normal_displacement": [0]}', "no list 'pressure' of numbers"),
+        ('{"pressure": [1], "normal_displacement": [0]}', "the start has 1 contact points and the problem 9"),
+        ('{"pressure": [1, 2], "normal_displacement": [0]}', "2 pressures and 1 displacements"),
+    ],
+)
+def test_a_file_that_is_no_start_is_refused(block: Path, tmp_path: Path, content: str | None, pattern: str):
+    start = tmp_path / "start.json"
+    if content is not None:
+        start.write_text(content, encoding="utf-8")
+    assert_refused(run("solve", block, "--formulation", "qp1", "--start", start), pattern)
+
+
 @pytest.mark.parametrize(
     ("options", "pattern"),
     [

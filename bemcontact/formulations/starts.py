@@ -1,16 +1,20 @@
 """Random starts of the local solver, and what is found from many of them: which ends, and how often each."""
 
+import json
+import os
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from bemcontact.choices import StartName
 from bemcontact.contact import Array, CondensedContact
-from bemcontact.errors import ProblemError
+from bemcontact.errors import ProblemError, SpecError
 from bemcontact.formulations.formulation import Formulation, FormulationOptions, Start
 from bemcontact.formulations.program import contact_residual
 from bemcontact.solution import ContactSolution, Status
+from bemcontact.text_file import text_of
 
 SPREAD = 2.0
 """Largest random pressure over T, and size of a random displacement over U."""
@@ -166,6 +170,41 @@ class StartChoice:
             return solve(condensed, replace(options, start=points[0])), None
         found = search_from(condensed, solve, options, self.count, self.seed or 0)
         return solve(condensed, replace(options, start=points[found.ends[0].first_start])), found
+
+
+def read_start(path: str | os.PathLike[str]) -> Start:
+    """Read where a solver is to start from a file of results, as `bemcontact solve --json` writes it.
+
+    Parameters
+    ----------
+    path : a JSON file with the lists `pressure` and `normal_displacement`, one number for each contact point
+
+    Returns
+    -------
+    Start
+
+    Raises
+    ------
+    SpecError
+        There is no such file, it is no JSON, or a list is missing or holds other things than numbers.
+    """
+    name, text = Path(path).name, text_of(path)
+    try:
+        found = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise SpecError(
+            f"{path}:{error.lineno}:{error.colno}: is no JSON ({error.msg}); name a file of results"
+        ) from None
+    lists = []
+    for key in ("pressure", "normal_displacement"):
+        values = found.get(key) if isinstance(found, dict) else None
+        if not isinstance(values, list) or not all(type(value) in (int, float) for value in values):
+            raise SpecError(
+                f"{path}: has no list '{key}' of numbers, one for each contact point; name a file that "
+                "`bemcontact solve --json FILE` has written"
+            )
+        lists.append(values)
+    return Start(pressure=np.array(lists[0], float), displacement=np.array(lists[1], float), label=f"file {name}")
 
 
 def search_from(
