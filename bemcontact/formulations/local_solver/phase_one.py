@@ -42,9 +42,9 @@ def reach_feasibility(progress: Progress, sides: Sides) -> tuple[Sides, Array | 
             dropped, along = working.drop(place)
             direction = -float(along.dot(gradient)) * along
         else:
-            direction = -reduced
+            direction = working.within(-reduced)
         working = _step(progress, working, signs, direction, dropped)
-        signs = violated_signs(progress)
+        signs = violated_signs(progress) * ~working.held  # what is held is on its bound, up to rounding
     return working.sides, None
 
 
@@ -74,7 +74,7 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
     if block is not None:
         progress.move(direction, along, block.step, length)
         working.add(block.constraint, block.side)
-    if block is None or working.worn:
+    if block is None:
         working = WorkingSet(progress.statement, working.sides)
     progress.write(
         phase=1,

@@ -62,15 +62,11 @@ class Descent:
         self.changed = False
         self.whole = self.idle = 0
         self._refused: set[int] = set()
-        self._renew(sides)
-        progress.place(self.working.onto(progress.x))
-
-    def _renew(self, sides: Sides) -> None:
-        """All factors from the data, temporary rows on the directions without positive curvature: O(n³)."""
-        self.working = WorkingSet(self.progress.statement, sides)
-        self.hessian = ReducedHessian(self.progress.statement, self.working.null_space)
+        self.working = WorkingSet(progress.statement, sides)
+        self.hessian = ReducedHessian(progress.statement, self.working.null_space)
         for direction in self.hessian.left_over.T:
             self.working.fix(direction, TEMPORARY)
+        progress.place(self.working.onto(progress.x))
 
     def run(self) -> Outcome:
         """Walk until no constraint can be dropped with profit, or for ever."""
@@ -178,8 +174,6 @@ class Descent:
             self.hessian.leave(working.add(block.constraint, block.side))
             if block.constraint < working.free.size:
                 self.hessian.clear(block.constraint)
-        if working.worn:
-            self._renew(working.sides)
         progress.write(
             phase=2,
             value=progress.objective,

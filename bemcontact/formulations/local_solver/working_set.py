@@ -25,7 +25,7 @@ DEPENDENT = 1e-9
 """A normal whose part outside the span of the others is a smaller part of it counts as dependent."""
 
 WEAR = 1e-8
-"""Relative size of a refinement that shows that the factors want renewal."""
+"""Relative size of a refinement that shows that N wants renewal."""
 
 
 class WorkingSet:
@@ -48,8 +48,6 @@ class WorkingSet:
         1 for a variable that is not fixed by a bound, else 0.
     number : int
         How many constraints are held, temporary ones included.
-    worn : bool
-        Whether rounding has piled up so far that the factors should be made anew.
     N, W : (n, r) and (r, n) arrays
         Right inverse, zero in the rows of fixed variables; normals of the rows held, on all variables.
     ids : (r,) int array
@@ -76,7 +74,7 @@ class WorkingSet:
             left_out = n + np.delete(rows, kept)
             self.sides[left_out], self.held[left_out] = 0, False
         self.number = n - free.size + r
-        self.temporary, self.worn = 0, False
+        self.temporary = 0
         self._ids[:r] = n + rows[kept]
         self._W[:r] = A[rows[kept]]
         self._signs[:n] = np.where(self.sides[:n] == EQUALITY, 0, self.sides[:n])
@@ -100,11 +98,27 @@ class WorkingSet:
         """Of the fixed variables, beside the reduced gradient of the free ones, and of the rows (n + r,)."""
         if self.size == 0:
             return gradient
+        of_rows, correction = self._least_squares(gradient)
+        if correction.dot(correction) > WEAR**2 * of_rows.dot(of_rows):
+            self._renew()
+            of_rows, _ = self._least_squares(gradient)
+        rest = gradient - of_rows.dot(self.W)
+        if self.number == self.free.size:
+            rest *= 1.0 - self.free  # at a vertex nothing is free, and what is left is rounding
+        return np.concatenate([rest, of_rows])
+
+    def _least_squares(self, gradient: Array) -> tuple[Array, Array]:
+        """Multipliers of the rows, and how much a refinement with the data had to mend in them."""
         of_rows = gradient.dot(self.N)
         correction = (gradient - of_rows.dot(self.W)).dot(self.N)
-        self.worn = self.worn or correction.dot(correction) > WEAR**2 * of_rows.dot(of_rows)
-        of_rows += correction
-        return np.concatenate([gradient - of_rows.dot(self.W), of_rows])
+        return of_rows + correction, correction
+
+    def _renew(self) -> None:
+        """N from the rows anew, once rounding has piled up in it: O(n³)."""
+        free = np.flatnonzero(self.free)
+        Y, _, T, order = orthogonal(self.W[:, free], 0.0)
+        if order.size == self.size:
+            self.N[np.ix_(free, order)] = Y @ inverse_triangle(T).T
 
     def add(self, constraint: int, side: int) -> Array:
         """One constraint enters, whose normal is not in the span of the others; returns its normal: O(n²)."""
@@ -155,8 +169,7 @@ class WorkingSet:
             self._signs[place], self.free[place] = 0.0, 1.0
         else:
             direction, constraint = self._N[:, place - n].copy(), self._forget(place - n)
-        if self.size:
-            direction -= self.N.dot(self.W.dot(direction))
+        direction = self.within(direction)
         if constraint >= 0:
             self.sides[constraint], self.held[constraint] = 0, False
         self.number -= 1
@@ -164,6 +177,10 @@ class WorkingSet:
         if self.size:
             add_rank_one(self.N, -1.0, direction, direction.dot(self.N))
         return constraint, direction
+
+    def within(self, direction: Array) -> Array:
+        """A direction without what rounding has left in it along the rows."""
+        return direction - self.N.dot(self.W.dot(direction)) if self.size else direction
 
     def _along_variable(self, variable: int) -> Array:
         """The direction that changes a fixed variable and no row."""
