@@ -19,6 +19,7 @@ from bemcontact.formulations.local_solver.working_set import DEPENDENT
 ZERO = 1e-11
 """A curvature below this counts as none, in units in which the rows of |H| have size one."""
 SWEEPS = 4
+FEW = 100
 PROBES = 8
 DESCENTS = 30
 
@@ -61,8 +62,9 @@ class Curvature:
 def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     """Decide copositivity of H on the cone, within `faces` faces.
 
-    First by a Cholesky factorisation on the null space of E, then by descent from the negative eigenvectors projected
-    onto the cone, then by all faces: a lowest direction of the cone lies inside one face and is an eigenvector there.
+    First by a Cholesky factorisation on the null space of E; then by faces, as a lowest direction of the cone lies
+    inside one face and is an eigenvector there. If there are many of them, descents from the negative eigenvectors,
+    projected onto the cone, come before the rest.
     """
     units = _units(np.abs(H[np.ix_(cone.free, cone.free)]))
     equal, weak = unit_rows(cone.equal * units)[0], unit_rows(cone.weak * units)[0]
@@ -71,8 +73,10 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     if _positive_semidefinite(reduced):
         return Curvature(copositive=True)
     weak = weak @ N
-    copositive, found = False, _probe(reduced, weak)
-    if found is None:
+    copositive, found = _search_faces(reduced, weak, min(faces, FEW))
+    if copositive is None:
+        found = _probe(reduced, weak)
+    if copositive is None and found is None:
         copositive, found = _search_faces(reduced, weak, faces)
     if found is None:
         return Curvature(copositive=copositive)
@@ -151,7 +155,10 @@ def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None,
         basis = null_space(weak[list(face)], reduced.shape[0])
         if basis.shape[1] == 0:
             continue
-        eigenvalues, vectors = np.linalg.eigh(basis.T @ reduced @ basis)
+        form = basis.T @ reduced @ basis
+        if is_definite(form + ZERO * np.eye(form.shape[0])):
+            continue
+        eigenvalues, vectors = np.linalg.eigh(form)
         for column in np.flatnonzero(eigenvalues < -ZERO):
             for d in (basis @ vectors[:, column], -(basis @ vectors[:, column])):
                 if _falls(reduced, weak, d):
