@@ -414,6 +414,15 @@ def test_noise_in_a_column_hides_no_contradiction(noise):
     assert result.status is QPStatus.INFEASIBLE
 
 
+def test_a_bound_of_1e20_is_none():
+    """Least x² - 2x + y over y >= 0 with all other bounds of 1e20 or 1e30 given as numbers."""
+    H, c = np.diag([2.0, 0.0]), np.array([-2.0, 1.0])
+    result = minimize_qp(H, c, np.eye(2), [-1e20, -1e30], [1e20, 1e25], [-1e20, 0.0], [1e30, 1e20])
+    assert_allclose(result.x, [1.0, 0.0], atol=1e-12)
+    unbounded = minimize_qp(H, -c, np.eye(2), [-1e20, -1e30], [1e20, 1e25])
+    assert unbounded.status is QPStatus.UNBOUNDED
+
+
 def test_a_start_outside_the_bounds_is_moved_to_them():
     result = minimize_qp(np.eye(2), np.zeros(2), bl=[1.0, -1.0], bu=[2.0, 1.0], x0=[9.0, -9.0])
     assert isinstance(result, QPResult)
@@ -425,6 +434,9 @@ def test_a_start_outside_the_bounds_is_moved_to_them():
     [
         ({"H": [[1.0, 2.0], [0.0, 1.0]]}, "not symmetric"),
         ({"H": [[1.0]]}, "H has shape"),
+        ({"H": [[1.0, 2.0], [3.0]]}, "H is no array of real numbers"),
+        ({"c": ["a", "b"]}, "c is no array of real numbers"),
+        ({"bl": [1j, 0.0]}, "bl is no array of real numbers"),
         ({"c": [np.nan, 0.0]}, "not finite"),
         ({"bl": [2.0, 0.0], "bu": [1.0, 1.0]}, "exceeds"),
         ({"cl": [0.0]}, "without A"),

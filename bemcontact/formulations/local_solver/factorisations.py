@@ -9,6 +9,8 @@ from scipy.linalg import get_blas_funcs, get_lapack_funcs
 from bemcontact.formulations.local_solver.statement import Array
 
 geqp3, orgqr, trtri, pstrf, potrf = get_lapack_funcs(("geqp3", "orgqr", "trtri", "pstrf", "potrf"), dtype=np.float64)
+BLOCK = 32
+"""Columns that LAPACK takes at a time."""
 ger: Any = get_blas_funcs("ger", dtype=np.float64)
 
 
@@ -19,8 +21,8 @@ def add_rank_one(matrix: Array, factor: float, column: Array, row: Array) -> Non
 
 
 def inverse_triangle(R: Array) -> Array:
-    """Inverse of an upper triangle of full rank."""
-    return np.triu(trtri(R)[0]) if R.shape[0] else R
+    """Inverse of an upper triangle of full rank; what is below the diagonal stays."""
+    return trtri(R)[0] if R.shape[0] else R
 
 
 def pivoted_cholesky(matrix: Array, zero: float) -> tuple[Array, NDArray[np.intp], int]:
@@ -28,7 +30,7 @@ def pivoted_cholesky(matrix: Array, zero: float) -> tuple[Array, NDArray[np.intp
     factor, pivots, rank, _ = pstrf(matrix, tol=zero)
     # LAPACK does not hold the first pivot against the tolerance
     rank = int(rank) if matrix.diagonal().max() > zero else 0
-    return factor[:rank, :rank], pivots - 1, rank
+    return np.triu(factor[:rank, :rank]), pivots - 1, rank
 
 
 def is_definite(matrix: Array) -> bool:
@@ -48,9 +50,9 @@ def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDAr
     m, n = rows.shape
     if m == 0 or n == 0:
         return np.zeros((n, 0)), np.eye(n), np.zeros((0, 0)), np.zeros(0, dtype=np.intp)
-    reflectors, pivots, tau, *_ = geqp3(rows.T)
+    reflectors, pivots, tau, *_ = geqp3(rows.T, lwork=2 * m + BLOCK * (m + 1))
     rank = int(np.count_nonzero(np.abs(reflectors.diagonal()) > tolerance))
     full = np.zeros((n, n), order="F")
     full[:, : min(m, n)] = reflectors[:, : min(m, n)]
-    Q = orgqr(full, tau, lwork=32 * n)[0]
+    Q = orgqr(full, tau, lwork=BLOCK * n)[0]
     return Q[:, :rank], Q[:, rank:], np.triu(reflectors[:rank, :rank]), pivots[:rank].astype(np.intp) - 1

@@ -37,7 +37,7 @@ def minimize_qp(
     A : (m, n) array or sparse matrix, optional
         Rows.
     cl, cu : (m,) arrays, optional
-        Bounds of the rows, infinite where there is none; cl = cu is an equality.
+        Bounds of the rows; infinite, or 1e20 and more in size, where there is none; cl = cu is an equality.
     bl, bu : (n,) arrays, optional
         Bounds of the variables, likewise.
     x0 : (n,) array, optional

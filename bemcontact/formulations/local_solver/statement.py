@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 Sides = NDArray[np.int8]
 
 RUIZ_SWEEPS = 6
+INFINITE = 1e20
+"""A bound of this size or more is none, as in most solvers and their files."""
 EPS = float(np.finfo(float).eps)
 
 
@@ -229,7 +231,7 @@ def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
     ProblemError
         Not a vector of `size` finite numbers.
     """
-    vector = np.array(given, dtype=float)
+    vector = _floats(name, given)
     if vector.ndim != 1 or (size is not None and vector.size != size):
         expected = "one-dimensional" if size is None else f"of shape ({size},)"
         raise ProblemError(f"{name} has shape {vector.shape}: it must be {expected}")
@@ -238,9 +240,17 @@ def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
     return vector
 
 
+def _floats(name: str, given: Any) -> Array:
+    """An array of numbers of our own."""
+    try:
+        return np.array(given, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ProblemError(f"{name} is no array of real numbers ({error}): give rows of equal length") from None
+
+
 def _matrix(name: str, given: Any, columns: int) -> Array:
     """A finite dense matrix with the given number of columns, from a dense or a sparse one."""
-    matrix = np.array(given.toarray() if sparse.issparse(given) else given, dtype=float)
+    matrix = _floats(name, given.toarray() if sparse.issparse(given) else given)
     if matrix.ndim != 2 or matrix.shape[1] != columns:
         raise ProblemError(f"{name} has shape {matrix.shape}: it needs {columns} columns, one for each entry of c")
     if not np.all(np.isfinite(matrix)):
@@ -252,13 +262,14 @@ def _bound(name: str, given: ArrayLike | None, size: int, absent: float) -> Arra
     """A vector of bounds; infinite in the harmless direction only."""
     if given is None:
         return np.full(size, absent)
-    bound = np.array(given, dtype=float)
+    bound = _floats(name, given)
     if bound.shape != (size,):
         raise ProblemError(f"{name} has shape {bound.shape}: it must be ({size},), with {absent} where there is none")
     wrong = np.isnan(bound) | (bound == -absent)
     if wrong.any():
         i = int(np.argmax(wrong))
         raise ProblemError(f"{name}[{i}] is {bound[i]}: give a number, or {absent} for no bound")
+    bound[np.abs(bound) >= INFINITE] *= np.inf
     return bound
 
 
