@@ -414,6 +414,27 @@ def test_noise_in_a_column_hides_no_contradiction(noise):
     assert result.status is QPStatus.INFEASIBLE
 
 
+@pytest.mark.parametrize("small", [1e-3, 1e-11, 1e-30])
+def test_inertia_counts_small_eigenvalues(small):
+    """Inertia does not change with the units of a variable (Sylvester): diag(1, ±small) and a rank-one matrix."""
+    for sign, expected in ((1.0, (2, 0, 0)), (-1.0, (1, 0, 1))):
+        H = np.diag([1.0, sign * small])
+        result = minimize_qp(H, np.zeros(2), bl=[-1.0, -1.0], bu=[1.0, 1.0])
+        assert result.inertia == expected
+    v = np.array([1.0, small, 3.0])
+    result = minimize_qp(np.outer(v, v), np.zeros(3))
+    assert result.inertia == (1, 2, 0)
+    assert result.reduced_inertia_end == (1, 2, 0)
+
+
+def test_the_result_says_its_end_in_one_line_and_logs_the_objective_in_the_units_of_the_data():
+    result = minimize_qp(1e6 * np.eye(2), [-4e6, 1e6], bl=[0.0, 0.0])
+    phases = f"{result.phase_one_iterations} + {result.phase_two_iterations}"
+    assert str(result) == f"local minimiser: objective -8000000 after {phases} iterations (phase 1 + phase 2)"
+    assert result.log[-1].value == pytest.approx(-8e6)
+    assert "LogLine" not in repr(result)
+
+
 def test_a_bound_of_1e20_is_none():
     """Least x² - 2x + y over y >= 0 with all other bounds of 1e20 or 1e30 given as numbers."""
     H, c = np.diag([2.0, 0.0]), np.array([-2.0, 1.0])
@@ -446,6 +467,12 @@ def test_a_start_outside_the_bounds_is_moved_to_them():
         ({"working_set": [3, 0]}, "working_set"),
         ({"options": QPOptions(optimality_tolerance=0.0)}, "optimality_tolerance"),
         ({"options": QPOptions(search=-1)}, "search"),
+        ({"options": QPOptions(search=1.5)}, "search"),
+        ({"options": QPOptions(max_iterations="a")}, "max_iterations"),
+        ({"options": QPOptions(log=True)}, "log is True"),
+        ({"options": {"search": 3}}, "options is a dict"),
+        ({"H": np.eye(2) * 1j}, "it is complex"),
+        ({"H": np.zeros((0, 0)), "c": []}, "c is empty"),
         ({"options": QPOptions(max_iterations=-1)}, "max_iterations"),
     ],
 )

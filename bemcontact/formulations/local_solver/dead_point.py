@@ -12,13 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from bemcontact.formulations.local_solver.factorisations import is_definite, orthogonal, unit_rows
+from bemcontact.formulations.local_solver.factorisations import is_definite, orthogonal, unit_rows, unit_sizes
 from bemcontact.formulations.local_solver.statement import Array
 from bemcontact.formulations.local_solver.working_set import DEPENDENT
 
 ZERO = 1e-11
 """A curvature below this counts as none, in units in which the rows of |H| have size one."""
-SWEEPS = 4
 FEW = 100
 PROBES = 8
 DESCENTS = 30
@@ -66,7 +65,7 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     inside one face and is an eigenvector there. If there are many of them, descents from the negative eigenvectors,
     projected onto the cone, come before the rest.
     """
-    units = _units(np.abs(H[np.ix_(cone.free, cone.free)]))
+    units = unit_sizes(np.abs(H[np.ix_(cone.free, cone.free)]))
     equal, weak = unit_rows(cone.equal * units)[0], unit_rows(cone.weak * units)[0]
     N = null_space(equal, cone.free.size)
     reduced = N.T @ (units[:, None] * H[np.ix_(cone.free, cone.free)] * units) @ N
@@ -83,15 +82,6 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     direction = np.zeros(H.shape[0])
     direction[cone.free] = units * (N @ found)
     return Curvature(copositive=False, direction=direction / np.linalg.norm(direction))
-
-
-def _units(size: Array) -> Array:
-    """Units of the variables in which the rows of |H| have size one, so that small curvatures count as large ones."""
-    units = np.ones(size.shape[0])
-    for _ in range(SWEEPS):
-        rows = ((units[:, None] * size) * units).max(axis=1, initial=0.0)
-        units = units / np.sqrt(np.where(rows > 0.0, rows, 1.0))
-    return units
 
 
 def null_space(rows: Array, n: int) -> Array:

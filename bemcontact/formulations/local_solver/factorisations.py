@@ -9,6 +9,7 @@ from scipy.linalg import get_blas_funcs, get_lapack_funcs
 from bemcontact.formulations.local_solver.statement import Array
 
 geqp3, orgqr, trtri, pstrf, potrf = get_lapack_funcs(("geqp3", "orgqr", "trtri", "pstrf", "potrf"), dtype=np.float64)
+SWEEPS = 4
 BLOCK = 32
 """Columns that LAPACK takes at a time."""
 ger: Any = get_blas_funcs("ger", dtype=np.float64)
@@ -43,6 +44,15 @@ def unit_rows(rows: Array) -> tuple[Array, Array]:
     length = np.sqrt(np.einsum("ij,ij->i", rows, rows))
     length[length == 0.0] = 1.0
     return rows / length[:, None], length
+
+
+def unit_sizes(size: Array) -> Array:
+    """Factors of rows and columns by which the rows of a symmetric matrix of sizes come to one, nearly."""
+    units = np.ones(size.shape[0])
+    for _ in range(SWEEPS if units.size else 0):
+        rows = np.maximum.reduce((units[:, None] * size) * units, axis=1)
+        units = units / np.sqrt(np.where(rows > 0.0, rows, 1.0))
+    return units
 
 
 def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDArray[np.intp]]:

@@ -64,7 +64,9 @@ def minimize_qp(
     start = np.zeros(n) if x0 is None else numbers("x0", x0, n)
     start = np.minimum(np.maximum(start, stated.lower[:n]), stated.upper[:n])
     scales = equilibrate(stated) if options.scale else no_scales(stated)
-    progress = Progress(statement=scales.apply(stated), options=options, x=start / scales.variables)
+    progress = Progress(
+        statement=scales.apply(stated), options=options, unit=scales.objective, x=start / scales.variables
+    )
     sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
@@ -75,14 +77,30 @@ def minimize_qp(
 
 def _check(options: QPOptions) -> None:
     """Refuse options without sense."""
+    if not isinstance(options, QPOptions):
+        raise ProblemError(
+            f"options is a {type(options).__name__}: give a QPOptions, as in QPOptions(max_iterations=50)"
+        )
     for name in ("feasibility_tolerance", "optimality_tolerance"):
         value = getattr(options, name)
-        if not 0.0 < value < 1e-2:
-            raise ProblemError(f"{name} is {value}: give a number between 0 and 0.01, such as 1e-9")
-    if options.max_iterations is not None and options.max_iterations < 0:
-        raise ProblemError(f"max_iterations is {options.max_iterations}: give a number >= 0, or None")
-    if options.search < 0:
-        raise ProblemError(f"search is {options.search}: give the number of faces to examine, >= 0")
+        if not _is_number(value) or not 0.0 < value < 1e-2:
+            raise ProblemError(f"{name} is {value!r}: give a number between 0 and 0.01, such as 1e-9")
+    if options.max_iterations is not None and not _counts(options.max_iterations):
+        raise ProblemError(f"max_iterations is {options.max_iterations!r}: give a whole number >= 0, or None")
+    if not _counts(options.search):
+        raise ProblemError(f"search is {options.search!r}: give the number of faces to examine, >= 0")
+    if options.log is not None and not callable(options.log):
+        raise ProblemError(f"log is {options.log!r}: give a function of a LogLine, such as print")
+
+
+def _is_number(value: object) -> bool:
+    """Whether this is a real number."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
+def _counts(value: object) -> bool:
+    """Whether this is a whole number that is not negative."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= 0
 
 
 def _wanted(working_set: ArrayLike, size: int) -> NDArray[np.bool_]:
@@ -108,7 +126,7 @@ def _result(stated: Statement, scales: Scales, progress: Progress, finding: Find
         phase_one_iterations=progress.iterations[0],
         phase_two_iterations=progress.iterations[1],
         working_set_changes=progress.changes,
-        inertia=inertia(stated.H, float(np.abs(stated.H).max(initial=0.0))),
+        inertia=inertia(stated.H),
         reduced_inertia_start=start,
         reduced_inertia_end=finding.reduced_end,
         weakly_active=finding.weak,

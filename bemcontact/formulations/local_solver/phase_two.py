@@ -176,7 +176,7 @@ class Descent:
                 self.hessian.clear(block.constraint)
         progress.write(
             phase=2,
-            value=progress.objective,
+            value=progress.objective / progress.unit,
             step=step,
             added=None if block is None else block.constraint,
             dropped=self.dropped,

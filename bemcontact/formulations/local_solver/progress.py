@@ -7,6 +7,9 @@ import numpy as np
 from bemcontact.formulations.local_solver.result import LogLine, QPOptions
 from bemcontact.formulations.local_solver.statement import EPS, Array, Statement, largest
 
+FINE = 1e-3
+"""Part of the optimality tolerance that counts where each component is held against its own terms."""
+
 STALLED = 100
 """Steps of length zero in a row after which least-index rules take over, which cannot cycle (Bland 1977)."""
 
@@ -21,6 +24,8 @@ class Progress:
         The scaled problem.
     options : QPOptions
         Tolerances, limit and log.
+    unit : float
+        The scaled objective over that of the data.
     x, values, gradient : arrays
         The point, [x; A x], and H x + c.
     slack, lowest, highest : (n + m,) arrays
@@ -33,6 +38,7 @@ class Progress:
 
     statement: Statement
     options: QPOptions
+    unit: float
     x: Array
     values: Array = field(init=False)
     gradient: Array = field(init=False)
@@ -72,7 +78,8 @@ class Progress:
         if of_rows.size:
             terms = terms + np.abs(of_rows).dot(np.abs(rows))
         rounding = 100.0 * EPS * H.dot(self.travelled)
-        return np.maximum(self.options.optimality_tolerance * terms, np.maximum(rounding, 1e-14 * largest(terms)))
+        relative = FINE * self.options.optimality_tolerance * terms
+        return np.maximum(relative, np.maximum(rounding, 1e-14 * largest(terms)))
 
     @property
     def exhausted(self) -> bool:

@@ -1,7 +1,7 @@
 """What `minimize_qp` is told and what it answers: options, status, lines of the log, result."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -10,13 +10,18 @@ from numpy.typing import NDArray
 
 
 class QPStatus(StrEnum):
-    """How a run ended; the value is the text to print."""
+    """How a run ended; the value is the text to print.
+
+    A numerical failure is an end that failed its own check again and again with fresh factors: the data lie too near to
+    the limits of double precision for any claim.
+    """
 
     LOCAL_MINIMISER = "local minimiser"
     UNDECIDED = "second-order undecided"
     UNBOUNDED = "unbounded"
     INFEASIBLE = "infeasible"
     ITERATION_LIMIT = "iteration limit"
+    NUMERICAL_FAILURE = "numerical failure"
 
 
 class LogLine(NamedTuple):
@@ -29,7 +34,7 @@ class LogLine(NamedTuple):
     iteration : int
         Number of the iteration, both phases counted together.
     value : float
-        Sum of infeasibilities (phase 1) or objective (phase 2), in scaled units.
+        Sum of infeasibilities in scaled units (phase 1), or the objective in the units of the data (phase 2).
     step : float
         Length of the step along the direction.
     added, dropped : int or None
@@ -70,7 +75,8 @@ class QPOptions:
     feasibility_tolerance : float
         A constraint counts as satisfied within this, relative to max(1, its bound) in scaled units.
     optimality_tolerance : float
-        A gradient or multiplier counts as zero within this, relative to the gradient's terms in scaled units.
+        A gradient or multiplier counts as zero within this, relative to the largest of the gradient's terms in scaled
+        units, and in the end within a thousandth of it relative to the terms of its own component.
     scale : bool
         Equilibrate rows and variables by powers of two, which changes no digit of the data.
     search : int
@@ -89,7 +95,7 @@ class QPOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class QPResult:
-    """What `minimize_qp` found; all of it in the units of the data, save the log.
+    """What `minimize_qp` found, in the units of the data; of the log only the objective is.
 
     Parameters
     ----------
@@ -139,9 +145,14 @@ class QPResult:
     ray: NDArray[np.float64] | None
     certificate: NDArray[np.float64] | None
     violation: float
-    log: tuple[LogLine, ...]
+    log: tuple[LogLine, ...] = field(repr=False)
 
     @property
     def iterations(self) -> int:
         """Iterations of both phases."""
         return self.phase_one_iterations + self.phase_two_iterations
+
+    def __str__(self) -> str:
+        """The end in one line."""
+        phases = f"{self.phase_one_iterations} + {self.phase_two_iterations}"
+        return f"{self.status.value}: objective {self.objective:.9g} after {phases} iterations (phase 1 + phase 2)"

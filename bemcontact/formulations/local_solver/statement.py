@@ -206,6 +206,8 @@ def read(
     """
     linear = numbers("c", c, None)
     n = linear.size
+    if n == 0:
+        raise ProblemError("c is empty: give at least one variable")
     hessian = _matrix("H", H, n)
     if hessian.shape[0] != n:
         raise ProblemError(f"H has {hessian.shape[0]} rows, but c has {n} entries: H must be ({n}, {n})")
@@ -243,14 +245,16 @@ def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
 def _floats(name: str, given: Any) -> Array:
     """An array of numbers of our own."""
     try:
-        return np.array(given, dtype=float)
+        if np.iscomplexobj(given):
+            raise TypeError("it is complex")
+        return np.array(given.toarray() if sparse.issparse(given) else given, dtype=float)
     except (TypeError, ValueError) as error:
         raise ProblemError(f"{name} is no array of real numbers ({error}): give rows of equal length") from None
 
 
 def _matrix(name: str, given: Any, columns: int) -> Array:
     """A finite dense matrix with the given number of columns, from a dense or a sparse one."""
-    matrix = _floats(name, given.toarray() if sparse.issparse(given) else given)
+    matrix = _floats(name, given)
     if matrix.ndim != 2 or matrix.shape[1] != columns:
         raise ProblemError(f"{name} has shape {matrix.shape}: it needs {columns} columns, one for each entry of c")
     if not np.all(np.isfinite(matrix)):

@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.formulations.local_solver.dead_point import examine
+from bemcontact.formulations.local_solver.factorisations import unit_sizes
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import nearest
 from bemcontact.formulations.local_solver.result import QPStatus
-from bemcontact.formulations.local_solver.statement import Array, Sides
+from bemcontact.formulations.local_solver.statement import EPS, Array, Sides
 from bemcontact.formulations.local_solver.verdict import FirstOrder, certified, cleaned_ray, first_order
 
 Inertia = tuple[int, int, int]
@@ -87,7 +88,8 @@ def walk(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
         if isinstance(found, Finding):
             return found, start
         sides, failures = found.sides, failures + found.failed
-    return _finding(progress, QPStatus.ITERATION_LIMIT, sides), start or (0, 0, 0)
+    status = QPStatus.ITERATION_LIMIT if progress.exhausted else QPStatus.NUMERICAL_FAILURE
+    return _finding(progress, status, sides), start or (0, 0, 0)
 
 
 def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
@@ -129,7 +131,7 @@ def _second_order(
     progress.move(direction, along, block.step, 1.0)
     progress.write(
         phase=2,
-        value=progress.statement.objective(progress.x),
+        value=progress.statement.objective(progress.x) / progress.unit,
         step=block.step,
         added=block.constraint,
         dropped=None,
@@ -195,10 +197,15 @@ def _refined(progress: Progress, descent: Descent) -> Array:
     return multipliers
 
 
-def inertia(matrix: Array, size: float) -> Inertia:
-    """Numbers of positive, zero and negative eigenvalues; zero is relative to `size`."""
-    eigenvalues = np.linalg.eigvalsh(matrix) if matrix.shape[0] else np.zeros(0)
-    zero = 1e-12 * max(10, matrix.shape[0]) * size
+def inertia(matrix: Array, noise: Array | float = 0.0) -> Inertia:
+    """Numbers of positive, zero and negative eigenvalues; entries up to `noise` are zero.
+
+    They are those of the matrix in units in which its rows have size one (Sylvester), where zero is rounding.
+    """
+    matrix = np.where(np.abs(matrix) <= noise, 0.0, matrix)
+    units = unit_sizes(np.abs(matrix))
+    eigenvalues = np.linalg.eigvalsh(units[:, None] * matrix * units)
+    zero = 100.0 * max(10, matrix.shape[0]) * EPS
     negative, positive = int(np.sum(eigenvalues < -zero)), int(np.sum(eigenvalues > zero))
     return positive, matrix.shape[0] - positive - negative, negative
 
@@ -216,5 +223,7 @@ def reduced_inertia(descent: Descent) -> Inertia:
         return hessian.size, 0, 0
     H = descent.progress.statement.H
     others = others - hessian.Z @ (hessian.Z.T @ (H @ others))
-    positive, zero, negative = inertia(others.T @ H @ others, float(np.abs(H).max(initial=0.0)))
+    size = np.abs(others)
+    noise = 100.0 * EPS * size.T @ descent.progress.statement.absolute[0] @ size
+    positive, zero, negative = inertia(others.T @ H @ others, noise)
     return hessian.size + positive, zero, negative
