@@ -100,7 +100,7 @@ def _is_number(value: object) -> bool:
 
 def _counts(value: object) -> bool:
     """Whether this is a whole number that is not negative."""
-    return isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= 0
+    return isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(value >= 0)
 
 
 def _wanted(working_set: ArrayLike, size: int) -> NDArray[np.bool_]:
