@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from bemcontact.choices import Rows, Weights
 from bemcontact.contact import Array, CondensedContact
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.formulation import FormulationOptions, Start
-from bemcontact.formulations.local_solver import QPOptions, QPResult, QPStatus, minimize_qp
+from bemcontact.formulations.local_solver import QPOptions, QPResult, QPStatus, inertia, minimize_qp
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
 from bemcontact.solution import ContactSolution, LocalSearch, Penalty, Status
 
@@ -93,6 +94,20 @@ class Program:
         linear[n : 2 * n] -= self.weights @ self.lower[:n]
         return linear
 
+    @property
+    def inertia(self) -> tuple[int, int, int]:
+        """Numbers of positive, zero and negative eigenvalues of the Hessian Q + (2/μ) EᵀE.
+
+        From [[Q, Eᵀ], [E, -μ/2]], whose inertia is that and m negative ones (Haynsworth 1968): it is free of 1/μ.
+        """
+        n, (m, N) = len(self.weights), self.penalised.matrix.shape
+        bordered = np.zeros((N + m, N + m))
+        bordered[:n, n : 2 * n], bordered[n : 2 * n, :n] = self.weights.T, self.weights
+        bordered[N:, :N], bordered[:N, N:] = self.penalised.matrix, self.penalised.matrix.T
+        bordered[N:, N:] = -0.5 * self.penalty * np.eye(m)
+        positive, zero, negative = inertia(bordered)
+        return positive, zero, negative - m
+
     def value(self, x: Array) -> float:
         """The objective at x (N,), as it is stated and not as it is multiplied out, which would cancel to round-off."""
         n = len(self.weights)
@@ -145,6 +160,9 @@ def lower_bounds(condensed: CondensedContact, size: int) -> Array:
 def minimise(program: Program, start: Array, max_iterations: int | None) -> QPResult:
     """Hand a program to the local solver.
 
+    Penalised equations go there as √μ s = E x - e with |s|² in the objective, which is the same program of x without
+    the square of the condition number that EᵀE has.
+
     Parameters
     ----------
     program : Program
@@ -154,17 +172,33 @@ def minimise(program: Program, start: Array, max_iterations: int | None) -> QPRe
     Returns
     -------
     QPResult
+        For x alone, with the inertia of the Hessian of the program.
     """
-    right = program.equations.right
-    return minimize_qp(
-        program.hessian,
-        program.linear,
-        A=program.equations.matrix,
+    E, e = program.penalised.matrix, program.penalised.right
+    A, b = program.equations.matrix, program.equations.right
+    n, (m, N), root = len(program.weights), E.shape, np.sqrt(program.penalty)
+    J, zero = program.weights, np.zeros((n, n))
+    H = block_diag(np.block([[zero, J.T], [J, zero]]), np.zeros((N - 2 * n, N - 2 * n)), 2 * np.eye(m))
+    c = np.zeros(N + m)
+    c[n : 2 * n] = -J @ program.lower[:n]
+    right = np.concatenate([b, e])
+    x = np.maximum(start, program.lower)
+    found = minimize_qp(
+        H,
+        c,
+        A=np.block([[A, np.zeros((len(b), m))], [E, -root * np.eye(m)]]),
         cl=right,
         cu=right,
-        bl=program.lower,
-        x0=start,
+        bl=np.concatenate([program.lower, np.full(m, -np.inf)]),
+        x0=np.concatenate([x, (E @ x - e) / root]),
         options=QPOptions(max_iterations=max_iterations),
+    )
+    return replace(
+        found,
+        x=found.x[:N],
+        inertia=program.inertia,
+        weakly_active=found.weakly_active[found.weakly_active < N],
+        ray=None if found.ray is None else found.ray[:N],
     )
 
 

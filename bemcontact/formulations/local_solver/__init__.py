@@ -1,6 +1,7 @@
-"""A local minimiser of a quadratic programme whose Hessian may have any inertia: an inertia-controlling active set."""
+"""A local solver for quadratic programmes of any inertia; it knows nothing of contact."""
 
 from bemcontact.formulations.local_solver.minimize import minimize_qp
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
+from bemcontact.formulations.local_solver.walk import inertia
 
-__all__ = ["QPOptions", "QPResult", "QPStatus", "minimize_qp"]
+__all__ = ["QPOptions", "QPResult", "QPStatus", "inertia", "minimize_qp"]
