@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
-from bemcontact.formulations.local_solver.statement import Array
+Array = NDArray[np.float64]
 
 geqp3, orgqr, trtri, pstrf, potrf = get_lapack_funcs(("geqp3", "orgqr", "trtri", "pstrf", "potrf"), dtype=np.float64)
 SWEEPS = 4
@@ -40,10 +40,13 @@ def is_definite(matrix: Array) -> bool:
 
 
 def unit_rows(rows: Array) -> tuple[Array, Array]:
-    """Rows of length one, zero rows as they are, and the lengths."""
-    length = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    """Rows of length one, zero rows as they are, and the lengths; however small or large the entries are."""
+    size = np.abs(rows).max(axis=1, initial=0.0)
+    size[size == 0.0] = 1.0
+    scaled = rows / size[:, None]
+    length = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))
     length[length == 0.0] = 1.0
-    return rows / length[:, None], length
+    return scaled / length[:, None], size * length
 
 
 def unit_sizes(size: Array) -> Array:

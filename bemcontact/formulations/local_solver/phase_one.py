@@ -15,8 +15,17 @@ from bemcontact.formulations.local_solver.statement import Array, Sides, largest
 from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 
-def reach_feasibility(progress: Progress, sides: Sides) -> tuple[Sides, Array | None]:
+def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tuple[Sides, Array | None]:
     """Walk to a feasible point.
+
+    Parameters
+    ----------
+    progress : Progress
+        The point.
+    sides : (n + m,) int8 array
+        Working set to begin with.
+    fineness : float
+        Part of the optimality tolerance that counts; less where a certificate was refused before.
 
     Returns
     -------
@@ -29,22 +38,28 @@ def reach_feasibility(progress: Progress, sides: Sides) -> tuple[Sides, Array | 
     if not signs.any():
         return sides, None
     working = WorkingSet(progress.statement, sides)
-    while signs.any() and not progress.exhausted:
+    progress.place(working.onto(progress.x))
+    signs = violated_signs(progress) * ~working.held  # what is held is on its bound, up to rounding
+    while signs.any():
         gradient = progress.statement.transposed(signs)
-        zero = progress.options.optimality_tolerance * sqrt(signs.dot(signs))
+        zero = fineness * progress.options.optimality_tolerance * sqrt(signs.dot(signs))
         multipliers = working.multipliers(gradient)
-        reduced = multipliers[: working.free.size] * working.free
+        reduced = working.reduced(multipliers)
         dropped = None
         if largest(reduced) <= zero:
             place = wrong_sign(working, multipliers, zero, least_index=progress.least_index)
             if place is None:
                 return working.sides, _certificate(working, signs, multipliers)
+            if progress.exhausted:
+                break
             dropped, along = working.drop(place)
             direction = -float(along.dot(gradient)) * along
+        elif progress.exhausted:
+            break
         else:
             direction = working.within(-reduced)
         working = _step(progress, working, signs, direction, dropped)
-        signs = violated_signs(progress) * ~working.held  # what is held is on its bound, up to rounding
+        signs = violated_signs(progress) * ~working.held
     return working.sides, None
 
 
@@ -60,7 +75,7 @@ def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array
     n = working.free.size
     certificate = -signs
     certificate[working.ids] += multipliers[n:]
-    certificate[:n] += multipliers[:n] * (1.0 - working.free)
+    certificate[:n] += multipliers[:n] * working.held[:n]
     return certificate
 
 
@@ -107,7 +122,7 @@ def _breakpoint(progress: Progress, signs: Array, along: Array, length: float) -
     at = int(order[turned[0]])
     entering = at < towards.size
     constraint = int(towards[at % towards.size])
-    if statement.lower[constraint] == statement.upper[constraint]:
+    if statement.equality[constraint]:
         side = 2
     else:
         onwards = side_reached(progress, constraint, along)

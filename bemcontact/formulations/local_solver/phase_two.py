@@ -104,7 +104,7 @@ class Descent:
         n, least = working.free.size, progress.least_index
         if self._refused:
             multipliers = np.where(np.isin(working.numbers, list(self._refused)), 0.0, multipliers)
-        reduced = multipliers[:n] * working.free
+        reduced = working.reduced(multipliers)
         if self.whole < 3 and largest(reduced) > 0.1 * progress.zero:
             return True, None
         place = wrong_sign(working, multipliers, progress.zero, least_index=least)

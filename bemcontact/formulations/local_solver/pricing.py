@@ -23,10 +23,12 @@ def wrong_sign(working: WorkingSet, multipliers: Array, zero: float | Array, *, 
     if working.temporary:
         of_temporary = np.where(ids == TEMPORARY, np.inf, np.abs(multipliers[n:]))
         wrong[n:] = np.where(ids < 0, of_temporary, wrong[n:])
-    wrong = np.where(wrong > zero, wrong, 0.0)
+    if not isinstance(zero, float):
+        wrong = np.where(wrong > zero, wrong, -np.inf)
+        zero = 0.0
     place = int(wrong.argmax())
-    if wrong[place] == 0.0:
+    if wrong[place] <= zero:
         return None
     if least_index:
-        return int(np.where(wrong > 0.0, working.numbers, working.held.size).argmin())
+        return int(np.where(wrong > zero, working.numbers, working.held.size).argmin())
     return place

@@ -28,8 +28,10 @@ class Progress:
         The scaled objective over that of the data.
     x, values, gradient : arrays
         The point, [x; A x], and H x + c.
-    slack, lowest, highest : (n + m,) arrays
-        Tolerance of each constraint, and its bounds with the tolerance added.
+    slack : (n + m,) array
+        Tolerance of each constraint: relative to its smaller bound, and no less than the rounding of A x.
+    lowest, highest : (n + m,) arrays
+        The bounds with their tolerances added.
     travelled : (n,) array
         The largest size of each component so far: what its digits were lost against.
     zero : float
@@ -55,9 +57,8 @@ class Progress:
 
     def __post_init__(self) -> None:
         lower, upper = np.abs(self.statement.lower), np.abs(self.statement.upper)
-        size = np.maximum(np.where(lower < np.inf, lower, 1.0), np.where(upper < np.inf, upper, 1.0))
-        self.slack = self.options.feasibility_tolerance * np.maximum(1.0, size)
-        self.lowest, self.highest = self.statement.lower - self.slack, self.statement.upper + self.slack
+        size = np.minimum(lower, upper)
+        self._slack = self.options.feasibility_tolerance * np.maximum(1.0, np.where(size < np.inf, size, 1.0))
         chosen = self.options.max_iterations
         self.limit = 1000 + 20 * lower.size if chosen is None else chosen
         self.travelled = np.zeros(self.x.size)
@@ -77,9 +78,9 @@ class Progress:
         terms = H.dot(np.abs(self.x)) + c
         if of_rows.size:
             terms = terms + np.abs(of_rows).dot(np.abs(rows))
-        rounding = 100.0 * EPS * H.dot(self.travelled)
         relative = FINE * self.options.optimality_tolerance * terms
-        return np.maximum(relative, np.maximum(rounding, 1e-14 * largest(terms)))
+        far = H.dot(self.travelled)
+        return np.maximum(relative, np.maximum(100.0 * EPS * far, 1e-14 * max(largest(terms), largest(far))))
 
     @property
     def exhausted(self) -> bool:
@@ -92,8 +93,12 @@ class Progress:
         return self.stalled > STALLED
 
     def place(self, x: Array) -> None:
-        """Move without a step: after a correction."""
+        """Move without a step: at the start and after a correction."""
         self.x, self.values = x, self.statement.values(x)
+        size = np.abs(x)
+        rounding = 10.0 * EPS * np.concatenate([size, self.statement.absolute[2].dot(size)])
+        self.slack = np.maximum(self._slack, rounding)
+        self.lowest, self.highest = self.statement.lower - self.slack, self.statement.upper + self.slack
         self.look()
 
     def move(self, direction: Array, along: Array, step: float, length: float) -> None:
@@ -108,8 +113,8 @@ class Progress:
         self.travelled = np.maximum(self.travelled, np.abs(self.x))
         product = self.statement.H.dot(self.x)
         self.gradient = product + self.statement.c
-        terms = max(largest(product), self.statement.slope, 1e-3)
-        self.zero = self.options.optimality_tolerance * terms
+        terms = self.options.optimality_tolerance * max(largest(product), self.statement.slope, 1e-3)
+        self.zero = max(terms, 100.0 * EPS * self.statement.row_sum * largest(self.travelled))
 
     def write(
         self,

@@ -28,19 +28,22 @@ def nearest(progress: Progress, along: Array, length: float, held: NDArray[np.bo
     constraints met until then, the one that is met most steeply (Harris, Math. Programming 5 (1973) 1-28). When the run
     has stalled: the lowest number among the ties.
     """
-    block = _first(progress, along, PARALLEL * length, held)
+    speed = np.abs(along)
+    away = held | (speed <= PARALLEL * length)
+    block = _first(progress, along, speed, away)
     if block is None or block.step * length * PARALLEL > progress.options.feasibility_tolerance:
-        block = _first(progress, along, FAINT * length, held)
+        nearly_all = held | (speed <= FAINT * length)
+        if (nearly_all != away).any():
+            block = _first(progress, along, speed, nearly_all)
     return block
 
 
-def _first(progress: Progress, along: Array, slow: float, held: NDArray[np.bool_]) -> Block | None:
-    """The first constraint met among those that are approached faster than `slow`."""
+def _first(progress: Progress, along: Array, speed: Array, away: NDArray[np.bool_]) -> Block | None:
+    """The first constraint met but for those that are left away."""
     statement, values = progress.statement, progress.values
-    speed = np.abs(along)
     # the bound ahead has the quotient that is not negative
     steps = np.maximum((statement.upper - values) / along, (statement.lower - values) / along)
-    steps[held | (speed <= slow)] = np.inf
+    steps[away] = np.inf
     late = steps + progress.slack / speed
     furthest = late[late.argmin()]
     if furthest == np.inf:
@@ -55,6 +58,6 @@ def _first(progress: Progress, along: Array, slow: float, held: NDArray[np.bool_
 
 def side_reached(progress: Progress, constraint: int, along: Array) -> int:
     """Which bound the movement reaches; 2 for an equality."""
-    if progress.statement.lower[constraint] == progress.statement.upper[constraint]:
+    if progress.statement.equality[constraint]:
         return 2
     return -1 if along[constraint] < 0.0 else 1

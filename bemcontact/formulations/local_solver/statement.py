@@ -10,11 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from bemcontact.errors import ProblemError
+from bemcontact.formulations.local_solver.factorisations import unit_rows
 
 Array = NDArray[np.float64]
 Sides = NDArray[np.int8]
 
 RUIZ_SWEEPS = 6
+NARROW = 2e-9
 INFINITE = 1e20
 """A bound of this size or more is none, as in most solvers and their files."""
 EPS = float(np.finfo(float).eps)
@@ -59,9 +61,15 @@ class Statement:
         return np.abs(self.H), np.abs(self.c), np.abs(self.A)
 
     @cached_property
+    def row_sum(self) -> float:
+        """The largest sum of a row of |H|."""
+        return float(self.absolute[0].sum(axis=1).max())
+
+    @cached_property
     def equality(self) -> NDArray[np.bool_]:
-        """Which constraints have one bound for both sides (n + m,)."""
-        return self.lower == self.upper
+        """Which constraints have one bound for both sides, or two that no tolerance tells apart (n + m,)."""
+        width, size = self.upper - self.lower, np.minimum(np.abs(self.lower), np.abs(self.upper))
+        return width <= NARROW * np.maximum(1.0, np.where(size < np.inf, size, 1.0))
 
     @cached_property
     def empty(self) -> NDArray[np.bool_]:
@@ -165,8 +173,7 @@ def equilibrate(statement: Statement) -> Scales:
     D = _power_of_two(D)
     D = D * _smaller_unit(statement, D, E)
     scaled = A * D
-    length = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))
-    E = _power_of_two(1.0 / np.where(length > 0.0, length, 1.0))
+    E = _power_of_two(1.0 / unit_rows(scaled)[1])
     size = max(float((D[:, None] * H * D).max(initial=0.0)), largest(D * c))
     return Scales(variables=D, rows=E, objective=float(_power_of_two(np.array(1.0 / (size or 1.0)))))
 
@@ -222,7 +229,7 @@ def read(
     upper = np.concatenate([_bound("bu", bu, n, np.inf), _bound("cu", cu, m, np.inf)])
     _order(lower[:n], upper[:n], "bl", "bu")
     _order(lower[n:], upper[n:], "cl", "cu")
-    return Statement(H=0.5 * (hessian + hessian.T), c=linear, A=rows, lower=lower, upper=upper)
+    return Statement(H=0.5 * hessian + 0.5 * hessian.T, c=linear, A=rows, lower=lower, upper=upper)
 
 
 def numbers(name: str, given: ArrayLike, size: int | None) -> Array:

@@ -1,6 +1,6 @@
 """Claims checked from the data: first-order conditions, rays, certificates; nothing is believed from the factors."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,12 +25,15 @@ class FirstOrder:
         Active constraints: equalities and those with a multiplier, and the others.
     sides : (n + m,) int8 array
         Which bound each active constraint is at (2: equality).
+    size : (n + m,) array
+        Absolute multipliers.
     """
 
     holds: bool
     strong: NDArray[np.bool_]
     weak: NDArray[np.bool_]
     sides: NDArray[np.int8]
+    size: Array
 
     def cone(self, statement: Statement) -> CriticalCone:
         """The critical cone with normals of length one, turned inwards."""
@@ -43,6 +46,18 @@ class FirstOrder:
         bounds[np.arange(weak_bounds.size), np.searchsorted(free, weak_bounds)] = inwards[weak_bounds]
         weak_rows = (inwards[n:, None] * rows)[self.weak[n:]]
         return CriticalCone(free=free, equal=rows[self.strong[n:]], weak=np.vstack([bounds, weak_rows]))
+
+    def stricter(self, along: Array, blocking: int) -> "FirstOrder":
+        """With a direction shut out on which the objective does not fall as far as it leads.
+
+        Small multipliers that make it rise count; if none does, the constraint that blocks it at once is active too.
+        """
+        leaving = self.weak & (self.sides * along < 0.0) & (self.size > 0.0)
+        sides, weak = self.sides.copy(), self.weak & ~leaving
+        if not leaving.any():
+            leaving[blocking], weak[blocking] = weak[blocking], not weak[blocking]
+            sides[blocking] = -1 if along[blocking] < 0.0 else 1
+        return replace(self, strong=self.strong | leaving, weak=weak, sides=sides)
 
 
 def first_order(progress: Progress, multipliers: Array) -> FirstOrder:
@@ -64,12 +79,15 @@ def first_order(progress: Progress, multipliers: Array) -> FirstOrder:
         strong=strong,
         weak=held & ~strong,
         sides=sides,
+        size=size,
     )
 
 
 def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
     """The ray, with rounding removed, if it is one: recession direction along which the objective falls without end."""
-    statement = progress.statement
+    statement, values = progress.statement, progress.values
+    if (values < progress.lowest).any() or (values > progress.highest).any():
+        return None
     d = np.where(np.abs(ray) > 1e-13 * np.abs(ray).max(initial=0.0), ray, 0.0)
     d = d / np.linalg.norm(d)
     along = statement.values(d)

@@ -21,6 +21,10 @@ FAILURES = 6
 """Times that a claim which fails when recomputed is taken up again with fresh factors."""
 
 
+FINER = 1e-2
+"""Part of the tolerance of phase one that counts after each failure."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Finding:
     """The end of the walk in scaled units.
@@ -71,7 +75,7 @@ def walk(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
     failures = 0
     start: Inertia | None = None
     while failures < FAILURES:
-        sides, certificate = reach_feasibility(progress, sides)
+        sides, certificate = reach_feasibility(progress, sides, FINER**failures)
         if certificate is not None:
             certificate = certified(progress.statement, certificate)
             if certificate is not None:
@@ -115,8 +119,7 @@ def _second_order(
     """A minimiser if H is copositive on the critical cone; else leave along the direction that shows it is not."""
     if _strict(descent, conditions):
         return _minimiser(descent, conditions, multipliers, QPStatus.LOCAL_MINIMISER)
-    cone = conditions.cone(progress.statement)
-    curvature = examine(progress.statement.H, cone, faces=progress.options.search)
+    curvature = examine(progress.statement.H, conditions.cone(progress.statement), faces=progress.options.search)
     if curvature.direction is None:
         status = QPStatus.LOCAL_MINIMISER if curvature.copositive else QPStatus.UNDECIDED
         return _minimiser(descent, conditions, multipliers, status)
@@ -128,17 +131,21 @@ def _second_order(
         if ray is None:
             return Restart(sides=descent.working.sides, failed=True)
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
+    slope, curved = float(progress.gradient @ direction), float(direction @ progress.statement.H @ direction)
+    if block.step * (slope + 0.5 * block.step * curved) >= 0.0:
+        return _second_order(progress, descent, conditions.stricter(along, block.constraint), multipliers)
     progress.move(direction, along, block.step, 1.0)
+    progress.look()
     progress.write(
         phase=2,
-        value=progress.statement.objective(progress.x) / progress.unit,
+        value=progress.objective / progress.unit,
         step=block.step,
         added=block.constraint,
         dropped=None,
         working=int(np.count_nonzero(conditions.strong)) + 1,
         nonpositive=1,
     )
-    return Restart(sides=progress.statement.sides_reached(progress.values, progress.slack), failed=block.step <= 0.0)
+    return Restart(sides=progress.statement.sides_reached(progress.values, progress.slack), failed=False)
 
 
 def _strict(descent: Descent, conditions: FirstOrder) -> bool:

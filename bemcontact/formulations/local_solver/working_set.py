@@ -102,10 +102,12 @@ class WorkingSet:
         if correction.dot(correction) > WEAR**2 * of_rows.dot(of_rows):
             self._renew()
             of_rows, _ = self._least_squares(gradient)
-        rest = gradient - of_rows.dot(self.W)
-        if self.number == self.free.size:
-            rest *= 1.0 - self.free  # at a vertex nothing is free, and what is left is rounding
-        return np.concatenate([rest, of_rows])
+        return np.concatenate([gradient - of_rows.dot(self.W), of_rows])
+
+    def reduced(self, multipliers: Array) -> Array:
+        """The reduced gradient (n,): what the multipliers leave on the free variables; at a vertex nothing is free."""
+        n = self.free.size
+        return multipliers[:n] * self.free if self.number < n else np.zeros(n)
 
     def _least_squares(self, gradient: Array) -> tuple[Array, Array]:
         """Multipliers of the rows, and how much a refinement with the data had to mend in them."""
@@ -203,7 +205,7 @@ class WorkingSet:
         targets = np.where(self.sides == 1, upper, lower)
         x = np.where(self.held[:n], targets[:n], x)
         real = self.ids >= 0
-        lack = np.where(real, targets[self.ids], 0.0) - np.where(real, self.W @ x, 0.0)
+        lack = np.where(real, targets[np.where(real, self.ids, 0)] - self.W @ x, 0.0)
         return x + self.N @ lack
 
 
