@@ -109,11 +109,13 @@ def test_worn_factors_are_noticed_mended_and_renewed():
     working, _ = start(data, sides)
     right = working.multipliers(g)
     working.N[:] *= 1.0 + 1e-6
+    working.add(3, 1)
+    assert not working.sharp
     _, direction = working.drop(12)
     assert_allclose(working.W @ direction, 0.0, atol=1e-11)
     working, _ = start(data, sides)
     working.N[:] *= 1.0 + 1e-6
-    assert_allclose(working.multipliers(g), right, atol=1e-14)
+    assert_allclose(working.multipliers(g, refined=True), right, atol=1e-14)
     assert_allclose(working.W @ working.N, np.eye(3), atol=1e-14)
 
 

@@ -178,9 +178,9 @@ def test_compliance_rows_of_a_slender_body_hide_errors_of_pressure():
     np.testing.assert_allclose(polished.pressure, 1, atol=1e-8)
 
 
-@pytest.mark.parametrize("penalty", [1e-12, 1e-8, 1e-4, 1.0, 1e4, 1e12])
+@pytest.mark.parametrize("penalty", [1e-8, 1e-4, 1.0, 1e4, 1e8, 1e12])
 def test_no_penalty_costs_digits(penalty):
-    """Twelve powers of ten to either side: the same pressure unpolished, and the inertia of the exact Hessian.
+    """Eight powers of ten below 1 and twelve above: the same pressure unpolished, and the inertia of the exact Hessian.
 
     With μ small it is that of the equations' square: n positive for the residuals, and of what is left, on the
     equations, M + Mᵀ, which is positive definite. With μ large that of the product pᵀJδ, n positive and n negative.

@@ -37,16 +37,15 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
     signs = violated_signs(progress)
     if not signs.any():
         return sides, None
-    working = WorkingSet(progress.statement, sides)
+    working, n = WorkingSet(progress.statement, sides), progress.x.size
     progress.place(working.onto(progress.x))
     signs = violated_signs(progress) * ~working.held  # what is held is on its bound, up to rounding
     while signs.any():
         gradient = progress.statement.transposed(signs)
         zero = fineness * progress.options.optimality_tolerance * sqrt(signs.dot(signs))
         multipliers = working.multipliers(gradient)
-        reduced = working.reduced(multipliers)
-        dropped = None
-        if largest(reduced) <= zero:
+        reduced, dropped = multipliers[:n] * working.free, None
+        if working.number == n or largest(reduced) <= zero:
             place = wrong_sign(working, multipliers, zero, least_index=progress.least_index)
             if place is None:
                 return working.sides, _certificate(working, signs, multipliers)
@@ -58,7 +57,8 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
             break
         else:
             direction = working.within(-reduced)
-        working = _step(progress, working, signs, direction, dropped)
+        if not _step(progress, working, signs, direction, dropped):
+            return working.sides, _certificate(working, signs, multipliers)
         signs = violated_signs(progress) * ~working.held
     return working.sides, None
 
@@ -79,28 +79,20 @@ def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array
     return certificate
 
 
-def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Array, dropped: int | None) -> WorkingSet:
-    """Move along the direction to the constraint that ends the step and take it into the working set."""
+def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Array, dropped: int | None) -> bool:
+    """Move along the direction to the constraint that ends the step and hold that; whether there is one."""
     length = sqrt(direction.dot(direction))
     along = progress.statement.values(direction)
     wall = nearest(progress, along, length, working.held | (signs != 0.0))
     inner = _breakpoint(progress, signs, along, length)
     block = inner if wall is None or (inner is not None and inner.step <= wall.step) else wall
-    if block is not None:
-        progress.move(direction, along, block.step, length)
-        working.add(block.constraint, block.side)
     if block is None:
-        working = WorkingSet(progress.statement, working.sides)
-    progress.write(
-        phase=1,
-        value=float(progress.statement.violation(progress.values).sum()),
-        step=0.0 if block is None else block.step,
-        added=None if block is None else block.constraint,
-        dropped=dropped,
-        working=working.number,
-        nonpositive=0,
-    )
-    return working
+        return False
+    progress.move(direction, along, block.step, length)
+    working.add(block.constraint, block.side)
+    value = float(progress.statement.violation(progress.values).sum())
+    progress.write(1, value, block.step, block.constraint, dropped, working.number, 0)
+    return True
 
 
 def _breakpoint(progress: Progress, signs: Array, along: Array, length: float) -> Block | None:

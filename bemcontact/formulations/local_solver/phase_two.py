@@ -102,19 +102,19 @@ class Descent:
         """
         progress, working = self.progress, self.working
         n, least = working.free.size, progress.least_index
-        if self._refused:
-            multipliers = np.where(np.isin(working.numbers, list(self._refused)), 0.0, multipliers)
-        reduced = working.reduced(multipliers)
-        if self.whole < 3 and largest(reduced) > 0.1 * progress.zero:
+        allowed = 1.0 if not self._refused else ~np.isin(working.numbers, list(self._refused))
+        loose = self.whole < 3 and working.number < n
+        if loose and largest(multipliers[:n] * working.free) > 0.1 * progress.zero:
             return True, None
-        place = wrong_sign(working, multipliers, progress.zero, least_index=least)
+        place = wrong_sign(working, multipliers * allowed, progress.zero, least_index=least)
         if place is not None:
             return False, place
-        zero = progress.fine_zero(multipliers[n:], working.W)
-        if self.whole < 3 and (np.abs(reduced) > zero).any():
+        multipliers = working.multipliers(progress.gradient, refined=True)
+        zero = progress.fine_zero(multipliers[n:], working.W, working.N)
+        if loose and (np.abs(multipliers[:n] * working.free) > zero).any():
             return True, None
         zeros = np.concatenate([zero, zero @ np.abs(working.N)])
-        return False, wrong_sign(working, multipliers, zeros, least_index=least)
+        return False, wrong_sign(working, multipliers * allowed, zeros, least_index=least)
 
     def _newton_step(self) -> None:
         """Towards the minimiser on the working set, as far as the constraints allow."""
@@ -137,17 +137,16 @@ class Descent:
             self.hessian.leave(direction)
             return None
         along = self.progress.statement.values(direction)
-        best: tuple[float, float, Block] | None = None
-        for sign in (1.0, -1.0) if level else (-np.sign(slope),):
-            block = nearest(self.progress, sign * along, 1.0, self.working.held)
-            if block is None:
-                return Outcome(ending=Ending.UNBOUNDED, ray=sign * direction)
-            change = block.step * (sign * slope + 0.5 * block.step * curvature)
-            if best is None or change < best[0]:
-                best = (change, sign, block)
-        assert best is not None
-        _, sign, block = best
-        self._advance(sign * direction, sign * along, 1.0, block.step, block)
+        if slope > 0.0:
+            direction, along, slope = -direction, -along, -slope
+        block = nearest(self.progress, along, 1.0, self.working.held)
+        if level and block is not None:
+            back = nearest(self.progress, -along, 1.0, self.working.held)
+            if back is None or _change(back, -slope, curvature) < _change(block, slope, curvature):
+                direction, along, block = -direction, -along, back
+        if block is None:
+            return Outcome(ending=Ending.UNBOUNDED, ray=direction)
+        self._advance(direction, along, 1.0, block.step, block)
         return None
 
     def _refuse(self, block: Block | None, step: float) -> None:
@@ -159,8 +158,9 @@ class Descent:
 
     def _fine_slope(self, direction: Array) -> float:
         """The slope along a direction that counts as zero."""
-        of_rows = self.working.multipliers(self.progress.gradient)[direction.size :]
-        return float(np.abs(direction) @ self.progress.fine_zero(of_rows, self.working.W))
+        working = self.working
+        of_rows = working.multipliers(self.progress.gradient)[direction.size :]
+        return float(np.abs(direction) @ self.progress.fine_zero(of_rows, working.W, working.N))
 
     def _advance(self, direction: Array, along: Array, length: float, step: float, block: Block | None) -> None:
         """Take the step, and the constraint that ended it."""
@@ -174,13 +174,11 @@ class Descent:
             self.hessian.leave(working.add(block.constraint, block.side))
             if block.constraint < working.free.size:
                 self.hessian.clear(block.constraint)
-        progress.write(
-            phase=2,
-            value=progress.objective / progress.unit,
-            step=step,
-            added=None if block is None else block.constraint,
-            dropped=self.dropped,
-            working=working.number,
-            nonpositive=nonpositive,
-        )
+        added = None if block is None else block.constraint
+        progress.write(2, progress.objective / progress.unit, step, added, self.dropped, working.number, nonpositive)
         self.dropped, self.idle = None, 0
+
+
+def _change(block: Block, slope: float, curvature: float) -> float:
+    """Of the objective, from here to where the step ends."""
+    return block.step * (slope + 0.5 * block.step * curvature)

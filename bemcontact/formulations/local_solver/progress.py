@@ -1,11 +1,12 @@
 """The travelling point: where it is, what it may still spend, and what it has written down."""
 
 from dataclasses import dataclass, field
+from math import sqrt
 
 import numpy as np
 
 from bemcontact.formulations.local_solver.result import LogLine, QPOptions
-from bemcontact.formulations.local_solver.statement import EPS, Array, Statement, largest
+from bemcontact.formulations.local_solver.statement import EPS, Array, Statement
 
 FINE = 1e-3
 """Part of the optimality tolerance that counts where each component is held against its own terms."""
@@ -33,7 +34,7 @@ class Progress:
     lowest, highest : (n + m,) arrays
         The bounds with their tolerances added.
     travelled : (n,) array
-        The largest size of each component so far: what its digits were lost against.
+        The largest size of each component so far: what its digits were lost against; `far` is that of the point.
     zero : float
         Size of a gradient or multiplier that counts as zero: relative to the terms that make it up.
     """
@@ -46,6 +47,7 @@ class Progress:
     gradient: Array = field(init=False)
     zero: float = field(init=False)
     travelled: Array = field(init=False)
+    far: float = field(init=False)
     slack: Array = field(init=False)
     lowest: Array = field(init=False)
     highest: Array = field(init=False)
@@ -61,7 +63,7 @@ class Progress:
         self._slack = self.options.feasibility_tolerance * np.maximum(1.0, np.where(size < np.inf, size, 1.0))
         chosen = self.options.max_iterations
         self.limit = 1000 + 20 * lower.size if chosen is None else chosen
-        self.travelled = np.zeros(self.x.size)
+        self.travelled, self.far = np.zeros(self.x.size), 0.0
         self.place(self.x)
 
     @property
@@ -69,18 +71,23 @@ class Progress:
         """cᵀx + xᵀHx/2."""
         return 0.5 * float(self.x.dot(self.gradient + self.statement.c))
 
-    def fine_zero(self, of_rows: Array, rows: Array) -> Array:
+    def fine_zero(self, of_rows: Array, rows: Array, inverse: Array) -> Array:
         """For each component of the gradient the size that counts as zero, relative to its own terms (n,).
 
-        Where variables differ in size by many orders, small ones are not to be judged by the terms of large ones.
+        Where variables differ in size by many orders, small ones are not to be judged by the terms of large ones. What
+        rounding has left in one component reaches others through the multipliers of the rows.
+
+        Parameters
+        ----------
+        of_rows, rows, inverse : (r,), (r, n) and (n, r) arrays
+            Multipliers of rows, the rows, and their right inverse.
         """
         H, c, _ = self.statement.absolute
-        terms = H.dot(np.abs(self.x)) + c
-        if of_rows.size:
-            terms = terms + np.abs(of_rows).dot(np.abs(rows))
-        relative = FINE * self.options.optimality_tolerance * terms
-        far = H.dot(self.travelled)
-        return np.maximum(relative, np.maximum(100.0 * EPS * far, 1e-14 * max(largest(terms), largest(far))))
+        W, N = np.abs(rows), np.abs(inverse)
+        terms = H.dot(np.abs(self.x)) + c + np.abs(of_rows).dot(W)
+        lost = EPS * np.maximum(terms, H.dot(self.travelled))
+        rounding = 100.0 * (lost + lost.dot(N).dot(W))
+        return np.maximum(FINE * self.options.optimality_tolerance * terms, rounding)
 
     @property
     def exhausted(self) -> bool:
@@ -110,15 +117,15 @@ class Progress:
 
     def look(self) -> None:
         """The gradient at the point."""
-        self.travelled = np.maximum(self.travelled, np.abs(self.x))
+        np.maximum(self.travelled, np.abs(self.x), out=self.travelled)
         product = self.statement.H.dot(self.x)
         self.gradient = product + self.statement.c
-        terms = self.options.optimality_tolerance * max(largest(product), self.statement.slope, 1e-3)
-        self.zero = max(terms, 100.0 * EPS * self.statement.row_sum * largest(self.travelled))
+        self.far = max(self.far, sqrt(self.x.dot(self.x)))
+        terms = max(sqrt(product.dot(product) / self.x.size), self.statement.slope, 1e-3)
+        self.zero = max(self.options.optimality_tolerance * terms, 100.0 * EPS * self.statement.row_sum * self.far)
 
     def write(
         self,
-        *,
         phase: int,
         value: float,
         step: float,
@@ -127,19 +134,11 @@ class Progress:
         working: int,
         nonpositive: int,
     ) -> None:
-        """Count the iteration and log it."""
+        """Count the iteration and log it, as a `LogLine`."""
         self.iterations[phase - 1] += 1
         self.changes += (added is not None) + (dropped is not None)
-        line = LogLine(
-            phase=phase,
-            iteration=sum(self.iterations),
-            value=value,
-            step=step,
-            added=added,
-            dropped=None if dropped is None or dropped < 0 else dropped,
-            working=working,
-            nonpositive=nonpositive,
-        )
+        real = None if dropped is None or dropped < 0 else dropped
+        line = LogLine(phase, sum(self.iterations), value, step, added, real, working, nonpositive)
         self.lines.append(line)
         if self.options.log is not None:
             self.options.log(line)

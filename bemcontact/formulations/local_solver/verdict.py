@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from bemcontact.formulations.local_solver.dead_point import CriticalCone
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.statement import EPS, Array, Statement, largest
+from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 WEAK = 10.0
 """Multipliers below this many optimality tolerances are treated as zero in the critical cone."""
@@ -60,7 +61,7 @@ class FirstOrder:
         return replace(self, strong=self.strong | leaving, weak=weak, sides=sides)
 
 
-def first_order(progress: Progress, multipliers: Array) -> FirstOrder:
+def first_order(progress: Progress, working: WorkingSet, multipliers: Array) -> FirstOrder:
     """Recompute the first-order conditions at the point from the data, each component against its own terms."""
     statement, x = progress.statement, progress.x
     n = x.size
@@ -68,7 +69,8 @@ def first_order(progress: Progress, multipliers: Array) -> FirstOrder:
     sides = statement.sides_reached(values, 2.0 * progress.slack)
     feasible = bool((statement.violation(values) <= 2.0 * progress.slack).all())
     residual = np.abs(progress.gradient - statement.transposed(multipliers))
-    zero = progress.fine_zero(multipliers[n:], statement.A)
+    real = working.ids >= 0
+    zero = progress.fine_zero(multipliers[working.ids[real]], working.W[real], working.N[:, real])
     zeros = np.concatenate([zero, np.full(values.size - n, progress.zero)])
     size = np.abs(multipliers)
     wrong = np.where(statement.equality, 0.0, np.where(sides == 0, size, sides * multipliers))
@@ -99,9 +101,9 @@ def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
     curvature = float(d @ statement.H @ d)
     slope = float(progress.gradient @ d)
     zero = statement.rounding(d)
-    if curvature < -zero or (curvature <= zero and slope < -float(np.abs(d) @ progress.fine_zero(d[:0], statement.A))):
-        return d
-    return None
+    no_rows = statement.A[:0]
+    level = float(np.abs(d) @ progress.fine_zero(d[:0], no_rows, no_rows.T))
+    return d if curvature < -zero or (curvature <= zero and slope < -level) else None
 
 
 def separates(statement: Statement, certificate: Array) -> bool:

@@ -92,6 +92,8 @@ def walk(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
         if isinstance(found, Finding):
             return found, start
         sides, failures = found.sides, failures + found.failed
+        if progress.exhausted:
+            break
     status = QPStatus.ITERATION_LIMIT if progress.exhausted else QPStatus.NUMERICAL_FAILURE
     return _finding(progress, status, sides), start or (0, 0, 0)
 
@@ -107,7 +109,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
             return Restart(sides=descent.working.sides, failed=True)
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     multipliers = _refined(progress, descent)
-    conditions = first_order(progress, multipliers)
+    conditions = first_order(progress, descent.working, multipliers)
     if outcome.ending is Ending.INACCURATE or not conditions.holds:
         return Restart(sides=descent.working.sides, failed=True)
     return _second_order(progress, descent, conditions, multipliers)
@@ -132,19 +134,13 @@ def _second_order(
             return Restart(sides=descent.working.sides, failed=True)
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     slope, curved = float(progress.gradient @ direction), float(direction @ progress.statement.H @ direction)
-    if block.step * (slope + 0.5 * block.step * curved) >= 0.0:
+    rounding = 100.0 * EPS * abs(progress.objective)
+    if block.step * (slope + 0.5 * block.step * curved) >= -rounding:
         return _second_order(progress, descent, conditions.stricter(along, block.constraint), multipliers)
     progress.move(direction, along, block.step, 1.0)
     progress.look()
-    progress.write(
-        phase=2,
-        value=progress.objective / progress.unit,
-        step=block.step,
-        added=block.constraint,
-        dropped=None,
-        working=int(np.count_nonzero(conditions.strong)) + 1,
-        nonpositive=1,
-    )
+    held = int(np.count_nonzero(conditions.strong)) + 1
+    progress.write(2, progress.objective / progress.unit, block.step, block.constraint, None, held, 1)
     return Restart(sides=progress.statement.sides_reached(progress.values, progress.slack), failed=False)
 
 
@@ -196,7 +192,7 @@ def _refined(progress: Progress, descent: Descent) -> Array:
         progress.place(working.onto(progress.x))
         if descent.hessian.size:
             progress.place(progress.x + descent.hessian.newton(progress.gradient))
-    n, found = working.free.size, working.multipliers(progress.gradient)
+    n, found = working.free.size, working.multipliers(progress.gradient, refined=True)
     real = working.ids >= 0
     multipliers = np.zeros(progress.values.size)
     multipliers[:n] = found[:n] * (1.0 - working.free)

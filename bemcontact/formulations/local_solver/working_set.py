@@ -24,8 +24,8 @@ TEMPORARY, FLAT = -1, -2
 DEPENDENT = 1e-9
 """A normal whose part outside the span of the others is a smaller part of it counts as dependent."""
 
-WEAR = 1e-8
-"""Relative size of a refinement that shows that N wants renewal."""
+SHARP, WEAR = 1e-12, 1e-8
+"""Relative size of a refinement above which refinements are needed, and above which N is made anew."""
 
 
 class WorkingSet:
@@ -56,6 +56,8 @@ class WorkingSet:
         -1 for a variable or row at its lower bound, +1 at its upper, 0 for any other.
     temporary : int
         How many rows of W are no constraints.
+    sharp : bool
+        Whether N still has all its digits.
     """
 
     def __init__(self, statement: Statement, sides: Sides) -> None:
@@ -74,7 +76,7 @@ class WorkingSet:
             left_out = n + np.delete(rows, kept)
             self.sides[left_out], self.held[left_out] = 0, False
         self.number = n - free.size + r
-        self.temporary = 0
+        self.temporary, self.sharp = 0, True
         self._ids[:r] = n + rows[kept]
         self._W[:r] = A[rows[kept]]
         self._signs[:n] = np.where(self.sides[:n] == EQUALITY, 0, self.sides[:n])
@@ -94,26 +96,26 @@ class WorkingSet:
         """The constraint of each place (n + r,): the variables, then `ids`."""
         return np.concatenate([np.arange(self.free.size), self.ids])
 
-    def multipliers(self, gradient: Array) -> Array:
-        """Of the fixed variables, beside the reduced gradient of the free ones, and of the rows (n + r,)."""
+    def multipliers(self, gradient: Array, *, refined: bool = False) -> Array:
+        """Of the fixed variables, beside the reduced gradient of the free ones, and of the rows (n + r,).
+
+        They are refined with the data if N has lost digits, or if that is asked for.
+        """
         if self.size == 0:
             return gradient
-        of_rows, correction = self._least_squares(gradient)
-        if correction.dot(correction) > WEAR**2 * of_rows.dot(of_rows):
-            self._renew()
-            of_rows, _ = self._least_squares(gradient)
+        of_rows = gradient.dot(self.N)
+        if refined or not self.sharp:
+            of_rows = self._refined(of_rows, gradient)
         return np.concatenate([gradient - of_rows.dot(self.W), of_rows])
 
-    def reduced(self, multipliers: Array) -> Array:
-        """The reduced gradient (n,): what the multipliers leave on the free variables; at a vertex nothing is free."""
-        n = self.free.size
-        return multipliers[:n] * self.free if self.number < n else np.zeros(n)
-
-    def _least_squares(self, gradient: Array) -> tuple[Array, Array]:
-        """Multipliers of the rows, and how much a refinement with the data had to mend in them."""
-        of_rows = gradient.dot(self.N)
+    def _refined(self, of_rows: Array, gradient: Array) -> Array:
+        """Multipliers of the rows after a refinement; from a new N if there was too much to mend."""
         correction = (gradient - of_rows.dot(self.W)).dot(self.N)
-        return of_rows + correction, correction
+        if correction.dot(correction) > WEAR**2 * of_rows.dot(of_rows):
+            self._renew()
+            of_rows = gradient.dot(self.N)
+            correction = (gradient - of_rows.dot(self.W)).dot(self.N)
+        return of_rows + correction
 
     def _renew(self) -> None:
         """N from the rows anew, once rounding has piled up in it: O(n³)."""
@@ -121,6 +123,7 @@ class WorkingSet:
         Y, _, T, order = orthogonal(self.W[:, free], 0.0)
         if order.size == self.size:
             self.N[np.ix_(free, order)] = Y @ inverse_triangle(T).T
+            self.sharp = True
 
     def add(self, constraint: int, side: int) -> Array:
         """One constraint enters, whose normal is not in the span of the others; returns its normal: O(n²)."""
@@ -149,7 +152,9 @@ class WorkingSet:
         outside = normal * self.free
         if self.size:
             outside -= along.dot(self.W) * self.free
-            outside -= outside.dot(self.N).dot(self.W) * self.free
+            again = outside.dot(self.N)
+            self.sharp = self.sharp and again.dot(again) <= SHARP**2 * outside.dot(outside)
+            outside -= again.dot(self.W) * self.free
         inverse = outside / outside.dot(normal)
         add_rank_one(self.N, -1.0, inverse, along)
         return inverse
@@ -171,7 +176,8 @@ class WorkingSet:
             self._signs[place], self.free[place] = 0.0, 1.0
         else:
             direction, constraint = self._N[:, place - n].copy(), self._forget(place - n)
-        direction = self.within(direction)
+        if not self.sharp:
+            direction = self.within(direction)
         if constraint >= 0:
             self.sides[constraint], self.held[constraint] = 0, False
         self.number -= 1
