@@ -58,7 +58,7 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
         else:
             direction = working.within(-reduced)
         if not _step(progress, working, signs, direction, dropped):
-            return working.sides, _certificate(working, signs, multipliers)
+            return working.sides, _certificate(working, signs, working.multipliers(gradient))
         signs = violated_signs(progress) * ~working.held
     return working.sides, None
 

@@ -160,7 +160,7 @@ class Descent:
         """The slope along a direction that counts as zero."""
         working = self.working
         of_rows = working.multipliers(self.progress.gradient)[direction.size :]
-        return float(np.abs(direction) @ self.progress.fine_zero(of_rows, working.W, working.N))
+        return self.progress.level(direction, self.progress.fine_zero(of_rows, working.W, working.N))
 
     def _advance(self, direction: Array, along: Array, length: float, step: float, block: Block | None) -> None:
         """Take the step, and the constraint that ended it."""

@@ -6,7 +6,7 @@ from math import sqrt
 import numpy as np
 
 from bemcontact.formulations.local_solver.result import LogLine, QPOptions
-from bemcontact.formulations.local_solver.statement import EPS, Array, Statement
+from bemcontact.formulations.local_solver.statement import EPS, Array, Statement, largest
 
 FINE = 1e-3
 """Part of the optimality tolerance that counts where each component is held against its own terms."""
@@ -88,6 +88,12 @@ class Progress:
         lost = EPS * np.maximum(terms, H.dot(self.travelled))
         rounding = 100.0 * (lost + lost.dot(N).dot(W))
         return np.maximum(FINE * self.options.optimality_tolerance * terms, rounding)
+
+    def level(self, direction: Array, zero: Array) -> float:
+        """The slope along a direction that counts as zero: of zero gradients, and of the rounding in its components."""
+        size = np.abs(direction)
+        rounding = 10.0 * EPS * largest(direction) * float(np.abs(self.gradient).dot(size > 0.0))
+        return float(size.dot(zero)) + rounding
 
     @property
     def exhausted(self) -> bool:

@@ -102,7 +102,7 @@ def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
     slope = float(progress.gradient @ d)
     zero = statement.rounding(d)
     no_rows = statement.A[:0]
-    level = float(np.abs(d) @ progress.fine_zero(d[:0], no_rows, no_rows.T))
+    level = progress.level(d, progress.fine_zero(d[:0], no_rows, no_rows.T))
     return d if curvature < -zero or (curvature <= zero and slope < -level) else None
 
 
