@@ -172,7 +172,7 @@ def minimise(program: Program, start: Array, max_iterations: int | None) -> QPRe
     Returns
     -------
     QPResult
-        For x alone, with the inertia of the Hessian of the program.
+        For x alone.
     """
     E, e = program.penalised.matrix, program.penalised.right
     A, b = program.equations.matrix, program.equations.right
@@ -196,7 +196,7 @@ def minimise(program: Program, start: Array, max_iterations: int | None) -> QPRe
     return replace(
         found,
         x=found.x[:N],
-        inertia=program.inertia,
+        hessian=program.hessian,
         weakly_active=found.weakly_active[found.weakly_active < N],
         ray=None if found.ray is None else found.ray[:N],
     )
@@ -311,7 +311,7 @@ def _search(options: FormulationOptions, program: Program, result: QPResult, pen
         phase_one_iterations=result.phase_one_iterations,
         phase_two_iterations=result.phase_two_iterations,
         working_set_changes=result.working_set_changes,
-        inertia=result.inertia,
+        inertia=program.inertia,
         reduced_inertia_start=result.reduced_inertia_start,
         reduced_inertia_end=result.reduced_inertia_end,
         weakly_active=len(result.weakly_active),

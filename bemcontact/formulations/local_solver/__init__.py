@@ -1,7 +1,7 @@
 """A local solver for quadratic programmes of any inertia; it knows nothing of contact."""
 
+from bemcontact.formulations.local_solver.factorisations import inertia
 from bemcontact.formulations.local_solver.minimize import minimize_qp
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
-from bemcontact.formulations.local_solver.walk import inertia
 
 __all__ = ["QPOptions", "QPResult", "QPStatus", "inertia", "minimize_qp"]

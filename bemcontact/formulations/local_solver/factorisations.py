@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
 Array = NDArray[np.float64]
+Inertia = tuple[int, int, int]
 
 geqp3, orgqr, trtri, pstrf, potrf = get_lapack_funcs(("geqp3", "orgqr", "trtri", "pstrf", "potrf"), dtype=np.float64)
 SWEEPS = 4
@@ -56,6 +57,19 @@ def unit_sizes(size: Array) -> Array:
         rows = np.maximum.reduce((units[:, None] * size) * units, axis=1)
         units = units / np.sqrt(np.where(rows > 0.0, rows, 1.0))
     return units
+
+
+def inertia(matrix: Array, noise: Array | float = 0.0) -> Inertia:
+    """Numbers of positive, zero and negative eigenvalues; entries up to `noise` are zero.
+
+    They are those of the matrix in units in which its rows have size one (Sylvester), where zero is rounding.
+    """
+    matrix = np.where(np.abs(matrix) <= noise, 0.0, matrix)
+    units = unit_sizes(np.abs(matrix))
+    eigenvalues = np.linalg.eigvalsh(units[:, None] * matrix * units)
+    zero = 100.0 * max(10, matrix.shape[0]) * np.finfo(float).eps
+    negative, positive = int(np.sum(eigenvalues < -zero)), int(np.sum(eigenvalues > zero))
+    return positive, matrix.shape[0] - positive - negative, negative
 
 
 def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDArray[np.intp]]:

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bemcontact.errors import ProblemError
+from bemcontact.formulations.local_solver.factorisations import Inertia
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult
 from bemcontact.formulations.local_solver.statement import Scales, Statement, equilibrate, no_scales, numbers, read
-from bemcontact.formulations.local_solver.walk import Finding, Inertia, inertia, walk
+from bemcontact.formulations.local_solver.walk import Finding, walk
 
 
 def minimize_qp(
@@ -126,7 +127,7 @@ def _result(stated: Statement, scales: Scales, progress: Progress, finding: Find
         phase_one_iterations=progress.iterations[0],
         phase_two_iterations=progress.iterations[1],
         working_set_changes=progress.changes,
-        inertia=inertia(stated.H),
+        hessian=stated.H,
         reduced_inertia_start=start,
         reduced_inertia_end=finding.reduced_end,
         weakly_active=finding.weak,

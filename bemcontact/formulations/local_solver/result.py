@@ -3,10 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from bemcontact.formulations.local_solver.factorisations import Inertia, inertia
 
 
 class QPStatus(StrEnum):
@@ -113,10 +116,11 @@ class QPResult:
         Iterations of each phase.
     working_set_changes : int
         Constraints added and dropped, temporary ones included.
-    inertia : (int, int, int)
-        Positive, zero and negative eigenvalues of H.
+    hessian : (n, n) array
+        H; its `inertia` is found when it is asked for.
     reduced_inertia_start, reduced_inertia_end : (int, int, int)
-        The same of ZᵀHZ on the null space of the working set, at the start of phase 2 and at the end.
+        Positive, zero and negative eigenvalues of ZᵀHZ on the null space of the working set, at the start of phase 2 and
+        at the end.
     weakly_active : int array
         Active inequalities whose multiplier is about zero, numbered as in `working_set`.
     ray : (n,) array or None
@@ -138,14 +142,19 @@ class QPResult:
     phase_one_iterations: int
     phase_two_iterations: int
     working_set_changes: int
-    inertia: tuple[int, int, int]
-    reduced_inertia_start: tuple[int, int, int]
-    reduced_inertia_end: tuple[int, int, int]
+    hessian: NDArray[np.float64] = field(repr=False)
+    reduced_inertia_start: Inertia
+    reduced_inertia_end: Inertia
     weakly_active: NDArray[np.intp]
     ray: NDArray[np.float64] | None
     certificate: NDArray[np.float64] | None
     violation: float
     log: tuple[LogLine, ...] = field(repr=False)
+
+    @cached_property
+    def inertia(self) -> Inertia:
+        """Numbers of positive, zero and negative eigenvalues of H."""
+        return inertia(self.hessian)
 
     @property
     def iterations(self) -> int:

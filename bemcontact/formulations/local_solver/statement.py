@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 Sides = NDArray[np.int8]
 
 RUIZ_SWEEPS = 6
+FAR = 200.0
+"""The largest exponent of a factor."""
 NARROW = 2e-9
 INFINITE = 1e20
 """A bound of this size or more is none, as in most solvers and their files."""
@@ -156,39 +158,37 @@ def equilibrate(statement: Statement) -> Scales:
     m, n = statement.A.shape
     H, c, A = statement.absolute
     outside = ~A.any(axis=0)
+    mixed = bool(outside.any())
     D, E, linear, hessian = np.ones(n), np.ones(m), A, H
     for _ in range(RUIZ_SWEEPS):
         columns, rows = np.maximum.reduce(linear, axis=0, initial=0.0), np.maximum.reduce(linear, axis=1, initial=0.0)
-        if outside.any():
+        if mixed:
             sizes = np.maximum.reduce(hessian, axis=1)
-            columns = np.where(outside, sizes / _top(sizes), columns)
+            columns = np.where(outside, sizes / (largest(sizes) or 1.0), columns)
         columns[columns == 0.0] = 1.0
         rows[rows == 0.0] = 1.0
         D, E = D / np.sqrt(columns), E / np.sqrt(rows)
         if _near_one(columns) and _near_one(rows):
             break
         linear = E[:, None] * A * D
-        if outside.any():
+        if mixed:
             hessian = D[:, None] * H * D
     D = _power_of_two(D)
     D = D * _smaller_unit(statement, D, E)
     scaled = A * D
     E = _power_of_two(1.0 / unit_rows(scaled)[1])
-    size = max(float((D[:, None] * H * D).max(initial=0.0)), largest(D * c))
+    size = max(float(np.maximum.reduce(D[:, None] * H * D, axis=None)), largest(D * c))
     return Scales(variables=D, rows=E, objective=float(_power_of_two(np.array(1.0 / (size or 1.0)))))
 
 
 def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
     """A unit of length that makes the largest bound about one, if all are smaller: tolerances are relative to one."""
-    bounds = np.abs(np.concatenate([statement.lower, statement.upper]))
-    sizes = bounds * np.tile(np.concatenate([1.0 / D, E]), 2)
-    largest = float(sizes[np.isfinite(bounds)].max(initial=0.0))
-    return float(_power_of_two(np.array(largest))) if 0.0 < largest < 1.0 else 1.0
-
-
-def _top(sizes: Array) -> float:
-    """The largest size, 1 if all are zero."""
-    return float(sizes.max(initial=0.0)) or 1.0
+    factors = np.concatenate([1.0 / D, E])
+    size = 0.0
+    for bounds in (statement.lower, statement.upper):
+        finite = np.abs(bounds) < np.inf
+        size = max(size, largest(bounds[finite] * factors[finite]))
+    return float(_power_of_two(np.array(size))) if 0.0 < size < 1.0 else 1.0
 
 
 def _near_one(sizes: Array) -> bool:
@@ -197,8 +197,8 @@ def _near_one(sizes: Array) -> bool:
 
 
 def _power_of_two(factors: Array) -> Array:
-    """Nearest powers of two."""
-    return np.exp2(np.round(np.log2(factors)))
+    """Nearest powers of two, as far as products of some of them are numbers."""
+    return np.exp2(np.minimum(np.maximum(np.rint(np.log2(factors)), -FAR), FAR))
 
 
 def read(
@@ -218,9 +218,11 @@ def read(
     hessian = _matrix("H", H, n)
     if hessian.shape[0] != n:
         raise ProblemError(f"H has {hessian.shape[0]} rows, but c has {n} entries: H must be ({n}, {n})")
-    difference = np.abs(hessian - hessian.T).max(initial=0.0)
-    if difference > 1e-10 * np.abs(hessian).max(initial=0.0):
-        raise ProblemError(f"H is not symmetric: H - H' has entries up to {difference:.3g}; give (H + H') / 2")
+    if not (hessian == hessian.T).all():
+        difference = np.abs(hessian - hessian.T).max()
+        if difference > 1e-10 * np.abs(hessian).max():
+            raise ProblemError(f"H is not symmetric: H - H' has entries up to {difference:.3g}; give (H + H') / 2")
+        hessian = 0.5 * hessian + 0.5 * hessian.T
     rows = np.zeros((0, n)) if A is None else _matrix("A", A, n)
     m = rows.shape[0]
     if A is None and (cl is not None or cu is not None):
@@ -229,7 +231,7 @@ def read(
     upper = np.concatenate([_bound("bu", bu, n, np.inf), _bound("cu", cu, m, np.inf)])
     _order(lower[:n], upper[:n], "bl", "bu")
     _order(lower[n:], upper[n:], "cl", "cu")
-    return Statement(H=0.5 * hessian + 0.5 * hessian.T, c=linear, A=rows, lower=lower, upper=upper)
+    return Statement(H=hessian, c=linear, A=rows, lower=lower, upper=upper)
 
 
 def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
@@ -244,7 +246,7 @@ def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
     if vector.ndim != 1 or (size is not None and vector.size != size):
         expected = "one-dimensional" if size is None else f"of shape ({size},)"
         raise ProblemError(f"{name} has shape {vector.shape}: it must be {expected}")
-    if not np.all(np.isfinite(vector)):
+    if not np.isfinite(vector).all():
         raise ProblemError(f"{name}[{int(np.argmin(np.isfinite(vector)))}] is not finite: give finite numbers")
     return vector
 
@@ -264,7 +266,7 @@ def _matrix(name: str, given: Any, columns: int) -> Array:
     matrix = _floats(name, given)
     if matrix.ndim != 2 or matrix.shape[1] != columns:
         raise ProblemError(f"{name} has shape {matrix.shape}: it needs {columns} columns, one for each entry of c")
-    if not np.all(np.isfinite(matrix)):
+    if not np.isfinite(matrix).all():
         raise ProblemError(f"{name} has entries that are not finite: give finite numbers")
     return matrix
 

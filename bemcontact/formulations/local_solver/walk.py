@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.formulations.local_solver.dead_point import examine
-from bemcontact.formulations.local_solver.factorisations import unit_sizes
+from bemcontact.formulations.local_solver.factorisations import Inertia, inertia
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import Progress
@@ -14,8 +14,6 @@ from bemcontact.formulations.local_solver.ratio_test import nearest
 from bemcontact.formulations.local_solver.result import QPStatus
 from bemcontact.formulations.local_solver.statement import EPS, Array, Sides
 from bemcontact.formulations.local_solver.verdict import FirstOrder, certified, cleaned_ray, first_order
-
-Inertia = tuple[int, int, int]
 
 FAILURES = 6
 """Times that a claim which fails when recomputed is taken up again with fresh factors."""
@@ -198,19 +196,6 @@ def _refined(progress: Progress, descent: Descent) -> Array:
     multipliers[:n] = found[:n] * (1.0 - working.free)
     multipliers[working.ids[real]] = found[n:][real]
     return multipliers
-
-
-def inertia(matrix: Array, noise: Array | float = 0.0) -> Inertia:
-    """Numbers of positive, zero and negative eigenvalues; entries up to `noise` are zero.
-
-    They are those of the matrix in units in which its rows have size one (Sylvester), where zero is rounding.
-    """
-    matrix = np.where(np.abs(matrix) <= noise, 0.0, matrix)
-    units = unit_sizes(np.abs(matrix))
-    eigenvalues = np.linalg.eigvalsh(units[:, None] * matrix * units)
-    zero = 100.0 * max(10, matrix.shape[0]) * EPS
-    negative, positive = int(np.sum(eigenvalues < -zero)), int(np.sum(eigenvalues > zero))
-    return positive, matrix.shape[0] - positive - negative, negative
 
 
 def reduced_inertia(descent: Descent) -> Inertia:
