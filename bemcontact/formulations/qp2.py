@@ -3,10 +3,16 @@
     minimise   pᵀJ(ε + u_n) + (1/μ)|K u_n - B p - r|²    over u_n, p
     subject to ε + u_n >= 0,  p >= 0,  ℓᵀp = -load
 
-on the scaled problem, where μ = 1 weighs an error of T in the equations like the work of T on U. With positive diagonal
-weights and a compliance that is a P-matrix the contact state is the only stationary point, whatever μ is; but only with
-equilibrium as a constraint. Where it is penalised as all the rest, as [SS92] has it, p = 0 with the body lifted far
-enough is another one: the residual then is balanced by no force, and small changes of p and u_n improve nothing.
+on the scaled problem, where μ = 1 weighs an error of T in the equations like the work of T on U.
+
+Stationary points. Let sym(JM) be positive definite on the equilibrium space, ℓ = JR, J > 0 diagonal, and
+σ = (2/μ)(K u_n - B p - r) with K = S, B = I. With w = Kᵀσ and σ' = σ + ℓy, y the multiplier of equilibrium, the
+conditions of first order read p >= 0, Jδ - σ' >= 0, δ >= 0, Jp + w >= 0, the first two and the last two complementary:
+in each case w_i σ'_i <= 0. From S M = I - Vℓᵀ follows σ' = Mᵀw + ℓz, and Rᵀw = 0. So with v = w/J, which is in
+equilibrium, vᵀJM v = wᵀσ'/J <= 0: v = 0, σ = 0, and the point is the contact state, whatever μ is. With the compliance
+rows w = σ and σ' = Mᵀσ + ℓy lead to the same. Where equilibrium is penalised as all the rest, as [SS92] has it, p = 0
+with the body lifted far enough is another stationary point: the residual then is balanced by no force, and small
+changes of p and u_n improve nothing.
 
 Convexity. On the equilibrium space p = Z z, s = K u_n - B p - r the quadratic is zᵀW z + zᵀD s + (1/μ)|s|² with
 W = ZᵀJM Z and D = W (stiffness rows, s = Z t) or D = ZᵀJ (compliance rows). Its least value over s is
@@ -14,6 +20,7 @@ zᵀ(W - (μ/4) D Dᵀ)z, so that QP2 is convex up to the smallest eigenvalue of
 equilibrium does not make vanish is a saddle for every μ.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,15 +28,17 @@ from scipy.linalg import eigvalsh
 
 from bemcontact.choices import Equilibrium, FormulationName, Rows, Weights
 from bemcontact.contact import Array, CondensedContact
-from bemcontact.errors import ProblemError
-from bemcontact.formulations.formulation import FormulationOptions
+from bemcontact.errors import OptionError
+from bemcontact.formulations.formulation import LARGEST_PENALTY, FormulationOptions
 from bemcontact.formulations.program import (
+    SOLUTION,
     Program,
     contact_equations,
     equilibrium,
     lower_bounds,
     no_equations,
-    solution,
+    polished,
+    searched,
 )
 from bemcontact.formulations.scaling import scaled, scaled_weights
 from bemcontact.solution import ContactSolution, Penalty, Status
@@ -38,6 +47,8 @@ OPTIONS = ("weights", "penalty", "rows", "equilibrium", "start")
 """Those of `FormulationOptions` that have a meaning here."""
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR that is round-off; by the scaling the numbers are of size one."""
+FURTHER = 100.0
+"""Factor below the least penalty at which nothing is believed, and to the next one where size explains no failure."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -81,7 +92,7 @@ def statement(condensed: CondensedContact, options: FormulationOptions) -> Progr
     if options.equilibrium is Equilibrium.CONSTRAINT:
         exact = equilibrium(scaled(condensed), size).of_unit_size
     elif options.rows is Rows.COMPLIANCE and condensed.free_motions:
-        raise ProblemError(
+        raise OptionError(
             "equilibrium can be penalised with the stiffness rows only, which contain it; the compliance rows need it "
             "as a constraint"
         )
@@ -167,7 +178,7 @@ def two_point_ray(condensed: CondensedContact, options: FormulationOptions) -> R
 
 
 def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
-    """Find a local minimum of QP2, then polish it if it is the contact state.
+    """Find a local minimum of QP2, then polish it unless it is certain not to be the contact state.
 
     Parameters
     ----------
@@ -177,8 +188,8 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     Returns
     -------
     ContactSolution
-        `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state; with the penalty and the limit of
-        convexity in `search`.
+        `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state, `Status.NUMERICAL_FAILURE` where
+        there is none; with the penalty and the limit of convexity in `search`.
 
     Raises
     ------
@@ -191,18 +202,24 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     program = statement(condensed, options)
     unit = penalty_unit(condensed, options)
     if ray := two_point_ray(condensed, options):
-        raise ProblemError(_unbounded(condensed, options, ray, unit))
+        raise OptionError(_unbounded(condensed, options, ray, unit))
     limit = convexity_limit(condensed, options)
     penalty = Penalty(
         value=options.penalty,
         raw=options.penalty * unit,
         convexity_limit=limit if np.isfinite(limit) else None,
         convexity_limit_raw=limit * unit if np.isfinite(limit) else None,
+        dimension="p/L²" if options.rows is Rows.STIFFNESS else "1/p",
     )
-    found = solution(condensed, options, FormulationName.QP2, program, penalty)
+    drowned = FURTHER * program.penalty < least_penalty(program)
+    found = searched(condensed, options, FormulationName.QP2, program, only=limit > 0, drowned=drowned, penalty=penalty)
     if found.status is Status.UNBOUNDED and options.weights is Weights.CONSISTENT:
-        raise ProblemError(f"QP2 has no minimum with consistent weights: {found.notes[-1]}; take the tributary weights")
-    return replace(found, notes=(*found.notes, *_notes(condensed, options, found)))
+        raise OptionError(f"QP2 has no minimum with consistent weights: {found.notes[-1]}; take the tributary weights")
+    if found.status in (Status.NUMERICAL_FAILURE, Status.NO_SOLUTION_FOUND):
+        notes = tuple(_lost(program, limit))
+    else:
+        notes = _notes(condensed, options, found)
+    return polished(condensed, options, replace(found, notes=(*found.notes, *notes)))
 
 
 def _unbounded(condensed: CondensedContact, options: FormulationOptions, ray: Ray, unit: float) -> str:
@@ -215,6 +232,27 @@ def _unbounded(condensed: CondensedContact, options: FormulationOptions, ray: Ra
         f"whose common weight is negative; take a penalty of at most {ray.limit:.3g} ({ray.limit * unit:.3g}), or the "
         "tributary weights"
     )
+
+
+def least_penalty(program: Program) -> float:
+    """The μ below which round-off of the penalty's terms exceeds `SOLUTION` times the work's, free of units."""
+    return program.dominance * program.penalty * float(np.finfo(float).eps) / SOLUTION
+
+
+def _lost(program: Program, limit: float) -> Iterator[str]:
+    """Tell which penalty to take where round-off spoilt the search: a larger one if QP2 is convex, else a smaller."""
+    penalty, least, times = program.penalty, least_penalty(program), f"{program.dominance:.1e} times those of the work"
+    if penalty <= max(limit, least):
+        least = min(max(least, FURTHER * penalty), LARGEST_PENALTY)
+        yield (
+            f"the penalty {penalty:.3g} is too small for double precision: its terms are {times}; take one of at least "
+            f"{least:.2g}"
+        )
+    elif limit > 0:
+        yield (
+            f"the penalty {penalty:.3g} is too large for the tolerance of the solver: its terms are {times}; take one "
+            f"of at most {limit:.2g}, up to which QP2 is convex"
+        )
 
 
 def _notes(condensed: CondensedContact, options: FormulationOptions, found: ContactSolution) -> tuple[str, ...]:

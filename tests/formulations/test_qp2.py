@@ -1,5 +1,6 @@
 """QP2: its objective, the penalty and its limits, and equilibrium that is only penalised."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,9 +11,11 @@ from scipy.linalg import null_space
 from bemcontact.analysis import solve as judged
 from bemcontact.choices import Equilibrium, Rows, Weights
 from bemcontact.contact import CondensedContact
-from bemcontact.errors import ProblemError
+from bemcontact.errors import OptionError, ProblemError
 from bemcontact.formulations import complementarity, qp2
 from bemcontact.formulations.formulation import FormulationOptions, Start
+from bemcontact.formulations.program import contact_residual
+from bemcontact.formulations.starts import random_points, search_from
 from bemcontact.solution import Status
 
 PENALISED = FormulationOptions(equilibrium=Equilibrium.PENALTY)
@@ -88,13 +91,79 @@ def test_penalty_and_its_limit_are_told():
     assert penalty.value == 0.5
     assert penalty.raw == 0.5 * qp2.penalty_unit(problem, options)
     assert penalty.convexity_limit == qp2.convexity_limit(problem, options)
+    assert penalty.dimension == "p/L²"
     assert penalty.convexity_limit_raw == pytest.approx(penalty.convexity_limit * penalty.raw / 0.5, rel=1e-15)
 
 
-@pytest.mark.parametrize("penalty", [0.0, -1.0, np.inf, np.nan])
+@pytest.mark.parametrize("penalty", [0.0, -1.0, np.inf, np.nan, 1e-300, 9e-13, 1.1e12, 1e300, "x", None, True])
 def test_a_penalty_that_is_none_is_refused(penalty):
-    with pytest.raises(ProblemError, match="finite number above zero"):
+    """Beyond 1e±12 less than four of sixteen digits are left of the smaller term, or of its numbers nothing at all."""
+    with pytest.raises(OptionError, match=r"number from 1e-12 to 1e\+12; found .* round-off"):
         FormulationOptions(penalty=penalty)
+
+
+@pytest.mark.parametrize("penalty", [1e-12, 1e12])
+@pytest.mark.parametrize("rows", [*Rows])
+@pytest.mark.parametrize("k", [0, 1, 2])
+def test_the_ends_of_the_range_are_told_and_polished(k, rows, penalty):
+    """The contact state or, from wherever round-off left the search, the polish: never a local minimum, never a NaN."""
+    problem = random_contact(2, 12, k)
+    direct = complementarity.solve(problem)
+    rough = qp2.solve(problem, FormulationOptions(rows=rows, penalty=penalty, polish=False))
+    assert rough.status in (Status.SOLVED, Status.NO_SOLUTION_FOUND, Status.NUMERICAL_FAILURE)
+    solution = qp2.solve(problem, FormulationOptions(rows=rows, penalty=penalty))
+    assert solution.status is Status.SOLVED
+    np.testing.assert_allclose(solution.pressure, direct.pressure, atol=1e-12 * direct.pressure.max())
+    assert any("the polish led" in note for note in solution.notes) == (rough.status is not Status.SOLVED)
+
+
+@pytest.mark.parametrize("rows", [*Rows])
+def test_round_off_of_a_small_penalty_is_no_local_minimum(rows):
+    """μ = 1e-12 is below the limit of convexity, so that there is no other minimum: lost to its terms' round-off."""
+    problem = random_contact(2, 12, 1)
+    options = FormulationOptions(rows=rows, penalty=1e-12, polish=False)
+    program = qp2.statement(problem, options)
+    E = program.penalised.matrix
+    assert program.dominance >= 2e12 * np.abs(np.diag(E.T @ E)).max()
+    lost = qp2.solve(problem, options)
+    assert lost.status is Status.NUMERICAL_FAILURE
+    assert "round-off makes it look stationary" in lost.notes[0]
+    advised = float(re.search(r"too small for double precision: .* at least (\S+)", lost.notes[1])[1])
+    assert advised == pytest.approx(qp2.least_penalty(program), rel=0.05)
+    assert qp2.solve(problem, replace(options, penalty=advised)).status is Status.SOLVED
+
+
+@pytest.mark.parametrize("options", [PENALISED, FormulationOptions(weights=Weights.CONSISTENT)])
+def test_nothing_is_claimed_of_an_end_that_drowns_in_the_penalty(options):
+    """Where other minima are possible an end is still none if the terms of the penalty are 1e12 times the work's."""
+    problem = random_contact(2, 12, 2)
+    problem = replace(problem, consistent_weights=np.diag(problem.weights) - 1e-3 * np.ones((12, 12)))
+    lost = qp2.solve(problem, replace(options, penalty=1e-12, polish=False))
+    assert lost.status is Status.NUMERICAL_FAILURE
+    assert "too small for double precision" in lost.notes[-1]
+
+
+def test_a_large_penalty_hides_the_equations():
+    """With the compliance rows at μ = 1e12 their terms are below the solver's tolerance: told with the convex limit."""
+    problem = random_contact(2, 12, 1)
+    options = FormulationOptions(rows=Rows.COMPLIANCE, penalty=1e12, polish=False)
+    lost = qp2.solve(problem, options)
+    assert lost.status is Status.NUMERICAL_FAILURE
+    advised = float(re.search(r"too large for the tolerance of the solver: .* at most (\S+),", lost.notes[1])[1])
+    assert advised == pytest.approx(qp2.convexity_limit(problem, options), rel=0.05)
+    assert qp2.solve(problem, replace(options, penalty=advised)).status is Status.SOLVED
+
+
+@pytest.mark.parametrize("k", [0, 1, 2])
+def test_all_stationary_points_are_the_contact_state(k):
+    """No start and no penalty leads elsewhere, below the limit of convexity or above; the proof heads the module."""
+    problem = random_contact(4, 8, k)
+    direct = complementarity.solve(problem)
+    for penalty in (0.01, 1.0, 1e3):
+        for start in random_points(problem, 10, seed=1):
+            found = qp2.solve(problem, FormulationOptions(penalty=penalty, start=start, polish=False))
+            assert found.status is Status.SOLVED
+            np.testing.assert_allclose(found.pressure, direct.pressure, atol=1e-9 * direct.pressure.max())
 
 
 def negative_corner() -> CondensedContact:
@@ -132,10 +201,20 @@ def test_consistent_weights_above_their_limit_are_refused():
         qp2.solve(negative_corner(), FormulationOptions(weights=Weights.CONSISTENT, penalty=1e6))
 
 
-def test_consistent_weights_below_their_limit_are_left_as_they_are():
-    solution = qp2.solve(negative_corner(), FormulationOptions(weights=Weights.CONSISTENT, penalty=1e-3))
-    assert solution.status is Status.SOLVED
-    assert not solution.polished
+def test_consistent_weights_below_their_limit_miss_the_contact_state():
+    """QP2 trades equations for work below zero, in proportion to μ: told by the residual, and left as it is."""
+    problem = negative_corner()
+    residuals = []
+    for penalty in (1e-3, 1e-2):
+        solution = qp2.solve(problem, FormulationOptions(weights=Weights.CONSISTENT, penalty=penalty))
+        assert solution.status is Status.LOCAL_MINIMUM
+        assert not solution.polished
+        assert solution.search.objective < 0
+        assert "an objective of 0 certifies nothing" in solution.notes[0]
+        residuals.append(contact_residual(problem, solution))
+    assert residuals[1] == pytest.approx(10 * residuals[0], rel=0.01)
+    found = search_from(problem, qp2.solve, FormulationOptions(weights=Weights.CONSISTENT, penalty=1e-3), count=5)
+    assert found.solved == 0
 
 
 def test_a_lifted_body_is_stationary_but_not_the_solution():
@@ -164,16 +243,18 @@ def slender(n: int = 20) -> CondensedContact:
     return CondensedContact.from_compliance(M, -M.sum(axis=1))
 
 
-def test_compliance_rows_of_a_slender_body_hide_errors_of_pressure():
+@pytest.mark.parametrize("penalty", [10.0, 1e3])
+def test_compliance_rows_of_a_slender_body_hide_errors_of_pressure(penalty):
     """At cond M = 1e6 a tiny objective goes with a wrong pressure: never told as solved, but made so by the polish."""
     problem = slender()
     assert np.linalg.cond(problem.compliance) > 1e5
-    rough = qp2.solve(problem, FormulationOptions(rows=Rows.COMPLIANCE, polish=False))
+    rough = qp2.solve(problem, FormulationOptions(rows=Rows.COMPLIANCE, penalty=penalty, polish=False))
     assert rough.search.objective < 1e-6
     assert np.abs(rough.pressure - 1).max() > 0.1
     assert rough.status is Status.NO_SOLUTION_FOUND
-    assert "cannot tell from the 0" in rough.notes[0]
-    polished = qp2.solve(problem, FormulationOptions(rows=Rows.COMPLIANCE))
+    assert "the solver's tolerance cannot tell" in rough.notes[0]
+    assert "too large for the tolerance" in rough.notes[1]
+    polished = qp2.solve(problem, FormulationOptions(rows=Rows.COMPLIANCE, penalty=penalty))
     assert polished.status is Status.SOLVED
     np.testing.assert_allclose(polished.pressure, 1, atol=1e-9)
 
