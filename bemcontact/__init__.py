@@ -36,6 +36,7 @@ _HOMES = {
     "BemContactError": "bemcontact.errors",
     "SpecError": "bemcontact.errors",
     "ProblemError": "bemcontact.errors",
+    "OptionError": "bemcontact.errors",
     "SingularSystemError": "bemcontact.errors",
     "NotConvexError": "bemcontact.errors",
     "SolverError": "bemcontact.errors",

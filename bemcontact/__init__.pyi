@@ -7,6 +7,7 @@ from bemcontact.choices import Weights as Weights
 from bemcontact.contact import CondensedContact as CondensedContact
 from bemcontact.errors import BemContactError as BemContactError
 from bemcontact.errors import NotConvexError as NotConvexError
+from bemcontact.errors import OptionError as OptionError
 from bemcontact.errors import ProblemError as ProblemError
 from bemcontact.errors import SingularSystemError as SingularSystemError
 from bemcontact.errors import SolverError as SolverError

@@ -1,11 +1,9 @@
 """From a problem to a judged result: condense, solve, assess, recover. The only file that sets both halves to work."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from enum import Enum
-from typing import TypeVar
 
 from bemcontact import remarks
 from bemcontact.assessment.certificate import certify
@@ -17,12 +15,12 @@ from bemcontact.bem.recovery import boundary_state
 from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, Weights
 from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
-from bemcontact.formulations import FORMULATIONS, OPTIONS, FormulationOptions, Start
-from bemcontact.formulations.starts import RandomStarts, StartChoice, search_from
+from bemcontact.formulations import FORMULATIONS, Start
+from bemcontact.formulations.formulation import ensure_whole
+from bemcontact.formulations.plan import Plan, planned
+from bemcontact.formulations.starts import RandomStarts, search_from
 from bemcontact.problem.problem import Problem
 from bemcontact.result import Result
-
-Name = TypeVar("Name", bound=Enum)
 
 
 @dataclass
@@ -79,9 +77,11 @@ def solve(
     penalty: float = 1.0,
     rows: Rows | str = Rows.STIFFNESS,
     equilibrium: Equilibrium | str = Equilibrium.CONSTRAINT,
-    start: Start | str = StartName.NULL,
+    start: Start | str | None = None,
     seed: int | None = None,
     starts: int | None = None,
+    max_iterations: int | None = None,
+    progress: Callable[[int], object] | None = None,
 ) -> Result:
     """Solve a contact problem by one formulation, and judge the answer.
 
@@ -91,12 +91,16 @@ def solve(
     formulation : "qp3" (a convex program, then polished), "complementarity" (the direct solver), or "qp1" and "qp2" (a
         local solver over pressures and displacements, then polished)
     weights : the J of the objective, a `Weights` or its name: "tributary", "consistent" or "element_length"
-    penalty : μ of QP2, free of units
+    penalty : μ of QP2, free of units, from 1e-12 to 1e12
     rows : how QP1 and QP2 write the equations, a `Rows` or its name: "stiffness" or "compliance"
     equilibrium : of QP2, for bodies with free rigid motions: "constraint", or "penalty" as in [SS92]
-    start : of QP1 and QP2: "null", "random", or a `Start` with a pressure (n,) [p] and a displacement (n,) [L]
+    start : of QP1 and QP2: "null", "random", or a `Start` with a pressure (n,) [p] and a displacement (n,) [L]; if not
+        given, random with `seed` or `starts`, else null
     seed : of random starts, 0 if not given
     starts : how many random starts; the answer is that of the best end, `Result.starts` has all of them
+    max_iterations : limit of the iterations of the local solver, of Clarabel (QP3), or of the pivots of Lemke's method
+        (complementarity); None for the solver's own
+    progress : called after the search from each of several random starts with the number of those done
 
     Returns
     -------
@@ -105,15 +109,32 @@ def solve(
 
     Raises
     ------
+    OptionError
+        A `ProblemError`: a name is unknown, a number out of range, or the formulation has no use for an option.
     ProblemError
-        If the problem has no answer, a name is unknown, or the formulation has no use for an option.
+        If the problem has no answer.
     NotConvexError
         If the formulation needs a convex program and this is none.
     """
+    plan = planned(
+        formulation,
+        weights,
+        penalty=penalty,
+        rows=rows,
+        equilibrium=equilibrium,
+        start=start,
+        seed=seed,
+        starts=starts,
+        max_iterations=max_iterations,
+    )
+    return carry_out(plan, problem, progress)
+
+
+def carry_out(
+    plan: Plan, problem: Problem | CondensedContact, progress: Callable[[int], object] | None = None
+) -> Result:
+    """Solve a contact problem as planned, and judge the answer; all else is as of `solve`."""
     _check_kind(problem)
-    options = _options(formulation, weights, penalty, rows, equilibrium)
-    choice = StartChoice(start=start, seed=seed, count=starts)
-    choice.ensure_used(formulation, "start" in OPTIONS[formulation])
     watch = _Stopwatch()
     condensation = None
     if isinstance(problem, CondensedContact):
@@ -125,7 +146,7 @@ def solve(
             condensation = condense_body(body)
         contact = condensation.contact
     with watch.stage("solution"):
-        solution, ends = choice.search(contact, FORMULATIONS[formulation], options)
+        solution, ends = plan.start.search(contact, FORMULATIONS[plan.formulation], plan.options, progress)
     boundary = None
     if condensation is not None:
         with watch.stage("recovery"):
@@ -143,8 +164,8 @@ def solve(
         problem=problem if isinstance(problem, Problem) else None,
         contact=contact,
         solution=solution,
-        weights=options.weights,
-        objective=float(solution.pressure @ contact.weight_matrix(options.weights) @ gap),
+        weights=plan.options.weights,
+        objective=float(solution.pressure @ contact.weight_matrix(plan.options.weights) @ gap),
         residuals=judged,
         certificate=certificate,
         footprint=where,
@@ -166,6 +187,8 @@ def random_starts(
     penalty: float = 1.0,
     rows: Rows | str = Rows.STIFFNESS,
     equilibrium: Equilibrium | str = Equilibrium.CONSTRAINT,
+    max_iterations: int | None = None,
+    progress: Callable[[int], object] | None = None,
 ) -> RandomStarts:
     """Solve QP1 or QP2 from random starts and tell which minima were found, and how often; nothing is polished.
 
@@ -173,8 +196,9 @@ def random_starts(
     ----------
     problem : Problem or CondensedContact
     formulation : "qp1" or "qp2"
-    weights, penalty, rows, equilibrium : as of `solve`
+    weights, penalty, rows, equilibrium, max_iterations : as of `solve`
     count, seed : of the starts; the same seed gives the same starts
+    progress : called after each search with the number of those done
 
     Returns
     -------
@@ -185,34 +209,17 @@ def random_starts(
     ProblemError
         As of `solve`.
     """
-    _check_kind(problem)
-    options = _options(formulation, weights, penalty, rows, equilibrium)
-    StartChoice(start=StartName.RANDOM, seed=seed, count=count).ensure_used(
-        formulation, "start" in OPTIONS[formulation]
-    )
-    contact = problem if isinstance(problem, CondensedContact) else condense(problem)
-    return search_from(contact, FORMULATIONS[formulation], options, count, seed)
-
-
-def _options(
-    formulation: str, weights: Weights | str, penalty: float, rows: Rows | str, equilibrium: Equilibrium | str
-) -> FormulationOptions:
-    """Read the options, and refuse those that the formulation has no use for."""
-    if formulation not in FORMULATIONS:
-        raise ProblemError(f"there is no formulation '{formulation}'; take one of {', '.join(FORMULATIONS)}")
-    options = FormulationOptions(
-        weights=_named(Weights, weights, "weights"),
+    ensure_whole(count, "number of starts", 1)
+    ensure_whole(seed, "seed", 0)
+    plan = planned(
+        formulation,
+        weights,
         penalty=penalty,
-        rows=_named(Rows, rows, "rows"),
-        equilibrium=_named(Equilibrium, equilibrium, "ways of equilibrium"),
+        rows=rows,
+        equilibrium=equilibrium,
+        start=StartName.RANDOM,
+        max_iterations=max_iterations,
     )
-    options.ensure_used(formulation, *OPTIONS[formulation])
-    return options
-
-
-def _named(kind: type[Name], name: Name | str, what: str) -> Name:
-    """Read a name of a kind."""
-    try:
-        return kind(name)
-    except ValueError:
-        raise ProblemError(f"no {what} '{name}'; take one of {', '.join(item.value for item in kind)}") from None
+    _check_kind(problem)
+    contact = problem if isinstance(problem, CondensedContact) else condense(problem)
+    return search_from(contact, FORMULATIONS[plan.formulation], plan.options, count, seed, progress)

@@ -4,9 +4,7 @@ The numerical half of the package is imported inside the commands, so that ``bem
 """
 
 import json
-import re
 import sys
-import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib.metadata import PackageNotFoundError, version
@@ -15,18 +13,14 @@ from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
-from rich.console import Console, RenderableType
-from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-from rich.text import Text
 
 from bemcontact import output
 from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, Weights
-from bemcontact.errors import BemContactError, NotConvexError, ProblemError, SpecError
+from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError
+from bemcontact.terminal import busy, show, tell
 
 UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 STANDARD_OUTPUT = Path("-")
-PATIENCE = 1.0
-"""Seconds of work after which a person is told what is going on."""
 
 app = typer.Typer(
     add_completion=False,
@@ -104,7 +98,7 @@ def check(
       bemcontact check models/cylinder_on_plane.yaml --figure problem.svg
       bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
     """
-    with _told(spec, overrides), _busy("checking"):
+    with _told(spec, overrides), busy("checking"):
         _claim(spec, {"--figure": figure})
         from bemcontact import spec as spec_file
         from bemcontact.bem.condense import body_of
@@ -116,7 +110,7 @@ def check(
 
             figures.save(figures.figure_of_problem(body.problem, body.mesh), figure)
     with _told(spec):
-        _show(text.problem_summary(body))
+        show(text.problem_summary(body))
 
 
 @app.command()
@@ -128,7 +122,13 @@ def solve(
     weights: Annotated[
         Weights, typer.Option(help="Weights of the objective; complementarity has none.")
     ] = Weights.TRIBUTARY,
-    penalty: Annotated[float, typer.Option(metavar="μ", help="qp2: less weighs the equations more.")] = 1.0,
+    penalty: Annotated[
+        float,
+        typer.Option(
+            metavar="μ",
+            help="qp2: an error of the equations costs its square over μ; a smaller μ enforces them harder.",
+        ),
+    ] = 1.0,
     rows: Annotated[
         Rows, typer.Option(help="qp1, qp2: equations in terms of pressure or of displacement.")
     ] = Rows.STIFFNESS,
@@ -136,10 +136,21 @@ def solve(
         Equilibrium, typer.Option(help="qp2, free bodies: exact, or penalised as in the paper.")
     ] = Equilibrium.CONSTRAINT,
     start: Annotated[
-        str, typer.Option(metavar="null|random|FILE", help="qp1, qp2: first point; a FILE that --json wrote.")
-    ] = "null",
-    seed: Annotated[int | None, typer.Option(min=0, metavar="S", help="Of random starts, else 0.")] = None,
-    starts: Annotated[int | None, typer.Option(min=1, metavar="N", help="Random starts: best of all ends.")] = None,
+        str | None,
+        typer.Option(
+            metavar="null|random|FILE", help="qp1, qp2: first point; a FILE that --json wrote.", show_default="null"
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, metavar="S", help="qp1, qp2: random starts, other ones for each S.", show_default="0"),
+    ] = None,
+    starts: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="qp1, qp2: N random starts; the best end is shown.")
+    ] = None,
+    max_iterations: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Stop the solver after N iterations.", show_default="its own")
+    ] = None,
     refine: RefineOption = 1,
     overrides: SetOption = None,
     figure: FigureOption = None,
@@ -164,27 +175,31 @@ def solve(
       bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp1
-      bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --start random --starts 20
+      bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --starts 20
     """
-    with _told(spec, overrides), _busy("solving"):
+    with _told(spec, overrides), busy("solving") as say:
         json_claim = None if json_file == STANDARD_OUTPUT else json_file
         _claim(spec, {"--figure": figure, "--json": json_claim, "--vtk": vtk_file})
         from bemcontact import analysis
         from bemcontact import spec as spec_file
+        from bemcontact.formulations import plan as plans
         from bemcontact.formulations import starts as starts_of
         from bemcontact.report import text
 
-        problem = spec_file.load(spec, overrides or ()).refined(refine)
-        result = analysis.solve(
-            problem,
-            formulation=formulation,
-            weights=weights,
+        plan = plans.planned(
+            formulation,
+            weights,
             penalty=penalty,
             rows=rows,
             equilibrium=equilibrium,
-            start=start if start in [*StartName] else starts_of.read_start(start),
+            start=start if start is None or start in [*StartName] else starts_of.read_start(start),
             seed=seed,
             starts=starts,
+            max_iterations=max_iterations,
+        )
+        problem = spec_file.load(spec, overrides or ()).refined(refine)
+        result = analysis.carry_out(
+            plan, problem, lambda done: say(f"solving, start {min(done + 1, starts or 1)} of {starts}")
         )
         if figure:
             from bemcontact.report import figures
@@ -201,9 +216,9 @@ def solve(
         if json_file == STANDARD_OUTPUT:
             _write_json(result.to_json(indent=2))
             if not result.certified:
-                _tell("not certified: ", text.verdict(result))
+                tell("not certified: ", text.verdict(result))
         else:
-            _show(text.result_summary(result))
+            show(text.result_summary(result))
     raise typer.Exit(0 if result.certified else UNCERTIFIED)
 
 
@@ -222,7 +237,7 @@ def condense(
       bemcontact condense models/cylinder_on_plane.yaml --out cylinder.npz
       bemcontact condense models/cylinder_on_plane.yaml --refine 2 --out fine.npz
     """
-    with _told(spec, overrides), _busy("condensing"):
+    with _told(spec, overrides), busy("condensing"):
         _claim(spec, {"--out": out})
         from bemcontact import analysis
         from bemcontact import spec as spec_file
@@ -231,7 +246,7 @@ def condense(
         condensed = analysis.condense(spec_file.load(spec, overrides or ()).refined(refine))
         condensed.save(out)
     with _told(spec):
-        _show(text.condensed_summary(condensed, out))
+        show(text.condensed_summary(condensed, out))
 
 
 @app.command()
@@ -272,33 +287,14 @@ def _claim(spec: Path, outputs: Mapping[str, Path | None]) -> None:
             _refuse(f"{option}: {error}")
 
 
-def _show(renderable: RenderableType) -> None:
-    """Print for a person on standard output; into a file or a pipe, without blanks at the ends of lines."""
-    console = Console(highlight=False, markup=False, emoji=False)
-    if console.is_terminal:
-        console.print(renderable)
-        return
-    with console.capture() as captured:
-        console.print(renderable)
-    print(re.sub(r" +$", "", captured.get(), flags=re.MULTILINE), end="", flush=True)
-
-
 def _write_json(text: str) -> None:
     """Write JSON on standard output, which is UTF-8 whatever the terminal speaks."""
     typer.echo(text.encode() + b"\n", nl=False)
 
 
-def _tell(head: str, message: str, style: str = "bold red") -> None:
-    """Say one thing on standard error: never markup, never folded, so that paths stay whole."""
-    printable = "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in message)
-    Console(stderr=True, highlight=False, markup=False, emoji=False).print(
-        Text.assemble((head, style), printable), soft_wrap=True
-    )
-
-
 def _refuse(message: str) -> NoReturn:
     """Say what is wrong with the input and end."""
-    _tell("error: ", message)
+    tell("error: ", message)
     raise typer.Exit(BAD_INPUT)
 
 
@@ -311,7 +307,7 @@ def _told(spec: Path | None = None, overrides: Sequence[str] | None = None) -> I
         raise typer.Exit(INTERRUPTED) from None
     except BrokenPipeError:
         raise
-    except (SpecError, NotConvexError) as error:
+    except (SpecError, OptionError, NotConvexError) as error:
         _refuse(str(error))
     except ProblemError as error:
         if spec is None:
@@ -323,30 +319,12 @@ def _told(spec: Path | None = None, overrides: Sequence[str] | None = None) -> I
         where = error.filename or ("standard output" if error.errno else "")
         _refuse(f"{where}: {error.strerror}" if where else str(error))
     except BemContactError as error:
-        _tell("failed: ", str(error))
+        tell("failed: ", str(error))
         raise typer.Exit(UNCERTIFIED) from error
     except MemoryError as error:
-        _tell("failed: ", "not enough memory for so many elements; take a smaller --refine")
+        tell("failed: ", "not enough memory for so many elements; take a smaller --refine")
         raise typer.Exit(UNCERTIFIED) from error
 
 
-@contextmanager
-def _busy(what: str) -> Iterator[None]:
-    """Show what is going on and for how long, on a terminal and only once it lasts."""
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield
-        return
-    columns = (SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn())
-    progress = Progress(*columns, console=console, transient=True)
-    progress.add_task(what, total=None)
-    timer = threading.Timer(PATIENCE, progress.start)
-    timer.daemon = True
-    timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
-        timer.join()
-        if progress.live.is_started:
-            progress.stop()
+if __name__ == "__main__":
+    main()

@@ -50,6 +50,10 @@ class ProblemError(BemContactError):
         super().__init__("\n".join(map(str, self.complaints)))
 
 
+class OptionError(ProblemError):
+    """An option of solving, not the problem, that is wrong: of no meaning, out of range, or not for this problem."""
+
+
 class SpecError(BemContactError):
     """A spec file that does not state a problem; each line of the text starts with ``file:line:column``."""
 

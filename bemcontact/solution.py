@@ -7,15 +7,15 @@ from bemcontact.contact import Array, freeze_arrays
 
 
 class Status(Enum):
-    """How a solver ended; each value is the sentence that tells what to do."""
+    """How a solver ended, in words; `bemcontact.assessment.advice` says what to do."""
 
     SOLVED = "solved"
-    LOCAL_MINIMUM = "a local minimum whose objective is not zero: not the contact state; try another start or QP3"
-    ITERATION_LIMIT = "stopped at the iteration limit; raise the limit or start from another point"
-    INFEASIBLE = "no pressure satisfies the constraints; check that the load presses the body onto its support"
-    UNBOUNDED = "the objective has no lower bound; use the tributary weights"
-    NO_SOLUTION_FOUND = "no solution was found, and no proof that there is none; try another formulation or start"
-    NUMERICAL_FAILURE = "the solver broke down numerically; check the mesh for very short elements"
+    LOCAL_MINIMUM = "a local minimum that is not the contact state"
+    ITERATION_LIMIT = "stopped at the iteration limit"
+    INFEASIBLE = "no pressure satisfies the constraints, so that there is no contact state"
+    UNBOUNDED = "the objective has no lower bound"
+    NO_SOLUTION_FOUND = "no solution was found, and no proof that there is none"
+    NUMERICAL_FAILURE = "broke down numerically"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,14 +25,16 @@ class Penalty:
     Parameters
     ----------
     value, raw : μ, free of units, and in the user's units, where (1/μ)|K u_n - B p - r|² is added to pᵀJδ
-    convexity_limit, convexity_limit_raw : the largest convex one, likewise: zero if QP2 is convex for none, None if for
-        all
+    convexity_limit, convexity_limit_raw : the largest for which QP2 is convex where equilibrium is kept, likewise: zero
+        if for none, None if for all
+    dimension : of the raw numbers: "p/L²" with the stiffness rows, "1/p" with the compliance rows
     """
 
     value: float
     raw: float
     convexity_limit: float | None
     convexity_limit_raw: float | None
+    dimension: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +65,7 @@ class LocalSearch:
     penalty: Penalty | None = None
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ContactSolution:
     """What a formulation found; nothing in it is believed until `bemcontact.assessment` has recomputed it.
 
@@ -97,3 +99,7 @@ class ContactSolution:
     def __post_init__(self) -> None:
         """Make arrays read-only."""
         freeze_arrays(self)
+
+    def __repr__(self) -> str:
+        """One line: formulation, status, size."""
+        return f"<ContactSolution by {self.formulation}: {self.status.value}, {len(self.pressure)} contact points>"

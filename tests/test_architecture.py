@@ -38,7 +38,7 @@ HOME = {
     "typer": ("bemcontact.cli",),
     "numba": ("bemcontact.bem.compiled",),
     "meshio": ("bemcontact.report.vtk",),
-    "rich": ("bemcontact.cli", "bemcontact.report.text"),
+    "rich": ("bemcontact.terminal", "bemcontact.report.text"),
 }
 """Foreign package -> the only rooms that import it."""
 
@@ -47,6 +47,9 @@ SLOW = {"cvxpy", "matplotlib", "numba", "meshio"}
 
 MAY_IMPORT_LATE = ("bemcontact", "bemcontact.cli")
 """Where our own modules may be imported late, so that ``bemcontact --help`` answers without the numerical half."""
+
+PRINTERS = ("bemcontact.cli", "bemcontact.terminal")
+"""Who may print."""
 
 DRAWERS = {"utils", "util", "common", "helpers", "helper", "types", "constants", "misc", "tools"}
 
@@ -135,7 +138,7 @@ def public_names_have_docstrings(name: str, tree: ast.Module) -> Iterator[str]:
 def only_the_command_line_prints(name: str, tree: ast.Module) -> Iterator[str]:
     for node in ast.walk(tree):
         printing = isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print"
-        if printing and name != "bemcontact.cli":
+        if printing and name not in PRINTERS:
             yield f"{name}:{node.lineno} prints"
 
 

@@ -6,6 +6,8 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
@@ -186,7 +188,7 @@ def test_schema_is_json_schema():
 def test_a_result_without_certificate_ends_with_status_1(block: Path, monkeypatch: pytest.MonkeyPatch):
     result = analysis.solve(spec.load(block))
     certificate = dataclasses.replace(result.certificate, kind=CertificateKind.LOCAL, words="Another may exist.")
-    monkeypatch.setattr(analysis, "solve", lambda *_, **__: dataclasses.replace(result, certificate=certificate))
+    monkeypatch.setattr(analysis, "carry_out", lambda *_, **__: dataclasses.replace(result, certificate=certificate))
     table = run("solve", block)
     assert table.exit_code == 1
     assert "NOT certified. Another may exist." in table.stdout
@@ -200,7 +202,7 @@ def test_a_program_that_is_not_convex_ends_with_status_2(block: Path, monkeypatc
     def not_convex(*_: object, **__: object) -> None:
         raise NotConvexError("smallest eigenvalue -0.5", smallest_eigenvalue=-0.5)
 
-    monkeypatch.setattr(analysis, "solve", not_convex)
+    monkeypatch.setattr(analysis, "carry_out", not_convex)
     assert_refused(run("solve", block), "smallest eigenvalue -0.5")
 
 
@@ -208,7 +210,7 @@ def test_a_solver_that_breaks_down_ends_with_status_1(block: Path, monkeypatch: 
     def breaks_down(*_: object, **__: object) -> None:
         raise SingularSystemError("the system is singular")
 
-    monkeypatch.setattr(analysis, "solve", breaks_down)
+    monkeypatch.setattr(analysis, "carry_out", breaks_down)
     answer = run("solve", block)
     assert (answer.exit_code, answer.stdout, answer.stderr) == (1, "", "failed: the system is singular\n")
 
@@ -217,7 +219,7 @@ def test_an_interrupt_ends_quietly(block: Path, monkeypatch: pytest.MonkeyPatch)
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(analysis, "solve", interrupted)
+    monkeypatch.setattr(analysis, "carry_out", interrupted)
     answer = run("solve", block)
     assert (answer.exit_code, answer.output) == (130, "")
 
@@ -320,7 +322,7 @@ OUTPUTS = [
 def test_a_file_that_cannot_be_written_is_found_out_before_any_work(
     block: Path, command: str, option: str, name: str, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr(analysis, "solve", None)
+    monkeypatch.setattr(analysis, "carry_out", None)
     monkeypatch.setattr(analysis, "condense", None)
     assert_refused(run(command, block, option, block.parent / "nowhere" / name), "nowhere")
     (block.parent / name).mkdir()
@@ -415,8 +417,7 @@ def test_search_and_starts_are_told(block: Path):
     words = " ".join(answer.stdout.split())
     assert answer.exit_code == 0, answer.stderr
     assert "of 12 random starts (seed 1) end at the contact state" in words
-    assert "penalty 1 (" in words
-    assert "convex for no penalty" in words
+    assert re.search(r"penalty 1 \([\d.e+]+ N/mm⁴\), convex for no penalty", words)
     found = json.loads(run("solve", block, "--json", "-", *options).stdout)
     assert found["pressure"] == pytest.approx([3.0] * 9, rel=1e-9)
     assert found["search"]["penalty"]["value"] == 1
@@ -475,20 +476,89 @@ def test_a_file_that_is_no_start_is_refused(block: Path, tmp_path: Path, content
         (("--formulation", "qp1", "--equilibrium", "penalty"), "no use for the option 'equilibrium'"),
         (("--formulation", "complementarity", "--weights", "consistent"), "no use for the option 'weights'"),
         (("--start", "random"), "qp3 has no use for the option 'start'"),
-        (("--formulation", "qp1", "--starts", "4"), "add start random"),
-        (("--formulation", "qp2", "--penalty", "0"), "finite number above zero"),
-        (("--formulation", "qp2", "--penalty", "nan"), "finite number above zero"),
+        (("--starts", "4"), "qp3 has no use for the option 'start'"),
+        (("--formulation", "qp1", "--starts", "4", "--start", "null"), "leave out the other start"),
+        (("--formulation", "qp1", "--seed", "4", "--start", "START"), "leave out the other start"),
+        (("--formulation", "qp2", "--penalty", "0"), "from 1e-08 to"),
+        (("--formulation", "qp2", "--penalty", "nan"), "from 1e-08 to"),
+        (("--formulation", "qp2", "--penalty", "1e20", "--json", "-"), "from 1e-08 to"),
         (("--formulation", "qp2", "--rows", "compliance", "--equilibrium", "penalty"), "stiffness rows only"),
     ],
 )
 def test_options_that_mean_nothing_are_refused(block: Path, options: tuple[str, ...], pattern: str):
-    assert_refused(run("solve", block, *options), pattern)
+    """They are no mistakes of the file, which is not named."""
+    start = block.with_name("start.json")
+    start.write_text(json.dumps({"pressure": [0] * 9, "normal_displacement": [0] * 9}), encoding="utf-8")
+    answer = run("solve", block, *(option.replace("START", str(start)) for option in options))
+    assert_refused(answer, pattern)
+    assert str(block) not in answer.stderr
+
+
+def test_options_are_looked_at_before_the_file(tmp_path: Path):
+    assert_refused(run("solve", tmp_path / "none.yaml", "--penalty", "-1"), "the penalty must be a number")
+
+
+@pytest.mark.parametrize("penalty", ["1e-12", "1e-8", "1e12"])
+def test_the_ends_of_the_range_of_penalties_are_plain_numbers(block: Path, penalty: str):
+    """Warnings are errors here; JSON knows no NaN."""
+    figure = block.with_suffix(".svg")
+    answer = run("solve", block, "--formulation", "qp2", "--penalty", penalty, "--json", "-", "--figure", figure)
+    found = json.loads(answer.stdout, parse_constant=pytest.fail)
+    assert answer.exit_code == 0
+    assert found["pressure"] == pytest.approx([3.0] * 9, rel=1e-9)
+
+
+def test_a_number_of_starts_means_random_ones(block: Path):
+    words = " ".join(run("solve", block, "--formulation", "qp1", "--starts", 3).stdout.split())
+    assert "3 of 3 random starts (seed 0) end at the contact state" in words
+    seeded = json.loads(run("solve", block, "--formulation", "qp1", "--seed", 4, "--json", "-").stdout)
+    assert seeded["search"]["start"] == "random point 0, seed 4"
+    assert seeded["starts"] is None
+
+
+def test_the_limit_of_iterations_can_be_raised(block: Path):
+    short = run("solve", block, "--formulation", "qp1", "--max-iterations", 2)
+    assert short.exit_code == 1
+    words = " ".join(short.stdout.split())
+    assert "The solver: stopped at the iteration limit. " in words
+    assert "Raise the limit (--max-iterations; 2 were done), or take another start (--seed 1)." in words
+    assert run("solve", block, "--formulation", "qp1", "--max-iterations", 1000).exit_code == 0
+    assert run("solve", block, "--formulation", "qp1", "--max-iterations", 0).exit_code == 2
+
+
+@pytest.mark.parametrize("module", ["bemcontact", "bemcontact.cli"])
+def test_the_program_runs_as_a_module(block: Path, module: str):
+    root = str(Path(bemcontact.__file__).parents[1])
+    for arguments, status in (("--version",), 0), (("check", str(block)), 0), (("solve", "none.yaml"), 2):
+        answer = subprocess.run(
+            [sys.executable, "-m", module, *arguments],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+            env={**os.environ, "PYTHONPATH": root},
+        )
+        assert answer.returncode == status
+        assert answer.stdout or answer.stderr
+
+
+def test_progress_tells_the_start_and_reaches_the_terminal(block: Path, monkeypatch: pytest.MonkeyPatch):
+    said = []
+
+    @contextmanager
+    def listening(what: str) -> Iterator[Callable[[str], None]]:
+        said.append(what)
+        yield said.append
+
+    monkeypatch.setattr(cli, "busy", listening)
+    run("solve", block, "--formulation", "qp1", "--starts", 3)
+    assert said == ["solving", *(f"solving, start {number} of 3" for number in (2, 3, 3))]
 
 
 def test_a_penalty_that_leaves_no_minimum_is_refused(block: Path):
     held = BLOCK.replace("left: {displacement: {x: 0}}", "left: {displacement: {x: 0, y: 0}}")
     block.write_text(held, encoding="utf-8")
-    options = ("--formulation", "qp2", "--weights", "consistent", "--penalty", "1e9")
+    options = ("--formulation", "qp2", "--weights", "consistent", "--penalty", "1e8")
     assert_refused(run("solve", block, *options), "no minimum with consistent weights .* falls without end")
 
 

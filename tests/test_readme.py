@@ -5,6 +5,7 @@ import re
 import shlex
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -56,12 +57,34 @@ def test_all_keys_of_the_json_are_listed(block: Path):
 
 
 def test_the_library_call_runs(block: Path, capsys: pytest.CaptureFixture[str]):
-    (call,) = shown("python")
-    exec(compile(call, "README.md", "exec"), {})
+    exec(compile(shown("python")[0], "README.md", "exec"), {})
     peak, force, *pressures = capsys.readouterr().out.split("\n")
     assert float(peak) == pytest.approx(3.0, rel=1e-9)
     assert "120" in force or "119.99" in force
     assert [float(number) for number in re.findall(r"[\d.]+", " ".join(pressures))] == pytest.approx([3.0] * 17)
+
+
+def test_the_quadratic_programme_prints_what_is_told(capsys: pytest.CaptureFixture[str]):
+    """x² - 2x is least at 1; y - y² on [-1, 1/2] at -1: -1 - 2 = -3. The warm start has one step to do."""
+    call, names = shown("python")[1], {}
+    exec(compile(call, "README.md", "exec"), names)
+    first, *log = capsys.readouterr().out.splitlines()
+    assert first == re.search(r"print\(found\)  # (.*)", call).group(1)
+    assert log == [*map(str, names["again"].log)]
+    assert len(log) == 1
+    statuses = re.findall(r"^\| `([A-Z_]+)` \|", README, flags=re.MULTILINE)
+    assert statuses == [status.name for status in bemcontact.QPStatus]
+
+
+def test_the_starts_that_are_told_have_these_fields():
+    """The lines on starts, on a body of one contact point with interference 3 and compliance 2."""
+    (lines,) = re.findall(r"^    start = bemcontact.*?(?=\n\n)", README, flags=re.MULTILINE | re.DOTALL)
+    problem = bemcontact.CondensedContact.from_compliance([[2.0]], [-3.0])
+    names = {"bemcontact": bemcontact, "problem": problem, "np": np, "n": 1}
+    for line in lines.splitlines():
+        exec(line.strip(), names)
+    assert names["result"].solution.search.start == "given point"
+    assert names["result"].solution.search.penalty.value == 0.1
 
 
 def test_the_commands_run(block: Path):

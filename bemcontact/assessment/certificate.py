@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigvalsh
 
+from bemcontact.assessment.advice import advice
 from bemcontact.assessment.residual import Residuals
 from bemcontact.contact import Array, CondensedContact
 from bemcontact.solution import ContactSolution
@@ -102,7 +103,7 @@ def certify(
         smallest_eigenvalue=eigenvalue,
         error_bound=bound,
         relative_error_bound=relative,
-        words=_words(kind, complaint, eigenvalue, relative),
+        words=_words(kind, complaint, eigenvalue, relative, advice(solution)),
     )
 
 
@@ -182,7 +183,9 @@ def _complaint(residuals: Residuals, tolerance: float, size: float) -> str:
     return "" if value <= allowed else f"the residual of {name} is {value:.1e} where {allowed:.1e} is allowed"
 
 
-def _words(kind: CertificateKind, complaint: str, eigenvalue: float | None, relative: float | None) -> str:
+def _words(
+    kind: CertificateKind, complaint: str, eigenvalue: float | None, relative: float | None, way_out: str
+) -> str:
     """Two or three sentences for an engineer."""
     sure = "equilibrium alone fixes it" if eigenvalue is None else f"its smallest eigenvalue is {eigenvalue:.2e}"
     error = "" if relative is None else f" No pressure is off by more than {relative:.1e} of the peak."
@@ -195,7 +198,8 @@ def _words(kind: CertificateKind, complaint: str, eigenvalue: float | None, rela
         case CertificateKind.LOCAL:
             return (
                 f"All contact conditions hold, but the compliance is not positive definite ({sure}), so another "
-                "contact state may exist. Refine the mesh, or compare solutions from several starts."
+                "contact state may exist. Refine the mesh (--refine 2), or look where many starts end "
+                "(--formulation qp1 --starts 100)."
             )
         case CertificateKind.NOT_A_SOLUTION:
-            return f"This is not the contact state: {complaint}.{error} Polish the solution, or use the direct solver."
+            return f"This is not the contact state: {complaint}.{error} {way_out}"

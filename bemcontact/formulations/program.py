@@ -18,10 +18,24 @@ from bemcontact.formulations.local_solver import QPOptions, QPResult, QPStatus, 
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
 from bemcontact.solution import ContactSolution, LocalSearch, Penalty, Status
 
-SOLUTION = 1e-6
-"""Residual up to which the end of a search is near the contact state, so that a polish is its due."""
+SOLUTION = 1e-8
+"""Residual up to which the end of a search counts as the contact state: searches that go well leave 1e-10 and less."""
 ZERO = 1e-6
 """Scaled objective that a solver's tolerance may leave where the best value is 0: large errors may hide behind it."""
+STATIONARY = "stationary but not the solution, with an objective of {:.1e} (scaled) and not 0"
+NEAR = "not the solution, but the solver's tolerance cannot tell its objective, {:.1e} (scaled), from 0"
+LOST = "not the solution, although round-off makes it look stationary, with an objective of {:.1e} (scaled) and not 0"
+BIASED = (
+    "not the solution, with an objective of {:.1e} (scaled): consistent weights have negative entries, so that the "
+    "least objective lies below 0 and off the solution, and an objective of 0 certifies nothing"
+)
+"""What the points are where a search ended, with their objectives."""
+POLISHED = (Status.SOLVED, Status.NO_SOLUTION_FOUND, Status.NUMERICAL_FAILURE)
+"""Ends from which the polish is tried."""
+NO_CONTACT_STATE = (
+    "equations and bounds contradict each other: no pressure p >= 0 leaves a gap >= 0 at all contact points, so that "
+    "no contact state exists, whatever the formulation"
+)
 SOLVER = "inertia-controlling active set"
 STATUSES = {
     QPStatus.LOCAL_MINIMISER: Status.SOLVED,
@@ -222,24 +236,27 @@ def amplitudes(condensed: CondensedContact, pressure: Array, displacement: Array
     return np.asarray(np.linalg.solve(ell.T @ R, ell.T @ rest), float)
 
 
-def solution(
+def searched(
     condensed: CondensedContact,
     options: FormulationOptions,
     formulation: str,
     program: Program,
+    *,
+    only: bool,
     penalty: Penalty | None = None,
 ) -> ContactSolution:
-    """Solve a program and say what its end is.
+    """Solve a program and say what its end is, by its residual and not by what the solver says.
 
-    With weights that are not negative the best value is zero, attained at the contact state alone. So an end that is
-    stationary but not the contact state is told as such, and left as it is; any other is polished.
+    With weights that are not negative the best value is zero, attained at the contact state alone. An end elsewhere is
+    a local minimum, or the work of round-off if there is none.
 
     Parameters
     ----------
     condensed : CondensedContact
-    options : start, limit of iterations, whether to polish, weights
+    options : start, limit of iterations, weights
     formulation : its name
     program : Program
+    only : whether the contact state is proved to be the only stationary point with weights that are not negative
     penalty : to be told with the search
 
     Returns
@@ -249,38 +266,34 @@ def solution(
     """
     result = minimise(program, start_vector(condensed, options.start, len(program.linear)), options.max_iterations)
     found = _as_found(condensed, formulation, result, _search(options, program, result, penalty))
-    if found.status is not Status.SOLVED or options.weights is Weights.CONSISTENT:
+    residual, objective = contact_residual(condensed, found), program.value(result.x)
+    if found.status is not Status.SOLVED or residual <= SOLUTION:
         return found
-    if (residual := contact_residual(condensed, found)) > SOLUTION:
-        objective = program.value(result.x)
-        near = objective * max(1.0, program.penalty) <= ZERO  # times μ it is the residual of the equations, squared
-        found = _not_there(found, objective, residual, near)
-        if not near:
-            return found
-    return _polished(condensed, found) if options.polish else found
-
-
-def _not_there(found: ContactSolution, objective: float, residual: float, near: bool) -> ContactSolution:
-    """Say that the end of a search is not the contact state, although the solver is content with it."""
-    if near:
-        where = f"whose objective, {objective:.1e} (scaled), the solver's tolerance cannot tell from the 0 of"
+    if options.weights is Weights.CONSISTENT:
+        status, what = Status.LOCAL_MINIMUM, BIASED
+    elif objective * max(1.0, program.penalty) <= ZERO:  # times μ it is the residual of the equations, squared
+        status, what = Status.NO_SOLUTION_FOUND, NEAR
     else:
-        where = (
-            f"that is stationary but not the solution, with an objective of {objective:.1e} (scaled) and not the 0 of"
-        )
+        status, what = (Status.NUMERICAL_FAILURE, LOST) if only else (Status.LOCAL_MINIMUM, STATIONARY)
     note = (
-        f"{found.formulation.upper()} ended at a point {where} the contact state; contact conditions and equations are "
-        f"violated there by {residual:.1e} of their scales"
+        f"{formulation.upper()} ended at a point where contact conditions and equations are violated by {residual:.1e} "
+        f"of their scales; it is {what.format(objective)}"
     )
-    status = Status.NO_SOLUTION_FOUND if near else Status.LOCAL_MINIMUM
     return replace(found, status=status, notes=(*found.notes, note))
 
 
-def _polished(condensed: CondensedContact, found: ContactSolution) -> ContactSolution:
-    """The polish, which may make the solution of what was only near it."""
+def polished(condensed: CondensedContact, options: FormulationOptions, found: ContactSolution) -> ContactSolution:
+    """The polish, where it is asked for and due, which may make the solution of an end that round-off has spoilt.
+
+    Not due are a true minimum elsewhere, a search that was cut short or proved that there is nothing to find, and the
+    consistent weights, which are left as they are.
+    """
+    if not options.polish or options.weights is Weights.CONSISTENT or found.status not in POLISHED:
+        return found
     better = polish(condensed, found)
-    solved = contact_residual(condensed, better) <= SOLUTION
-    return replace(better, status=Status.SOLVED) if solved else better
+    if found.status is Status.SOLVED or contact_residual(condensed, better) > SOLUTION:
+        return better
+    return replace(better, status=Status.SOLVED, notes=(*better.notes, "the polish led from there to the solution"))
 
 
 def contact_residual(condensed: CondensedContact, solution: ContactSolution) -> float:
@@ -329,8 +342,8 @@ def _as_found(condensed: CondensedContact, formulation: str, result: QPResult, s
         notes.append("the local solver left open whether its end is a minimum: zero multipliers hide directions")
     if result.status is QPStatus.UNBOUNDED and result.ray is not None:
         notes.append(f"the objective falls without end along a ray: {ray_in_words(condensed, result.ray)}")
-    if result.status is QPStatus.INFEASIBLE and (note := escape_note(condensed, scaled(condensed))):
-        notes.append(note)
+    if result.status is QPStatus.INFEASIBLE:
+        notes.append(escape_note(condensed, scaled(condensed)) or NO_CONTACT_STATE)
     u_n, p = result.x[:n] * U, result.x[n : 2 * n] * T
     return ContactSolution(
         formulation=formulation,

@@ -19,9 +19,10 @@ from bemcontact.formulations.program import (
     equilibrium,
     lower_bounds,
     no_equations,
-    solution,
+    polished,
+    searched,
 )
-from bemcontact.formulations.qp3 import smallest_eigenvalue
+from bemcontact.formulations.qp3 import NEGLIGIBLE, smallest_eigenvalue
 from bemcontact.formulations.scaling import scaled, scaled_weights
 from bemcontact.solution import ContactSolution
 
@@ -61,7 +62,7 @@ def statement(condensed: CondensedContact, options: FormulationOptions) -> Progr
 
 
 def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
-    """Find a local minimum of QP1, then polish it if it is the contact state.
+    """Find a local minimum of QP1, then polish it unless it is certain not to be the contact state.
 
     Parameters
     ----------
@@ -71,8 +72,8 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     Returns
     -------
     ContactSolution
-        `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state; with `smallest_eigenvalue` of the
-        Hessian on the equations.
+        `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state, `Status.NUMERICAL_FAILURE` where
+        QP1 is convex on its equations and has no such; with `smallest_eigenvalue` of the Hessian on the equations.
 
     Raises
     ------
@@ -83,4 +84,6 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     options.ensure_used(FormulationName.QP1, *OPTIONS)
     program = statement(condensed, options)
     eigenvalue = smallest_eigenvalue(scaled(condensed), scaled_weights(condensed, options.weights))
-    return replace(solution(condensed, options, FormulationName.QP1, program), smallest_eigenvalue=eigenvalue)
+    only = eigenvalue is None or eigenvalue > NEGLIGIBLE
+    found = searched(condensed, options, FormulationName.QP1, program, only=only)
+    return replace(polished(condensed, options, found), smallest_eigenvalue=eigenvalue)

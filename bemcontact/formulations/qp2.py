@@ -3,10 +3,16 @@
     minimise   pᵀJ(ε + u_n) + (1/μ)|K u_n - B p - r|²    over u_n, p
     subject to ε + u_n >= 0,  p >= 0,  ℓᵀp = -load
 
-on the scaled problem, where μ = 1 weighs an error of T in the equations like the work of T on U. With positive diagonal
-weights and a compliance that is a P-matrix the contact state is the only stationary point, whatever μ is; but only with
-equilibrium as a constraint. Where it is penalised as all the rest, as [SS92] has it, p = 0 with the body lifted far
-enough is another one: the residual then is balanced by no force, and small changes of p and u_n improve nothing.
+on the scaled problem, where μ = 1 weighs an error of T in the equations like the work of T on U.
+
+Stationary points. Let sym(JM) be positive definite on the equilibrium space, ℓ = JR, J > 0 diagonal, and
+σ = (2/μ)(K u_n - B p - r) with K = S, B = I. With w = Kᵀσ and σ' = σ + ℓy, y the multiplier of equilibrium, the
+conditions of first order read p >= 0, Jδ - σ' >= 0, δ >= 0, Jp + w >= 0, the first two and the last two complementary:
+in each case w_i σ'_i <= 0. From S M = I - Vℓᵀ follows σ' = Mᵀw + ℓz, and Rᵀw = 0. So with v = w/J, which is in
+equilibrium, vᵀJM v = wᵀσ'/J <= 0: v = 0, σ = 0, and the point is the contact state, whatever μ is. With the compliance
+rows w = σ and σ' = Mᵀσ + ℓy lead to the same. Where equilibrium is penalised as all the rest, as [SS92] has it, p = 0
+with the body lifted far enough is another stationary point: the residual then is balanced by no force, and small
+changes of p and u_n improve nothing.
 
 Convexity. On the equilibrium space p = Z z, s = K u_n - B p - r the quadratic is zᵀW z + zᵀD s + (1/μ)|s|² with
 W = ZᵀJM Z and D = W (stiffness rows, s = Z t) or D = ZᵀJ (compliance rows). Its least value over s is
@@ -21,7 +27,7 @@ from scipy.linalg import eigvalsh
 
 from bemcontact.choices import Equilibrium, FormulationName, Rows, Weights
 from bemcontact.contact import Array, CondensedContact
-from bemcontact.errors import ProblemError
+from bemcontact.errors import OptionError
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.program import (
     Program,
@@ -29,7 +35,8 @@ from bemcontact.formulations.program import (
     equilibrium,
     lower_bounds,
     no_equations,
-    solution,
+    polished,
+    searched,
 )
 from bemcontact.formulations.scaling import scaled, scaled_weights
 from bemcontact.solution import ContactSolution, Penalty, Status
@@ -81,7 +88,7 @@ def statement(condensed: CondensedContact, options: FormulationOptions) -> Progr
     if options.equilibrium is Equilibrium.CONSTRAINT:
         exact = equilibrium(scaled(condensed), size).of_unit_size
     elif options.rows is Rows.COMPLIANCE and condensed.free_motions:
-        raise ProblemError(
+        raise OptionError(
             "equilibrium can be penalised with the stiffness rows only, which contain it; the compliance rows need it "
             "as a constraint"
         )
@@ -167,7 +174,7 @@ def two_point_ray(condensed: CondensedContact, options: FormulationOptions) -> R
 
 
 def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
-    """Find a local minimum of QP2, then polish it if it is the contact state.
+    """Find a local minimum of QP2, then polish it unless it is certain not to be the contact state.
 
     Parameters
     ----------
@@ -177,8 +184,8 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     Returns
     -------
     ContactSolution
-        `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state; with the penalty and the limit of
-        convexity in `search`.
+        `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state, `Status.NUMERICAL_FAILURE` where
+        there is none; with the penalty and the limit of convexity in `search`.
 
     Raises
     ------
@@ -191,18 +198,23 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     program = statement(condensed, options)
     unit = penalty_unit(condensed, options)
     if ray := two_point_ray(condensed, options):
-        raise ProblemError(_unbounded(condensed, options, ray, unit))
+        raise OptionError(_unbounded(condensed, options, ray, unit))
     limit = convexity_limit(condensed, options)
     penalty = Penalty(
         value=options.penalty,
         raw=options.penalty * unit,
         convexity_limit=limit if np.isfinite(limit) else None,
         convexity_limit_raw=limit * unit if np.isfinite(limit) else None,
+        dimension="p/L²" if options.rows is Rows.STIFFNESS else "1/p",
     )
-    found = solution(condensed, options, FormulationName.QP2, program, penalty)
+    found = searched(condensed, options, FormulationName.QP2, program, only=limit > 0, penalty=penalty)
     if found.status is Status.UNBOUNDED and options.weights is Weights.CONSISTENT:
-        raise ProblemError(f"QP2 has no minimum with consistent weights: {found.notes[-1]}; take the tributary weights")
-    return replace(found, notes=(*found.notes, *_notes(condensed, options, found)))
+        raise OptionError(f"QP2 has no minimum with consistent weights: {found.notes[-1]}; take the tributary weights")
+    if found.status in (Status.NUMERICAL_FAILURE, Status.NO_SOLUTION_FOUND):
+        notes = ("take a penalty nearer to 1, or stiffness rows, which lose least to round-off",)
+    else:
+        notes = _notes(condensed, options, found)
+    return polished(condensed, options, replace(found, notes=(*found.notes, *notes)))
 
 
 def _unbounded(condensed: CondensedContact, options: FormulationOptions, ray: Ray, unit: float) -> str:

@@ -17,7 +17,7 @@ from bemcontact.bem.condense import Body
 from bemcontact.contact import CondensedContact
 from bemcontact.problem import Circle, Edge, Field, Plane, Polyline, Problem, Units
 from bemcontact.result import Result
-from bemcontact.solution import LocalSearch, Status
+from bemcontact.solution import LocalSearch, Penalty, Status
 
 NEGLIGIBLE = 1e-9
 """Share of the largest component, or of a scale, below which a component of a vector is written as zero."""
@@ -108,24 +108,42 @@ def verdict(result: Result) -> str:
     return ending + result.certificate.words
 
 
-def search_in_words(search: LocalSearch) -> str:
+def search_in_words(search: LocalSearch, contact: CondensedContact) -> str:
     """Say how a local solver came to its end: from where, in how many iterations, over what curvature."""
-    positive, zero, negative = search.inertia
+    first, second = search.phase_one_iterations, search.phase_two_iterations
     sentences = [
-        f"from the {search.start} {search.phase_one_iterations} + {search.phase_two_iterations} iterations",
+        f"from the {search.start}: {first + second} iterations ({first} to a feasible point, {second} from there)",
         f"{search.working_set_changes} changes of the working set",
-        f"Hessian with {positive} positive, {zero} zero, {negative} negative eigenvalues",
+        f"eigenvalues of the whole Hessian: {_inertia(search.inertia)}; on what the working set leaves free: "
+        f"{_inertia(search.reduced_inertia_start)} at the feasible point, {_inertia(search.reduced_inertia_end)} at "
+        "the end",
     ]
-    if (penalty := search.penalty) is not None:
-        sentences.append(f"penalty {number(penalty.value)} ({number(penalty.raw)} in the units of the problem)")
-        match penalty.convexity_limit:
-            case None:
-                sentences.append("convex for every penalty")
-            case 0.0:
-                sentences.append("convex for no penalty")
-            case limit:
-                sentences.append(f"convex up to a penalty of {number(limit)}")
-    return ", ".join(sentences)
+    if search.penalty is not None:
+        sentences.append(_penalty(search.penalty, contact))
+    return "; ".join(sentences)
+
+
+def _inertia(inertia: tuple[int, int, int]) -> str:
+    """Write how many eigenvalues are positive, zero and negative."""
+    kinds = zip(inertia, ("positive", "zero", "negative"), strict=True)
+    return ", ".join(f"{count} {kind}" for count, kind in kinds if count) or "none"
+
+
+def _penalty(penalty: Penalty, contact: CondensedContact) -> str:
+    """Write the penalty, and up to which one QP2 is convex, which equilibrium helps it to be."""
+    units = units_of(contact)
+    pressures = penalty.dimension == "p/L²"
+    unit = f"{units.force}/{units.length}⁴" if pressures else f"{units.length}²/{units.force}"
+    unit = unit if units.force and units.length else "in the units of the problem"
+    told = f"penalty {number(penalty.value)} ({number(penalty.raw)} {unit})"
+    kept = " where equilibrium is kept" if contact.free_motions else ""
+    if penalty.convexity_limit is None or penalty.convexity_limit_raw is None:
+        return f"{told}, convex{kept} for every penalty"
+    if penalty.convexity_limit == 0:
+        return f"{told}, convex for no penalty"
+    return (
+        f"{told}, convex{kept} up to {number(penalty.convexity_limit)} ({number(penalty.convexity_limit_raw)} {unit})"
+    )
 
 
 def problem_summary(body: Body) -> RenderableType:
@@ -185,7 +203,7 @@ def result_summary(result: Result) -> RenderableType:
     _add(facts, "Resultant", f"{force}, of the rigid surfaces on the body")
     _add(facts, "Residuals", _residuals(result))
     if result.solution.search is not None:
-        _add(facts, "Search", search_in_words(result.solution.search))
+        _add(facts, "Search", search_in_words(result.solution.search, contact))
     if result.starts is not None:
         _add(facts, "Starts", str(result.starts))
     for note in result.notes:

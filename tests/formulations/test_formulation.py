@@ -9,6 +9,7 @@ import pytest
 
 from bemcontact.choices import FormulationName
 from bemcontact.contact import CondensedContact
+from bemcontact.errors import OptionError
 from bemcontact.formulations import FORMULATIONS, OPTIONS, FormulationOptions
 from bemcontact.solution import Status
 
@@ -24,6 +25,17 @@ def test_every_formulation_solves_and_bears_its_name(name):
     assert solution.formulation == name
     assert solution.status is Status.SOLVED
     np.testing.assert_allclose(solution.pressure, [1.5], rtol=1e-14)
+
+
+@pytest.mark.parametrize("limit", [0, -1, 2.5, "many", True])
+def test_a_limit_of_iterations_that_is_none_is_refused(limit):
+    with pytest.raises(OptionError, match="limit of iterations must be a whole number of at least 1"):
+        FormulationOptions(max_iterations=limit)
+
+
+def test_a_solution_is_told_in_a_line():
+    solution = FORMULATIONS["qp1"](CondensedContact.from_compliance([[2.0]], [-3.0]), FormulationOptions())
+    assert repr(solution) == "<ContactSolution by qp1: solved, 1 contact points>"
 
 
 def test_options_do_not_change():

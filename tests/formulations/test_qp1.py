@@ -157,7 +157,9 @@ def test_one_point_of_negative_compliance():
     solution = qp1.solve(two)
     assert solution.status is Status.SOLVED
     assert solution.pressure[0] in (pytest.approx(0), pytest.approx(1))
-    assert qp1.solve(CondensedContact.from_compliance([[-1.0]], [-1.0])).status is Status.INFEASIBLE
+    none = qp1.solve(CondensedContact.from_compliance([[-1.0]], [-1.0]))
+    assert none.status is Status.INFEASIBLE
+    assert "no contact state exists" in none.notes[0]
 
 
 def test_infeasible_load_is_named():

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,12 +10,12 @@ import pytest
 from contact_problems import resting
 
 import bemcontact
-from bemcontact.choices import Equilibrium
+from bemcontact.choices import Equilibrium, Weights
 from bemcontact.contact import CondensedContact
-from bemcontact.errors import ProblemError
+from bemcontact.errors import OptionError
 from bemcontact.formulations import complementarity, qp1, qp2
 from bemcontact.formulations.formulation import FormulationOptions, Start
-from bemcontact.formulations.starts import random_points, search_from
+from bemcontact.formulations.starts import End, RandomStarts, random_points, search_from
 from bemcontact.solution import Status
 
 P_MATRIX = np.array([[1.0, -3.0, 0.0], [0.0, 1.0, -3.0], [0.0, 0.0, 1.0]])
@@ -117,11 +118,25 @@ def test_one_random_start_is_the_first_of_many():
     [
         ({"formulation": "qp3", "start": "random"}, "no use for the option 'start'"),
         ({"formulation": "complementarity", "start": "random"}, "no use for the option 'start'"),
-        ({"formulation": "qp1", "seed": 1}, "without random starts"),
-        ({"formulation": "qp1", "starts": 3}, "without random starts"),
+        ({"formulation": "qp3", "starts": 3}, "no use for the option 'start'"),
+        ({"formulation": "complementarity", "seed": 3}, "no use for the option 'start'"),
+        ({"formulation": "qp1", "start": "null", "seed": 1}, "leave out the other start"),
+        ({"formulation": "qp1", "start": "null", "starts": 3}, "leave out the other start"),
+        (
+            {"formulation": "qp1", "start": Start(pressure=np.ones(7), displacement=np.ones(7)), "starts": 3},
+            "leave out",
+        ),
+        ({"formulation": "qp1", "starts": 2.5}, "number of starts must be a whole number of at least 1; found 2.5"),
+        ({"formulation": "qp1", "seed": 1.5}, "seed must be a whole number of at least 0; found 1.5"),
+        ({"formulation": "qp1", "start": np.zeros(45)}, "no start of type ndarray; take null, random, or a Start"),
+        ({"formulation": "qp2", "penalty": "x"}, "penalty must be a number"),
+        ({"formulation": "qp2", "penalty": None}, "penalty must be a number"),
+        ({"formulation": "qp1", "max_iterations": 0}, "limit of iterations"),
+        ({"formulation": None}, "take one of qp1"),
+        ({"formulation": ["qp1"]}, "take one of qp1"),
         ({"formulation": "qp1", "start": "zero"}, "no start 'zero'"),
-        ({"formulation": "qp1", "start": "random", "starts": 0}, "count of at least 1"),
-        ({"formulation": "qp1", "start": "random", "seed": -1}, "seed of at least 0"),
+        ({"formulation": "qp1", "start": "random", "starts": 0}, "number of starts .* at least 1"),
+        ({"formulation": "qp1", "start": "random", "seed": -1}, "seed .* at least 0"),
         ({"formulation": "qp1", "start": Start(pressure=np.zeros(2), displacement=np.zeros(2))}, "2 contact points"),
         ({"formulation": "qp1", "start": 3}, "take null, random"),
         ({"formulation": "qp2", "rows": "diagonal"}, "take one of stiffness, compliance"),
@@ -130,20 +145,107 @@ def test_one_random_start_is_the_first_of_many():
     ],
 )
 def test_what_cannot_be_asked_is_refused(asked, pattern):
-    with pytest.raises(ProblemError, match=pattern):
+    with pytest.raises(OptionError, match=pattern):
         bemcontact.solve(resting(), **asked)
 
 
 @pytest.mark.parametrize(
-    ("pressure", "displacement"), [([1.0], [1.0, 2.0]), ([np.nan], [0.0]), (np.zeros((2, 2)), np.zeros((2, 2)))]
+    ("asked", "pattern"),
+    [
+        ({"seed": None}, "seed must be a whole number of at least 0; found None"),
+        ({"count": 2.5}, "number of starts must be a whole number of at least 1; found 2.5"),
+        ({"count": True}, "number of starts"),
+        ({"penalty": 1e13, "formulation": "qp2"}, "from 1e-08 to"),
+    ],
+)
+def test_what_random_starts_cannot_be_asked_is_refused(asked, pattern):
+    with pytest.raises(OptionError, match=pattern):
+        bemcontact.random_starts(resting(), **asked)
+
+
+@pytest.mark.parametrize(("asked", "starts"), [({"seed": 5}, None), ({"starts": 2}, 2), ({"seed": 5, "starts": 2}, 2)])
+def test_a_seed_or_a_number_means_random_starts(asked, starts):
+    implied = bemcontact.solve(resting(), "qp1", **asked)
+    said = bemcontact.solve(resting(), "qp1", start="random", **asked)
+    assert implied.solution.search == said.solution.search
+    assert (None if implied.starts is None else implied.starts.count) == starts
+
+
+def test_a_limit_of_iterations_reaches_every_search():
+    found = bemcontact.random_starts(resting(), "qp1", count=3, max_iterations=2)
+    assert {end.solution.status for end in found.ends} == {Status.ITERATION_LIMIT}
+    assert max(end.iterations[1] for end in found.ends) <= 2
+    result = bemcontact.solve(resting(), "qp1", max_iterations=2)
+    assert result.solution.status is Status.ITERATION_LIMIT
+    assert "--max-iterations; 2 were done" in result.certificate.words
+
+
+def test_progress_counts_what_is_done():
+    done = []
+    bemcontact.random_starts(resting(), "qp1", count=4, progress=done.append)
+    bemcontact.solve(resting(), "qp1", starts=3, progress=done.append)
+    assert done == [1, 2, 3, 4, 1, 2, 3]
+
+
+def test_all_infeasible_ends_are_one():
+    """M = -1, q = -1 has no contact state; where the search saw that means nothing, nor does the objective there."""
+    found = search_from(CondensedContact.from_compliance([[-1.0]], [-1.0]), qp1.solve, count=12)
+    (end,) = found.ends
+    assert (end.count, end.objective, found.solved) == (12, None, 0)
+    assert re.fullmatch(r"12 x infeasible, (\d+ to )?\d+ iterations?", str(end))
+    assert json.loads(json.dumps(found.to_dict(), allow_nan=False))["ends"][0]["objective"] is None
+
+
+def test_all_unbounded_ends_are_one():
+    """On δ = 1 + p both grow along p = (1, 1), where pᵀJδ falls as -2p² for J = [[1, -2], [-2, 1]]."""
+    J = np.array([[1.0, -2.0], [-2.0, 1.0]])
+    problem = replace(CondensedContact.from_compliance(np.eye(2), [1.0, 1.0]), consistent_weights=J)
+    found = search_from(problem, qp1.solve, FormulationOptions(weights=Weights.CONSISTENT), count=12)
+    assert [end.solution.status for end in found.ends] == [Status.UNBOUNDED]
+    assert found.ends[0].count == 12
+
+
+def ends(count: int) -> tuple[End, ...]:
+    """Local minima at pressures 1, 2, ..., the last after one iteration."""
+    solution = qp1.solve(CondensedContact.from_compliance([[2.0]], [-3.0]))
+    return tuple(
+        End(
+            solution=replace(solution, status=Status.LOCAL_MINIMUM),
+            count=2,
+            first_start=i,
+            objective=0.5,
+            residual=0.25,
+            iterations=(i + 1, i + 1),
+        )
+        for i in range(count)
+    )
+
+
+def test_ends_are_told_in_short_lines():
+    """Eight are listed; the number of iterations stands once where least and most are one."""
+    few = RandomStarts(formulation="qp1", count=4, seed=0, ends=ends(2))
+    assert str(few).splitlines()[1:] == [
+        "2 x local minimum, objective 5.0e-01, residual 2.5e-01, 1 iteration",
+        "2 x local minimum, objective 5.0e-01, residual 2.5e-01, 2 iterations",
+    ]
+    many = RandomStarts(formulation="qp1", count=22, seed=0, ends=ends(11))
+    assert len(str(many).splitlines()) == 10
+    assert str(many).splitlines()[-1] == "and 3 more ends, of 6 starts"
+    assert repr(many.ends[0]) == f"<End: {few.ends[0]}>"
+    assert repr(few) == "<RandomStarts of qp1: 0 of 4 random starts (seed 0) end at the contact state, 2 distinct>"
+
+
+@pytest.mark.parametrize(
+    ("pressure", "displacement"),
+    [([1.0], [1.0, 2.0]), ([np.nan], [0.0]), (np.zeros((2, 2)), np.zeros((2, 2))), ("x", [1.0]), (None, [1.0])],
 )
 def test_a_start_of_no_meaning_is_refused(pressure, displacement):
-    with pytest.raises(ProblemError, match="start needs"):
-        Start(pressure=np.array(pressure), displacement=np.array(displacement))
+    with pytest.raises(OptionError, match="start needs"):
+        Start(pressure=pressure, displacement=displacement)
 
 
 def test_random_starts_are_for_local_solvers():
-    with pytest.raises(ProblemError, match="no use for the option 'start'"):
+    with pytest.raises(OptionError, match="no use for the option 'start'"):
         bemcontact.random_starts(resting(), "qp3")
 
 

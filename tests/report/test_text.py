@@ -10,9 +10,10 @@ from rich.console import Console, RenderableType
 from bemcontact import analysis
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.bem.condense import body_of
+from bemcontact.contact import CondensedContact
 from bemcontact.problem import Circle, Field, Plane, Polyline, Problem, Units
 from bemcontact.report import text
-from bemcontact.solution import Status
+from bemcontact.solution import LocalSearch, Penalty, Status
 
 
 def block() -> Problem:
@@ -106,6 +107,53 @@ def test_all_notes_of_a_result_are_printed(result: analysis.Result):
     noted = dataclasses.replace(result, notes=("the first thing", "the second thing"))
     notes = [line.split(maxsplit=1)[1] for line in printed(text.result_summary(noted)).splitlines() if "Note" in line]
     assert [note.strip() for note in notes] == ["the first thing", "the second thing"]
+
+
+SEARCH = LocalSearch(
+    start="null vector",
+    phase_one_iterations=1,
+    phase_two_iterations=135,
+    working_set_changes=152,
+    inertia=(89, 0, 1),
+    reduced_inertia_start=(3, 0, 1),
+    reduced_inertia_end=(0, 0, 0),
+    weakly_active=0,
+    objective=0.0,
+)
+PENALTY = Penalty(value=1.0, raw=833.41, convexity_limit=13.007, convexity_limit_raw=10840.0, dimension="p/L²")
+
+
+def test_a_search_is_told_with_both_phases_and_all_inertias(result: analysis.Result):
+    assert text.search_in_words(SEARCH, result.contact) == (
+        "from the null vector: 136 iterations (1 to a feasible point, 135 from there); 152 changes of the working set; "
+        "eigenvalues of the whole Hessian: 89 positive, 1 negative; on what the working set leaves free: 3 positive, "
+        "1 negative at the feasible point, none at the end"
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, "penalty 1 (833.41 N/mm⁴), convex where equilibrium is kept up to 13.007 (10840 N/mm⁴)"),
+        ({"dimension": "1/p"}, "penalty 1 (833.41 mm²/N), convex where equilibrium is kept up to 13.007 (10840 mm²/N)"),
+        (
+            {"convexity_limit": None, "convexity_limit_raw": None},
+            "penalty 1 (833.41 N/mm⁴), convex where equilibrium is kept for every penalty",
+        ),
+        ({"convexity_limit": 0.0, "convexity_limit_raw": 0.0}, "penalty 1 (833.41 N/mm⁴), convex for no penalty"),
+    ],
+)
+def test_a_penalty_is_told_in_units(result: analysis.Result, changes: dict, words: str):
+    """(1/μ) p² is p L² for the stiffness rows, so that μ is force over L⁴; (1/μ) L² for the others, L² over force."""
+    search = dataclasses.replace(SEARCH, penalty=dataclasses.replace(PENALTY, **changes))
+    assert text.search_in_words(search, result.contact).endswith(f"; {words}")
+
+
+def test_a_penalty_of_a_held_body_without_units(result: analysis.Result):
+    held = CondensedContact.from_compliance([[2.0]], [-3.0])
+    words = text.search_in_words(dataclasses.replace(SEARCH, penalty=PENALTY), held)
+    raw = "in the units of the problem"
+    assert words.endswith(f"; penalty 1 (833.41 {raw}), convex up to 13.007 (10840 {raw})")
 
 
 def test_contact_at_one_point_and_all_round_is_said_so(result: analysis.Result):

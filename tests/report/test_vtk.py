@@ -108,7 +108,7 @@ def test_the_command_line_writes_it(block: Path):
 
 
 def test_what_cannot_be_written_is_refused_before_any_work(block: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(analysis, "solve", None)
+    monkeypatch.setattr(analysis, "carry_out", None)
     answers = {
         r"--vtk: .*\.vtu, \.vtk": solve(block, "--vtk", block.with_suffix(".stl")),
         "--vtk: .*there is no directory": solve(block, "--vtk", block.parent / "none" / "a.vtu"),

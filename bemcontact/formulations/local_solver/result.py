@@ -119,8 +119,8 @@ class QPResult:
     hessian : (n, n) array
         H; its `inertia` is found when it is asked for.
     reduced_inertia_start, reduced_inertia_end : (int, int, int)
-        Positive, zero and negative eigenvalues of ZᵀHZ on the null space of the working set, at the start of phase 2 and
-        at the end.
+        Positive, zero and negative eigenvalues of ZᵀHZ on the null space of the working set, at the start and at the
+        end of phase 2.
     weakly_active : int array
         Active inequalities whose multiplier is about zero, numbered as in `working_set`.
     ray : (n,) array or None
