@@ -498,7 +498,7 @@ def test_options_are_looked_at_before_the_file(tmp_path: Path):
     assert_refused(run("solve", tmp_path / "none.yaml", "--penalty", "-1"), "the penalty must be a number")
 
 
-@pytest.mark.parametrize("penalty", ["1e-12", "1e-8", "1e12"])
+@pytest.mark.parametrize("penalty", ["1e-8", "1", "1e8"])
 def test_the_ends_of_the_range_of_penalties_are_plain_numbers(block: Path, penalty: str):
     """Warnings are errors here; JSON knows no NaN."""
     figure = block.with_suffix(".svg")
