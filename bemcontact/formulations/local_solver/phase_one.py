@@ -89,7 +89,8 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
     if block is None:
         return False
     progress.move(direction, along, block.step, length)
-    working.add(block.constraint, block.side)
+    if working.add(block.constraint, block.side) is None:
+        return False
     value = float(progress.statement.violation(progress.values).sum())
     progress.write(1, value, block.step, block.constraint, dropped, working.number, 0)
     return True

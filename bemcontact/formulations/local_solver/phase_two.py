@@ -52,6 +52,8 @@ class Descent:
         The constraint released for the next step.
     changed : bool
         Whether the working set has changed since the last whole Newton step.
+    broken : bool
+        Whether a constraint ended a step that by its normal cannot: the factors have lost too many digits.
     whole, idle : int
         Whole Newton steps in a row; releases since the last step.
     """
@@ -59,7 +61,7 @@ class Descent:
     def __init__(self, progress: Progress, sides: Sides) -> None:
         self.progress = progress
         self.dropped: int | None = None
-        self.changed = False
+        self.changed = self.broken = False
         self.whole = self.idle = 0
         self._refused: set[int] = set()
         self.working = WorkingSet(progress.statement, sides)
@@ -70,7 +72,7 @@ class Descent:
 
     def run(self) -> Outcome:
         """Walk until no constraint can be dropped with profit, or for ever."""
-        while True:
+        while not self.broken:
             newton = self.changed and not self.hessian.is_stationary(self.progress.gradient, 0.1 * self.progress.zero)
             if self.hessian.pending is None and not newton:
                 newton, place = self._next(self.working.multipliers(self.progress.gradient))
@@ -86,6 +88,7 @@ class Descent:
                 self._newton_step()
             elif (outcome := self._follow_curvature(self.hessian.pending)) is not None:
                 return outcome
+        return Outcome(ending=Ending.INACCURATE)
 
     def _release(self, place: int) -> None:
         """Drop a constraint; its direction joins the null space."""
@@ -171,9 +174,13 @@ class Descent:
         self._refuse(block, step)
         if block is not None:
             self.changed, self.whole = True, 0
-            self.hessian.leave(working.add(block.constraint, block.side))
-            if block.constraint < working.free.size:
-                self.hessian.clear(block.constraint)
+            normal = working.add(block.constraint, block.side)
+            if normal is None:
+                self.broken = True
+            else:
+                self.hessian.leave(normal)
+                if block.constraint < working.free.size:
+                    self.hessian.clear(block.constraint)
         added = None if block is None else block.constraint
         progress.write(2, progress.objective / progress.unit, step, added, self.dropped, working.number, nonpositive)
         self.dropped, self.idle = None, 0

@@ -18,7 +18,6 @@ Sides = NDArray[np.int8]
 RUIZ_SWEEPS = 6
 FAR = 200.0
 """The largest exponent of a factor."""
-NARROW = 2e-9
 INFINITE = 1e20
 """A bound of this size or more is none, as in most solvers and their files."""
 EPS = float(np.finfo(float).eps)
@@ -69,9 +68,9 @@ class Statement:
 
     @cached_property
     def equality(self) -> NDArray[np.bool_]:
-        """Which constraints have one bound for both sides, or two that no tolerance tells apart (n + m,)."""
-        width, size = self.upper - self.lower, np.minimum(np.abs(self.lower), np.abs(self.upper))
-        return width <= NARROW * np.maximum(1.0, np.where(size < np.inf, size, 1.0))
+        """Which constraints have one bound for both sides, or two that rounding does not tell apart (n + m,)."""
+        size = np.minimum(np.abs(self.lower), np.abs(self.upper))
+        return self.upper - self.lower <= 4.0 * EPS * np.where(size < np.inf, size, 0.0)
 
     @cached_property
     def empty(self) -> NDArray[np.bool_]:

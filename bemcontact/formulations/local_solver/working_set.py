@@ -24,6 +24,9 @@ TEMPORARY, FLAT = -1, -2
 DEPENDENT = 1e-9
 """A normal whose part outside the span of the others is a smaller part of it counts as dependent."""
 
+ALIKE = 1e-12
+"""The same for one that enters later, against a step that it has ended."""
+
 SHARP, WEAR = 1e-12, 1e-8
 """Relative size of a refinement above which refinements are needed, and above which N is made anew."""
 
@@ -125,16 +128,20 @@ class WorkingSet:
             self.N[np.ix_(free, order)] = Y @ inverse_triangle(T).T
             self.sharp = True
 
-    def add(self, constraint: int, side: int) -> Array:
-        """One constraint enters, whose normal is not in the span of the others; returns its normal: O(n²)."""
+    def add(self, constraint: int, side: int) -> Array | None:
+        """One constraint enters; returns its normal, or None if that is in the span of the others: O(n²)."""
         n = self.free.size
         normal = self.statement.normal(constraint)
         sign = side if side != EQUALITY else 0
         if constraint >= n:
-            self._append(normal, constraint, sign, self._hold(normal, normal.dot(self.N)))
+            inverse = self._hold(normal, normal.dot(self.N))
+            if inverse is None:
+                return None
+            self._append(normal, constraint, sign, inverse)
         else:
             if self.size:
-                self._hold(normal, self.N[constraint].copy())
+                if self._hold(normal, self.N[constraint].copy()) is None:
+                    return None
                 self.N[constraint] = 0.0
             self._signs[constraint], self.free[constraint] = sign, 0.0
         self.sides[constraint], self.held[constraint] = side, True
@@ -143,19 +150,24 @@ class WorkingSet:
 
     def fix(self, direction: Array, kind: int) -> None:
         """A temporary row enters, with a direction of the null space as its normal."""
-        self._append(direction, kind, 0, self._hold(direction, direction.dot(self.N)))
-        self.number += 1
-        self.temporary += 1
+        inverse = self._hold(direction, direction.dot(self.N))
+        if inverse is not None:
+            self._append(direction, kind, 0, inverse)
+            self.number += 1
+            self.temporary += 1
 
-    def _hold(self, normal: Array, along: Array) -> Array:
-        """N loses what it has along the normal, by the normal's part outside the span; the new column of N."""
+    def _hold(self, normal: Array, along: Array) -> Array | None:
+        """N loses what it has along the normal, by the part of that outside the span; the new column, if there is one."""
         outside = normal * self.free
         if self.size:
             outside -= along.dot(self.W) * self.free
             again = outside.dot(self.N)
             self.sharp = self.sharp and again.dot(again) <= SHARP**2 * outside.dot(outside)
             outside -= again.dot(self.W) * self.free
-        inverse = outside / outside.dot(normal)
+        size = outside.dot(normal)
+        if size <= ALIKE**2 * normal.dot(normal):
+            return None
+        inverse = outside / size
         add_rank_one(self.N, -1.0, inverse, along)
         return inverse
 
