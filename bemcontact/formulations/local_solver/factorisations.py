@@ -40,14 +40,17 @@ def is_definite(matrix: Array) -> bool:
     return matrix.shape[0] == 0 or potrf(matrix)[1] == 0
 
 
-def unit_rows(rows: Array) -> tuple[Array, Array]:
-    """Rows of length one, zero rows as they are, and the lengths; however small or large the entries are."""
-    size = np.abs(rows).max(axis=1, initial=0.0)
-    size[size == 0.0] = 1.0
-    scaled = rows / size[:, None]
-    length = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))
+def row_lengths(rows: Array) -> Array:
+    """Euclidean length of each row, 1 for a row of zeros."""
+    length = np.sqrt(np.einsum("ij,ij->i", rows, rows))
     length[length == 0.0] = 1.0
-    return scaled / length[:, None], size * length
+    return length
+
+
+def unit_rows(rows: Array) -> tuple[Array, Array]:
+    """Rows of length one, zero rows as they are, and the lengths."""
+    length = row_lengths(rows)
+    return rows / length[:, None], length
 
 
 def unit_sizes(size: Array) -> Array:

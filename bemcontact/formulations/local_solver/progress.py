@@ -34,7 +34,9 @@ class Progress:
     lowest, highest : (n + m,) arrays
         The bounds with their tolerances added.
     travelled : (n,) array
-        The largest size of each component so far: what its digits were lost against; `far` is that of the point.
+        The largest size of each component so far: what its digits were lost against.
+    far : float
+        No less than the largest distance from zero so far.
     zero : float
         Size of a gradient or multiplier that counts as zero: relative to the terms that make it up.
     """
@@ -109,6 +111,7 @@ class Progress:
         """Move without a step: at the start and after a correction."""
         self.x, self.values = x, self.statement.values(x)
         size = np.abs(x)
+        self.far = max(self.far, sqrt(size.dot(size)))
         rounding = 10.0 * EPS * np.concatenate([size, self.statement.absolute[2].dot(size)])
         self.slack = np.maximum(self._slack, rounding)
         self.lowest, self.highest = self.statement.lower - self.slack, self.statement.upper + self.slack
@@ -118,6 +121,7 @@ class Progress:
         """Take a step; `along` is [d; A d], `length` that of the direction. The gradient waits for `look`."""
         self.stalled = 0 if step * length > 1e-11 else self.stalled + 1
         if step > 0.0:
+            self.far += step * length
             self.x = self.x + step * direction
             self.values = self.values + step * along
 
@@ -126,7 +130,6 @@ class Progress:
         np.maximum(self.travelled, np.abs(self.x), out=self.travelled)
         product = self.statement.H.dot(self.x)
         self.gradient = product + self.statement.c
-        self.far = max(self.far, sqrt(self.x.dot(self.x)))
         terms = max(sqrt(product.dot(product) / self.x.size), self.statement.slope, 1e-3)
         self.zero = max(self.options.optimality_tolerance * terms, 100.0 * EPS * self.statement.row_sum * self.far)
 

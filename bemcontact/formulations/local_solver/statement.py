@@ -10,14 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.local_solver.factorisations import unit_rows
+from bemcontact.formulations.local_solver.factorisations import row_lengths
 
 Array = NDArray[np.float64]
 Sides = NDArray[np.int8]
 
-RUIZ_SWEEPS = 6
-FAR = 200.0
-"""The largest exponent of a factor."""
+RUIZ_SWEEPS = 4
+LEAST = 2.0**-200
+"""The smallest factor."""
 INFINITE = 1e20
 """A bound of this size or more is none, as in most solvers and their files."""
 EPS = float(np.finfo(float).eps)
@@ -174,8 +174,8 @@ def equilibrate(statement: Statement) -> Scales:
             hessian = D[:, None] * H * D
     D = _power_of_two(D)
     D = D * _smaller_unit(statement, D, E)
-    scaled = A * D
-    E = _power_of_two(1.0 / unit_rows(scaled)[1])
+    E = _power_of_two(1.0 / np.maximum.reduce(A * D, axis=1, initial=LEAST))
+    E = E * _power_of_two(1.0 / row_lengths(E[:, None] * A * D))
     size = max(float(np.maximum.reduce(D[:, None] * H * D, axis=None)), largest(D * c))
     return Scales(variables=D, rows=E, objective=float(_power_of_two(np.array(1.0 / (size or 1.0)))))
 
@@ -192,12 +192,12 @@ def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
 
 def _near_one(sizes: Array) -> bool:
     """Whether another sweep would change little."""
-    return sizes.size == 0 or bool(sizes[sizes.argmax()] < 1.5 and sizes[sizes.argmin()] > 0.6)
+    return sizes.size == 0 or bool(sizes[sizes.argmax()] < 2.0 and sizes[sizes.argmin()] > 0.5)
 
 
 def _power_of_two(factors: Array) -> Array:
     """Nearest powers of two, as far as products of some of them are numbers."""
-    return np.exp2(np.minimum(np.maximum(np.rint(np.log2(factors)), -FAR), FAR))
+    return np.ldexp(1.0, np.frexp(np.minimum(np.maximum(factors, LEAST), 1.0 / LEAST) * sqrt(0.5))[1])
 
 
 def read(
@@ -228,8 +228,9 @@ def read(
         raise ProblemError("cl or cu is given without A: give the rows A that they bound, or use bl and bu")
     lower = np.concatenate([_bound("bl", bl, n, -np.inf), _bound("cl", cl, m, -np.inf)])
     upper = np.concatenate([_bound("bu", bu, n, np.inf), _bound("cu", cu, m, np.inf)])
-    _order(lower[:n], upper[:n], "bl", "bu")
-    _order(lower[n:], upper[n:], "cl", "cu")
+    if not ((lower < np.inf) & (upper > -np.inf) & (lower <= upper)).all():
+        _complain(lower, upper, n)
+    lower[lower <= -INFINITE], upper[upper >= INFINITE] = -np.inf, np.inf
     return Statement(H=hessian, c=linear, A=rows, lower=lower, upper=upper)
 
 
@@ -271,22 +272,26 @@ def _matrix(name: str, given: Any, columns: int) -> Array:
 
 
 def _bound(name: str, given: ArrayLike | None, size: int, absent: float) -> Array:
-    """A vector of bounds; infinite in the harmless direction only."""
+    """A vector of bounds."""
     if given is None:
         return np.full(size, absent)
     bound = _floats(name, given)
     if bound.shape != (size,):
         raise ProblemError(f"{name} has shape {bound.shape}: it must be ({size},), with {absent} where there is none")
-    wrong = np.isnan(bound) | (bound == -absent)
-    if wrong.any():
-        i = int(np.argmax(wrong))
-        raise ProblemError(f"{name}[{i}] is {bound[i]}: give a number, or {absent} for no bound")
-    bound[np.abs(bound) >= INFINITE] *= np.inf
     return bound
 
 
-def _order(lower: Array, upper: Array, low: str, up: str) -> None:
-    """Refuse a lower bound above its upper bound."""
-    if (lower > upper).any():
-        i = int(np.argmax(lower > upper))
-        raise ProblemError(f"{low}[{i}] = {lower[i]} exceeds {up}[{i}] = {upper[i]}: no x satisfies both; change one")
+def _complain(lower: Array, upper: Array, n: int) -> None:
+    """Refuse a bound that is no number, an infinite one in the wrong direction, and a lower one above its upper one."""
+    for low, high, part in (("bl", "bu", slice(n)), ("cl", "cu", slice(n, None))):
+        for name, bound, absent in ((low, lower[part], -np.inf), (high, upper[part], np.inf)):
+            wrong = np.isnan(bound) | (bound == -absent)
+            if wrong.any():
+                i = int(np.argmax(wrong))
+                raise ProblemError(f"{name}[{i}] is {bound[i]}: give a number, or {absent} for no bound")
+        crossed = lower[part] > upper[part]
+        if crossed.any():
+            i = int(np.argmax(crossed))
+            raise ProblemError(
+                f"{low}[{i}] = {lower[part][i]} exceeds {high}[{i}] = {upper[part][i]}: no x satisfies both; change one"
+            )

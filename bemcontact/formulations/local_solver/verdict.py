@@ -73,7 +73,7 @@ def first_order(progress: Progress, working: WorkingSet, multipliers: Array) -> 
     zero = progress.fine_zero(multipliers[working.ids[real]], working.W[real], working.N[:, real])
     zeros = np.concatenate([zero, np.full(values.size - n, progress.zero)])
     size = np.abs(multipliers)
-    wrong = np.where(statement.equality, 0.0, np.where(sides == 0, size, sides * multipliers))
+    wrong = np.where(sides == 0, size, sides * multipliers) * ~statement.equality
     held = (sides != 0) & ~statement.empty
     strong = held & (statement.equality | (size > WEAK * zeros))
     return FirstOrder(

@@ -71,7 +71,7 @@ class WorkingSet:
         self.free = (~self.held[:n]).astype(float)
         self._N, self._W = np.zeros((n, n), order="F"), np.zeros((n, n))
         self._ids, self._signs = np.zeros(n, dtype=np.intp), np.zeros(2 * n)
-        free, rows = np.flatnonzero(self.free), np.flatnonzero(sides[n:])
+        free, rows = self.free.nonzero()[0], sides[n:].nonzero()[0]
         normals, length = unit_rows(A[rows][:, free])
         Y, self.null_space, T, kept = orthogonal(normals, DEPENDENT)
         self._resize(r := kept.size)
@@ -157,15 +157,16 @@ class WorkingSet:
             self.temporary += 1
 
     def _hold(self, normal: Array, along: Array) -> Array | None:
-        """N loses what it has along the normal, by the part of that outside the span; the new column, if there is one."""
+        """N loses what it has along the normal; the new column, or None if the normal is in the span."""
         outside = normal * self.free
         if self.size:
             outside -= along.dot(self.W) * self.free
             again = outside.dot(self.N)
-            self.sharp = self.sharp and again.dot(again) <= SHARP**2 * outside.dot(outside)
-            outside -= again.dot(self.W) * self.free
+            if again.dot(again) > SHARP**2 * outside.dot(outside):
+                self.sharp = False
+                outside -= again.dot(self.W) * self.free
         size = outside.dot(normal)
-        if size <= ALIKE**2 * normal.dot(normal):
+        if size <= ALIKE**2:
             return None
         inverse = outside / size
         add_rank_one(self.N, -1.0, inverse, along)
