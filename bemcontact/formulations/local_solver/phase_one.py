@@ -38,7 +38,7 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
     if not signs.any():
         return sides, None
     working, n = WorkingSet(progress.statement, sides), progress.x.size
-    progress.place(working.onto(progress.x))
+    progress.correct(working.onto(progress.x))
     signs = violated_signs(progress) * ~working.held  # what is held is on its bound, up to rounding
     while signs.any():
         gradient = progress.statement.transposed(signs)

@@ -48,6 +48,8 @@ class Descent:
     ----------
     working, hessian
         The constraints held, and the Hessian on what they leave free.
+    value : float
+        The scaled objective.
     dropped : int or None
         The constraint released for the next step.
     changed : bool
@@ -68,7 +70,8 @@ class Descent:
         self.hessian = ReducedHessian(progress.statement, self.working.null_space)
         for direction in self.hessian.left_over.T:
             self.working.fix(direction, TEMPORARY)
-        progress.place(self.working.onto(progress.x))
+        progress.correct(self.working.onto(progress.x))
+        self.value = progress.objective
 
     def run(self) -> Outcome:
         """Walk until no constraint can be dropped with profit, or for ever."""
@@ -123,13 +126,14 @@ class Descent:
         """Towards the minimiser on the working set, as far as the constraints allow."""
         direction = self.hessian.newton(self.progress.gradient)
         along = self.progress.statement.values(direction)
-        length = sqrt(direction.dot(direction))
+        slope, length = float(self.progress.gradient.dot(direction)), sqrt(direction.dot(direction))
         block = nearest(self.progress, along, length, self.working.held)
         if block is None or block.step > 1.0:
             self.changed, self.whole = False, self.whole + 1
-            self._advance(direction, along, length, 1.0, None)
+            self._advance(direction, along, length, 1.0, 0.5 * slope, None)
         else:
-            self._advance(direction, along, length, block.step, block)
+            change = block.step * (1.0 - 0.5 * block.step) * slope
+            self._advance(direction, along, length, block.step, change, block)
 
     def _follow_curvature(self, direction: Array) -> Outcome | None:
         """Along the direction of non-positive curvature downhill to the next constraint; None if the walk goes on."""
@@ -139,17 +143,17 @@ class Descent:
             self.working.fix(direction, FLAT)
             self.hessian.leave(direction)
             return None
-        along = self.progress.statement.values(direction)
         if slope > 0.0:
-            direction, along, slope = -direction, -along, -slope
+            direction, slope = -direction, -slope
+        along = self.progress.statement.values(direction)
         block = nearest(self.progress, along, 1.0, self.working.held)
         if level and block is not None:
             back = nearest(self.progress, -along, 1.0, self.working.held)
             if back is None or _change(back, -slope, curvature) < _change(block, slope, curvature):
-                direction, along, block = -direction, -along, back
+                direction, along, slope, block = -direction, -along, -slope, back
         if block is None:
             return Outcome(ending=Ending.UNBOUNDED, ray=direction)
-        self._advance(direction, along, 1.0, block.step, block)
+        self._advance(direction, along, 1.0, block.step, _change(block, slope, curvature), block)
         return None
 
     def _refuse(self, block: Block | None, step: float) -> None:
@@ -165,8 +169,10 @@ class Descent:
         of_rows = working.multipliers(self.progress.gradient)[direction.size :]
         return self.progress.level(direction, self.progress.fine_zero(of_rows, working.W, working.N))
 
-    def _advance(self, direction: Array, along: Array, length: float, step: float, block: Block | None) -> None:
-        """Take the step, and the constraint that ended it."""
+    def _advance(
+        self, direction: Array, along: Array, length: float, step: float, change: float, block: Block | None
+    ) -> None:
+        """Take the step, by which the objective changes, and the constraint that ended it."""
         progress, working = self.progress, self.working
         nonpositive = int(self.hessian.pending is not None)
         progress.move(direction, along, step, length)
@@ -182,7 +188,8 @@ class Descent:
                 if block.constraint < working.free.size:
                     self.hessian.clear(block.constraint)
         added = None if block is None else block.constraint
-        progress.write(2, progress.objective / progress.unit, step, added, self.dropped, working.number, nonpositive)
+        self.value += change
+        progress.write(2, self.value / progress.unit, step, added, self.dropped, working.number, nonpositive)
         self.dropped, self.idle = None, 0
 
 

@@ -107,8 +107,15 @@ class Progress:
         """Whether the run has stalled at a degenerate vertex, so that Bland's rules decide."""
         return self.stalled > STALLED
 
+    def correct(self, x: Array) -> None:
+        """Move without a step; look about afresh."""
+        if (x == self.x).all():
+            self.look()
+        else:
+            self.place(x)
+
     def place(self, x: Array) -> None:
-        """Move without a step: at the start and after a correction."""
+        """Be at a point, and know all of it anew."""
         self.x, self.values = x, self.statement.values(x)
         size = np.abs(x)
         self.far = max(self.far, sqrt(size.dot(size)))

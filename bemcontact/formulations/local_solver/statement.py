@@ -160,7 +160,7 @@ def equilibrate(statement: Statement) -> Scales:
     mixed = bool(outside.any())
     D, E, linear, hessian = np.ones(n), np.ones(m), A, H
     for _ in range(RUIZ_SWEEPS):
-        columns, rows = np.maximum.reduce(linear, axis=0, initial=0.0), np.maximum.reduce(linear, axis=1, initial=0.0)
+        columns, rows = np.maximum.reduce(linear, axis=0, initial=0.0), np.maximum.reduce(linear, axis=1)
         if mixed:
             sizes = np.maximum.reduce(hessian, axis=1)
             columns = np.where(outside, sizes / (largest(sizes) or 1.0), columns)
@@ -174,8 +174,7 @@ def equilibrate(statement: Statement) -> Scales:
             hessian = D[:, None] * H * D
     D = _power_of_two(D)
     D = D * _smaller_unit(statement, D, E)
-    E = _power_of_two(1.0 / np.maximum.reduce(A * D, axis=1, initial=LEAST))
-    E = E * _power_of_two(1.0 / row_lengths(E[:, None] * A * D))
+    E = _power_of_two(E / row_lengths(E[:, None] * A * D))
     size = max(float(np.maximum.reduce(D[:, None] * H * D, axis=None)), largest(D * c))
     return Scales(variables=D, rows=E, objective=float(_power_of_two(np.array(1.0 / (size or 1.0)))))
 

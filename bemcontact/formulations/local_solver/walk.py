@@ -187,9 +187,9 @@ def _refined(progress: Progress, descent: Descent) -> Array:
     """Refine the equations of the working set from the data, twice; multipliers of all constraints."""
     working = descent.working
     for _ in range(2 if descent.hessian.size else 1):
-        progress.place(working.onto(progress.x))
+        progress.correct(working.onto(progress.x))
         if descent.hessian.size:
-            progress.place(progress.x + descent.hessian.newton(progress.gradient))
+            progress.correct(progress.x + descent.hessian.newton(progress.gradient))
     n, found = working.free.size, working.multipliers(progress.gradient, refined=True)
     real = working.ids >= 0
     multipliers = np.zeros(progress.values.size)
