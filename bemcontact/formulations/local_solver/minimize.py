@@ -9,7 +9,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorisations import Inertia
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult
-from bemcontact.formulations.local_solver.statement import Scales, Statement, equilibrate, no_scales, numbers, read
+from bemcontact.formulations.local_solver.statement import Scales, Statement, equilibrate, numbers, read, unscaled
 from bemcontact.formulations.local_solver.walk import Finding, walk
 
 
@@ -64,10 +64,8 @@ def minimize_qp(
     n = stated.c.size
     start = np.zeros(n) if x0 is None else numbers("x0", x0, n)
     start = np.minimum(np.maximum(start, stated.lower[:n]), stated.upper[:n])
-    scales = equilibrate(stated) if options.scale else no_scales(stated)
-    progress = Progress(
-        statement=scales.apply(stated), options=options, unit=scales.objective, x=start / scales.variables
-    )
+    scaled, scales = equilibrate(stated) if options.scale else unscaled(stated)
+    progress = Progress(statement=scaled, options=options, unit=scales.objective, x=start / scales.variables)
     sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)

@@ -84,7 +84,7 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
     length = sqrt(direction.dot(direction))
     along = progress.statement.values(direction)
     wall = nearest(progress, along, length, working.held | (signs != 0.0))
-    inner = _breakpoint(progress, signs, along, length)
+    inner = None if wall is not None and wall.step == 0.0 else _breakpoint(progress, signs, along, length)
     block = inner if wall is None or (inner is not None and inner.step <= wall.step) else wall
     if block is None:
         return False

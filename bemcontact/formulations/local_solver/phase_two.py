@@ -108,11 +108,10 @@ class Descent:
         """
         progress, working = self.progress, self.working
         n, least = working.free.size, progress.least_index
-        allowed = 1.0 if not self._refused else ~np.isin(working.numbers, list(self._refused))
         loose = self.whole < 3 and working.number < n
         if loose and largest(multipliers[:n] * working.free) > 0.1 * progress.zero:
             return True, None
-        place = wrong_sign(working, multipliers * allowed, progress.zero, least_index=least)
+        place = wrong_sign(working, self._allowed(multipliers), progress.zero, least_index=least)
         if place is not None:
             return False, place
         multipliers = working.multipliers(progress.gradient, refined=True)
@@ -120,7 +119,13 @@ class Descent:
         if loose and (np.abs(multipliers[:n] * working.free) > zero).any():
             return True, None
         zeros = np.concatenate([zero, zero @ np.abs(working.N)])
-        return False, wrong_sign(working, multipliers * allowed, zeros, least_index=least)
+        return False, wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
+
+    def _allowed(self, multipliers: Array) -> Array:
+        """Without those of refused constraints."""
+        if not self._refused:
+            return multipliers
+        return np.where(np.isin(self.working.numbers, list(self._refused)), 0.0, multipliers)
 
     def _newton_step(self) -> None:
         """Towards the minimiser on the working set, as far as the constraints allow."""

@@ -129,33 +129,43 @@ class Scales:
     rows: Array
     objective: float
 
-    def apply(self, statement: Statement) -> Statement:
-        """The statement in scaled variables and rows; exact, since every factor is a power of two."""
-        D, E = self.variables, self.rows
-        of_constraints = np.concatenate([1.0 / D, E])
-        return Statement(
-            H=self.objective * (D[:, None] * statement.H * D),
-            c=self.objective * D * statement.c,
-            A=E[:, None] * statement.A * D,
-            lower=of_constraints * statement.lower,
-            upper=of_constraints * statement.upper,
-        )
-
     def multipliers(self, scaled: Array) -> Array:
         """Multipliers of the constraints in the units of the data (objective not rescaled)."""
         return scaled * np.concatenate([1.0 / self.variables, self.rows])
 
 
-def no_scales(statement: Statement) -> Scales:
-    """All factors one."""
+def unscaled(statement: Statement) -> tuple[Statement, Scales]:
+    """The statement as it is, all factors one."""
     m, n = statement.A.shape
-    return Scales(variables=np.ones(n), rows=np.ones(m), objective=1.0)
+    return statement, Scales(variables=np.ones(n), rows=np.ones(m), objective=1.0)
 
 
-def equilibrate(statement: Statement) -> Scales:
-    """Factors that bring the rows and columns of A to size one, columns outside A by H (Ruiz, RAL-TR-2001-034)."""
-    m, n = statement.A.shape
-    H, c, A = statement.absolute
+def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
+    """The statement with rows and columns of A of size one, columns outside A by H, and the largest of H and c one.
+
+    All factors are powers of two, so that no digit of the data changes.
+    """
+    D, E = _ruiz(*statement.absolute)
+    D, E = _power_of_two(D), _power_of_two(E)
+    D = D * _smaller_unit(statement, D, E)
+    H, c, A = D[:, None] * statement.H * D, D * statement.c, E[:, None] * statement.A * D
+    last = _power_of_two(1.0 / row_lengths(A))
+    E = E * last
+    unit = float(_power_of_two(np.array(1.0 / (max(largest(H.ravel()), largest(c)) or 1.0))))
+    factors = np.concatenate([1.0 / D, E])
+    scaled = Statement(
+        H=unit * H,
+        c=unit * c,
+        A=last[:, None] * A,
+        lower=factors * statement.lower,
+        upper=factors * statement.upper,
+    )
+    return scaled, Scales(variables=D, rows=E, objective=unit)
+
+
+def _ruiz(H: Array, _: Array, A: Array) -> tuple[Array, Array]:
+    """Factors of columns and rows by which the largest entry of each comes to one, nearly (Ruiz, RAL-TR-2001-034)."""
+    m, n = A.shape
     outside = ~A.any(axis=0)
     mixed = bool(outside.any())
     D, E, linear, hessian = np.ones(n), np.ones(m), A, H
@@ -172,11 +182,7 @@ def equilibrate(statement: Statement) -> Scales:
         linear = E[:, None] * A * D
         if mixed:
             hessian = D[:, None] * H * D
-    D = _power_of_two(D)
-    D = D * _smaller_unit(statement, D, E)
-    E = _power_of_two(E / row_lengths(E[:, None] * A * D))
-    size = max(float(np.maximum.reduce(D[:, None] * H * D, axis=None)), largest(D * c))
-    return Scales(variables=D, rows=E, objective=float(_power_of_two(np.array(1.0 / (size or 1.0)))))
+    return D, E
 
 
 def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
