@@ -76,8 +76,7 @@ class Descent:
     def run(self) -> Outcome:
         """Walk until no constraint can be dropped with profit, or for ever."""
         while not self.broken:
-            newton = self.changed and not self.hessian.is_stationary(self.progress.gradient, 0.1 * self.progress.zero)
-            if self.hessian.pending is None and not newton:
+            if self.hessian.pending is None and self._settled():
                 newton, place = self._next(self.working.multipliers(self.progress.gradient))
                 if not newton:
                     if place is None:
@@ -92,6 +91,11 @@ class Descent:
             elif (outcome := self._follow_curvature(self.hessian.pending)) is not None:
                 return outcome
         return Outcome(ending=Ending.INACCURATE)
+
+    def _settled(self) -> bool:
+        """Whether there is no Newton step to take, as far as that can be seen without multipliers."""
+        zero = 0.1 * self.progress.zero
+        return not self.changed or self.hessian.is_stationary(self.progress.gradient, zero)
 
     def _release(self, place: int) -> None:
         """Drop a constraint; its direction joins the null space."""
@@ -182,7 +186,8 @@ class Descent:
         nonpositive = int(self.hessian.pending is not None)
         progress.move(direction, along, step, length)
         progress.look()
-        self._refuse(block, step)
+        if self._refused or step <= 0.0:
+            self._refuse(block, step)
         if block is not None:
             self.changed, self.whole = True, 0
             normal = working.add(block.constraint, block.side)

@@ -11,6 +11,9 @@ from bemcontact.formulations.local_solver.statement import EPS, Array, Statement
 FINE = 1e-3
 """Part of the optimality tolerance that counts where each component is held against its own terms."""
 
+PARALLEL = 1e-10
+"""A normal whose product with the unit direction is below this is parallel to the constraint, save on a long step."""
+
 STALLED = 100
 """Steps of length zero in a row after which least-index rules take over, which cannot cycle (Bland 1977)."""
 
@@ -27,6 +30,10 @@ class Progress:
         Tolerances, limit and log.
     unit : float
         The scaled objective over that of the data.
+    count : int
+        Iterations of both phases.
+    long : float
+        Length of a step on which the products that count as none may violate a constraint.
     x, values, gradient : arrays
         The point, [x; A x], and H x + c.
     slack : (n + m,) array
@@ -54,7 +61,9 @@ class Progress:
     lowest: Array = field(init=False)
     highest: Array = field(init=False)
     limit: int = field(init=False)
+    long: float = field(init=False)
     iterations: list[int] = field(default_factory=lambda: [0, 0])
+    count: int = 0
     changes: int = 0
     stalled: int = 0
     lines: list[LogLine] = field(default_factory=list)
@@ -62,6 +71,7 @@ class Progress:
     def __post_init__(self) -> None:
         lower, upper = np.abs(self.statement.lower), np.abs(self.statement.upper)
         size = np.minimum(lower, upper)
+        self.long = self.options.feasibility_tolerance / PARALLEL
         self._slack = self.options.feasibility_tolerance * np.maximum(1.0, np.where(size < np.inf, size, 1.0))
         chosen = self.options.max_iterations
         self.limit = 1000 + 20 * lower.size if chosen is None else chosen
@@ -100,7 +110,7 @@ class Progress:
     @property
     def exhausted(self) -> bool:
         """Whether no iteration is left."""
-        return sum(self.iterations) >= self.limit
+        return self.count >= self.limit
 
     @property
     def least_index(self) -> bool:
@@ -134,7 +144,7 @@ class Progress:
 
     def look(self) -> None:
         """The gradient at the point."""
-        np.maximum(self.travelled, np.abs(self.x), out=self.travelled)
+        np.maximum(self.travelled, np.abs(self.x), self.travelled)
         product = self.statement.H.dot(self.x)
         self.gradient = product + self.statement.c
         terms = max(sqrt(product.dot(product) / self.x.size), self.statement.slope, 1e-3)
@@ -152,9 +162,10 @@ class Progress:
     ) -> None:
         """Count the iteration and log it, as a `LogLine`."""
         self.iterations[phase - 1] += 1
+        self.count += 1
         self.changes += (added is not None) + (dropped is not None)
         real = None if dropped is None or dropped < 0 else dropped
-        line = LogLine(phase, sum(self.iterations), value, step, added, real, working, nonpositive)
+        line = LogLine(phase, self.count, value, step, added, real, working, nonpositive)
         self.lines.append(line)
         if self.options.log is not None:
             self.options.log(line)

@@ -5,12 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.formulations.local_solver.progress import Progress
+from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, Progress
 from bemcontact.formulations.local_solver.statement import Array
 
-PARALLEL, FAINT = 1e-10, 1e-14
-"""A normal whose product with the unit direction is below this is parallel to the constraint; on a step so long that
-such a product would still lead out of its bounds, only what is rounding is."""
+INFINITY = float("inf")
+FAINT = 1e-14
+"""The same as `PARALLEL` on a long step: only rounding is below."""
 
 
 class Block(NamedTuple):
@@ -31,7 +31,7 @@ def nearest(progress: Progress, along: Array, length: float, held: NDArray[np.bo
     speed = np.abs(along)
     away = held | (speed <= PARALLEL * length)
     block = _first(progress, along, speed, away)
-    if block is None or block.step * length * PARALLEL > progress.options.feasibility_tolerance:
+    if block is None or block.step * length > progress.long:
         nearly_all = held | (speed <= FAINT * length)
         if (nearly_all != away).any():
             block = _first(progress, along, speed, nearly_all)
@@ -43,17 +43,17 @@ def _first(progress: Progress, along: Array, speed: Array, away: NDArray[np.bool
     statement, values = progress.statement, progress.values
     # the bound ahead has the quotient that is not negative
     steps = np.maximum((statement.upper - values) / along, (statement.lower - values) / along)
-    steps[away] = np.inf
+    steps[away] = INFINITY
     late = steps + progress.slack / speed
     furthest = late[late.argmin()]
-    if furthest == np.inf:
+    if furthest == INFINITY:
         return None
-    constraint = int((speed * (steps <= furthest)).argmax())
-    if progress.least_index:
+    if progress.stalled <= STALLED:
+        constraint = int((speed * (steps <= furthest)).argmax())
+    else:
         least = float(steps[steps.argmin()])
         constraint = int((steps <= least + 1e-13 * max(1.0, least)).argmax())
-    step = max(float(steps[constraint]), 0.0)
-    return Block(constraint=constraint, side=side_reached(progress, constraint, along), step=step)
+    return Block(constraint, side_reached(progress, constraint, along), max(float(steps[constraint]), 0.0))
 
 
 def side_reached(progress: Progress, constraint: int, along: Array) -> int:
