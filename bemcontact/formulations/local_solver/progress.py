@@ -14,6 +14,9 @@ FINE = 1e-3
 PARALLEL = 1e-10
 """A normal whose product with the unit direction is below this is parallel to the constraint, save on a long step."""
 
+MANY = 100
+"""Points that wait at most to be looked at together."""
+
 STALLED = 100
 """Steps of length zero in a row after which least-index rules take over, which cannot cycle (Bland 1977)."""
 
@@ -40,8 +43,6 @@ class Progress:
         Tolerance of each constraint: relative to its smaller bound, and no less than the rounding of A x.
     lowest, highest : (n + m,) arrays
         The bounds with their tolerances added.
-    travelled : (n,) array
-        The largest size of each component so far: what its digits were lost against.
     far : float
         No less than the largest distance from zero so far.
     zero : float
@@ -55,7 +56,6 @@ class Progress:
     values: Array = field(init=False)
     gradient: Array = field(init=False)
     zero: float = field(init=False)
-    travelled: Array = field(init=False)
     far: float = field(init=False)
     slack: Array = field(init=False)
     lowest: Array = field(init=False)
@@ -75,8 +75,20 @@ class Progress:
         self._slack = self.options.feasibility_tolerance * np.maximum(1.0, np.where(size < np.inf, size, 1.0))
         chosen = self.options.max_iterations
         self.limit = 1000 + 20 * lower.size if chosen is None else chosen
-        self.travelled, self.far = np.zeros(self.x.size), 0.0
+        self._travelled, self._passed, self.far = np.zeros(self.x.size), [], 0.0
         self.place(self.x)
+
+    @property
+    def travelled(self) -> Array:
+        """The largest size of each component so far (n,): what its digits were lost against."""
+        if self._passed:
+            self._take_in()
+        return self._travelled
+
+    def _take_in(self) -> None:
+        """The points passed since the last time."""
+        self._travelled = np.maximum(self._travelled, np.abs(self._passed).max(axis=0))
+        self._passed.clear()
 
     @property
     def objective(self) -> float:
@@ -144,7 +156,9 @@ class Progress:
 
     def look(self) -> None:
         """The gradient at the point."""
-        np.maximum(self.travelled, np.abs(self.x), self.travelled)
+        self._passed.append(self.x)
+        if len(self._passed) > MANY:
+            self._take_in()
         product = self.statement.H.dot(self.x)
         self.gradient = product + self.statement.c
         terms = max(sqrt(product.dot(product) / self.x.size), self.statement.slope, 1e-3)

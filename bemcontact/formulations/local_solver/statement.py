@@ -146,7 +146,8 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     All factors are powers of two, so that no digit of the data changes.
     """
     D, E = _ruiz(*statement.absolute)
-    D, E = _power_of_two(D), _power_of_two(E)
+    factors = _power_of_two(np.concatenate([D, E]))
+    D, E = factors[: D.size], factors[D.size :]
     D = D * _smaller_unit(statement, D, E)
     H, c, A = D[:, None] * statement.H * D, D * statement.c, E[:, None] * statement.A * D
     last = _power_of_two(1.0 / row_lengths(A))

@@ -82,8 +82,8 @@ class WorkingSet:
         self.temporary, self.sharp = 0, True
         self._ids[:r] = n + rows[kept]
         self._W[:r] = A[rows[kept]]
-        self._signs[:n] = np.where(self.sides[:n] == EQUALITY, 0, self.sides[:n])
-        self._signs[n : n + r] = np.where(self.sides[self.ids] == EQUALITY, 0, self.sides[self.ids])
+        signs = self.sides * (self.sides != EQUALITY)
+        self._signs[:n], self._signs[n : n + r] = signs[:n], signs[self.ids]
         if r:
             self._N[free, :r] = Y @ inverse_triangle(T).T / length[kept]
         self.null_space = _spread(self.null_space, free, n)
@@ -223,6 +223,8 @@ class WorkingSet:
         n, lower, upper = self.free.size, self.statement.lower, self.statement.upper
         targets = np.where(self.sides == 1, upper, lower)
         x = np.where(self.held[:n], targets[:n], x)
+        if self.size == 0:
+            return x
         real = self.ids >= 0
         lack = np.where(real, targets[np.where(real, self.ids, 0)] - self.W @ x, 0.0)
         return x + self.N @ lack
