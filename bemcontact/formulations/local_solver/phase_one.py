@@ -11,7 +11,7 @@ import numpy as np
 from bemcontact.formulations.local_solver.pricing import wrong_sign
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import Block, nearest, side_reached
-from bemcontact.formulations.local_solver.statement import Array, Sides, largest
+from bemcontact.formulations.local_solver.statement import Array, Sides
 from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 
@@ -40,12 +40,12 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
     working, n = WorkingSet(progress.statement, sides), progress.x.size
     progress.correct(working.onto(progress.x))
     signs = violated_signs(progress) * ~working.held  # what is held is on its bound, up to rounding
-    while signs.any():
+    while violated := signs.dot(signs):
         gradient = progress.statement.transposed(signs)
-        zero = fineness * progress.options.optimality_tolerance * sqrt(signs.dot(signs))
+        zero = fineness * progress.options.optimality_tolerance * sqrt(violated)
         multipliers = working.multipliers(gradient)
         reduced, dropped = multipliers[:n] * working.free, None
-        if working.number == n or largest(reduced) <= zero:
+        if working.number == n or reduced.dot(reduced) <= zero**2:
             place = wrong_sign(working, multipliers, zero, least_index=progress.least_index)
             if place is None:
                 return working.sides, _certificate(working, signs, multipliers)

@@ -13,7 +13,7 @@ from bemcontact.formulations.local_solver.pricing import wrong_sign
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import Block, nearest
 from bemcontact.formulations.local_solver.reduced_hessian import ReducedHessian
-from bemcontact.formulations.local_solver.statement import Array, Sides, largest
+from bemcontact.formulations.local_solver.statement import Array, Sides
 from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, WorkingSet
 
 
@@ -113,8 +113,10 @@ class Descent:
         progress, working = self.progress, self.working
         n, least = working.free.size, progress.least_index
         loose = self.whole < 3 and working.number < n
-        if loose and largest(multipliers[:n] * working.free) > 0.1 * progress.zero:
-            return True, None
+        if loose:
+            reduced = multipliers[:n] * working.free
+            if reduced.dot(reduced) > (0.1 * progress.zero) ** 2:
+                return True, None
         place = wrong_sign(working, self._allowed(multipliers), progress.zero, least_index=least)
         if place is not None:
             return False, place

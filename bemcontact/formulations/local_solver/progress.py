@@ -71,6 +71,7 @@ class Progress:
     def __post_init__(self) -> None:
         lower, upper = np.abs(self.statement.lower), np.abs(self.statement.upper)
         size = np.minimum(lower, upper)
+        self._part = 1.0 / self.x.size
         self.long = self.options.feasibility_tolerance / PARALLEL
         self._slack = self.options.feasibility_tolerance * np.maximum(1.0, np.where(size < np.inf, size, 1.0))
         chosen = self.options.max_iterations
@@ -161,7 +162,7 @@ class Progress:
             self._take_in()
         product = self.statement.H.dot(self.x)
         self.gradient = product + self.statement.c
-        terms = max(sqrt(product.dot(product) / self.x.size), self.statement.slope, 1e-3)
+        terms = max(sqrt(product.dot(product) * self._part), self.statement.slope, 1e-3)
         self.zero = max(self.options.optimality_tolerance * terms, 100.0 * EPS * self.statement.row_sum * self.far)
 
     def write(

@@ -194,8 +194,8 @@ class WorkingSet:
         if constraint >= 0:
             self.sides[constraint], self.held[constraint] = 0, False
         self.number -= 1
-        direction /= sqrt(direction.dot(direction))
-        if self.size:
+        if self.size or place >= n:
+            direction /= sqrt(direction.dot(direction))
             add_rank_one(self.N, -1.0, direction, direction.dot(self.N))
         return constraint, direction
 
