@@ -72,21 +72,24 @@ class WorkingSet:
         self._N, self._W = np.zeros((n, n), order="F"), np.zeros((n, n))
         self._ids, self._signs = np.zeros(n, dtype=np.intp), np.zeros(2 * n)
         free, rows = self.free.nonzero()[0], sides[n:].nonzero()[0]
-        normals, length = unit_rows(A[rows][:, free])
-        Y, self.null_space, T, kept = orthogonal(normals, DEPENDENT)
-        self._resize(r := kept.size)
+        kept, self.null_space = rows[:0], np.eye(n)[:, free]
+        if rows.size and free.size:
+            normals, length = unit_rows(A[rows][:, free])
+            Y, null_space, T, independent = orthogonal(normals, DEPENDENT)
+            kept = rows[independent]
+            self._N[free, : kept.size] = Y @ inverse_triangle(T).T / length[independent]
+            self.null_space = np.zeros((n, null_space.shape[1]))
+            self.null_space[free] = null_space
+        r = kept.size
         if r < rows.size:
-            left_out = n + np.delete(rows, kept)
-            self.sides[left_out], self.held[left_out] = 0, False
+            self.sides[n + rows], self.held[n + rows] = 0, False
+            self.sides[n + kept], self.held[n + kept] = sides[n + kept], True
         self.number = n - free.size + r
         self.temporary, self.sharp = 0, True
-        self._ids[:r] = n + rows[kept]
-        self._W[:r] = A[rows[kept]]
+        self._ids[:r], self._W[:r] = n + kept, A[kept]
         signs = self.sides * (self.sides != EQUALITY)
-        self._signs[:n], self._signs[n : n + r] = signs[:n], signs[self.ids]
-        if r:
-            self._N[free, :r] = Y @ inverse_triangle(T).T / length[kept]
-        self.null_space = _spread(self.null_space, free, n)
+        self._signs[:n], self._signs[n : n + r] = signs[:n], signs[n + kept]
+        self._resize(r)
 
     def _resize(self, rows: int) -> None:
         """Look at the leading columns of N and rows of W."""
@@ -228,10 +231,3 @@ class WorkingSet:
         real = self.ids >= 0
         lack = np.where(real, targets[np.where(real, self.ids, 0)] - self.W @ x, 0.0)
         return x + self.N @ lack
-
-
-def _spread(columns: Array, free: NDArray[np.intp], n: int) -> Array:
-    """Columns on the free variables as columns on all."""
-    full = np.zeros((n, columns.shape[1]))
-    full[free] = columns
-    return full
