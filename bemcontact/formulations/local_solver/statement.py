@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import sqrt
+from math import frexp, ldexp, sqrt
 from typing import Any
 
 import numpy as np
@@ -152,7 +152,7 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     H, c, A = D[:, None] * statement.H * D, D * statement.c, E[:, None] * statement.A * D
     last = _power_of_two(1.0 / row_lengths(A))
     E = E * last
-    unit = float(_power_of_two(np.array(1.0 / (max(largest(H.ravel()), largest(c)) or 1.0))))
+    unit = _near_power(1.0 / (max(largest(H.ravel()), largest(c)) or 1.0))
     factors = np.concatenate([1.0 / D, E])
     scaled = Statement(
         H=unit * H,
@@ -193,7 +193,7 @@ def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
     for bounds in (statement.lower, statement.upper):
         finite = np.abs(bounds) < np.inf
         size = max(size, largest(bounds[finite] * factors[finite]))
-    return float(_power_of_two(np.array(size))) if 0.0 < size < 1.0 else 1.0
+    return _near_power(size) if 0.0 < size < 1.0 else 1.0
 
 
 def _near_one(sizes: Array) -> bool:
@@ -201,8 +201,13 @@ def _near_one(sizes: Array) -> bool:
     return sizes.size == 0 or bool(sizes[sizes.argmax()] < 2.0 and sizes[sizes.argmin()] > 0.5)
 
 
+def _near_power(factor: float) -> float:
+    """The nearest power of two, as far as products of some are numbers."""
+    return ldexp(1.0, frexp(min(max(factor, LEAST), 1.0 / LEAST) * sqrt(0.5))[1])
+
+
 def _power_of_two(factors: Array) -> Array:
-    """Nearest powers of two, as far as products of some of them are numbers."""
+    """The same of an array."""
     return np.ldexp(1.0, np.frexp(np.minimum(np.maximum(factors, LEAST), 1.0 / LEAST) * sqrt(0.5))[1])
 
 

@@ -164,7 +164,7 @@ def _minimiser(descent: Descent, conditions: FirstOrder, multipliers: Array, sta
         sides=descent.working.sides,
         multipliers=multipliers,
         reduced_end=reduced_inertia(descent),
-        weak=np.flatnonzero(conditions.weak),
+        weak=conditions.weak.nonzero()[0],
     )
 
 
