@@ -145,7 +145,7 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
 
     All factors are powers of two, so that no digit of the data changes.
     """
-    D, E = _ruiz(*statement.absolute)
+    D, E = _ruiz(np.abs(statement.H), np.abs(statement.A))
     factors = _power_of_two(np.concatenate([D, E]))
     D, E = factors[: D.size], factors[D.size :]
     D = D * _smaller_unit(statement, D, E)
@@ -164,7 +164,7 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     return scaled, Scales(variables=D, rows=E, objective=unit)
 
 
-def _ruiz(H: Array, _: Array, A: Array) -> tuple[Array, Array]:
+def _ruiz(H: Array, A: Array) -> tuple[Array, Array]:
     """Factors of columns and rows by which the largest entry of each comes to one, nearly (Ruiz, RAL-TR-2001-034)."""
     m, n = A.shape
     outside = ~A.any(axis=0)
