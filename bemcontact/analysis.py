@@ -91,7 +91,7 @@ def solve(
     formulation : "qp3" (a convex program, then polished), "complementarity" (the direct solver), or "qp1" and "qp2" (a
         local solver over pressures and displacements, then polished)
     weights : the J of the objective, a `Weights` or its name: "tributary", "consistent" or "element_length"
-    penalty : μ of QP2, free of units, from 1e-12 to 1e12
+    penalty : μ of QP2, free of units, from 1e-8 to 1e8
     rows : how QP1 and QP2 write the equations, a `Rows` or its name: "stiffness" or "compliance"
     equilibrium : of QP2, for bodies with free rigid motions: "constraint", or "penalty" as in [SS92]
     start : of QP1 and QP2: "null", "random", or a `Start` with a pressure (n,) [p] and a displacement (n,) [L]; if not

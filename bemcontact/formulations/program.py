@@ -123,8 +123,8 @@ class Program:
         return positive, zero, negative - m
 
     def value(self, x: Array) -> float:
-        """The objective at x (N,), as it is stated and not as it is multiplied out, which would cancel to round-off."""
-        n = len(self.weights)
+        """The objective at x (N, more may follow), not as it is multiplied out, which would cancel to round-off."""
+        n, x = len(self.weights), x[: len(self.lower)]
         residual = self.penalised.matrix @ x - self.penalised.right
         work = x[n : 2 * n] @ self.weights @ (x[:n] - self.lower[:n])
         return float(work + residual @ residual / self.penalty)
@@ -174,8 +174,7 @@ def lower_bounds(condensed: CondensedContact, size: int) -> Array:
 def minimise(program: Program, start: Array, max_iterations: int | None) -> QPResult:
     """Hand a program to the local solver.
 
-    Penalised equations go there as √μ s = E x - e with |s|² in the objective, which is the same program of x without
-    the square of the condition number that EᵀE has.
+    Penalised equations go there as √μ s = E x - e with |s|² in the objective: the same, without the condition of EᵀE.
 
     Parameters
     ----------
@@ -186,7 +185,7 @@ def minimise(program: Program, start: Array, max_iterations: int | None) -> QPRe
     Returns
     -------
     QPResult
-        For x alone.
+        Of x with s after it.
     """
     E, e = program.penalised.matrix, program.penalised.right
     A, b = program.equations.matrix, program.equations.right
@@ -197,7 +196,7 @@ def minimise(program: Program, start: Array, max_iterations: int | None) -> QPRe
     c[n : 2 * n] = -J @ program.lower[:n]
     right = np.concatenate([b, e])
     x = np.maximum(start, program.lower)
-    found = minimize_qp(
+    return minimize_qp(
         H,
         c,
         A=np.block([[A, np.zeros((len(b), m))], [E, -root * np.eye(m)]]),
@@ -206,13 +205,6 @@ def minimise(program: Program, start: Array, max_iterations: int | None) -> QPRe
         bl=np.concatenate([program.lower, np.full(m, -np.inf)]),
         x0=np.concatenate([x, (E @ x - e) / root]),
         options=QPOptions(max_iterations=max_iterations),
-    )
-    return replace(
-        found,
-        x=found.x[:N],
-        hessian=program.hessian,
-        weakly_active=found.weakly_active[found.weakly_active < N],
-        ray=None if found.ray is None else found.ray[:N],
     )
 
 

@@ -108,12 +108,18 @@ def verdict(result: Result) -> str:
     return ending + result.certificate.words
 
 
+def _plural(noun: str, count: int) -> str:
+    """The noun as it stands after a number."""
+    return noun if count == 1 else f"{noun}s"
+
+
 def search_in_words(search: LocalSearch, contact: CondensedContact) -> str:
     """Say how a local solver came to its end: from where, in how many iterations, over what curvature."""
-    first, second = search.phase_one_iterations, search.phase_two_iterations
+    first, second, changes = search.phase_one_iterations, search.phase_two_iterations, search.working_set_changes
     sentences = [
-        f"from the {search.start}: {first + second} iterations ({first} to a feasible point, {second} from there)",
-        f"{search.working_set_changes} changes of the working set",
+        f"from the {search.start}: {first + second} {_plural('iteration', first + second)} ({first} to a feasible "
+        f"point, {second} from there)",
+        f"{changes} {_plural('change', changes)} of the working set",
         f"eigenvalues of the whole Hessian: {_inertia(search.inertia)}; on what the working set leaves free: "
         f"{_inertia(search.reduced_inertia_start)} at the feasible point, {_inertia(search.reduced_inertia_end)} at "
         "the end",
