@@ -479,3 +479,87 @@ def test_a_start_outside_the_bounds_is_moved_to_them():
 def test_bad_input_is_refused_with_what_and_why(change, message):
     with pytest.raises(ProblemError, match=message):
         minimize_qp(**({"H": np.eye(2), "c": np.zeros(2)} | change))
+
+
+@pytest.mark.parametrize("far", [1e6, 1e9, 1e12, 1e20])
+def test_a_far_bound_takes_no_digit_from_the_near_one(far):
+    """Least x1 + x2 with 1 <= x1 + x2 <= far, x >= 0: 1, however far the other bound is."""
+    result = minimize_qp(np.zeros((2, 2)), [1.0, 1.0], [[1.0, 1.0]], [1.0], [far], [0.0, 0.0])
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(result.objective, 1.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_rows_satisfied_at_the_start_are_no_trap(seed):
+    """Complementarity with a kernel matrix and whole numbers: many rows hold at 0; M is definite, so 0 is the least."""
+    rng = np.random.default_rng(seed)
+    k = int(rng.integers(4, 24))
+    t = np.linspace(-1.0, 1.0, k)
+    M = np.exp(-float(rng.integers(1, 11)) * np.abs(t[:, None] - t))
+    q, identity, zero = np.round(rng.standard_normal(k)), np.eye(k), np.zeros((k, k))
+    H = np.block([[zero, identity], [identity, zero]])
+    result = minimize_qp(H, np.zeros(2 * k), np.hstack([identity, -M]), q, q, np.zeros(2 * k))
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(result.objective, 0.0, atol=1e-12)
+
+
+def test_a_variable_that_nothing_moves_is_a_minimiser():
+    assert minimize_qp([[0.0]], [0.0]).status is QPStatus.LOCAL_MINIMISER
+
+
+def test_multipliers_of_rounding_hold_no_saddle():
+    """At 0 with c = 0 all multipliers vanish; along d, which the active constraints allow, the form falls."""
+    H = np.array([[-2.0, 2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    A = np.array([[-1.0, 1.0, -2.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -2.0], [0.0, 0.0, 0.0]])
+    d = np.array([-0.734, 0.385, 0.5595])
+    assert np.all((A @ d)[:3] >= -1e-12)
+    assert d @ H @ d < -2.0
+    result = minimize_qp(H, np.zeros(3), A, np.zeros(4), [0.0, INF, INF, 0.0], [-INF, 0.0, 0.0], x0=[-2.0, 2.0, 0.0])
+    assert result.status is QPStatus.UNBOUNDED
+
+
+def test_a_dead_point_is_left_only_where_the_objective_falls():
+    """x1 and x3 have 9e-8 and 2e-10 of room: the least is at x2 = -2, and no walk goes to and fro between the ends."""
+    H = [[-4.0, -2.0, 2.0], [-2.0, -1.0, 1.0], [2.0, 1.0, -1.0]]
+    result = minimize_qp(H, [0.0, 1.0, 2.0], bl=[0.0, -2.0, 0.0], bu=[8.8e-8, 0.0, 2.06e-10])
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(result.x, [0.0, -2.0, 0.0], atol=1e-9)
+
+
+def test_a_start_far_away_is_no_obstacle():
+    """Least |x|²/2 + x1 + x2 with 1 <= x1 + x2 <= 2 is at (1/2, 1/2), from 1e20 too."""
+    result = minimize_qp(np.eye(2), [1.0, 1.0], [[1.0, 1.0]], [1.0], [2.0], x0=[1e20, 1e20])
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(result.objective, 1.25, rtol=1e-6)
+
+
+def test_an_entry_of_1e_12_in_a_row_counts():
+    """x1 + 1e-12 x2 in [-2, 1] with x1 <= 1: x2 grows for ever as x1 falls; with ½x1² to pay, until x1 = -1e12."""
+    row, bounds = [1.0, 1e-12], ([-2.0], [1.0])
+    free = minimize_qp(np.zeros((2, 2)), [0.0, -1.0], [row], *bounds, bu=[1.0, INF])
+    assert free.status is QPStatus.UNBOUNDED
+    paid = minimize_qp(np.diag([1.0, 0.0]), [0.0, -1.0], [row], *bounds)
+    assert paid.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(paid.x, [-1e12, 1e24], rtol=1e-9)
+
+
+def test_tiny_and_huge_entries_neither_vanish_nor_overflow():
+    """1e-170 x1 >= 1e-170 asks for x1 >= 1; a form of 1e308 has its least value where the one of size one has."""
+    tiny = minimize_qp(np.eye(2), [1.0, 1.0], [[1e-170, 0.0]], [1e-170])
+    assert tiny.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(tiny.x, [1.0, -1.0], rtol=1e-9)
+    huge = minimize_qp(1e307 * np.eye(2), [1e307, -1e307])
+    assert huge.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(huge.x, [-1.0, 1.0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("gap", [1e-13, 1e-15, 0.0])
+def test_rows_that_are_nearly_one_end_with_a_status_and_numbers(gap):
+    """Two rows apart by rounding: whatever is claimed, x has numbers and meets the first row."""
+    rng = np.random.default_rng(0)
+    a = rng.standard_normal(4)
+    A = np.vstack([a, a + gap * rng.standard_normal(4)])
+    result = minimize_qp(-np.eye(4), np.ones(4), A, [1.0, 1.0], [1.0, 1.0], np.full(4, -5.0), np.full(4, 5.0))
+    assert np.isfinite(result.x).all()
+    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert_allclose(A[0] @ result.x, 1.0, atol=1e-8)

@@ -71,6 +71,7 @@ class Descent:
         for direction in self.hessian.left_over.T:
             self.working.fix(direction, TEMPORARY)
         progress.correct(self.working.onto(progress.x))
+        progress.forget()
         self.value = progress.objective
 
     def run(self) -> Outcome:

@@ -91,6 +91,13 @@ class Progress:
         self._travelled = np.maximum(self._travelled, np.abs(self._passed).max(axis=0))
         self._passed.clear()
 
+    def forget(self) -> None:
+        """Lose sight of far points: what is here is exact but for the rounding of numbers of size one and of its own."""
+        size = np.maximum(np.abs(self.x), 1.0)
+        self._travelled = np.minimum(self.travelled, size)
+        self.far = min(self.far, sqrt(size.dot(size)))
+        self.look()
+
     @property
     def objective(self) -> float:
         """cᵀx + xᵀHx/2."""

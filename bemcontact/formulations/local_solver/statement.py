@@ -202,8 +202,8 @@ def _near_one(sizes: Array) -> bool:
 
 
 def _near_power(factor: float) -> float:
-    """The nearest power of two, as far as products of some are numbers."""
-    return ldexp(1.0, frexp(min(max(factor, LEAST), 1.0 / LEAST) * sqrt(0.5))[1])
+    """The nearest power of two; of numbers near the limits one within them."""
+    return ldexp(1.0, min(max(frexp(factor * sqrt(0.5))[1], -1000), 1000))
 
 
 def _power_of_two(factors: Array) -> Array:
