@@ -92,7 +92,7 @@ class Progress:
         self._passed.clear()
 
     def forget(self) -> None:
-        """Lose sight of far points: what is here is exact but for the rounding of numbers of size one and of its own."""
+        """Lose sight of far points: what is here is exact but for the rounding of its own size, or of one."""
         size = np.maximum(np.abs(self.x), 1.0)
         self._travelled = np.minimum(self.travelled, size)
         self.far = min(self.far, sqrt(size.dot(size)))
