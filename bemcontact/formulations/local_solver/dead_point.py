@@ -25,7 +25,7 @@ DESCENTS = 30
 
 @dataclass(frozen=True, kw_only=True)
 class CriticalCone:
-    """{d : d_i = 0 outside `free`, E d = 0, W d >= 0}, the rows of length about one.
+    """{d : d_i = 0 outside `free`, E d = 0, W d >= 0}.
 
     Parameters
     ----------

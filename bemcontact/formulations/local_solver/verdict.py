@@ -37,7 +37,7 @@ class FirstOrder:
     size: Array
 
     def cone(self, statement: Statement) -> CriticalCone:
-        """The critical cone with normals of length one, turned inwards."""
+        """The critical cone, its normals turned inwards."""
         n = statement.c.size
         free = np.flatnonzero(~self.strong[:n])
         rows = statement.A[:, free]
