@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.optimize import linprog
@@ -110,6 +110,8 @@ def first_order_values(H, c, A, cl, cu, bl, bu):
 
 @settings(max_examples=300, deadline=None)
 @given(st.integers(0, 10**9))
+@example(5002655)
+@example(5051967)
 def test_every_claim_of_a_random_programme_holds(seed):
     H, c, A, cl, cu, bl, bu = random_qp(seed)
     result = minimize_qp(H, c, A, cl, cu, bl, bu)

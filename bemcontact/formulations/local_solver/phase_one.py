@@ -83,7 +83,7 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
     """Move along the direction to the constraint that ends the step and hold that; whether there is one."""
     length = sqrt(direction.dot(direction))
     along = progress.statement.values(direction)
-    wall = nearest(progress, along, length, working.held | (signs != 0.0))
+    wall = nearest(progress, along, length, working.held | (signs != 0.0), working)
     inner = None if wall is not None and wall.step == 0.0 else _breakpoint(progress, signs, along, length)
     block = inner if wall is None or (inner is not None and inner.step <= wall.step) else wall
     if block is None:

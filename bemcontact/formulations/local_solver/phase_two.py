@@ -139,7 +139,7 @@ class Descent:
         direction = self.hessian.newton(self.progress.gradient)
         along = self.progress.statement.values(direction)
         slope, length = float(self.progress.gradient.dot(direction)), sqrt(direction.dot(direction))
-        block = nearest(self.progress, along, length, self.working.held)
+        block = nearest(self.progress, along, length, self.working.held, self.working)
         if block is None or block.step > 1.0:
             self.changed, self.whole = False, self.whole + 1
             self._advance(direction, along, length, 1.0, 0.5 * slope, None)
@@ -158,9 +158,9 @@ class Descent:
         if slope > 0.0:
             direction, slope = -direction, -slope
         along = self.progress.statement.values(direction)
-        block = nearest(self.progress, along, 1.0, self.working.held)
+        block = nearest(self.progress, along, 1.0, self.working.held, self.working)
         if level and block is not None:
-            back = nearest(self.progress, -along, 1.0, self.working.held)
+            back = nearest(self.progress, -along, 1.0, self.working.held, self.working)
             if back is None or _change(back, -slope, curvature) < _change(block, slope, curvature):
                 direction, along, slope, block = -direction, -along, -slope, back
         if block is None:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, Progress
 from bemcontact.formulations.local_solver.statement import Array
+from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 INFINITY = float("inf")
 FAINT = 1e-14
@@ -21,12 +22,14 @@ class Block(NamedTuple):
     step: float
 
 
-def nearest(progress: Progress, along: Array, length: float, held: NDArray[np.bool_]) -> Block | None:
+def nearest(
+    progress: Progress, along: Array, length: float, held: NDArray[np.bool_], working: WorkingSet | None = None
+) -> Block | None:
     """The first constraint met, those held aside, by Harris' two passes; None if the direction meets none.
 
     The first pass finds the longest step at which nothing is violated beyond its tolerance; the second takes, among the
     constraints met until then, the one that is met most steeply (Harris, Math. Programming 5 (1973) 1-28). When the run
-    has stalled: the lowest number among the ties.
+    has stalled: the lowest number among the ties. A constraint in the span of a working set is not met within it.
     """
     speed = np.abs(along)
     away = held | (speed <= PARALLEL * length)
@@ -35,6 +38,9 @@ def nearest(progress: Progress, along: Array, length: float, held: NDArray[np.bo
         nearly_all = held | (speed <= FAINT * length)
         if (nearly_all != away).any():
             block = _first(progress, along, speed, nearly_all)
+            while working is not None and block is not None and working.spans(block.constraint):
+                nearly_all[block.constraint] = True  # what moves it is rounding
+                block = _first(progress, along, speed, nearly_all)
     return block
 
 

@@ -151,6 +151,14 @@ class WorkingSet:
         self.number += 1
         return normal
 
+    def spans(self, constraint: int) -> bool:
+        """Whether the normal of a constraint is a combination of those that are held."""
+        normal = self.statement.normal(constraint) * self.free
+        outside = normal
+        for _ in range(2):
+            outside = (outside - outside.dot(self.N).dot(self.W)) * self.free
+        return float(outside.dot(outside)) <= ALIKE**2 * float(normal.dot(normal))
+
     def fix(self, direction: Array, kind: int) -> None:
         """A temporary row enters, with a direction of the null space as its normal."""
         inverse = self._hold(direction, direction.dot(self.N))
