@@ -126,7 +126,8 @@ class QPResult:
     ray : (n,) array or None
         If unbounded: x + t ray is feasible for all t >= 0 and the objective falls to -inf on it.
     certificate : (n + m,) array or None
-        If infeasible: y with [I; A]ᵀy = 0 and Σ_{y>0} y lower + Σ_{y<0} y upper > 0 (Farkas); variables first.
+        If infeasible: y with [I; A]ᵀy = 0 and Σ_{y>0} y lower + Σ_{y<0} y upper > 0 (Farkas); variables first. The
+        first holds up to rounding, where an entry of A counts as rounding beside one 1e15 times as large in its column.
     violation : float
         Largest violation of a constraint at x.
     log : tuple of LogLine
