@@ -184,7 +184,7 @@ def solve(
         from bemcontact import spec as spec_file
         from bemcontact.formulations import plan as plans
         from bemcontact.formulations import starts as starts_of
-        from bemcontact.report import text
+        from bemcontact.report import text, words
 
         plan = plans.planned(
             formulation,
@@ -216,7 +216,7 @@ def solve(
         if json_file == STANDARD_OUTPUT:
             _write_json(result.to_json(indent=2))
             if not result.certified:
-                tell("not certified: ", text.verdict(result))
+                tell("not certified: ", words.verdict(result))
         else:
             show(text.result_summary(result))
     raise typer.Exit(0 if result.certified else UNCERTIFIED)

@@ -30,7 +30,7 @@ from bemcontact.report.figures.page import (
     without_glyph_warnings,
     wrapped,
 )
-from bemcontact.report.text import prescribed, volume_loads
+from bemcontact.report.words import prescribed, volume_loads
 
 Array = NDArray[np.float64]
 

@@ -32,7 +32,7 @@ from bemcontact.report.figures.page import (
     shortened,
     wrapped,
 )
-from bemcontact.report.text import number, units_of, with_unit
+from bemcontact.report.words import number, units_of, with_unit
 from bemcontact.result import Result
 
 Array = NDArray[np.float64]
