@@ -13,7 +13,7 @@ from bemcontact.contact import Array, CondensedContact
 from bemcontact.ends import End, RandomStarts
 from bemcontact.errors import OptionError, SpecError
 from bemcontact.formulations.formulation import Formulation, FormulationOptions, Start, ensure_whole
-from bemcontact.formulations.program import contact_residual
+from bemcontact.formulations.search import contact_residual
 from bemcontact.solution import ContactSolution, Status
 from bemcontact.text_file import text_of
 
