@@ -18,7 +18,7 @@ _HOMES = {
     "solve": "bemcontact.analysis",
     "random_starts": "bemcontact.analysis",
     "Result": "bemcontact.result",
-    "RandomStarts": "bemcontact.formulations.starts",
+    "RandomStarts": "bemcontact.ends",
     "Start": "bemcontact.formulations.formulation",
     "Rows": "bemcontact.choices",
     "Equilibrium": "bemcontact.choices",

@@ -5,6 +5,7 @@ from bemcontact.choices import Equilibrium as Equilibrium
 from bemcontact.choices import Rows as Rows
 from bemcontact.choices import Weights as Weights
 from bemcontact.contact import CondensedContact as CondensedContact
+from bemcontact.ends import RandomStarts as RandomStarts
 from bemcontact.errors import BemContactError as BemContactError
 from bemcontact.errors import NotConvexError as NotConvexError
 from bemcontact.errors import OptionError as OptionError
@@ -18,7 +19,6 @@ from bemcontact.formulations.local_solver import QPOptions as QPOptions
 from bemcontact.formulations.local_solver import QPResult as QPResult
 from bemcontact.formulations.local_solver import QPStatus as QPStatus
 from bemcontact.formulations.local_solver import minimize_qp as minimize_qp
-from bemcontact.formulations.starts import RandomStarts as RandomStarts
 from bemcontact.problem.problem import Problem as Problem
 from bemcontact.result import Result as Result
 from bemcontact.solution import ContactSolution as ContactSolution

@@ -14,11 +14,12 @@ from bemcontact.bem.condense import condense as condense_body
 from bemcontact.bem.recovery import boundary_state
 from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, Weights
 from bemcontact.contact import CondensedContact
+from bemcontact.ends import RandomStarts
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import FORMULATIONS, Start
 from bemcontact.formulations.formulation import ensure_whole
 from bemcontact.formulations.plan import Plan, planned
-from bemcontact.formulations.starts import RandomStarts, search_from
+from bemcontact.formulations.starts import search_from
 from bemcontact.problem.problem import Problem
 from bemcontact.result import Result
 

@@ -14,7 +14,7 @@ from bemcontact.assessment.residual import Residuals
 from bemcontact.bem.recovery import BoundaryState
 from bemcontact.choices import Weights
 from bemcontact.contact import CondensedContact
-from bemcontact.formulations.starts import RandomStarts
+from bemcontact.ends import RandomStarts
 from bemcontact.problem.problem import Problem
 from bemcontact.solution import ContactSolution
 

@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
 NEVER = {
-    "bemcontact.bem": ("spec", "solution", "formulations", "assessment", "result", "analysis", "report", "cli"),
+    "bemcontact.bem": ("spec", "solution", "ends", "formulations", "assessment", "result", "analysis", "report", "cli"),
     "bemcontact.formulations": ("spec", "problem", "bem", "assessment", "result", "analysis", "report", "cli"),
     "bemcontact.assessment": ("spec", "problem", "bem", "formulations", "result", "analysis", "report", "cli"),
     "bemcontact.result": ("spec", "analysis", "report", "cli"),
@@ -26,6 +26,7 @@ ONLY = {
     "bemcontact.output": (),
     "bemcontact.contact": ("bemcontact.choices", "bemcontact.errors", "bemcontact.output"),
     "bemcontact.solution": ("bemcontact.contact",),
+    "bemcontact.ends": ("bemcontact.solution",),
     "bemcontact.formulations.local_solver": ("bemcontact.errors", "bemcontact.formulations.local_solver"),
     "bemcontact.problem": ("bemcontact.errors", "bemcontact.problem"),
 }

@@ -19,11 +19,10 @@ from bemcontact.formulations.program import (
     equilibrium,
     lower_bounds,
     no_equations,
-    polished,
-    searched,
 )
 from bemcontact.formulations.qp3 import NEGLIGIBLE, smallest_eigenvalue
 from bemcontact.formulations.scaling import scaled, scaled_weights
+from bemcontact.formulations.search import polished, searched
 from bemcontact.solution import ContactSolution
 
 OPTIONS = ("weights", "rows", "start")

@@ -35,10 +35,9 @@ from bemcontact.formulations.program import (
     equilibrium,
     lower_bounds,
     no_equations,
-    polished,
-    searched,
 )
 from bemcontact.formulations.scaling import scaled, scaled_weights
+from bemcontact.formulations.search import polished, searched
 from bemcontact.solution import ContactSolution, Penalty, Status
 
 OPTIONS = ("weights", "penalty", "rows", "equilibrium", "start")

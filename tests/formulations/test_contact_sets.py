@@ -25,10 +25,11 @@ from bemcontact import (
     random_starts,
 )
 from bemcontact.contact import Array
+from bemcontact.ends import End
 from bemcontact.formulations import qp1, qp2, qp3
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled
-from bemcontact.formulations.starts import End, random_points
+from bemcontact.formulations.starts import random_points
 
 BoolArray = NDArray[np.bool_]
 

@@ -13,7 +13,7 @@ from bemcontact.contact import CondensedContact
 from bemcontact.errors import OptionError, ProblemError
 from bemcontact.formulations import complementarity, qp2
 from bemcontact.formulations.formulation import FormulationOptions, Start
-from bemcontact.formulations.program import contact_residual
+from bemcontact.formulations.search import contact_residual
 from bemcontact.formulations.starts import random_points, search_from
 from bemcontact.solution import Status
 

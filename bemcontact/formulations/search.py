@@ -1,0 +1,164 @@
+"""The search of a local solver for the least of QP1 or QP2, and what its end is: the contact state, or what else."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from bemcontact.choices import Weights
+from bemcontact.contact import Array, CondensedContact
+from bemcontact.formulations.complementarity import escape_note, polish
+from bemcontact.formulations.formulation import FormulationOptions
+from bemcontact.formulations.local_solver import QPResult, QPStatus
+from bemcontact.formulations.program import Program, amplitudes, minimise, start_vector
+from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
+from bemcontact.solution import ContactSolution, LocalSearch, Penalty, Status
+
+SOLUTION = 1e-8
+"""Residual up to which the end of a search counts as the contact state: searches that go well leave 1e-10 and less."""
+ZERO = 1e-6
+"""Scaled objective that a solver's tolerance may leave where the best value is 0: large errors may hide behind it."""
+STATIONARY = "stationary but not the solution, with an objective of {:.1e} (scaled) and not 0"
+NEAR = "not the solution, but the solver's tolerance cannot tell its objective, {:.1e} (scaled), from 0"
+LOST = "not the solution, although round-off makes it look stationary, with an objective of {:.1e} (scaled) and not 0"
+BIASED = (
+    "not the solution, with an objective of {:.1e} (scaled): consistent weights have negative entries, so that the "
+    "least objective lies below 0 and off the solution, and an objective of 0 certifies nothing"
+)
+"""What the points are where a search ended, with their objectives."""
+POLISHED = (Status.SOLVED, Status.NO_SOLUTION_FOUND, Status.NUMERICAL_FAILURE)
+"""Ends from which the polish is tried."""
+NO_CONTACT_STATE = (
+    "equations and bounds contradict each other: no pressure p >= 0 leaves a gap >= 0 at all contact points, so that "
+    "no contact state exists, whatever the formulation"
+)
+SOLVER = "inertia-controlling active set"
+STATUSES = {
+    QPStatus.LOCAL_MINIMISER: Status.SOLVED,
+    QPStatus.UNDECIDED: Status.SOLVED,
+    QPStatus.UNBOUNDED: Status.UNBOUNDED,
+    QPStatus.INFEASIBLE: Status.INFEASIBLE,
+    QPStatus.ITERATION_LIMIT: Status.ITERATION_LIMIT,
+    QPStatus.NUMERICAL_FAILURE: Status.NUMERICAL_FAILURE,
+}
+
+
+def searched(
+    condensed: CondensedContact,
+    options: FormulationOptions,
+    formulation: str,
+    program: Program,
+    *,
+    only: bool,
+    penalty: Penalty | None = None,
+) -> ContactSolution:
+    """Solve a program and say what its end is, by its residual and not by what the solver says.
+
+    With weights that are not negative the best value is zero, attained at the contact state alone. An end elsewhere is
+    a local minimum, or the work of round-off if there is none.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    options : start, limit of iterations, weights
+    formulation : its name
+    program : Program
+    only : whether the contact state is proved to be the only stationary point with weights that are not negative
+    penalty : to be told with the search
+
+    Returns
+    -------
+    ContactSolution
+        Its displacement is the solver's own u_n.
+    """
+    result = minimise(program, start_vector(condensed, options.start, len(program.linear)), options.max_iterations)
+    found = _as_found(condensed, formulation, result, _search(options, program, result, penalty))
+    residual, objective = contact_residual(condensed, found), program.value(result.x)
+    if found.status is not Status.SOLVED or residual <= SOLUTION:
+        return found
+    if options.weights is Weights.CONSISTENT:
+        status, what = Status.LOCAL_MINIMUM, BIASED
+    elif objective * max(1.0, program.penalty) <= ZERO:  # times μ it is the residual of the equations, squared
+        status, what = Status.NO_SOLUTION_FOUND, NEAR
+    else:
+        status, what = (Status.NUMERICAL_FAILURE, LOST) if only else (Status.LOCAL_MINIMUM, STATIONARY)
+    note = (
+        f"{formulation.upper()} ended at a point where contact conditions and equations are violated by {residual:.1e} "
+        f"of their scales; it is {what.format(objective)}"
+    )
+    return replace(found, status=status, notes=(*found.notes, note))
+
+
+def polished(condensed: CondensedContact, options: FormulationOptions, found: ContactSolution) -> ContactSolution:
+    """The polish, where it is asked for and due, which may make the solution of an end that round-off has spoilt.
+
+    Not due are a true minimum elsewhere, a search that was cut short or proved that there is nothing to find, and the
+    consistent weights, which are left as they are.
+    """
+    if not options.polish or options.weights is Weights.CONSISTENT or found.status not in POLISHED:
+        return found
+    better = polish(condensed, found)
+    if found.status is Status.SOLVED or contact_residual(condensed, better) > SOLUTION:
+        return better
+    return replace(better, status=Status.SOLVED, notes=(*better.notes, "the polish led from there to the solution"))
+
+
+def contact_residual(condensed: CondensedContact, solution: ContactSolution) -> float:
+    """Largest of |min(p/T, δ/U)|, of (12) over U and of |ℓᵀp + load| over T Σ|ℓ|, over the size of the numbers."""
+    problem = scaled(condensed)
+    p, a = scaled_point(condensed, solution.pressure, solution.rigid_amplitudes)
+    strange = solution.displacement - unscaled(condensed, p, a)[1]
+    size = 1.0 + float(np.abs(p).max(initial=0.0) + np.abs(a).sum())
+    return max(problem.residual(p, a), float(np.abs(strange).max()) / condensed.scales.displacement / size)
+
+
+def ray_in_words(condensed: CondensedContact, ray: Array) -> str:
+    """Name the contact points whose pressure or displacement grows most along a ray (N,)."""
+    n = condensed.size
+    displacement, pressure = ray[:n], ray[n : 2 * n]
+    terms = []
+    for name, part in (("pressure", pressure), ("normal displacement", displacement)):
+        if (i := int(np.argmax(np.abs(part)))) < n and part[i]:
+            x, y = condensed.points[i]
+            terms.append(f"{name} {'grows' if part[i] > 0 else 'falls'} at contact point {i} ({x:.5g}, {y:.5g})")
+    return " while ".join(terms) or "the body moves rigidly"
+
+
+def _search(options: FormulationOptions, program: Program, result: QPResult, penalty: Penalty | None) -> LocalSearch:
+    """How the solver came to its end."""
+    return LocalSearch(
+        start="null vector" if options.start is None else options.start.label,
+        phase_one_iterations=result.phase_one_iterations,
+        phase_two_iterations=result.phase_two_iterations,
+        working_set_changes=result.working_set_changes,
+        inertia=program.inertia,
+        reduced_inertia_start=result.reduced_inertia_start,
+        reduced_inertia_end=result.reduced_inertia_end,
+        weakly_active=len(result.weakly_active),
+        objective=program.value(result.x),
+        penalty=penalty,
+    )
+
+
+def _as_found(condensed: CondensedContact, formulation: str, result: QPResult, search: LocalSearch) -> ContactSolution:
+    """The end of the solver in the user's units."""
+    n = condensed.size
+    U, T = condensed.scales
+    notes = []
+    if result.status is QPStatus.UNDECIDED:
+        notes.append("the local solver left open whether its end is a minimum: zero multipliers hide directions")
+    if result.status is QPStatus.UNBOUNDED and result.ray is not None:
+        notes.append(f"the objective falls without end along a ray: {ray_in_words(condensed, result.ray)}")
+    if result.status is QPStatus.INFEASIBLE:
+        notes.append(escape_note(condensed, scaled(condensed)) or NO_CONTACT_STATE)
+    u_n, p = result.x[:n] * U, result.x[n : 2 * n] * T
+    return ContactSolution(
+        formulation=formulation,
+        solver=SOLVER,
+        status=STATUSES[result.status],
+        pressure=p,
+        displacement=u_n,
+        rigid_amplitudes=amplitudes(condensed, p, u_n),
+        iterations=result.iterations,
+        search=search,
+        notes=tuple(notes),
+    )
