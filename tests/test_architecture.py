@@ -46,9 +46,6 @@ HOME = {
 SLOW = {"cvxpy", "matplotlib", "numba", "meshio"}
 """Foreign packages that may be imported where they are used: slow ones, and those of the optional extras."""
 
-MAY_IMPORT_LATE = ("bemcontact", "bemcontact.cli")
-"""Where our own modules may be imported late, so that ``bemcontact --help`` answers without the numerical half."""
-
 PRINTERS = ("bemcontact.cli", "bemcontact.terminal")
 """Who may print."""
 
@@ -112,7 +109,9 @@ def imports_at_the_top(name: str, tree: ast.Module) -> Iterator[str]:
         if node in tree.body:
             continue
         for target in imported(node):
-            late = target.split(".")[0] in SLOW or (name in MAY_IMPORT_LATE and within(target, "bemcontact"))
+            # so that `bemcontact --help` answers without the numerical half
+            may = name == "bemcontact" or within(name, "bemcontact.cli")
+            late = target.split(".")[0] in SLOW or (may and within(target, "bemcontact"))
             if not late:
                 yield f"{name} imports {target} away from the top"
 

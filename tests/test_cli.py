@@ -17,6 +17,7 @@ from typer.testing import CliRunner, Result
 import bemcontact
 from bemcontact import analysis, cli, spec
 from bemcontact.assessment.certificate import CertificateKind
+from bemcontact.cli import solving
 from bemcontact.contact import CondensedContact
 from bemcontact.errors import NotConvexError, SingularSystemError
 from bemcontact.formulations import FORMULATIONS
@@ -526,12 +527,11 @@ def test_the_limit_of_iterations_can_be_raised(block: Path):
     assert run("solve", block, "--formulation", "qp1", "--max-iterations", 0).exit_code == 2
 
 
-@pytest.mark.parametrize("module", ["bemcontact", "bemcontact.cli"])
-def test_the_program_runs_as_a_module(block: Path, module: str):
+def test_the_program_runs_as_a_module(block: Path):
     root = str(Path(bemcontact.__file__).parents[1])
     for arguments, status in (("--version",), 0), (("check", str(block)), 0), (("solve", "none.yaml"), 2):
         answer = subprocess.run(
-            [sys.executable, "-m", module, *arguments],
+            [sys.executable, "-m", "bemcontact", *arguments],
             capture_output=True,
             text=True,
             timeout=120,
@@ -550,7 +550,7 @@ def test_progress_tells_the_start_and_reaches_the_terminal(block: Path, monkeypa
         said.append(what)
         yield said.append
 
-    monkeypatch.setattr(cli, "busy", listening)
+    monkeypatch.setattr(solving, "busy", listening)
     run("solve", block, "--formulation", "qp1", "--starts", 3)
     assert said == ["solving", *(f"solving, start {number} of 3" for number in (2, 3, 3))]
 

@@ -1,0 +1,62 @@
+"""The command line: arguments, progress, exit status, nothing more.
+
+The numerical half of the package is imported inside the commands, so that ``bemcontact --help`` answers at once.
+"""
+
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from io import TextIOWrapper
+from typing import Annotated
+
+import typer
+
+from bemcontact.cli.checking import check
+from bemcontact.cli.condensing import condense
+from bemcontact.cli.schemas import schema
+from bemcontact.cli.solving import solve
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def main() -> None:
+    """Run the command line; the entry point of the ``bemcontact`` program."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # a terminal that lacks a letter shows a question mark
+    app()
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        try:
+            typer.echo(f"bemcontact {version('bemcontact')}")
+        except PackageNotFoundError:
+            typer.echo("bemcontact, running from a source tree that is not installed")
+        raise typer.Exit()
+
+
+@app.callback()
+def bemcontact(
+    show_version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """Frictionless contact of an elastic body with rigid surfaces: plane boundary elements, quadratic programming.
+
+    Write the problem as a YAML file (see models/), look at it with check, solve it with solve.
+
+    Exit status: 0 certified solution, 1 a result that is not one, 2 bad input.
+
+    [bold]Examples[/bold]
+      bemcontact check models/cylinder_on_plane.yaml --figure problem.png
+      bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
+    """
+
+
+for command in (check, solve, condense, schema):
+    app.command()(command)

@@ -1,0 +1,35 @@
+"""The command check: what is seen in a spec."""
+
+from bemcontact.cli.failures import claim, told
+from bemcontact.cli.options import FigureOption, RefineOption, SetOption, SpecArgument
+from bemcontact.terminal import busy, show
+
+
+def check(
+    spec: SpecArgument,
+    figure: FigureOption = None,
+    refine: RefineOption = 1,
+    overrides: SetOption = None,
+) -> None:
+    """Validate a spec and say what is seen in it: edges, contact zones, mesh, loads, and what holds the body.
+
+    Nothing is solved, but a body that nothing holds, or that its load pulls off its support, is found out.
+
+    [bold]Examples[/bold]
+      bemcontact check models/cylinder_on_plane.yaml
+      bemcontact check models/cylinder_on_plane.yaml --figure problem.svg
+      bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
+    """
+    with told(spec, overrides), busy("checking"):
+        claim(spec, {"--figure": figure})
+        from bemcontact import spec as spec_file
+        from bemcontact.bem.condense import body_of
+        from bemcontact.report import text
+
+        body = body_of(spec_file.load(spec, overrides or ()).refined(refine))
+        if figure:
+            from bemcontact.report import figures
+
+            figures.save(figures.figure_of_problem(body.problem, body.mesh), figure)
+    with told(spec):
+        show(text.problem_summary(body))

@@ -1,0 +1,78 @@
+"""What can go wrong on purpose: one text on standard error, and an exit status."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NoReturn
+
+import typer
+
+from bemcontact import output
+from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError
+from bemcontact.terminal import tell
+
+UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+
+
+def claim(spec: Path, outputs: Mapping[str, Path | None]) -> None:
+    """Refuse files (by option) that cannot be written, or that would overwrite another, before any work is done."""
+    claimed = {spec.resolve(): "the spec itself"}
+    for option, path in outputs.items():
+        if path is None:
+            continue
+        if path.resolve() in claimed:
+            refuse(f"{option} {path} would overwrite {claimed[path.resolve()]}; name another file")
+        claimed[path.resolve()] = f"the file of {option}"
+        try:
+            if option == "--figure":
+                from bemcontact.report import figures
+
+                figures.ensure_known_format(path)
+            if option == "--vtk":
+                from bemcontact.report import vtk
+
+                vtk.ensure_possible(path)
+            if option == "--out" and path.suffix != ".npz":
+                raise ValueError(f"{path}: a condensed problem is written as .npz; end the file name in it")
+            output.ensure_writable(path)
+        except (OSError, ValueError, ModuleNotFoundError) as error:
+            refuse(f"{option}: {error}")
+
+
+def write_json(text: str) -> None:
+    """Write JSON on standard output, which is UTF-8 whatever the terminal speaks."""
+    typer.echo(text.encode() + b"\n", nl=False)
+
+
+def refuse(message: str) -> NoReturn:
+    """Say what is wrong with the input and end."""
+    tell("error: ", message)
+    raise typer.Exit(BAD_INPUT)
+
+
+@contextmanager
+def told(spec: Path | None = None, overrides: Sequence[str] | None = None) -> Iterator[None]:
+    """Turn all that can go wrong on purpose into one text on standard error, about a spec, and an exit status."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise typer.Exit(INTERRUPTED) from None
+    except BrokenPipeError:
+        raise
+    except (SpecError, OptionError, NotConvexError) as error:
+        refuse(str(error))
+    except ProblemError as error:
+        if spec is None:
+            refuse(str(error))
+        from bemcontact import spec as spec_file
+
+        refuse(str(spec_file.located(error, spec, overrides or ())))
+    except OSError as error:
+        where = error.filename or ("standard output" if error.errno else "")
+        refuse(f"{where}: {error.strerror}" if where else str(error))
+    except BemContactError as error:
+        tell("failed: ", str(error))
+        raise typer.Exit(UNCERTIFIED) from error
+    except MemoryError as error:
+        tell("failed: ", "not enough memory for so many elements; take a smaller --refine")
+        raise typer.Exit(UNCERTIFIED) from error
