@@ -10,14 +10,18 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
+ABOVE = ("result", "study", "analysis", "report", "cli")
+"""Rooms that put both halves of the house together."""
+
 NEVER = {
-    "bemcontact.bem": ("spec", "solution", "ends", "formulations", "assessment", "result", "analysis", "report", "cli"),
-    "bemcontact.formulations": ("spec", "problem", "bem", "assessment", "result", "analysis", "report", "cli"),
-    "bemcontact.assessment": ("spec", "problem", "bem", "formulations", "result", "analysis", "report", "cli"),
-    "bemcontact.result": ("spec", "analysis", "report", "cli"),
+    "bemcontact.bem": ("spec", "solution", "ends", "formulations", "assessment", "reference", *ABOVE),
+    "bemcontact.formulations": ("spec", "problem", "bem", "assessment", "reference", *ABOVE),
+    "bemcontact.assessment": ("spec", "problem", "bem", "formulations", "reference", *ABOVE),
+    "bemcontact.result": ("spec", "study", "analysis", "report", "cli"),
+    "bemcontact.study": ("spec", "bem", "formulations", "analysis", "report", "cli"),
     "bemcontact.analysis": ("spec", "report", "cli"),
     "bemcontact.report": ("spec", "formulations", "analysis", "cli"),
-}
+}  # fmt: skip
 """Room -> rooms of ours that it never imports."""
 
 ONLY = {
@@ -29,7 +33,11 @@ ONLY = {
     "bemcontact.ends": ("bemcontact.solution",),
     "bemcontact.formulations.local_solver": ("bemcontact.errors", "bemcontact.formulations.local_solver"),
     "bemcontact.problem": ("bemcontact.errors", "bemcontact.problem"),
-}
+    "bemcontact.reference": (
+        "bemcontact.errors", "bemcontact.contact", "bemcontact.problem", "bemcontact.assessment.footprint",
+        "bemcontact.reference",
+    ),
+}  # fmt: skip
 """Room -> the only modules of ours that it imports."""
 
 HOME = {
@@ -208,6 +216,12 @@ BAD = [
     (arrows, "bemcontact.assessment.residual", "from bemcontact import spec"),
     (arrows, "bemcontact.bem.condense", "from bemcontact.solution import ContactSolution"),
     (arrows, "bemcontact.report.text", "from bemcontact.analysis import solve"),
+    (arrows, "bemcontact.assessment.footprint", "from bemcontact.reference import expected"),
+    (arrows, "bemcontact.formulations.qp3", "import bemcontact.reference.scoring"),
+    (closed_rooms, "bemcontact.problem.reference", "from bemcontact.reference.closed_forms import HertzContact"),
+    (closed_rooms, "bemcontact.problem.reference", "from bemcontact.contact import CondensedContact"),
+    (closed_rooms, "bemcontact.reference.evaluation", "from bemcontact.analysis import condense"),
+    (closed_rooms, "bemcontact.reference.scoring", "from bemcontact.assessment.certificate import certify"),
     (closed_rooms, "bemcontact.errors", "from bemcontact.solution import Status"),
     (closed_rooms, "bemcontact.choices", "from bemcontact.contact import Array"),
     (closed_rooms, "bemcontact.formulations.local_solver.phase1", "from bemcontact.solution import Status"),
@@ -240,6 +254,7 @@ def test_each_rule_can_be_broken(rule: Rule, name: str, snippet: str):
 GOOD = [
     (arrows, "bemcontact.analysis", "from bemcontact.bem import mesh\nfrom bemcontact.formulations import qp3"),
     (closed_rooms, "bemcontact.formulations.local_solver.phase1", "from bemcontact.errors import SolverError"),
+    (closed_rooms, "bemcontact.reference.scoring", "from bemcontact.assessment.footprint import Footprint"),
     (one_home_for_each_foreign_package, "bemcontact.report.figures", "from matplotlib.figure import Figure"),
     (imports_at_the_top, "bemcontact.formulations.qp3", "def f():\n    import cvxpy as cp"),
     (imports_at_the_top, "bemcontact.cli", "def f():\n    from bemcontact import analysis"),

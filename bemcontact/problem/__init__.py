@@ -8,6 +8,7 @@ from bemcontact.problem.geometry import Arc, EllipseArc, Grading, Line
 from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 from bemcontact.problem.problem import MeshDensity, Problem, Units
+from bemcontact.problem.reference import Crack, FlatPunch, Hertz, Reference, ShrinkFit, Table, Uniform, Values
 from bemcontact.problem.rigid_surface import Circle, Closest, Plane, Polyline
 
 __all__ = [
@@ -19,11 +20,14 @@ __all__ = [
     "Closest",
     "Condition",
     "ContactZone",
+    "Crack",
     "Edge",
     "EllipseArc",
     "Field",
+    "FlatPunch",
     "Grading",
     "Gravity",
+    "Hertz",
     "Line",
     "Loads",
     "Material",
@@ -31,6 +35,11 @@ __all__ = [
     "Plane",
     "Polyline",
     "Problem",
+    "Reference",
+    "ShrinkFit",
+    "Table",
     "Temperature",
+    "Uniform",
     "Units",
+    "Values",
 ]

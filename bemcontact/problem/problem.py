@@ -21,6 +21,7 @@ from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.key_path import existing_path, parsed_path, with_entry
 from bemcontact.problem.loads import Loads
 from bemcontact.problem.material import Material
+from bemcontact.problem.reference import StatedReference, Words, reference_complaints
 from bemcontact.problem.stated import Count, Name, Stated, Text, complain, complaints_of, unknown_word
 from bemcontact.problem.written import Written
 
@@ -83,6 +84,8 @@ class Problem(Stated):
     """The contact zones by name, each with edges and the rigid surface that they may touch."""
     mesh: MeshDensity = MeshDensity()
     """Refinement of the mesh."""
+    reference: dict[Words, StatedReference] = Field(default_factory=dict)
+    """What is known of the answer, by name: closed forms and published values, with which it is compared."""
 
     @model_validator(mode="wrap")
     @classmethod
@@ -103,14 +106,15 @@ class Problem(Stated):
         """Find parts that do not fit each other: names first, then the geometry of what is right by itself."""
         boundary, conditions, zones = (written.below(cls, key) for key in ("boundary", "conditions", "contact_zones"))
         complaints = name_complaints(boundary, conditions, zones)
+        references = reference_complaints(written.below(cls, "reference"), zones)
         body = boundary.read(Boundary)
         if body is None:
-            return complaints
+            return [*complaints, *references]
         if not complaints:  # an edge that is in a zone by mistake need not face the surface
             surfaces = {zone.path: made for zone in zones.each() if (made := zone.read(ContactZone))}
             complaints += facing_complaints(body, surfaces)
         density = written.below(cls, "mesh").read(MeshDensity) or MeshDensity()
-        return [*complaints, *mesh_complaints(body, boundary.path, density.refine)]
+        return [*complaints, *references, *mesh_complaints(body, boundary.path, density.refine)]
 
     def edge(self, name: str) -> Edge:
         """Find an edge by its name; `ProblemError` if there is none."""

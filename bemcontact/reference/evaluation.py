@@ -1,0 +1,264 @@
+"""From the references of a spec to numbers at its contact points."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from bemcontact.contact import Array, CondensedContact
+from bemcontact.errors import ProblemError
+from bemcontact.problem import Crack, FlatPunch, Hertz, Problem, Reference, ShrinkFit, Table, Uniform, Values
+from bemcontact.reference.closed_forms import (
+    ClosedCrack,
+    HertzContact,
+    PunchOnHalfPlane,
+    ShrunkRing,
+    contact_modulus,
+)
+from bemcontact.reference.expectation import Expected, Point
+from bemcontact.reference.positions import Frame, coordinates, in_zone, reach, spacing
+
+HERTZ_RANGE = 0.1
+"""Largest b/R for which Hertz is held against an answer; its peak is off by 0.23 % then."""
+MEASURED = 0.4
+"""Largest b/R of which it is known how far the peak is off."""
+INTERIOR = 0.9
+"""Part of a contact within which pressures are compared: not at edges and tips, which no mesh resolves, nor at the end
+of Hertz's curve, where an error of b is magnified by 1 / sqrt(2 (1 - x/b))."""
+HALF_PLANE = 10.0
+"""How far a body goes that counts as a half-plane, in half-widths of contact; Hertz and punch are off by 0.5 % then."""
+INFINITE_PANEL = 20.0
+"""How far a panel goes that counts as infinite, in half-lengths a of the crack; it is off by 3.4 (a/size)², 0.9 %."""
+
+SOURCES: dict[type[Reference], str] = {
+    Hertz: "Hertz; Johnson 1985, section 4.2",
+    FlatPunch: "rigid punch on a half-plane; Johnson 1985, section 2.8",
+    ShrinkFit: "Lamé; Timoshenko and Goodier 1970, article 28",
+    Uniform: "uniform compression",
+    Crack: "elliptical opening in an infinite panel, by superposition",
+}
+"""Kind of closed form -> where it comes from."""
+
+TOLERANCES: dict[type[Reference], tuple[float, str]] = {
+    Hertz: (0.01, "Hertz is off by up to 0.5 % in its range, the rest is for the mesh"),
+    FlatPunch: (0.02, "the smallest body in its range is off by 0.5 %, the rest is for the mesh"),
+    ShrinkFit: (0.01, "exact in the linear theory; all is for the mesh"),
+    Uniform: (0.01, "exact in the linear theory; all is for the mesh"),
+    Crack: (0.02, "the smallest panel in its range is off by 0.9 %, the rest is for the mesh"),
+    Values: (0.01, "printed values of three digits, and the mesh"),
+    Table: (0.05, "points are read off a figure to some per cent of its height"),
+}
+"""Kind -> relative difference that is allowed if the spec states none, and why."""
+
+
+def expected(problem: Problem, contact: CondensedContact) -> tuple[Expected, ...]:
+    """Evaluate all references of a problem at its contact points.
+
+    Parameters
+    ----------
+    problem : Problem
+    contact : condensed from it, on any mesh
+
+    Returns
+    -------
+    tuple of Expected
+        In the order of the spec; empty if it has no reference.
+
+    Raises
+    ------
+    ProblemError
+        If the contact points are those of another problem.
+    """
+    if contact.zone_names != tuple(problem.contact_zones):
+        raise ProblemError(
+            f"the contact points are in the zones {', '.join(contact.zone_names)}, those of the problem are "
+            f"{', '.join(problem.contact_zones)}; condense this problem"
+        )
+    return tuple(_expected(name, stated, problem, contact) for name, stated in problem.reference.items())
+
+
+def _expected(name: str, stated: Reference, problem: Problem, contact: CondensedContact) -> Expected:
+    """Evaluate one reference."""
+    tolerance, reason = TOLERANCES[type(stated)]
+    if stated.tolerance is not None:
+        tolerance, reason = stated.tolerance, stated.reason or "as the spec has it"
+    silent = Expected(
+        name=name,
+        source=stated.source if isinstance(stated, Values | Table) else SOURCES[type(stated)],
+        closed_form=not isinstance(stated, Values | Table),
+        zone=stated.zone,
+        pressure=np.full(contact.size, np.nan),
+        compared=np.zeros(contact.size, bool),
+        tolerance=tolerance,
+        reason=reason,
+    )
+    match stated:
+        case Hertz():
+            return _hertz(silent, stated, problem, contact)
+        case FlatPunch():
+            return _flat_punch(silent, stated, problem, contact)
+        case ShrinkFit():
+            return _uniform(silent, _shrink_fit(stated, problem), contact)
+        case Uniform():
+            return _uniform(silent, stated.pressure, contact)
+        case Crack():
+            return _crack(silent, stated, problem, contact)
+        case Values():
+            return _values(silent, stated, contact)
+        case Table():
+            return _table(silent, stated, contact)
+
+
+def _hertz(silent: Expected, stated: Hertz, problem: Problem, contact: CondensedContact) -> Expected:
+    """Hertz, in range up to b/R = 0.1; near the end of contact, a node spacing at least, it is not compared."""
+    surface = 0.0 if stated.surface_radius is None else 1 / stated.surface_radius
+    form = HertzContact(
+        load=stated.load, curvature=1 / stated.radius + surface, modulus=contact_modulus(problem.material)
+    )
+    frame = Frame.at(contact, stated.zone, stated.center)
+    near = np.abs(frame.heights(contact.points)) < abs(stated.radius)
+    x = np.where(near, frame.distances(contact.points), np.inf)
+    pressure = _within(contact, stated, form.pressure(x))
+    steep = np.maximum((1 - INTERIOR) * form.half_width, spacing(contact))
+    remark = _beyond_hertz(stated, form, reach(problem, frame))
+    return replace(
+        silent,
+        pressure=pressure,
+        compared=np.isfinite(pressure) & (np.abs(np.abs(x) - form.half_width) > steep),
+        peak=form.peak,
+        half_width=form.half_width,
+        center=_point(frame),
+        resultant=stated.load / (2 if stated.half else 1),
+        in_range=not remark,
+        remark=remark,
+    )
+
+
+def _beyond_hertz(stated: Hertz, form: HertzContact, size: float) -> str:
+    """Why Hertz is out of its range, for a body that goes so far [L]; nothing if it is not."""
+    b = form.half_width
+    ratio = b / min(abs(stated.radius), abs(stated.surface_radius or np.inf))
+    if ratio > HERTZ_RANGE:
+        off = f", where its peak is off by about {100 * form.error(ratio):.2g} %" if ratio <= MEASURED else ""
+        return _shown(f"Hertz needs b/R << 1; here b/R = {ratio:.2g}{off}")
+    if size < HALF_PLANE * b * (1 - 1e-9):
+        return _shown(
+            f"Hertz needs a body that is thick; here it ends {size / b:.2g} half-widths away from the contact"
+        )
+    return ""
+
+
+def _flat_punch(silent: Expected, stated: FlatPunch, problem: Problem, contact: CondensedContact) -> Expected:
+    """The punch away from its edges, in range for a body ten times as large as its half-width."""
+    form = PunchOnHalfPlane(load=stated.load, half_width=stated.half_width, eccentricity=stated.eccentricity)
+    frame = Frame.at(contact, stated.zone, stated.center)
+    x = frame.distances(contact.points)
+    pressure = _within(contact, stated, form.pressure(x))
+    size = reach(problem, frame) / stated.half_width
+    remark = f"the punch is on a half-plane; here the body ends {size:.2g} half-widths away from its middle"
+    in_range = size >= HALF_PLANE * (1 - 1e-9)
+    return replace(
+        silent,
+        pressure=pressure,
+        compared=np.isfinite(pressure) & (np.abs(x) <= INTERIOR * stated.half_width),
+        half_width=stated.half_width,
+        center=_point(frame),
+        resultant=stated.load / (2 if stated.half else 1),
+        in_range=in_range,
+        remark="" if in_range else _shown(remark),
+    )
+
+
+def _crack(silent: Expected, stated: Crack, problem: Problem, contact: CondensedContact) -> Expected:
+    """The closed crack away from its tip, in range for a panel twenty times as large as its half-length."""
+    form = ClosedCrack(
+        half_length=stated.half_length,
+        half_height=stated.half_height,
+        compression=stated.compression,
+        modulus=contact_modulus(problem.material),
+        slit=stated.opening == "slit",
+    )
+    frame = Frame.at(contact, stated.zone, stated.center)
+    if form.pressure_along_plane <= 0:
+        return replace(silent, in_range=False, remark="the compression is too small to close the opening to its tip")
+    x = frame.distances(contact.points)
+    pressure = _within(contact, stated, form.pressure(x))
+    size = reach(problem, frame) / stated.half_length
+    remark = f"the panel is infinite; here it ends {size:.2g} half-lengths away from the middle of the opening"
+    in_range = size >= INFINITE_PANEL * (1 - 1e-9)
+    return replace(
+        silent,
+        pressure=pressure,
+        compared=np.isfinite(pressure) & (np.abs(x) <= INTERIOR * stated.half_length),
+        half_width=stated.half_length,
+        center=stated.center,
+        in_range=in_range,
+        remark="" if in_range else _shown(remark),
+    )
+
+
+def _shrink_fit(stated: ShrinkFit, problem: Problem) -> float:
+    """The pressure [p] of Lamé, on the pin or in the bore."""
+    ring = ShrunkRing(
+        inner_radius=stated.inner_radius, outer_radius=stated.outer_radius, interference=stated.interference
+    )
+    return (ring.pressure_on_pin if stated.rigid == "pin" else ring.pressure_in_bore)(problem.material)
+
+
+def _uniform(silent: Expected, value: float, contact: CondensedContact) -> Expected:
+    """The same pressure at all points of the zone."""
+    within = in_zone(contact, silent.zone)
+    return replace(silent, pressure=np.where(within, value, np.nan), compared=within, peak=value)
+
+
+def _values(silent: Expected, stated: Values, contact: CondensedContact) -> Expected:
+    """Single values, as they are."""
+    center = None if stated.half_width is None else _point(Frame.at(contact, stated.zone, None))
+    given = [position for position in (stated.start, stated.end) if position is not None]
+    return replace(
+        silent,
+        peak=stated.peak,
+        half_width=stated.half_width,
+        center=center,
+        contact_length=stated.contact_length,
+        start=stated.start,
+        end=stated.end,
+        along=stated,
+        ends=tuple(_nearest(stated, position, contact) for position in given),
+        resultant=stated.resultant,
+    )
+
+
+def _table(silent: Expected, stated: Table, contact: CondensedContact) -> Expected:
+    """The curve, straight between its points, at contact points within its range."""
+    position, value = np.array(sorted(stated.pressure)).T
+    here = coordinates(stated, contact.points, contact.arc_position)
+    # A node at the very end of the table differs from it by round-off.
+    slack = 1e-9 * (position[-1] - position[0])
+    inside = (here >= position[0] - slack) & (here <= position[-1] + slack) & in_zone(contact, stated.zone)
+    if not inside.any():
+        return replace(silent, in_range=False, remark="no contact point lies within the range of the table")
+    pressure = np.where(inside, np.interp(here, position, value), np.nan)
+    return replace(silent, pressure=pressure, compared=inside, along=stated)
+
+
+def _within(contact: CondensedContact, stated: Reference, pressure: Array) -> Array:
+    """Say nothing (n,) of contact points in other zones."""
+    return np.where(in_zone(contact, stated.zone), pressure, np.nan)
+
+
+def _nearest(stated: Values, position: float, contact: CondensedContact) -> Point:
+    """The contact point whose coordinate is nearest to a position."""
+    index = np.flatnonzero(in_zone(contact, stated.zone))
+    here = coordinates(stated, contact.points[index], contact.arc_position[index])
+    x, y = contact.points[index[np.argmin(np.abs(here - position))]]
+    return float(x), float(y)
+
+
+def _point(frame: Frame) -> Point:
+    x, y = frame.center
+    return float(x), float(y)
+
+
+def _shown(why: str) -> str:
+    """End a remark on a reference that is out of its range."""
+    return f"{why}: shown, not judged"

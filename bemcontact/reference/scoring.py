@@ -1,0 +1,135 @@
+"""How far an answer is from what is known of it."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from bemcontact.assessment.footprint import ContactInterval, Footprint
+from bemcontact.contact import Array, CondensedContact
+from bemcontact.reference.expectation import Expected
+from bemcontact.reference.positions import BoolArray, Frame, coordinates, in_zone
+
+
+@dataclass(frozen=True, kw_only=True)
+class Score:
+    """One quantity, as found and as expected.
+
+    Parameters
+    ----------
+    reference : name of the reference in the spec
+    quantity : "peak", "half-width", "contact length", "start of contact", "end of contact", "resultant", "pressure
+        (largest difference)" or "pressure (mean square)"
+    found, expected : both [p], [L], [p L], or degrees; of a difference of pressures `expected` is 0 and `found` the
+        difference itself. `found` is None where nothing touches, so that there are no ends
+    difference : relative, found - expected over what is natural: the quantity expected; the extent of contact for its
+        ends; the largest or mean-square pressure expected for differences of pressure
+    tolerance : of the reference
+    judged : whether it can be held against the answer; False where the reference is out of its range
+    holds : whether the difference is within the tolerance
+    """
+
+    reference: str
+    quantity: str
+    found: float | None
+    expected: float
+    difference: float | None
+    tolerance: float
+    judged: bool
+    holds: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give all of it as numbers and texts, ready for JSON."""
+        return asdict(self)
+
+
+def score(
+    expected: Sequence[Expected], contact: CondensedContact, footprint: Footprint, pressure: Array
+) -> tuple[Score, ...]:
+    """Compare an answer with what references expect of it.
+
+    Parameters
+    ----------
+    expected : what `expected` found for the same contact points
+    contact : CondensedContact
+    footprint : of the answer
+    pressure : (n,) of the answer [p]
+
+    Returns
+    -------
+    tuple of Score
+        Reference by reference; nothing for quantities of which a reference says nothing.
+    """
+    return tuple(one for item in expected for one in _scores(item, contact, footprint, np.asarray(pressure, float)))
+
+
+def _scores(expected: Expected, contact: CondensedContact, footprint: Footprint, pressure: Array) -> Iterator[Score]:
+    """All quantities that one reference speaks of."""
+    here = in_zone(contact, expected.zone)
+    intervals = [item for item in footprint.intervals if expected.zone in (None, item.zone)]
+    if expected.peak is not None:
+        yield _relative(expected, "peak", float(pressure[here].max()), expected.peak)
+    if expected.half_width is not None:
+        ends = np.array([end for item in intervals for end in (item.start, item.end)]).reshape(-1, 2)
+        distances = np.abs(Frame.at(contact, expected.zone, expected.center).distances(ends))
+        yield _relative(expected, "half-width", float(distances.max(initial=0.0)), expected.half_width)
+    if expected.contact_length is not None:
+        length = sum(item.end_arc - item.start_arc for item in intervals)
+        yield _relative(expected, "contact length", length, expected.contact_length)
+    yield from _end_scores(expected, intervals)
+    if expected.resultant is not None:
+        yield _relative(expected, "resultant", _force(contact, pressure, here), expected.resultant)
+    if expected.compared.any():
+        yield from _pressure_scores(expected, contact, pressure)
+
+
+def _relative(expected: Expected, quantity: str, found: float, value: float) -> Score:
+    """A quantity relative to itself."""
+    return _score(expected, quantity, found, value, (found - value) / value)
+
+
+def _score(expected: Expected, quantity: str, found: float | None, value: float, difference: float | None) -> Score:
+    return Score(
+        reference=expected.name,
+        quantity=quantity,
+        found=found,
+        expected=value,
+        difference=difference,
+        tolerance=expected.tolerance,
+        judged=expected.in_range,
+        holds=difference is not None and abs(difference) <= expected.tolerance,
+    )
+
+
+def _end_scores(expected: Expected, intervals: Sequence[ContactInterval]) -> Iterator[Score]:
+    """Smallest and largest coordinate of contact, relative to its extent."""
+    if expected.along is None:
+        return
+    points = np.array([end for item in intervals for end in (item.start, item.end)]).reshape(-1, 2)
+    arc = np.array([end for item in intervals for end in (item.start_arc, item.end_arc)])
+    here = coordinates(expected.along, points, arc)
+    for quantity, value, pick in (("start", expected.start, np.min), ("end", expected.end, np.max)):
+        if value is None:
+            continue
+        found = float(pick(here)) if len(here) else None
+        extent = float(np.ptp(here)) if len(here) else 0.0
+        difference = (found - value) / extent if found is not None and extent > 0 else None
+        yield _score(expected, f"{quantity} of contact", found, value, difference)
+
+
+def _force(contact: CondensedContact, pressure: Array, here: BoolArray) -> float:
+    """Magnitude |Σ w p n| [p L] of the force of the rigid surface, over some of the contact points."""
+    force = (contact.weights * pressure)[here] @ contact.normals[here]
+    return float(np.hypot(*force))
+
+
+def _pressure_scores(expected: Expected, contact: CondensedContact, pressure: Array) -> Iterator[Score]:
+    """Largest difference over the peak of the reference, and √(Σ w (p - e)² / Σ w e²), w the tributary lengths."""
+    known, found = expected.pressure[expected.compared], pressure[expected.compared]
+    weights = contact.weights[expected.compared]
+    largest = float(np.abs(found - known).max())
+    peak = expected.peak or float(np.abs(known).max())
+    yield _score(expected, "pressure (largest difference)", largest, 0.0, largest / peak if peak > 0 else None)
+    off, norm = (float(np.sqrt(weights @ value**2 / weights.sum())) for value in (found - known, known))
+    yield _score(expected, "pressure (mean square)", off, 0.0, off / norm if norm > 0 else None)

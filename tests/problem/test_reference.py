@@ -1,0 +1,292 @@
+"""What a spec may say of the answer, and where and in which words each mistake is refused."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+from jsonschema import Draft202012Validator
+
+import bemcontact
+from bemcontact.problem import Crack, FlatPunch, Hertz, Problem, ShrinkFit, Table, Uniform, Values
+
+BODY = """\
+name: block on a plane
+material: {young_modulus: 1000, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: bottom, start: [0, 0], elements: 2}
+    - {name: right, start: [2, 0], elements: 2}
+    - {name: top, start: [2, 1], elements: 2}
+    - {name: left, start: [0, 1], elements: 2}
+conditions: {top: {pressure: 5}}
+contact_zones:
+  foot: {edges: bottom, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}
+"""
+WALL = "  wall: {edges: left, surface: {kind: plane, point: [0, 0], normal: [1, 0]}}\n"
+GOOD = {
+    "Hertz": ("{kind: hertz, load: 810, radius: 8}", Hertz),
+    "Hertz in a groove": ("{kind: hertz, load: 8, radius: 8, surface_radius: -10, center: [1, 0], half: true}", Hertz),
+    "ring on a pin": ("{kind: hertz, load: 8, radius: -8, surface_radius: 7.9, zone: foot}", Hertz),
+    "punch": ("{kind: flat_punch, load: 8, half_width: 1, center: [1, 0], eccentricity: -0.5}", FlatPunch),
+    "ring": ("{kind: shrink_fit, inner_radius: 1, outer_radius: 2, interference: 0.01}", ShrinkFit),
+    "disc": ("{kind: shrink_fit, rigid: bore, inner_radius: 0, outer_radius: 2, interference: 0.01}", ShrinkFit),
+    "block": ("{kind: uniform, pressure: 5, tolerance: 0.001, reason: patch test}", Uniform),
+    "crack": ("{kind: crack, half_length: 3, half_height: 0.3, compression: 75, center: [0, 0]}", Crack),
+    "finite elements": ("{kind: values, source: own computation, peak: 183.335, start: -1, end: 1}", Values),
+    "[SS92], Fig. 4": ("{kind: table, source: figure, zone: foot, pressure: [[1, 170], [0, 183]]}", Table),
+    "angles": (
+        "{kind: table, source: s, against: angle, center: [0, 0], zero: [0, 1], pressure: [[0, 1], [90, 2]]}",
+        Table,
+    ),
+}
+
+
+def spec(reference: str, more_zones: str = "", name: str = "it") -> str:
+    return f"{BODY}{more_zones}reference:\n  {name}: {reference}\n"
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_each_kind_is_read(name: str):
+    text, kind = GOOD[name]
+    problem = bemcontact.loads(spec(text, name=f"'{name}'"))
+    assert isinstance(problem.reference[name], kind)
+    assert Problem(**problem.model_dump()) == problem
+    assert problem.refined(2).reference == problem.reference
+
+
+def test_without_the_block_nothing_is_known():
+    assert bemcontact.loads(BODY).reference == {}
+
+
+REFUSED = {
+    "no kind": ("{load: 810}", "{load: 810}", "kind: missing; say which kind a reference is: hertz, flat_punch,"),
+    "unknown kind": (
+        "{kind: herz, load: 1}",
+        "herz, load: 1}",
+        "reference.it.kind: unknown kind 'herz'; did you mean 'hertz'?",
+    ),
+    "no mapping": ("183", "183", "reference.it: expected a mapping that describes a reference, found 183"),
+    "unknown key": (
+        "{kind: hertz, load: 1, radius: 1, halve: true}",
+        "halve: true}",
+        "reference.it.halve: unknown key 'halve'; did you mean 'half'",
+    ),
+    "no load": (
+        "{kind: hertz, radius: 1}",
+        "{kind: hertz, ra",
+        "reference.it.load: missing; give force per thickness over the whole",
+    ),
+    "load as a text": (
+        "{kind: hertz, load: '1', radius: 1}",
+        "'1', radius: 1}",
+        "reference.it.load: expected a number, found the text",
+    ),
+    "pull": (
+        "{kind: hertz, load: -1, radius: 1}",
+        "-1, radius: 1}",
+        "reference.it.load: must be greater than 0, found -1",
+    ),
+    "no radius": (
+        "{kind: hertz, load: 1, radius: 0}",
+        "0}",
+        "reference.it.radius: must not be 0: positive where it bulges",
+    ),
+    "hollow on a plane": (
+        "{kind: hertz, load: 1, radius: -8}",
+        "{kind: hertz, lo",
+        "reference.it: a hollow body (radius < 0) needs",
+    ),
+    "tight groove": (
+        "{kind: hertz, load: 1, radius: 8, surface_radius: -8}",
+        "-8}",
+        "reference.it.surface_radius: 1/radius + 1/surface_radius must be greater than 0, found 1/8 + 1/-8",
+    ),
+    "flat surface": (
+        "{kind: hertz, load: 1, radius: 8, surface_radius: 0}",
+        "0}",
+        "reference.it.surface_radius: must not be 0",
+    ),
+    "lifts off": (
+        "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0], eccentricity: 1.5}",
+        "1.5}",
+        "reference.it.eccentricity: must be at most half_width/2 = 1 either way, found 1.5",
+    ),
+    "half and eccentric": (
+        "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0], eccentricity: 1, half: true}",
+        "1, half: true}",
+        "reference.it.eccentricity: must be 0 where only one half is modelled",
+    ),
+    "no wall": (
+        "{kind: shrink_fit, inner_radius: 2, outer_radius: 2, interference: 1}",
+        "2, interference:",
+        "reference.it.outer_radius: must be greater than inner_radius = 2, found 2",
+    ),
+    "pin in a disc": (
+        "{kind: shrink_fit, inner_radius: 0, outer_radius: 2, interference: 1}",
+        "0, outer_radius:",
+        "reference.it.inner_radius: must be greater than 0 on a pin; a disc",
+    ),
+    "per cent": (
+        "{kind: uniform, pressure: 5, tolerance: 2}",
+        "2}",
+        "reference.it.tolerance: must be less than 1, found 2",
+    ),
+    "reason for nothing": (
+        "{kind: uniform, pressure: 5, reason: digits}",
+        "{kind: uniform,",
+        "reference.it: a reason without a tolerance explains nothing",
+    ),
+    "no value": (
+        "{kind: values, source: s}",
+        "{kind: values, s",
+        "reference.it: it states no value; give one or more of peak, half_width",
+    ),
+    "no source": (
+        "{kind: values, peak: 3}",
+        "{kind: values, p",
+        "reference.it.source: missing; give where the values come from",
+    ),
+    "blank source": (
+        "{kind: values, source: ' ', peak: 3}",
+        "' ', peak: 3}",
+        "reference.it.source: an empty text tells nothing",
+    ),
+    "end before start": (
+        "{kind: values, source: s, start: 3, end: 2}",
+        "2}",
+        "reference.it.end: must be greater than start = 3, found 2",
+    ),
+    "angle without centre": (
+        "{kind: values, source: s, start: 3, against: angle}",
+        "{kind: values, s",
+        "reference.it: angles are measured around a centre",
+    ),
+    "centre without angle": (
+        "{kind: values, source: s, start: 3, center: [0, 0]}",
+        "{kind: values, s",
+        "reference.it: center and zero belong to angles",
+    ),
+    "no direction": (
+        "{kind: values, source: s, start: 3, against: angle, center: [0, 0], zero: [0, 0]}",
+        "{kind: values, s",
+        "has no direction",
+    ),
+    "position twice": (
+        "{kind: table, source: s, pressure: [[1, 3], [0, 2], [1, 4]]}",
+        "1, 4]]}",
+        "reference.it.pressure[2][0]: the position 1 stands in pressure[0] too; keep one",
+    ),
+    "one point": ("{kind: table, source: s, pressure: [[1, 3]]}", "[[1, 3]]}", "expected at least 2 in the list"),
+    "pull in a table": (
+        "{kind: table, source: s, pressure: [[1, 3], [0, -2]]}",
+        "-2]]}",
+        "reference.it.pressure[1][1]: a contact pressure is not negative, found -2",
+    ),
+    "no pair": (
+        "{kind: table, source: s, pressure: [[1, 3], [0]]}",
+        "[0]]}",
+        "reference.it.pressure[1]: expected two numbers such",
+    ),
+    "angle beyond half a turn": (
+        "{kind: table, source: s, against: angle, center: [0, 0], pressure: [[0, 1], [270, 2]]}",
+        "270, 2]]}",
+        "reference.it.pressure[1][0]: angles go from -180 to 180 degrees, found 270",
+    ),
+    "unknown zone": (
+        "{kind: uniform, pressure: 5, zone: fot}",
+        "fot}",
+        "reference.it.zone: unknown contact zone 'fot'; did you mean 'foot'?",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_each_mistake_is_refused_with_its_place(case: str):
+    """The entry stands in line 13 and begins in column 7; the place is that of what is wrong in it."""
+    text, wrong, words = REFUSED[case]
+    with pytest.raises(bemcontact.SpecError) as caught:
+        bemcontact.loads(spec(text), "body.yaml")
+    [line] = str(caught.value).splitlines()
+    assert line.startswith(f"body.yaml:13:{text.index(wrong) + 7}: reference.it")
+    assert words in line
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{kind: hertz, load: 1, radius: 1}",
+        "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0]}",
+        "{kind: crack, half_length: 3, half_height: 0.3, compression: 75, center: [0, 0]}",
+        "{kind: values, source: s, half_width: 2}",
+        "{kind: table, source: s, against: arc, pressure: [[0, 1], [1, 1]]}",
+    ],
+)
+def test_of_several_zones_one_is_meant(text: str):
+    with pytest.raises(bemcontact.SpecError, match=r"reference\.it: there are 2 contact zones; say which one is meant"):
+        bemcontact.loads(spec(text, WALL))
+    bemcontact.loads(spec(text.replace("}", ", zone: wall}"), WALL))
+
+
+def test_of_all_zones_something_may_be_known():
+    bemcontact.loads(spec("{kind: uniform, pressure: 5}", WALL))
+    bemcontact.loads(spec("{kind: values, source: s, peak: 5}", WALL))
+
+
+def test_name_must_say_something():
+    with pytest.raises(bemcontact.SpecError, match="an empty text tells nothing"):
+        bemcontact.loads(spec("{kind: uniform, pressure: 5}", name="' '"))
+
+
+def test_references_are_checked_beside_other_mistakes():
+    text = spec("{kind: uniform, pressure: 5, zone: fot}").replace("poisson_ratio: 0.3", "poisson_ratio: 3")
+    with pytest.raises(bemcontact.SpecError) as caught:
+        bemcontact.loads(text)
+    assert [line.split()[1] for line in str(caught.value).splitlines()] == [
+        "material.poisson_ratio:",
+        "reference.it.zone:",
+    ]
+
+
+def test_value_of_a_reference_can_be_set():
+    problem = bemcontact.loads(spec("{kind: hertz, load: 810, radius: 8}"), overrides=["reference.it.load=8.1"])
+    assert problem.reference["it"].load == 8.1
+    assert problem.with_value("reference.it.load", 3).reference["it"].load == 3
+
+
+def seen_by_an_editor(text: str) -> list[str]:
+    """What JSON Schema says of a spec."""
+    validator = Draft202012Validator(bemcontact.schema())
+    return [error.message for error in validator.iter_errors(yaml.load(text, yaml.SafeLoader))]
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_schema_takes_what_is_right(name: str):
+    assert seen_by_an_editor(spec(GOOD[name][0], name=f"'{name}'")) == []
+
+
+@pytest.mark.parametrize(
+    ("case", "words"),
+    [
+        ("no kind", "'kind' is a required property"),
+        ("unknown kind", "'herz' is not one of ['hertz', 'flat_punch'"),
+        ("unknown key", "'halve' was unexpected"),
+        ("no load", "'load' is a required property"),
+        ("pull", "-1 is less than or equal to the minimum of 0"),
+        ("per cent", "2 is not valid under any of the given schemas"),
+        ("no source", "'source' is a required property"),
+        ("one point", "is too short"),
+        ("no pair", "is too short"),
+        ("no mapping", "183 is not of type 'object'"),
+    ],
+)
+def test_schema_refuses_what_is_wrong(case: str, words: str):
+    first, *_ = seen_by_an_editor(spec(REFUSED[case][0]))
+    assert words in first
+
+
+def test_the_block_of_the_readme_is_read():
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    start = readme.index("\nreference:\n") + 1
+    block = readme[start : readme.index("```", start)]
+    references = bemcontact.loads(BODY + block).reference.values()
+    assert len({type(reference) for reference in references}) == 7

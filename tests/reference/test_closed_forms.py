@@ -1,0 +1,132 @@
+"""Each closed form against the equation that it solves, evaluated in another way."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+from bemcontact.problem import Material
+from bemcontact.reference.closed_forms import ClosedCrack, HertzContact, PunchOnHalfPlane, ShrunkRing, contact_modulus
+
+STATES = ("plane_strain", "plane_stress")
+
+
+def material(state: str = "plane_strain") -> Material:
+    return Material(young_modulus=1000, poisson_ratio=0.3, state=state)
+
+
+def slope(pressure, half_width: float, x: float, modulus: float) -> float:
+    """du/dx of a half-plane, (2 / πE*) ⨍ p(s) / (x - s) ds ([Joh85] 2.25), with s = b cos θ and p(x) taken out.
+
+    For |x| < b, ⨍ dθ / (x - b cos θ) = 0, so that the singular part of p sin θ at x drops out.
+    """
+
+    def smooth(theta: float) -> float:
+        s = half_width * np.cos(theta)
+        return float(pressure(np.array([s]))[0]) * half_width * np.sin(theta)
+
+    own = np.arccos(x / half_width)
+
+    def integrand(theta: float) -> float:
+        s = half_width * np.cos(theta)
+        return (smooth(theta) - smooth(own)) / (x - s)
+
+    value, _ = quad(integrand, 1e-9, pi - 1e-9, points=[own], epsabs=1e-10, epsrel=1e-10)
+    return 2 / (pi * modulus) * value
+
+
+def test_contact_modulus_is_that_of_the_plane_state():
+    assert contact_modulus(material()) == pytest.approx(1000 / (1 - 0.09), rel=1e-14)
+    assert contact_modulus(material("plane_stress")) == pytest.approx(1000, rel=1e-14)
+
+
+def test_hertz_has_the_numbers_of_the_cylinder():
+    """Half-width 2.7401 and peak 188.19, as examples of the formula for the cylinder of [SS92]."""
+    form = HertzContact(load=810, curvature=1 / 8, modulus=contact_modulus(material()))
+    assert form.half_width == pytest.approx(2.7401, abs=5e-5)
+    assert form.peak == pytest.approx(188.19, abs=5e-3)
+
+
+def test_hertz_carries_its_load_and_bends_to_the_curvature():
+    form = HertzContact(load=7.0, curvature=1 / 3 - 1 / 11, modulus=900.0)
+    carried, _ = quad(lambda x: form.pressure(np.array([x]))[0], -form.half_width, form.half_width)
+    assert carried == pytest.approx(7.0, rel=1e-8)
+    for x in (-0.7, 0.1, 0.5):
+        x *= form.half_width
+        assert slope(form.pressure, form.half_width, x, 900.0) == pytest.approx(form.curvature * x, rel=1e-6)
+    assert form.pressure(np.array([form.half_width, 2 * form.half_width, np.inf])) == pytest.approx(0.0, abs=1e-7)
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.4, -1.0])
+def test_punch_carries_load_and_moment_and_leaves_a_straight_face(eccentricity: float):
+    """With x = a cos θ both integrals are smooth; a face that turns as a whole has the same slope everywhere."""
+    form = PunchOnHalfPlane(load=7.0, half_width=2.0, eccentricity=eccentricity)
+    theta = (np.arange(64) + 0.5) * pi / 64
+    x = 2.0 * np.cos(theta)
+    carried = form.pressure(x) * 2.0 * np.sin(theta) * pi / 64
+    assert carried.sum() == pytest.approx(7.0, rel=1e-13)
+    assert carried @ x == pytest.approx(7.0 * eccentricity, rel=1e-12, abs=1e-12)
+    assert form.pressure(x).min() >= 0
+    slopes = [slope(form.pressure, 2.0, x, 900.0) for x in (-1.3, 0.2, 1.1)]
+    assert slopes == pytest.approx([slopes[0]] * 3, abs=1e-8)
+    assert abs(slopes[0]) == pytest.approx(4 * 7.0 * abs(eccentricity) / (pi * 900.0 * 2.0**2), abs=1e-8)
+
+
+def test_punch_says_nothing_at_its_edges_and_zero_beyond():
+    pressure = PunchOnHalfPlane(load=7.0, half_width=2.0).pressure(np.array([-2.0, 0.0, 2.0, 2.1]))
+    assert np.isnan(pressure).tolist() == [True, False, True, False]
+    assert pressure[[1, 3]] == pytest.approx([7.0 / (2 * pi), 0.0])
+
+
+@pytest.mark.parametrize("state", STATES)
+@pytest.mark.parametrize(("rigid", "inner", "outer"), [("pin", 1.0, 1.7), ("bore", 1.0, 1.7), ("bore", 0.0, 1.7)])
+def test_lame_solves_the_equation_of_a_ring(state: str, rigid: str, inner: float, outer: float):
+    """Solve u'' + u'/r - u/r² = 0 from the free face (a disc: u = r near its centre), scaled to u = δ at the other."""
+    E, nu = 1000.0, 0.3
+    if state == "plane_strain":
+        E, nu = E / (1 - nu**2), nu / (1 - nu)
+
+    def sigma_r(r: float, u: float, du: float) -> float:
+        return E / (1 - nu**2) * (du + nu * u / r)
+
+    begin, finish = (outer, inner) if rigid == "pin" else (inner or 1e-3, outer)
+    start = (1.0, -nu / begin) if inner else (begin, 1.0)
+    found = solve_ivp(
+        lambda r, y: (y[1], y[0] / r**2 - y[1] / r), (begin, finish), start, rtol=1e-12, atol=1e-14, method="DOP853"
+    )
+    u, du = found.y[:, -1]
+    inwards = 0.01 if rigid == "pin" else -0.01
+    pressure = -sigma_r(finish, u, du) * inwards / u
+    form = ShrunkRing(inner_radius=inner, outer_radius=outer, interference=0.01)
+    told = (form.pressure_on_pin if rigid == "pin" else form.pressure_in_bore)(material(state))
+    assert told == pytest.approx(pressure, rel=1e-8)
+
+
+def test_crack_has_the_pressure_of_the_paper():
+    """[q (2a + c) - c E'] / 2a for the opening of [SS92]: 23.805."""
+    form = ClosedCrack(half_length=3, half_height=0.3, compression=75, modulus=contact_modulus(material()))
+    assert form.pressure_along_plane == pytest.approx(23.805, abs=5e-4)
+
+
+@pytest.mark.parametrize("slit", [False, True])
+def test_crack_carries_its_pressure_per_length_of_the_plane(slit: bool):
+    """∫ p ds = t a over a quarter of the ellipse, x = a sin φ: ds/dφ = sqrt(a² cos² φ + c² sin² φ)."""
+    a, c = 3.0, 0.3
+    form = ClosedCrack(half_length=a, half_height=c, compression=75, modulus=1000 / 0.91, slit=slit)
+
+    def carried(angle: float) -> float:
+        speed = np.hypot(a * np.cos(angle), 0.0 if slit else c * np.sin(angle))
+        return float(form.pressure(np.array([a * np.sin(angle)]))[0]) * speed
+
+    assert quad(carried, 0, pi / 2 - 1e-5)[0] == pytest.approx(form.pressure_along_plane * a, rel=1e-8)
+    assert np.isnan(form.pressure(np.array([a, 1.1 * a]))).all()
+
+
+def test_flat_opening_is_a_slit():
+    """With c << a both forms close alike, the modulus being so large that the clearance counts."""
+    ellipse, slit = (
+        ClosedCrack(half_length=3, half_height=3e-6, compression=75, modulus=1e8, slit=slit) for slit in (False, True)
+    )
+    assert ellipse.pressure_along_plane == pytest.approx(slit.pressure_along_plane, rel=2e-6)
+    assert 0 < slit.pressure_along_plane < 75

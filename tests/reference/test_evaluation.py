@@ -1,0 +1,169 @@
+"""What references say at the contact points of a body, and whether they are in their range."""
+
+import json
+
+import numpy as np
+import pytest
+from known_answers import BLOCK, crack, hertz, punch, ring
+
+import bemcontact
+from bemcontact.reference import Expected, expected
+
+
+def only(spec: str, *overrides: str) -> tuple[Expected, bemcontact.CondensedContact]:
+    """The only reference of a spec, evaluated."""
+    problem = bemcontact.loads(spec, overrides=overrides)
+    contact = bemcontact.condense(problem)
+    [one] = expected(problem, contact)
+    return one, contact
+
+
+def test_no_reference_expects_nothing():
+    problem = bemcontact.loads(BLOCK[: BLOCK.index("reference:")])
+    assert expected(problem, bemcontact.condense(problem)) == ()
+
+
+def test_hertz_of_half_a_cylinder():
+    one, contact = only(hertz())
+    x = contact.points[:, 0]
+    assert one.in_range
+    assert one.remark == ""
+    assert one.closed_form
+    assert one.center == (0.0, 0.0)
+    assert one.resultant == pytest.approx(4.05)
+    assert one.pressure == pytest.approx(one.peak * np.sqrt(np.maximum(1 - (x / one.half_width) ** 2, 0)))
+    assert one.compared.tolist() == (np.abs(x / one.half_width - 1) > 0.1).tolist()  # elements are shorter there
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        (("reference.Hertz.load=810",), "Hertz needs b/R << 1; here b/R = 0.34, where its peak is off by about 2.7 %:"),
+        (("reference.Hertz.load=81000",), "Hertz needs b/R << 1; here b/R = 3.4: shown, not judged"),
+        (
+            ("reference.Hertz.radius=800", "reference.Hertz.load=10"),
+            "Hertz needs a body that is thick; here it ends 2.6",
+        ),
+    ],
+)
+def test_hertz_out_of_range_is_shown_and_not_judged(overrides, words: str):
+    one, _ = only(hertz(), *overrides)
+    assert not one.in_range
+    assert words in one.remark
+    assert one.remark.endswith("shown, not judged")
+    assert np.isfinite(one.pressure).all()
+
+
+@pytest.mark.parametrize(
+    ("surface", "radius", "in_range"),
+    [("2", 1.6, True), ("0.5", 8 / 17, False), ("-10", 40.0, True)],
+)
+def test_hertz_on_a_round_surface(surface: str, radius: float, in_range: bool):
+    """Half-width with 1/R = 1/8 + 1/surface; on the pin of radius 0.5 it is 0.0665, more than a tenth of that."""
+    one, _ = only(hertz(), f"reference.Hertz.surface_radius={surface}")
+    plane, _ = only(hertz())
+    assert one.half_width == pytest.approx(plane.half_width * np.sqrt(radius / 8))
+    assert one.in_range is in_range
+
+
+def test_hertz_speaks_of_the_near_side_of_a_body():
+    """A whole cylinder that may touch all around: zero on its far side, where x is small again."""
+    spec = hertz()
+    whole = (
+        spec[: spec.index("boundary:")]
+        + """boundary:
+  outer: [{name: rim, kind: arc, center: [0, 8], radius: 8, angles: [-90, 270], elements: 40}]
+loads: {gravity: {density: 0.04, acceleration: [0, -1]}}
+contact_zones:
+  foot: {edges: rim, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}
+reference:
+  Hertz: {kind: hertz, load: 8.04, radius: 8, center: [0, 0]}
+"""
+    )
+    one, contact = only(whole)
+    assert one.pressure[contact.points[:, 1] > 8].max() == 0.0
+    assert one.pressure.max() > 0
+    assert one.resultant == pytest.approx(8.04)
+
+
+def test_tolerance_and_its_reason_are_those_of_the_kind_or_of_the_spec():
+    one, _ = only(hertz())
+    assert one.tolerance == 0.01
+    assert "for the mesh" in one.reason
+    one, _ = only(hertz(), "reference.Hertz.tolerance=0.003")
+    assert (one.tolerance, one.reason) == (0.003, "as the spec has it")
+    one, _ = only(hertz(), "reference.Hertz.tolerance=0.003", "reference.Hertz.reason=a fine mesh")
+    assert (one.tolerance, one.reason) == (0.003, "a fine mesh")
+
+
+@pytest.mark.parametrize(("size", "in_range"), [(10.0, True), (9.0, False)])
+def test_punch_on_a_small_body_is_out_of_range(size: float, in_range: bool):
+    one, contact = only(punch(size))
+    assert one.in_range is in_range
+    assert ("ends 9 half-widths away" in one.remark) is not in_range
+    x = contact.points[:, 0]
+    assert np.isnan(one.pressure).tolist() == (x > 1 - 1e-9).tolist()
+    assert one.compared.tolist() == (x <= 0.9).tolist()
+    assert one.peak is None
+
+
+@pytest.mark.parametrize(("size", "in_range"), [(60.0, True), (30.0, False)])
+def test_crack_in_a_small_panel_is_out_of_range(size: float, in_range: bool):
+    one, contact = only(crack(size))
+    assert one.in_range is in_range
+    assert ("ends 10 half-lengths away" in one.remark) is not in_range
+    assert one.compared.tolist() == (contact.points[:, 0] <= 2.7).tolist()
+
+
+def test_crack_that_does_not_close_is_not_judged():
+    """It closes to the tip from q = c E' / (2a + c) = 52.3 on."""
+    one, _ = only(crack(60.0), "reference.crack.compression=52")
+    assert not one.in_range
+    assert one.remark == "the compression is too small to close the opening to its tip"
+    assert np.isnan(one.pressure).all()
+    assert not one.compared.any()
+    one, _ = only(crack(60.0), "reference.crack.compression=53")
+    assert one.in_range
+
+
+@pytest.mark.parametrize("rigid", ["pin", "bore"])
+def test_ring_presses_everywhere_alike(rigid: str):
+    one, contact = only(ring("plane_strain", rigid))
+    assert one.compared.all()
+    assert one.pressure == pytest.approx(np.full(contact.size, one.peak))
+
+
+def test_zones_of_a_block():
+    problem = bemcontact.loads(BLOCK)
+    contact = bemcontact.condense(problem)
+    known = {item.name: item for item in expected(problem, contact)}
+    wall = contact.zone == contact.zone_names.index("wall")
+    assert known["wall"].compared.tolist() == wall.tolist()
+    assert np.isnan(known["wall"].pressure).tolist() == (~wall).tolist()
+    assert known["values"].ends == ((0.0, 0.0), (2.0, 0.0))
+    assert not known["values"].compared.any()
+    y = contact.points[:, 1]
+    inside = wall & (y > 0.2 - 1e-9) & (y < 0.6 + 1e-9)
+    assert known["table"].compared.tolist() == inside.tolist()
+    assert known["table"].pressure[inside] == pytest.approx(4 - 5 * (y[inside] - 0.2))
+
+
+def test_table_beside_the_contact_says_nothing():
+    spec = hertz()
+    table = "reference:\n  high: {kind: table, source: s, against: y, pressure: [[5, 1], [6, 2]]}\n"
+    one, _ = only(spec[: spec.index("reference:")] + table)
+    assert not one.in_range
+    assert one.remark == "no contact point lies within the range of the table"
+
+
+def test_contact_of_another_problem_is_refused():
+    with pytest.raises(bemcontact.ProblemError, match="zones fit, those of the problem are foot, wall; condense this"):
+        expected(bemcontact.loads(BLOCK), bemcontact.condense(bemcontact.loads(ring("plane_strain", "pin"))))
+
+
+def test_all_of_it_is_ready_for_json():
+    problem = bemcontact.loads(BLOCK)
+    for item in expected(problem, bemcontact.condense(problem)):
+        data = json.loads(json.dumps(item.to_dict(), allow_nan=False))
+        assert data["name"] == item.name
+        assert [p is None for p in data["pressure"]] == np.isnan(item.pressure).tolist()
