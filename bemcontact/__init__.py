@@ -32,6 +32,7 @@ _HOMES = {
     "ContactSolution": "bemcontact.solution",
     "LocalSearch": "bemcontact.solution",
     "Status": "bemcontact.solution",
+    "Trace": "bemcontact.solution",
     "Weights": "bemcontact.choices",
     "BemContactError": "bemcontact.errors",
     "SpecError": "bemcontact.errors",

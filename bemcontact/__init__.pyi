@@ -24,6 +24,7 @@ from bemcontact.result import Result as Result
 from bemcontact.solution import ContactSolution as ContactSolution
 from bemcontact.solution import LocalSearch as LocalSearch
 from bemcontact.solution import Status as Status
+from bemcontact.solution import Trace as Trace
 from bemcontact.spec import load as load
 from bemcontact.spec import loads as loads
 from bemcontact.spec import schema as schema

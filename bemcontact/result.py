@@ -113,6 +113,10 @@ class Result:
             "objective": self.objective,
             "iterations": solution.iterations,
             "polished": solution.polished,
+            "history": [
+                {"quantity": trace.quantity, "first": trace.first, "values": list(trace.values)}
+                for trace in solution.history
+            ],
             "search": None if solution.search is None else asdict(solution.search),
             "starts": None if self.starts is None else self.starts.to_dict(),
             "scales": contact.scales._asdict(),

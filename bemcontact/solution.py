@@ -1,5 +1,6 @@
 """A solution of a condensed contact problem: what a formulation found, and how its solver ended."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -65,6 +66,34 @@ class LocalSearch:
     penalty: Penalty | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class Trace:
+    """One quantity, iteration by iteration.
+
+    Parameters
+    ----------
+    quantity : "objective" of the statement itself, "infeasibility" of its constraints, or "residual" of the contact
+        conditions; the formulation's `solve` says which and what of
+    first : number of the iteration that ended at the first value; 0 is the start
+    values : one for each iteration, free of units
+    """
+
+    quantity: str
+    first: int
+    values: tuple[float, ...]
+
+
+def traces_in_turn(*parts: tuple[str, Sequence[float]]) -> tuple[Trace, ...]:
+    """Number the iterations of quantities (name, values) that followed each other, from 1; without the empty ones."""
+    traces: list[Trace] = []
+    done = 0
+    for quantity, values in parts:
+        if len(values):
+            traces.append(Trace(quantity=quantity, first=done + 1, values=tuple(map(float, values))))
+        done += len(values)
+    return tuple(traces)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ContactSolution:
     """What a formulation found; nothing in it is believed until `bemcontact.assessment` has recomputed it.
@@ -81,6 +110,7 @@ class ContactSolution:
     polished : whether the active-set step after the solver improved the result and was kept
     smallest_eigenvalue : of the scaled Hessian on the equilibrium space, where the formulation looked at it
     search : how a local solver came to its end, if one was used
+    history : how the solver got there, in the order in which it happened; the polish adds nothing
     notes : what a person should know
     """
 
@@ -94,6 +124,7 @@ class ContactSolution:
     polished: bool = False
     smallest_eigenvalue: float | None = None
     search: LocalSearch | None = None
+    history: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

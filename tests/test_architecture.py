@@ -43,6 +43,7 @@ ONLY = {
 HOME = {
     "yaml": ("bemcontact.spec",),
     "cvxpy": ("bemcontact.formulations.qp3",),
+    "clarabel": ("bemcontact.formulations.qp3",),
     "matplotlib": ("bemcontact.report.figures",),
     "typer": ("bemcontact.cli",),
     "numba": ("bemcontact.bem.compiled",),

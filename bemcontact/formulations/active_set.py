@@ -23,12 +23,21 @@ SETTLED = 1e-14
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ActiveSetEnd:
-    """The best point that the iteration has seen: p >= 0 (n,), a (k,), its relative residual, and the steps made."""
+    """The best point that the iteration has seen: p >= 0 (n,), a (k,), and the relative residual after each step."""
 
     pressure: Array
     amplitudes: Array
-    residual: float
-    steps: int
+    residuals: tuple[float, ...]
+
+    @property
+    def residual(self) -> float:
+        """That of the best point."""
+        return min(self.residuals)
+
+    @property
+    def steps(self) -> int:
+        """How many were made."""
+        return len(self.residuals)
 
 
 def first_active_set(problem: ScaledContact) -> BoolArray:
@@ -58,19 +67,19 @@ def primal_dual(problem: ScaledContact, active: BoolArray, limit: int = STEP_LIM
     ActiveSetEnd
         The point of smallest residual; only the residual says whether it is a solution.
     """
-    ends: list[ActiveSetEnd] = []
+    points: list[tuple[Array, Array]] = []
+    residuals: list[float] = []
     visited: set[bytes] = set()
-    while len(ends) < limit and active.tobytes() not in visited:
+    while len(points) < limit and active.tobytes() not in visited:
         visited.add(active.tobytes())
         p, a = contact_equations(problem, active)
-        pressure = np.maximum(p, 0.0)
-        residual = problem.residual(pressure, a)
-        ends.append(ActiveSetEnd(pressure=pressure, amplitudes=a, residual=residual, steps=len(ends) + 1))
-        if residual <= SETTLED:
+        points.append((np.maximum(p, 0.0), a))
+        residuals.append(problem.residual(*points[-1]))
+        if residuals[-1] <= SETTLED:
             break
         active = np.where(active, p > 0, problem.gap(p, a) < 0)
-    best = min(ends, key=lambda end: end.residual)
-    return ActiveSetEnd(pressure=best.pressure, amplitudes=best.amplitudes, residual=best.residual, steps=len(ends))
+    pressure, amplitudes = points[residuals.index(min(residuals))]
+    return ActiveSetEnd(pressure=pressure, amplitudes=amplitudes, residuals=tuple(residuals))
 
 
 def contact_equations(problem: ScaledContact, active: BoolArray) -> tuple[Array, Array]:

@@ -17,7 +17,7 @@ from bemcontact.formulations.active_set import ActiveSetEnd, BoolArray, first_ac
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
-from bemcontact.solution import ContactSolution, Status
+from bemcontact.solution import ContactSolution, Status, Trace, traces_in_turn
 
 ACCEPTED = 1e-11
 """Residual of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
@@ -96,7 +96,8 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     -------
     ContactSolution
         p is exactly zero off the contact set. With `Status.INFEASIBLE` p = 0, and the notes say in which motion the
-        load carries the body away.
+        load carries the body away. Its history is `ScaledContact.residual` after each step of the active set, and
+        as "infeasibility" the artificial variable z0 after each pivot of Lemke's method.
 
     Raises
     ------
@@ -111,7 +112,9 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     carried = replace(problem, motion_load=problem.motion_load - loose_load(problem))
     found = _search(carried, options.max_iterations)
     if found.status is Status.INFEASIBLE:
-        return _without_contact(condensed, "the path of pivots ended on a ray that proves that no pressure will do")
+        note = "the path of pivots ended on a ray that proves that no pressure will do"
+        empty = _without_contact(condensed, note)
+        return replace(empty, solver=found.method, iterations=found.iterations, history=found.history)
     p, u_n, a = unscaled(condensed, found.end.pressure, found.end.amplitudes)
     return ContactSolution(
         formulation=FormulationName.COMPLEMENTARITY,
@@ -121,6 +124,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         displacement=u_n,
         rigid_amplitudes=a,
         iterations=found.iterations,
+        history=found.history,
     )
 
 
@@ -212,29 +216,36 @@ def _spanning_points(motions: Array) -> IntArray:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Found:
-    """End of a search: the point, what it is, how many iterations of both methods, and which method ended it."""
+    """End of a search: the point, what it is, which method ended it, and the way of both methods."""
 
     end: ActiveSetEnd
     status: Status
-    iterations: int
     method: str
+    history: tuple[Trace, ...]
+
+    @property
+    def iterations(self) -> int:
+        """Steps and pivots."""
+        return sum(len(trace.values) for trace in self.history)
 
 
 def _search(problem: ScaledContact, pivot_limit: int | None) -> _Found:
     """Primal-dual active set; where it cycles, Lemke's method and the active set again from where that ended."""
     first = primal_dual(problem, first_active_set(problem))
     if first.residual <= ACCEPTED:
-        return _Found(end=first, status=Status.SOLVED, iterations=first.steps, method=ACTIVE_SET)
+        history = traces_in_turn(("residual", first.residuals))
+        return _Found(end=first, status=Status.SOLVED, method=ACTIVE_SET, history=history)
     matrix, vector, exchanged = standard_form(problem)
     path = lemke(matrix, vector, limit=pivot_limit)
     second = primal_dual(problem, path.active ^ exchanged, POLISH_STEPS)
-    iterations = first.steps + path.pivots + second.steps
-    if second.residual <= ACCEPTED:
-        return _Found(end=second, status=Status.SOLVED, iterations=iterations, method=LEMKE)
-    status = Status.NUMERICAL_FAILURE if path.status is Status.SOLVED else path.status
-    return _Found(
-        end=min(first, second, key=lambda end: end.residual), status=status, iterations=iterations, method=LEMKE
+    history = traces_in_turn(
+        ("residual", first.residuals), ("infeasibility", path.covers), ("residual", second.residuals)
     )
+    if second.residual <= ACCEPTED:
+        return _Found(end=second, status=Status.SOLVED, method=LEMKE, history=history)
+    status = Status.NUMERICAL_FAILURE if path.status is Status.SOLVED else path.status
+    best = min(first, second, key=lambda end: end.residual)
+    return _Found(end=best, status=status, method=LEMKE, history=history)
 
 
 def _without_contact(condensed: CondensedContact, note: str) -> ContactSolution:

@@ -29,12 +29,17 @@ class LemkeEnd:
     ----------
     status : SOLVED, INFEASIBLE (proved by a ray), ITERATION_LIMIT, or NO_SOLUTION_FOUND (no proof)
     active : (n,) True where z is a basic variable
-    pivots : number of them
+    covers : z0 after each pivot
     """
 
     status: Status
     active: NDArray[np.bool_]
-    pivots: int
+    covers: tuple[float, ...]
+
+    @property
+    def pivots(self) -> int:
+        """How many were made."""
+        return len(self.covers)
 
 
 def lemke(M: Array, q: Array, covering: Array | None = None, limit: int | None = None) -> LemkeEnd:
@@ -55,21 +60,21 @@ def lemke(M: Array, q: Array, covering: Array | None = None, limit: int | None =
     """
     n = len(q)
     if (q >= 0).all():
-        return LemkeEnd(status=Status.SOLVED, active=np.zeros(n, bool), pivots=0)
+        return LemkeEnd(status=Status.SOLVED, active=np.zeros(n, bool), covers=())
     d = np.abs(M).sum(axis=1) + np.abs(q).max() if covering is None else covering
     limit = 1000 + 50 * n if limit is None else limit
-    basis = _Basis(M, q, d)
+    basis, covers = _Basis(M, q, d), []
     entering, column, row = basis.cover, -d, basis.leaving_row(d)
-    for pivots in range(1, limit + 1):
-        if row is None:
-            return LemkeEnd(status=_end_of_ray(M, q, basis, entering, column), active=basis.active, pivots=pivots)
+    while row is not None and len(covers) < limit:
         left = basis.exchange(row, entering, column)
+        covers.append(basis.cover_value)
         if left == basis.cover:
-            return LemkeEnd(status=Status.SOLVED, active=basis.active, pivots=pivots)
+            return LemkeEnd(status=Status.SOLVED, active=basis.active, covers=tuple(covers))
         entering = left + n if left < n else left - n
         column = basis.column(entering)
         row = basis.leaving_row(column)
-    return LemkeEnd(status=Status.ITERATION_LIMIT, active=basis.active, pivots=limit)
+    status = Status.ITERATION_LIMIT if row is not None else _end_of_ray(M, q, basis, entering, column)
+    return LemkeEnd(status=status, active=basis.active, covers=tuple(covers))
 
 
 class _Basis:
@@ -90,6 +95,11 @@ class _Basis:
         active = np.zeros(self.cover + 1, bool)
         active[self.basic] = True
         return active[len(self.right) : self.cover]
+
+    @property
+    def cover_value(self) -> float:
+        """z0, which is zero where it is not basic."""
+        return float(self.values[self.basic == self.cover].sum())
 
     def column(self, variable: int) -> Array:
         """By how much each basic variable falls when this one rises, (n,)."""
@@ -127,7 +137,7 @@ class _Basis:
 
 def _end_of_ray(M: Array, q: Array, basis: _Basis, entering: int, column: Array) -> Status:
     """A direction y >= 0 of z along which nothing falls proves infeasibility if Mᵀy <= 0 and qᵀy < 0 (Farkas)."""
-    if basis.values[basis.basic == basis.cover] <= VANISHED:
+    if basis.cover_value <= VANISHED:
         return Status.SOLVED
     direction = np.zeros(basis.cover + 1)
     direction[basis.basic] = -column

@@ -9,9 +9,12 @@ part only, which changes no value of it.
 
 import warnings
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from clarabel import DefaultSettings, DefaultSolver, NonnegativeConeT, ZeroConeT  # pyright: ignore (has no stubs)
 from scipy.linalg import eigvalsh
+from scipy.sparse import triu
 
 from bemcontact.choices import FormulationName, Weights
 from bemcontact.contact import Array, CondensedContact
@@ -19,7 +22,7 @@ from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_weights, unscaled
-from bemcontact.solution import ContactSolution, Status
+from bemcontact.solution import ContactSolution, Status, Trace
 
 OPTIONS = ("weights",)
 """Those of `FormulationOptions` that have a meaning here."""
@@ -136,7 +139,9 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     Returns
     -------
     ContactSolution
-        With `smallest_eigenvalue` of the scaled Hessian.
+        With `smallest_eigenvalue` of the scaled Hessian. The history begins at Clarabel's start: `Objective.value`, and
+        as "infeasibility" the residual of the constraints that Clarabel holds against its tolerance, relative to their
+        terms where those are larger than one.
 
     Raises
     ------
@@ -176,6 +181,10 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         rigid_amplitudes=a,
         iterations=found.iterations,
         smallest_eigenvalue=eigenvalue,
+        history=tuple(
+            Trace(quantity=quantity, first=0, values=tuple(values.tolist()))
+            for quantity, values in zip(("objective", "infeasibility"), found.progress.T, strict=True)
+        ),
         notes=tuple(notes),
     )
     exact = options.weights is not Weights.CONSISTENT
@@ -184,13 +193,17 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Found:
-    """What came out of cvxpy: the status, the point if there is one (else zeros), the iterations."""
+    """What came out of cvxpy: the status, the point if there is one (else zeros), the iterations.
+
+    `progress` is the objective and the relative residual of the constraints at the start and after each iteration.
+    """
 
     status: Status
     pressure: Array
     amplitudes: Array
     iterations: int
     has_point: bool
+    progress: Array
 
 
 def _in_units_of(size: float, problem: ScaledContact, objective: Objective, max_iterations: int | None) -> _Found:
@@ -203,7 +216,12 @@ def _in_units_of(size: float, problem: ScaledContact, objective: Objective, max_
         constant=objective.constant / size**2,
     )
     found = _minimise(smaller, linear, max_iterations)
-    return replace(found, pressure=found.pressure * size, amplitudes=found.amplitudes * size)
+    return replace(
+        found,
+        pressure=found.pressure * size,
+        amplitudes=found.amplitudes * size,
+        progress=found.progress * np.array([size**2, 1.0]),
+    )
 
 
 def _minimise(problem: ScaledContact, objective: Objective, max_iterations: int | None) -> _Found:
@@ -213,18 +231,17 @@ def _minimise(problem: ScaledContact, objective: Objective, max_iterations: int 
     M, R, ell, load = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.motion_load
     n, k = R.shape
     p = cp.Variable(n, nonneg=True, name="pressure")
-    a = cp.Variable(k, name="rigid_amplitudes") if k else cp.Constant(np.zeros(0))
-    work = 0.5 * cp.quad_form(p, cp.psd_wrap(objective.hessian)) + objective.pressure @ p + objective.amplitudes @ a
-    gap = problem.offset + M @ p + R @ a
-    balance = [ell.T @ p == -load] if k else []
-    program = cp.Problem(cp.Minimize(work + objective.constant), [gap >= 0, *balance])
+    a = cp.Variable(k, name="rigid_amplitudes") if k else None
+    work = 0.5 * cp.quad_form(p, cp.psd_wrap(objective.hessian)) + objective.pressure @ p + objective.constant
+    gap, balance = problem.offset + M @ p, []
+    if a is not None:
+        work, gap, balance = work + objective.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
+    program = cp.Problem(cp.Minimize(work), [gap >= 0, *balance])
 
     failure = None
     for tolerance in TOLERANCES:
-        accuracy = dict.fromkeys(("tol_gap_abs", "tol_gap_rel", "tol_feas"), tolerance)
         try:
-            with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status tells the same
-                program.solve(solver=cp.CLARABEL, max_iter=max_iterations or ITERATIONS, **accuracy)
+            progress = _solve(program, tolerance, max_iterations or ITERATIONS)
         except cp.SolverError as error:
             failure = error
         else:
@@ -238,10 +255,38 @@ def _minimise(problem: ScaledContact, objective: Objective, max_iterations: int 
     return _Found(
         status=STATUSES[program.status],
         pressure=np.asarray(p.value, float) if has_point else np.zeros(n),
-        amplitudes=np.asarray(a.value, float) if has_point else np.zeros(k),
+        amplitudes=np.asarray(a.value, float) if has_point and a is not None else np.zeros(k),
         iterations=program.solver_stats.num_iters or 0,
         has_point=has_point,
+        progress=progress + np.array([objective.constant, 0.0]),
     )
+
+
+def _solve(program: Any, tolerance: float, limit: int) -> Array:
+    """Solve a cvxpy problem by Clarabel called directly, because cvxpy does not pass on the progress of a solver.
+
+    Returns the objective without its constant and the relative residual of the constraints, (iterations + 1, 2).
+    """
+    data, chain, inverse = program.get_problem_data("CLARABEL", solver_opts={})
+    settings = DefaultSettings()
+    settings.verbose, settings.max_iter = False, limit
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
+    cones = [ZeroConeT(data["dims"].zero), NonnegativeConeT(data["dims"].nonneg)]
+    solver = DefaultSolver(triu(data["P"], format="csc"), data["c"], data["A"], data["b"], cones, settings)
+    rows: list[tuple[float, float]] = []
+
+    def look(info: Any) -> bool:
+        rows.append((info.cost_primal, info.res_primal))
+        return False  # go on
+
+    solver.set_termination_callback(look)
+    solution = solver.solve()
+    with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status tells the same
+        program.unpack_results(solution, chain, inverse)
+    if np.isfinite(solution.obj_val):
+        rows[-1] = solution.obj_val, solution.r_prim  # Clarabel may have taken back its last step
+    progress = np.array(rows)
+    return progress[np.logical_and.accumulate(np.isfinite(progress).all(axis=1))]
 
 
 def _nearly_convex(work: Objective, eigenvalue: float, weights: Weights) -> Objective:

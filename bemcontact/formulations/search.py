@@ -1,6 +1,7 @@
 """The search of a local solver for the least of QP1 or QP2, and what its end is: the contact state, or what else."""
 
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.local_solver import QPResult, QPStatus
 from bemcontact.formulations.program import Program, amplitudes, minimise, start_vector
 from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
-from bemcontact.solution import ContactSolution, LocalSearch, Penalty, Status
+from bemcontact.solution import ContactSolution, LocalSearch, Penalty, Status, Trace, traces_in_turn
 
 SOLUTION = 1e-8
 """Residual up to which the end of a search counts as the contact state: searches that go well leave 1e-10 and less."""
@@ -32,6 +33,8 @@ NO_CONTACT_STATE = (
     "no contact state exists, whatever the formulation"
 )
 SOLVER = "inertia-controlling active set"
+QUANTITIES = {1: "infeasibility", 2: "objective"}
+"""What each phase of the solver makes less."""
 STATUSES = {
     QPStatus.LOCAL_MINIMISER: Status.SOLVED,
     QPStatus.UNDECIDED: Status.SOLVED,
@@ -160,5 +163,16 @@ def _as_found(condensed: CondensedContact, formulation: str, result: QPResult, s
         rigid_amplitudes=amplitudes(condensed, p, u_n),
         iterations=result.iterations,
         search=search,
+        history=_history(result),
         notes=tuple(notes),
     )
+
+
+def _history(result: QPResult) -> tuple[Trace, ...]:
+    """Sum of infeasibilities after each iteration of phase one, `Program.value` after each of phase two.
+
+    `minimise` hands over squares and a product and no constant beside them: the solver's objective is that value. It
+    goes back to phase one where round-off has taken a constraint away.
+    """
+    phases = groupby(result.log, key=lambda line: line.phase)
+    return traces_in_turn(*((QUANTITIES[phase], [line.value for line in lines]) for phase, lines in phases))

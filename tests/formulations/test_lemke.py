@@ -51,6 +51,17 @@ def test_p_matrices_against_all_active_sets(seed):
     np.testing.assert_allclose(values(M, q, end.active)[0], exhaustive(M, q), atol=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_cover_is_told_after_each_pivot(seed):
+    """It enters at the least value that makes q + d z0 >= 0, and leaves at zero."""
+    rng = np.random.default_rng(seed)
+    M, q, d = p_matrix(rng, 5), rng.standard_normal(5), rng.uniform(0.5, 1.5, 5)
+    end = lemke(M, q, covering=d)
+    assert end.covers[0] == pytest.approx((-q / d).max(), rel=1e-14)
+    assert min(end.covers[:-1]) > 0
+    assert end.covers[-1] == 0.0
+
+
 @pytest.mark.parametrize("covering", ["default", "ones", "random"])
 def test_any_covering_vector_leads_to_the_solution(covering):
     """The solution of a positive definite problem is unique: every path ends there; 60 pivots renew the inverse."""

@@ -180,7 +180,7 @@ def test_failure_of_the_solver_is_ours(monkeypatch):
     def breakdown(*_, **__):
         raise cp.SolverError("numerical error")
 
-    monkeypatch.setattr(cp.Problem, "solve", breakdown)
+    monkeypatch.setattr(cp.Problem, "unpack_results", breakdown)
     with pytest.raises(SolverError, match="Clarabel found no solution of QP3") as e:
         qp3.solve(random_contact(1, 5, 0))
     assert isinstance(e.value.__cause__, cp.SolverError)

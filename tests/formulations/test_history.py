@@ -1,0 +1,198 @@
+"""The history of a solver: each value is that of the point the solver has when it is stopped there."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from contact_problems import random_contact
+
+from bemcontact.choices import FormulationName
+from bemcontact.contact import Array, CondensedContact
+from bemcontact.formulations import FORMULATIONS, complementarity, qp1, qp2, qp3
+from bemcontact.formulations.complementarity import ACCEPTED
+from bemcontact.formulations.formulation import FormulationOptions
+from bemcontact.formulations.scaling import scaled, scaled_point
+from bemcontact.formulations.starts import random_points
+from bemcontact.solution import ContactSolution, Status, Trace, traces_in_turn
+
+N = 9
+UNPOLISHED = FormulationOptions(polish=False)
+LOCAL = [(qp1, UNPOLISHED), (qp2, UNPOLISHED), (qp2, replace(UNPOLISHED, penalty=0.03))]
+CYCLE = CondensedContact.from_compliance(
+    [[2, -2, -1, 2, 0], [0, 2, -2, 2, -1], [2, 1, 1, -1, 0], [-2, -2, 1, 2, -3], [3, -3, -2, 3, 2]],
+    [0.0, -2.0, 1.0, 0.0, -2.0],
+)
+"""A P-matrix on which the active sets come back, so that Lemke's method follows."""
+
+
+def in_units(problem: CondensedContact, length: float, stress: float) -> CondensedContact:
+    """The same problem in units of length and stress that make its numbers larger by these factors."""
+    return replace(
+        problem,
+        compliance=problem.compliance * length / stress,
+        free_displacement=problem.free_displacement * length,
+        initial_gap=problem.initial_gap * length,
+        weights=problem.weights * length,
+        motion_load=problem.motion_load * stress * length,
+    )
+
+
+def counted(solution: ContactSolution) -> list[int]:
+    """Numbers of the iterations to which values belong, trace after trace."""
+    return [trace.first + i for trace in solution.history for i in range(len(trace.values))]
+
+
+def of(solution: ContactSolution, quantity: str) -> Array:
+    """The values of the one trace of a quantity, none if there is no such."""
+    (values,) = [trace.values for trace in solution.history if trace.quantity == quantity] or [()]
+    return np.array(values)
+
+
+def test_quantities_in_turn_are_numbered_on():
+    """Two values, none, then one: iterations 1 and 2, and 3."""
+    assert traces_in_turn(("a", [4, 2]), ("b", ()), ("c", [1.0])) == (
+        Trace(quantity="a", first=1, values=(4.0, 2.0)),
+        Trace(quantity="c", first=3, values=(1.0,)),
+    )
+
+
+@pytest.mark.parametrize("k", [0, 1, 2])
+@pytest.mark.parametrize(("formulation", "options"), LOCAL)
+def test_local_search_goes_down(formulation, options, k):
+    """One value for each iteration; infeasibility falls to what each of 5n constraints may keep, the objective to 0.
+
+    They do so but for the round-off of the largest value.
+    """
+    problem = random_contact(2, N, k)
+    for start in random_points(problem, 3):
+        found = formulation.solve(problem, replace(options, start=start))
+        assert found.status is Status.SOLVED
+        assert counted(found) == [*range(1, found.iterations + 1)]
+        infeasibility, objective = of(found, "infeasibility"), of(found, "objective")
+        assert len(infeasibility) == found.search.phase_one_iterations
+        assert len(objective) == found.search.phase_two_iterations
+        for values in (infeasibility, objective):
+            assert (np.diff(values) <= 1e-14 * (1 + values.max(initial=0.0))).all()
+        assert (infeasibility[-1:] <= 1e-9 * 5 * N).all()
+        assert (np.abs(objective[-1:]) <= 1e-14 * (1 + objective.max(initial=0.0))).all()
+
+
+@pytest.mark.parametrize("k", [0, 2])
+@pytest.mark.parametrize(("formulation", "options"), LOCAL)
+def test_objective_of_a_local_search_is_that_of_the_program(formulation, options, k):
+    """Stopped after any iteration of phase two: `Program.value` of that point, whose best is 0, without a constant."""
+    problem = random_contact(3, N, k)
+    start = random_points(problem, 1)[0]
+    whole = formulation.solve(problem, replace(options, start=start))
+    program = formulation.statement(problem, options)
+    U, T = problem.scales
+    largest = of(whole, "objective").max()
+    for limit in range(whole.search.phase_one_iterations + 1, whole.iterations + 1):
+        stopped = formulation.solve(problem, replace(options, start=start, max_iterations=limit))
+        values = of(stopped, "objective")
+        np.testing.assert_array_equal(values, of(whole, "objective")[: len(values)])
+        x = np.concatenate([stopped.displacement / U, stopped.pressure / T])
+        assert values[-1] == pytest.approx(program.value(x), abs=1e-14 * (1 + largest))
+        assert stopped.iterations == limit
+
+
+def test_infeasible_program_has_no_objective():
+    """A gap of -1 - p: no pressure takes the penetration away, and phase two never begins."""
+    found = qp1.solve(CondensedContact.from_compliance([[-1.0]], [-1.0]))
+    assert found.status is Status.INFEASIBLE
+    assert len(of(found, "infeasibility")) == found.iterations
+    assert (of(found, "infeasibility") > 0.1).all()
+    assert not of(found, "objective").size
+
+
+@pytest.mark.parametrize("k", [0, 1, 3])
+def test_objective_of_qp3_is_that_of_the_point(k):
+    """Clarabel stopped after any iteration: the start and each iteration have a value, the free body's constant in it.
+
+    No constraint is violated by more than what is told, relative to its terms. Where cvxpy has cut a negative pressure
+    off, the point is another one.
+    """
+    problem = random_contact(4, N, k)
+    small = scaled(problem)
+    work = qp3.objective(small, np.diag(small.weights))
+    whole = qp3.solve(problem, UNPOLISHED)
+    assert counted(whole) == 2 * [*range(whole.iterations + 1)]
+    for limit in range(1, whole.iterations + 1):
+        stopped = qp3.solve(problem, replace(UNPOLISHED, max_iterations=limit))
+        values, told = of(stopped, "objective"), of(stopped, "infeasibility")
+        np.testing.assert_array_equal(values, of(whole, "objective")[: limit + 1])
+        p, a = scaled_point(problem, stopped.pressure, stopped.rigid_amplitudes)
+        if p.all():
+            assert values[-1] == pytest.approx(work.value(p, a), rel=1e-12, abs=1e-14 * (1 + p @ p))
+        gap, balance = small.gap(p, a), np.abs(small.equilibrium.T @ p + small.motion_load)
+        terms = max(1.0, sum(map(np.linalg.norm, (p, a, gap, small.offset, small.motion_load))))
+        assert max(-p.min(), -gap.min(), balance.max(initial=0.0)) <= (told[-1] + 1e-15) * terms
+    assert of(whole, "objective")[-1] == pytest.approx(0, abs=1e-10)
+    assert of(whole, "infeasibility")[-1] <= qp3.TOLERANCES[-1]
+
+
+@pytest.mark.parametrize("k", [0, 2])
+def test_units_of_wide_gaps_are_taken_back(k):
+    """One gap of 1e7 drowns the pressures, so that QP3 is solved in units of that gap; the objective then is far off.
+
+    What is told is that of the point in the usual units all the same, 1e12 times that in the units of the gap.
+    """
+    problem = random_contact(5, N, k)
+    problem = replace(problem, initial_gap=problem.initial_gap + 1e7 * np.eye(N)[0])
+    small = scaled(problem)
+    work = qp3.objective(small, np.diag(small.weights))
+    found = qp3.solve(problem, UNPOLISHED)
+    assert counted(found) == 2 * [*range(found.iterations + 1)]
+    p, a = scaled_point(problem, found.pressure, found.rigid_amplitudes)
+    assert work.value(p, a) > 1.0
+    assert of(found, "objective")[-1] == pytest.approx(work.value(p, a), rel=1e-6)
+
+
+@pytest.mark.parametrize("k", [0, 1, 3])
+def test_residual_of_the_active_set_ends_at_that_of_the_solution(k):
+    problem = random_contact(6, 15, k)
+    found = complementarity.solve(problem)
+    (trace,) = found.history
+    assert (trace.quantity, trace.first, len(trace.values)) == ("residual", 1, found.iterations)
+    assert trace.values[-1] <= ACCEPTED < trace.values[0]
+    p, a = scaled_point(problem, found.pressure, found.rigid_amplitudes)
+    assert scaled(problem).residual(p, a) == pytest.approx(trace.values[-1], abs=1e-15)
+
+
+def test_lemke_takes_over_in_the_history():
+    """Active set, pivots down to z0 = 0, and one step from there, numbered on."""
+    found = complementarity.solve(CYCLE)
+    first, path, last = found.history
+    assert [trace.quantity for trace in found.history] == ["residual", "infeasibility", "residual"]
+    assert counted(found) == [*range(1, found.iterations + 1)]
+    assert min(first.values) > ACCEPTED
+    assert path.values[-1] == 0.0
+    assert len(last.values) == 1
+    assert last.values[0] <= ACCEPTED
+
+
+def test_ray_of_lemke_is_told():
+    """With M = -1, q = -1 z0 enters at 1/2, which is 1 over |M| + |q|, and stays there: a ray is no pivot."""
+    found = complementarity.solve(CondensedContact.from_compliance([[-1.0]], [-1.0]))
+    assert found.status is Status.INFEASIBLE
+    assert counted(found) == [*range(1, found.iterations + 1)]
+    assert of(found, "infeasibility").tolist() == [0.5]
+
+
+@pytest.mark.parametrize("name", FORMULATIONS)
+@pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (25.4, 1e-4)])
+def test_units_do_not_matter(name, length, stress):
+    """All numbers are free of units, so that only round-off differs; 1e-9 leaves it six digits to grow."""
+    for problem in (random_contact(7, N, 1), *([CYCLE] if name == FormulationName.COMPLEMENTARITY else [])):
+        one, two = (FORMULATIONS[name](p, UNPOLISHED).history for p in (problem, in_units(problem, length, stress)))
+        assert [(trace.quantity, trace.first) for trace in one] == [(trace.quantity, trace.first) for trace in two]
+        for ours, theirs in zip(one, two, strict=True):
+            np.testing.assert_allclose(theirs.values, ours.values, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("formulation", [qp1, qp2, qp3])
+def test_polish_adds_nothing(formulation):
+    problem = random_contact(8, N, 1)
+    polished, plain = formulation.solve(problem), formulation.solve(problem, UNPOLISHED)
+    assert polished.polished
+    assert polished.history == plain.history
