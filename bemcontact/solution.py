@@ -72,10 +72,10 @@ class Trace:
 
     Parameters
     ----------
-    quantity : "objective" of the statement itself, "infeasibility" of its constraints, or "residual" of the contact
-        conditions; the formulation's `solve` says which and what of
+    quantity : "objective" of the statement that is solved, "infeasibility" of its constraints, or "residual" of the
+        contact conditions, as told by the `solve` of the formulation
     first : number of the iteration that ended at the first value; 0 is the start
-    values : one for each iteration, free of units
+    values : one for each iteration, finite and free of units
     """
 
     quantity: str

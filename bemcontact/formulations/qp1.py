@@ -73,6 +73,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     ContactSolution
         `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state, `Status.NUMERICAL_FAILURE` where
         QP1 is convex on its equations and has no such; with `smallest_eigenvalue` of the Hessian on the equations.
+        Its history is the sum of infeasibilities, as the solver scales them, and then `Program.value`.
 
     Raises
     ------

@@ -184,7 +184,8 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     -------
     ContactSolution
         `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state, `Status.NUMERICAL_FAILURE` where
-        there is none; with the penalty and the limit of convexity in `search`.
+        there is none; with the penalty and the limit of convexity in `search`. Its history is the sum of
+        infeasibilities, as the solver scales them, and then `Program.value`.
 
     Raises
     ------

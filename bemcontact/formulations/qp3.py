@@ -265,7 +265,8 @@ def _minimise(problem: ScaledContact, objective: Objective, max_iterations: int 
 def _solve(program: Any, tolerance: float, limit: int) -> Array:
     """Solve a cvxpy problem by Clarabel called directly, because cvxpy does not pass on the progress of a solver.
 
-    Returns the objective without its constant and the relative residual of the constraints, (iterations + 1, 2).
+    Returns the objective without its constant and the relative residual of the constraints, (iterations + 1, 2), or one
+    row less where Clarabel gave up in the last iteration.
     """
     data, chain, inverse = program.get_problem_data("CLARABEL", solver_opts={})
     settings = DefaultSettings()
