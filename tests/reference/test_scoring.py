@@ -122,6 +122,20 @@ def test_block_between_walls():
     assert found["both", "contact length"].difference == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("coordinate", "end"),
+    [("x", 0.274008), ("arc", 0.274062), ("angle, center: [0, 8], zero: [0, -1]", 1.96284)],
+)
+def test_end_of_contact_in_each_coordinate(coordinate: str, end: float):
+    """b of Hertz, R asin(b/R), and asin(b/R) in degrees; differences are relative to the extent, which starts at 0."""
+    spec = hertz()
+    value = f"reference:\n  end: {{kind: values, source: Hertz, start: 0, end: {end}, against: {coordinate}}}\n"
+    found = scores(bemcontact.loads(spec[: spec.index("reference:")] + value))
+    assert found["end", "start of contact"].found == pytest.approx(0.0, abs=1e-12)
+    assert found["end", "end of contact"].found == pytest.approx(end, rel=1e-3)
+    assert abs(found["end", "end of contact"].difference) < 1e-3
+
+
 def test_mean_square_is_that_of_the_tributary_lengths():
     """√(Σ w (p - e)² / Σ w e²) for e = 5 and p = 5 + x on the foot of the block, recomputed."""
     problem = bemcontact.loads(BLOCK)
