@@ -49,7 +49,7 @@ class Frame(NamedTuple):
 
 
 def foot(contact: CondensedContact, zone: str | None) -> Point:
-    """Where the initial gap of a zone is smallest: the vertex of the parabola through the three lowest points of a run.
+    """Where the initial gap of a zone is smallest: the vertex of the parabola around its lowest point.
 
     The lowest point itself, if it is the end of a run; the middle, if several are equally low.
     """

@@ -127,7 +127,7 @@ def test_block_between_walls():
     [("x", 0.274008), ("arc", 0.274062), ("angle, center: [0, 8], zero: [0, -1]", 1.96284)],
 )
 def test_end_of_contact_in_each_coordinate(coordinate: str, end: float):
-    """b of Hertz, R asin(b/R), and asin(b/R) in degrees; differences are relative to the extent, which starts at 0."""
+    """The b of Hertz, R asin(b/R), and asin(b/R) in degrees; differences are relative to the extent."""
     spec = hertz()
     value = f"reference:\n  end: {{kind: values, source: Hertz, start: 0, end: {end}, against: {coordinate}}}\n"
     found = scores(bemcontact.loads(spec[: spec.index("reference:")] + value))
