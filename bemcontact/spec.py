@@ -1,15 +1,12 @@
-"""From a YAML file to a `Problem`; every complaint names file, line, column and the path of keys.
-
-YAML is read as its version 1.2 has it: ``2e6`` is a number, ``no`` and ``on`` are texts, and a key stands once.
-"""
+"""From a YAML file to a `Problem`; every complaint names file, line, column and the path of keys."""
 
 import os
-import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import yaml
 
+from bemcontact.dialect import READERS, TAG, Loader, written
 from bemcontact.document import Document, Finding, Mark, Place, one_line_each
 from bemcontact.errors import Complaint, Path, ProblemError, SpecError
 from bemcontact.problem import Problem
@@ -18,23 +15,6 @@ from bemcontact.problem.stated import described, number_hint
 from bemcontact.text_file import place_after, text_of
 
 _REQUIRED = ", ".join(key for key, item in Problem.model_fields.items() if item.is_required())
-_TAG = "tag:yaml.org,2002:"
-_PLAIN_SCALARS = {
-    f"{_TAG}null": re.compile(r"~|null|Null|NULL|"),
-    f"{_TAG}bool": re.compile(r"true|True|TRUE|false|False|FALSE"),
-    f"{_TAG}int": re.compile(r"[-+]?[0-9]{1,300}|0o[0-7]{1,300}|0x[0-9a-fA-F]{1,200}"),
-    f"{_TAG}float": re.compile(
-        r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)"
-    ),
-    f"{_TAG}merge": re.compile("<<"),
-}
-_READERS: dict[str, Callable[[str], Any]] = {
-    f"{_TAG}str": str,
-    f"{_TAG}null": lambda _: None,
-    f"{_TAG}bool": lambda text: {"true": True, "false": False}[text.lower()],
-    f"{_TAG}int": lambda text: int(text, {"0o": 8, "0x": 16}.get(text[:2], 10)),
-    f"{_TAG}float": lambda text: float(re.sub(r"\.(?=inf|nan)", "", text.lower())),
-}
 _HINTS = {
     "found character '\\t'": "YAML indents with spaces; replace the tab",
     "mapping values are not allowed": "a colon inside a text needs quotes around the text; else check the indentation",
@@ -90,6 +70,29 @@ def loads(text: str, name: str = "<string>", overrides: Sequence[str] = ()) -> P
     return _stated(_stages(text, name, overrides))
 
 
+def as_run(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> str:
+    """Give the text of a spec with the changes made: the file as it is if there are none, else YAML without comments.
+
+    Parameters
+    ----------
+    path, overrides : what a problem is read from, by `load`
+
+    Returns
+    -------
+    str
+        `loads` makes the same problem of it.
+
+    Raises
+    ------
+    SpecError
+        There is no such file, or a change cannot be made.
+    """
+    text = text_of(path)
+    if not overrides:
+        return text
+    return written(_stages(text, os.fspath(path), overrides)[-1].data)
+
+
 def located(error: ProblemError, path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> SpecError:
     """Tell where in its file a problem is wrong of which that was found out only after it had been read.
 
@@ -118,16 +121,6 @@ def schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **stated}
 
 
-class _Loader(yaml.SafeLoader):
-    """PyYAML's parser with the plain scalars of YAML 1.2: no sexagesimals, dates, underscores, yes and no."""
-
-    def resolve(self, kind: type[yaml.Node], value: Any, implicit: Any) -> str:
-        """Say which tag a node has that bears none."""
-        if kind is yaml.ScalarNode and implicit[0]:
-            return next((tag for tag, pattern in _PLAIN_SCALARS.items() if pattern.fullmatch(value)), f"{_TAG}str")
-        return super().resolve(kind, value, implicit)
-
-
 def _stages(text: str, name: str, overrides: Sequence[str]) -> list[Document]:
     """Read a text, and make the changes one after the other; the first is the text alone."""
     stages = [_parsed(text, name)]
@@ -140,7 +133,7 @@ def _stages(text: str, name: str, overrides: Sequence[str]) -> list[Document]:
 def _parsed(text: str, name: str) -> Document:
     """Read YAML into plain data with places; `SpecError` if it is not YAML."""
     try:
-        loader = _Loader(text)
+        loader = Loader(text)
     except yaml.reader.ReaderError as error:
         place = place_after(text[: error.position], name)
         raise SpecError(f"{place}: the character {chr(error.character)!r} is not allowed in YAML") from None
@@ -215,19 +208,19 @@ class _Tree:
     def _content(self, node: yaml.Node, path: Path) -> Any:
         """Make plain data of what a node contains."""
         match node:
-            case yaml.MappingNode(tag=tag) if tag == f"{_TAG}map":
+            case yaml.MappingNode(tag=tag) if tag == f"{TAG}map":
                 return self._mapping(node, path)
-            case yaml.SequenceNode(tag=tag) if tag == f"{_TAG}seq":
+            case yaml.SequenceNode(tag=tag) if tag == f"{TAG}seq":
                 return [self.value(entry, (*path, i), None) for i, entry in enumerate(node.value)]
-            case yaml.ScalarNode(tag=tag) if tag in _READERS:
+            case yaml.ScalarNode(tag=tag) if tag in READERS:
                 try:
-                    return _READERS[tag](node.value)
+                    return READERS[tag](node.value)
                 except (ValueError, KeyError):
                     self._find(
                         self._mark(node), path, f"{described(node.value)} is not what its tag says; leave it out"
                     )
                     return None
-        message = f"the tag {node.tag.replace(_TAG, '!!')} has no meaning here; leave it out"
+        message = f"the tag {node.tag.replace(TAG, '!!')} has no meaning here; leave it out"
         self._find(self._mark(node), path, message)
         return None
 
@@ -238,9 +231,9 @@ class _Tree:
         merged: list[yaml.Node] = []
         for (_, before), (key, value) in zip([(None, None), *node.value], node.value, strict=False):
             mark = self._mark(key)
-            if key.tag == f"{_TAG}merge":
+            if key.tag == f"{TAG}merge":
                 merged += value.value if isinstance(value, yaml.SequenceNode) else [value]
-            elif key.tag != f"{_TAG}str":
+            elif key.tag != f"{TAG}str":
                 self._find(mark, path, _no_key(key, before))
             elif key.value in data:
                 message = f"the key stands twice, first in line {lines[key.value]}; keep one"
