@@ -17,6 +17,8 @@ _HOMES = {
     "condense": "bemcontact.analysis",
     "solve": "bemcontact.analysis",
     "random_starts": "bemcontact.analysis",
+    "compare": "bemcontact.comparing",
+    "Comparison": "bemcontact.assessment.comparison",
     "Result": "bemcontact.result",
     "RandomStarts": "bemcontact.ends",
     "Start": "bemcontact.formulations.formulation",

@@ -1,9 +1,11 @@
 from bemcontact.analysis import condense as condense
 from bemcontact.analysis import random_starts as random_starts
 from bemcontact.analysis import solve as solve
+from bemcontact.assessment.comparison import Comparison as Comparison
 from bemcontact.choices import Equilibrium as Equilibrium
 from bemcontact.choices import Rows as Rows
 from bemcontact.choices import Weights as Weights
+from bemcontact.comparing import compare as compare
 from bemcontact.contact import CondensedContact as CondensedContact
 from bemcontact.ends import RandomStarts as RandomStarts
 from bemcontact.errors import BemContactError as BemContactError

@@ -1,15 +1,12 @@
-"""From a problem to a judged result: condense, solve, assess, recover. The only file that sets both halves to work."""
+"""From a problem to a judged result: condense, solve, assess, recover; here both halves of the house work."""
 
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Callable
 
 from bemcontact import remarks
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.bem.condense import body_of
+from bemcontact.bem.condense import Condensation, body_of
 from bemcontact.bem.condense import condense as condense_body
 from bemcontact.bem.recovery import boundary_state
 from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, Weights
@@ -22,20 +19,8 @@ from bemcontact.formulations.plan import Plan, planned
 from bemcontact.formulations.starts import search_from
 from bemcontact.problem.problem import Problem
 from bemcontact.result import Result
-
-
-@dataclass
-class _Stopwatch:
-    """Seconds spent on each stage."""
-
-    seconds: dict[str, float] = field(default_factory=dict)
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Time what is inside."""
-        begin = time.perf_counter()
-        yield
-        self.seconds[name] = time.perf_counter() - begin
+from bemcontact.solution import ContactSolution
+from bemcontact.stopwatch import Stopwatch
 
 
 def condense(problem: Problem) -> CondensedContact:
@@ -56,12 +41,12 @@ def condense(problem: Problem) -> CondensedContact:
     SingularSystemError
         If the equations of the body have no unique solution.
     """
-    _check_kind(problem, Problem)
+    ensure_kind(problem, Problem)
     return condense_body(body_of(problem)).contact
 
 
-def _check_kind(problem: object, *kinds: type) -> None:
-    """Refuse what is no problem, a file name above all."""
+def ensure_kind(problem: object, *kinds: type) -> None:
+    """Refuse what is no problem, a file name above all, with a `ProblemError`."""
     kinds = kinds or (Problem, CondensedContact)
     if not isinstance(problem, kinds):
         names = " or a ".join(kind.__name__ for kind in kinds)
@@ -135,19 +120,55 @@ def carry_out(
     plan: Plan, problem: Problem | CondensedContact, progress: Callable[[int], object] | None = None
 ) -> Result:
     """Solve a contact problem as planned, and judge the answer; all else is as of `solve`."""
-    _check_kind(problem)
-    watch = _Stopwatch()
-    condensation = None
-    if isinstance(problem, CondensedContact):
-        contact = problem
-    else:
-        with watch.stage("mesh"):
-            body = body_of(problem)
-        with watch.stage("condensation"):
-            condensation = condense_body(body)
-        contact = condensation.contact
+    watch = Stopwatch()
+    contact, condensation = condensed(problem, watch)
     with watch.stage("solution"):
         solution, ends = plan.start.search(contact, FORMULATIONS[plan.formulation], plan.options, progress)
+    return judged(problem, condensation, contact, solution, plan.options.weights, watch, ends)
+
+
+def condensed(problem: Problem | CondensedContact, watch: Stopwatch) -> tuple[CondensedContact, Condensation | None]:
+    """Condense a problem that is not condensed yet; all else is as of `condense`.
+
+    Returns
+    -------
+    CondensedContact
+    Condensation or None
+        What it came from, with the body; None if it was condensed already.
+    """
+    ensure_kind(problem)
+    if isinstance(problem, CondensedContact):
+        return problem, None
+    with watch.stage("mesh"):
+        body = body_of(problem)
+    with watch.stage("condensation"):
+        condensation = condense_body(body)
+    return condensation.contact, condensation
+
+
+def judged(
+    problem: Problem | CondensedContact,
+    condensation: Condensation | None,
+    contact: CondensedContact,
+    solution: ContactSolution,
+    weights: Weights,
+    watch: Stopwatch,
+    ends: RandomStarts | None = None,
+) -> Result:
+    """Recover the boundary behind a solution, and judge both.
+
+    Parameters
+    ----------
+    problem, condensation, contact : the problem as it was given, and as `condensed` has it
+    solution : of it
+    weights : of the objective
+    watch : with the stages so far
+    ends : of random starts, if several were made
+
+    Returns
+    -------
+    Result
+    """
     boundary = None
     if condensation is not None:
         with watch.stage("recovery"):
@@ -165,8 +186,8 @@ def carry_out(
         problem=problem if isinstance(problem, Problem) else None,
         contact=contact,
         solution=solution,
-        weights=plan.options.weights,
-        objective=float(solution.pressure @ contact.weight_matrix(plan.options.weights) @ gap),
+        weights=weights,
+        objective=float(solution.pressure @ contact.weight_matrix(weights) @ gap),
         residuals=judged,
         certificate=certificate,
         footprint=where,
@@ -221,6 +242,6 @@ def random_starts(
         start=StartName.RANDOM,
         max_iterations=max_iterations,
     )
-    _check_kind(problem)
+    ensure_kind(problem)
     contact = problem if isinstance(problem, CondensedContact) else condense(problem)
     return search_from(contact, FORMULATIONS[plan.formulation], plan.options, count, seed, progress)

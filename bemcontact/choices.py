@@ -3,6 +3,7 @@
 There are no numerics here, so that ``bemcontact --help`` lists the choices at once.
 """
 
+from dataclasses import dataclass
 from enum import StrEnum
 
 
@@ -51,3 +52,31 @@ class StartName(StrEnum):
     """No displacement and no pressure. The default."""
     RANDOM = "random"
     """Points drawn from a seed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """A statement with its weights and, for QP2, its penalty: one column of a comparison.
+
+    Parameters
+    ----------
+    formulation : its name
+    weights : of its objective, or None if it has none
+    penalty : μ of QP2, free of units, else None
+    """
+
+    formulation: FormulationName
+    weights: Weights | None = None
+    penalty: float | None = None
+
+    @property
+    def label(self) -> str:
+        """What it is called: QP2 (consistent, μ = 0.001); what is the default is left out."""
+        if self.weights is None:
+            return "direct"
+        other = []
+        if self.weights is not Weights.TRIBUTARY:
+            other.append(self.weights.value.replace("_", " "))
+        if self.penalty is not None and self.penalty != 1.0:
+            other.append(f"μ = {self.penalty:g}")
+        return f"{self.formulation.upper()} ({', '.join(other)})" if other else self.formulation.upper()

@@ -1,7 +1,7 @@
 """A contact solution, judged: all that is known of it, as numbers, lists and texts."""
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from bemcontact.choices import Weights
 from bemcontact.contact import CondensedContact
 from bemcontact.ends import RandomStarts
 from bemcontact.problem.problem import Problem
+from bemcontact.record import contact_record, solution_record
 from bemcontact.solution import ContactSolution
 
 
@@ -76,75 +77,30 @@ class Result:
 
     def to_dict(self) -> dict[str, Any]:
         """Give all of it as numbers, lists and texts, ready for JSON."""
-        contact, solution, judged = self.contact, self.solution, self.residuals
+        boundary = self.boundary
         return {
-            "name": contact.name,
+            "name": self.contact.name,
             "version": bemcontact.__version__,
-            "formulation": str(solution.formulation),
-            "solver": solution.solver,
-            "status": solution.status.name.lower(),
+            "formulation": str(self.solution.formulation),
             "certified": self.certified,
-            "units": dict(contact.units),
+            "units": dict(self.contact.units),
             "dof": self.degrees_of_freedom,
-            "contact_nodes": contact.size,
-            "free_rigid_motions": contact.free_motions,
-            "motion_names": list(contact.motion_names),
-            "motion_load": contact.motion_load.tolist(),
-            "rigid_amplitudes": solution.rigid_amplitudes.tolist(),
             "notes": list(self.notes),
-            "nodes": contact.points.tolist(),
-            "normals": contact.normals.tolist(),
-            "zone": [contact.zone_names[i] for i in contact.zone],
+            **contact_record(self.contact),
+            **solution_record(self.contact, self.solution),
+            **self.footprint.to_dict(),
             "weights": self.weights.value,
-            "tributary_lengths": contact.weights.tolist(),
-            "initial_gap": contact.initial_gap.tolist(),
-            "pressure": solution.pressure.tolist(),
-            "gap": (contact.initial_gap + solution.displacement).tolist(),
-            "normal_displacement": solution.displacement.tolist(),
-            "resultant": list(self.footprint.resultant.force),
-            "resultant_moment": self.footprint.resultant.moment,
-            "intervals": [
-                {"zone": interval.zone, "start": list(interval.start), "end": list(interval.end)}
-                for interval in self.footprint.intervals
-            ],
-            "peak": None
-            if self.footprint.peak is None
-            else {"pressure": self.footprint.peak.pressure, "at": list(self.footprint.peak.at)},
             "objective": self.objective,
-            "iterations": solution.iterations,
-            "polished": solution.polished,
-            "history": [
-                {"quantity": trace.quantity, "first": trace.first, "values": list(trace.values)}
-                for trace in solution.history
-            ],
-            "search": None if solution.search is None else asdict(solution.search),
             "starts": None if self.starts is None else self.starts.to_dict(),
-            "scales": contact.scales._asdict(),
-            "residuals": {
-                "penetration": judged.penetration,
-                "tension": judged.tension,
-                "complementarity": judged.complementarity,
-                "equilibrium": judged.equilibrium,
-                "stiffness_rows": judged.stiffness_rows,
-                "balance": judged.balance,
-                "force_balance": judged.force_balance,
-                "work": judged.work,
-                "equilibrium_slack": self.equilibrium_slack,
-            },
-            "certificate": {
-                "kind": self.certificate.kind.value,
-                "smallest_eigenvalue": self.certificate.smallest_eigenvalue,
-                "error_bound": self.certificate.error_bound,
-                "words": self.certificate.words,
-            },
-            "convexity": solution.smallest_eigenvalue,
+            "residuals": {**self.residuals.to_dict(), "equilibrium_slack": self.equilibrium_slack},
+            "certificate": self.certificate.to_dict(),
             "boundary": None
-            if self.boundary is None
+            if boundary is None
             else {
-                "points": self.boundary.points.tolist(),
-                "displacement": self.boundary.displacement.tolist(),
-                "traction": self.boundary.traction.tolist(),
-                "edge": [self.boundary.edge_names[i] for i in self.boundary.edge],
+                "points": boundary.points.tolist(),
+                "displacement": boundary.displacement.tolist(),
+                "traction": boundary.traction.tolist(),
+                "edge": [boundary.edge_names[i] for i in boundary.edge],
             },
             "seconds": self.seconds,
         }

@@ -107,7 +107,7 @@ class ContactSolution:
     displacement : (n,) u_n [L], the solver's own (it need not satisfy the equations)
     rigid_amplitudes : (k,) a
     iterations : of the solver, as it counts them
-    polished : whether the active-set step after the solver improved the result and was kept
+    unpolished : (n,) the solver's own p [p], where the active-set step after it was kept; else None
     smallest_eigenvalue : of the scaled Hessian on the equilibrium space, where the formulation looked at it
     search : how a local solver came to its end, if one was used
     history : how the solver got there, in the order in which it happened; the polish adds nothing
@@ -121,7 +121,7 @@ class ContactSolution:
     displacement: Array
     rigid_amplitudes: Array
     iterations: int
-    polished: bool = False
+    unpolished: Array | None = None
     smallest_eigenvalue: float | None = None
     search: LocalSearch | None = None
     history: tuple[Trace, ...] = ()
@@ -130,6 +130,11 @@ class ContactSolution:
     def __post_init__(self) -> None:
         """Make arrays read-only."""
         freeze_arrays(self)
+
+    @property
+    def polished(self) -> bool:
+        """Whether the active-set step after the solver improved the result and was kept."""
+        return self.unpolished is not None
 
     def __repr__(self) -> str:
         """One line: formulation, status, size."""

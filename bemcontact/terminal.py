@@ -45,15 +45,41 @@ def busy(what: str) -> Iterator[Callable[[str], None]]:
     callable
         Takes what is going on now.
     """
+    with _patient_progress() as progress:
+        task = progress.add_task(what, total=None)
+        yield lambda now: progress.update(task, description=now)
+
+
+@contextmanager
+def stages() -> Iterator[Callable[[str], None]]:
+    """Show a line for each stage with the time it took, on a terminal and only once it lasts.
+
+    Yields
+    ------
+    callable
+        Takes what begins now, which ends what was before.
+    """
+    with _patient_progress() as progress:
+
+        def begin(what: str) -> None:
+            for task in progress.task_ids[-1:]:
+                progress.update(task, total=1, completed=1)
+            progress.add_task(what, total=None)
+
+        yield begin
+
+
+@contextmanager
+def _patient_progress() -> Iterator[Progress]:
+    """Show progress only after a while, and only on a terminal; it leaves nothing behind."""
     console = Console(stderr=True)
-    columns = (SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn())
+    columns = (SpinnerColumn(finished_text="✓"), TextColumn("{task.description}", markup=False), TimeElapsedColumn())
     progress = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
-    task = progress.add_task(what, total=None)
     timer = threading.Timer(PATIENCE, progress.start)
     timer.daemon = True
     timer.start()
     try:
-        yield lambda now: progress.update(task, description=now)
+        yield progress
     finally:
         timer.cancel()
         timer.join()

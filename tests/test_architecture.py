@@ -10,17 +10,18 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-ABOVE = ("result", "study", "analysis", "report", "cli")
+ABOVE = ("result", "study", "analysis", "comparing", "report", "cli")
 """Rooms that put both halves of the house together."""
 
 NEVER = {
     "bemcontact.bem": ("spec", "solution", "ends", "formulations", "assessment", "reference", *ABOVE),
     "bemcontact.formulations": ("spec", "problem", "bem", "assessment", "reference", *ABOVE),
     "bemcontact.assessment": ("spec", "problem", "bem", "formulations", "reference", *ABOVE),
-    "bemcontact.result": ("spec", "study", "analysis", "report", "cli"),
-    "bemcontact.study": ("spec", "bem", "formulations", "analysis", "report", "cli"),
-    "bemcontact.analysis": ("spec", "report", "cli"),
-    "bemcontact.report": ("spec", "formulations", "analysis", "cli"),
+    "bemcontact.result": ("spec", "study", "analysis", "comparing", "report", "cli"),
+    "bemcontact.study": ("spec", "bem", "formulations", "analysis", "comparing", "report", "cli"),
+    "bemcontact.analysis": ("spec", "study", "comparing", "report", "cli"),
+    "bemcontact.comparing": ("spec", "bem", "report", "cli"),
+    "bemcontact.report": ("spec", "formulations", "analysis", "comparing", "cli"),
 }  # fmt: skip
 """Room -> rooms of ours that it never imports."""
 
@@ -41,7 +42,7 @@ ONLY = {
 """Room -> the only modules of ours that it imports."""
 
 HOME = {
-    "yaml": ("bemcontact.spec",),
+    "yaml": ("bemcontact.spec", "bemcontact.dialect"),
     "cvxpy": ("bemcontact.formulations.qp3",),
     "clarabel": ("bemcontact.formulations.qp3",),
     "matplotlib": ("bemcontact.report.figures",),

@@ -19,6 +19,7 @@ motions: a small pressure on a body lifted off its support has a small min(p, DÎ
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,7 @@ class Certificate:
         equilibrium alone fixes the pressure
     error_bound : no pressure differs from that of the solution by more [p]; None if none can be given
     relative_error_bound : the same over the peak pressure; None likewise, or where nothing touches
+    complaint : what is wrong if this is no solution, else empty
     words : two or three sentences for an engineer
     """
 
@@ -62,12 +64,22 @@ class Certificate:
     smallest_eigenvalue: float | None
     error_bound: float | None
     relative_error_bound: float | None
+    complaint: str
     words: str
 
     @property
     def certified(self) -> bool:
         """Whether this is the solution, the only one, to the tolerance."""
         return self.kind is CertificateKind.UNIQUE
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as numbers and texts, ready for JSON."""
+        return {
+            "kind": self.kind.value,
+            "smallest_eigenvalue": self.smallest_eigenvalue,
+            "error_bound": self.error_bound,
+            "words": self.words,
+        }
 
 
 def certify(
@@ -103,6 +115,7 @@ def certify(
         smallest_eigenvalue=eigenvalue,
         error_bound=bound,
         relative_error_bound=relative,
+        complaint=complaint,
         words=_words(kind, complaint, eigenvalue, relative, advice(solution)),
     )
 

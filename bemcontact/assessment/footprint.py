@@ -1,6 +1,7 @@
 """Where the bodies touch: intervals of contact, the peak pressure, the resultant."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +65,19 @@ class Footprint:
     intervals: tuple[ContactInterval, ...]
     peak: Peak | None
     resultant: Resultant
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as numbers, lists and texts, ready for JSON."""
+        peak = self.peak
+        return {
+            "resultant": list(self.resultant.force),
+            "resultant_moment": self.resultant.moment,
+            "intervals": [
+                {"zone": interval.zone, "start": list(interval.start), "end": list(interval.end)}
+                for interval in self.intervals
+            ],
+            "peak": None if peak is None else {"pressure": peak.pressure, "at": list(peak.at)},
+        }
 
 
 def footprint(condensed: CondensedContact, solution: ContactSolution) -> Footprint:

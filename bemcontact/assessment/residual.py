@@ -1,6 +1,6 @@
 """How wrong a solution is, recomputed from p and u_n alone: `residuals`."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -35,6 +35,10 @@ class Residuals:
     balance: float
     round_off: float
     force_balance: float | None
+
+    def to_dict(self) -> dict[str, float | None]:
+        """Give them as numbers, ready for JSON, without the round-off allowed."""
+        return {name: value for name, value in asdict(self).items() if name != "round_off"}
 
 
 def residuals(condensed: CondensedContact, solution: ContactSolution, force_balance: float | None = None) -> Residuals:

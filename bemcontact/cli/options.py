@@ -1,9 +1,14 @@
 """Arguments and options that several commands take."""
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import typer
+
+from bemcontact.errors import OptionError
+
+Number = TypeVar("Number", int, float)
 
 SpecArgument = Annotated[Path, typer.Argument(metavar="SPEC", help="Problem to read, a YAML file.", show_default=False)]
 RefineOption = Annotated[int, typer.Option(min=1, metavar="K", help="Split each element into K equal parts.")]
@@ -26,3 +31,15 @@ JsonOption = Annotated[
 ]
 STANDARD_OUTPUT = Path("-")
 """The file name that means standard output."""
+
+
+def several(text: str, option: str, kind: str, read: Callable[[str], Number]) -> list[Number]:
+    """Read numbers with commas between them; `OptionError` says of what kind they should be, and which is not."""
+    numbers = []
+    for item in text.split(","):
+        try:
+            numbers.append(read(item))
+        except ValueError:
+            found = f"{option}: expected {kind}s with commas between, found '{item.strip()}'"
+            raise OptionError(found) from None
+    return numbers

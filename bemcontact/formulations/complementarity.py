@@ -150,7 +150,7 @@ def polish(condensed: CondensedContact, solution: ContactSolution) -> ContactSol
     if not (cleaner or end.residual < problem.residual(p, a)):
         return solution
     p, u_n, a = unscaled(condensed, end.pressure, end.amplitudes)
-    return replace(solution, pressure=p, displacement=u_n, rigid_amplitudes=a, polished=True)
+    return replace(solution, pressure=p, displacement=u_n, rigid_amplitudes=a, unpolished=solution.pressure)
 
 
 def loose_load(problem: ScaledContact) -> Array:

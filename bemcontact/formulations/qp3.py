@@ -44,6 +44,11 @@ STATUSES = {
 }
 
 
+def load() -> None:
+    """Import cvxpy, which takes half a second, so that what follows can be timed."""
+    import cvxpy  # noqa: F401
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Objective:
     """½ pᵀH p + cᵀp + bᵀa + d, which is pᵀJ(q + M p + R a) for every p in equilibrium.

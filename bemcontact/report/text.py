@@ -3,6 +3,7 @@
 The functions return a renderable for `rich`; all text of a user goes into them as plain text, never as markup.
 """
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -10,16 +11,20 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from bemcontact.assessment.comparison import Comparison
 from bemcontact.bem.condense import Body
 from bemcontact.contact import CondensedContact
 from bemcontact.problem import Problem
 from bemcontact.report.words import (
+    convexity_in_words,
     held_by,
     number,
     per_thickness,
     prescribed,
+    reference_in_words,
     search_in_words,
     seconds_in_words,
+    sentence_case,
     size_of,
     span,
     surface_in_words,
@@ -30,6 +35,13 @@ from bemcontact.report.words import (
     with_unit,
 )
 from bemcontact.result import Result
+from bemcontact.study import MeshLevel, Study
+
+RIGHT = {
+    "length", "elements", "points", "objective", "unpolished", "off direct", "iterations", "seconds", "found",
+    "expected", "difference",
+}  # fmt: skip
+"""Columns of numbers."""
 
 
 def problem_summary(body: Body) -> RenderableType:
@@ -61,6 +73,8 @@ def problem_summary(body: Body) -> RenderableType:
     _add(facts, "Held by conditions", "all rigid motions" if not len(body.motions) else "all but those below")
     for motion in body.seen.describe():
         _add(facts, "Held by contact", motion)
+    for name, reference in problem.reference.items():
+        _add(facts, "Reference", f"{name}: {reference_in_words(reference)}")
     for note in body.notes:
         _add(facts, "Note", note)
     return Group(Text(problem.name, "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)
@@ -74,22 +88,11 @@ def result_summary(result: Result) -> RenderableType:
     RenderableType
         For `rich`; no wider than 100 columns where the names are not.
     """
-    contact, found, units = result.contact, result.footprint, units_of(result.contact)
     facts = _facts()
-    if not found.intervals:
-        _add(facts, "Contact", "nowhere")
-    for interval in found.intervals:
-        _add(facts, "Contact", f"{interval.zone}: {span(contact, interval)}")
-    if found.peak:
-        pressure = with_unit(number(found.peak.pressure), units.stress)
-        at = vector(found.peak.at, units.length, scale=size_of(contact))
-        _add(facts, "Peak pressure", f"{pressure} at {at}; per UNDEFORMED length")
-    pressed = float(contact.weights @ np.abs(result.solution.pressure))
-    force = vector(found.resultant.force, per_thickness(units), scale=pressed)
-    _add(facts, "Resultant", f"{force}, of the rigid surfaces on the body")
+    _add_footprint(facts, result)
     _add(facts, "Residuals", _residuals(result))
     if result.solution.search is not None:
-        _add(facts, "Search", search_in_words(result.solution.search, contact))
+        _add(facts, "Search", search_in_words(result.solution.search, result.contact))
     if result.starts is not None:
         _add(facts, "Starts", str(result.starts))
     for note in result.notes:
@@ -111,6 +114,129 @@ def condensed_summary(condensed: CondensedContact, path: Path) -> RenderableType
     return Group(Text(condensed.name, "bold"), "", facts)
 
 
+def study_summary(study: Study) -> RenderableType:
+    """Tell what each formulation found on the finest mesh, and how the answer changes from mesh to mesh.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    RenderableType
+        For `rich`; no wider than 100 columns where the names are not.
+    """
+    level = study.finest
+    compared, answer = level.comparison, level.answer
+    facts = _facts()
+    _add_footprint(facts, answer)
+    _add(facts, "Residuals", _residuals(answer))
+    for name, remark in {item.name: item.remark for item in level.expected if item.remark}.items():
+        _add(facts, name, remark)
+    for contender in compared.everyone:
+        if not contender.certified:
+            _add(facts, contender.label, contender.verdict.words)
+    reasons = (item.verdict.reason for item in compared.contenders if item.verdict.reason)
+    for reason in dict.fromkeys(reasons):
+        _add(facts, "Reason", reason)
+    if study.convergence is not None and study.convergence.remark:
+        _add(facts, "Meshes", study.convergence.remark)
+    for note in answer.notes:
+        _add(facts, "Note", note)
+    style = "bold green" if study.certified else "bold red"
+    word = "certified" if study.certified else "NOT certified"
+    words = [sentence_case(compared.verdict), *_uncertified_meshes(study)]
+    facts.add_row(Text("Verdict", "bold"), Text.assemble((word, style), ". ", " ".join(words)))
+    tables = [_contender_table(compared), _curvature_table(compared), _score_table(level), _mesh_table(study)]
+    parts = [part for table in tables if table.row_count for part in (table, "")]
+    return Group(Text(study.name, "bold"), Text(_compared_how(study), "dim"), "", *parts, facts)
+
+
+def _uncertified_meshes(study: Study) -> Iterator[str]:
+    """Name coarser meshes on which not all is certified."""
+    coarser = [f"{level.refine}" for level in study.levels[:-1] if not level.comparison.certified]
+    if coarser:
+        yield f"On the coarser mesh{'es' * (len(coarser) > 1)} (refine {', '.join(coarser)}) not all is certified."
+
+
+def _contender_table(compared: Comparison) -> Table:
+    """List the formulations, the direct solution last."""
+    searched = any(item.found.starts for item in compared.contenders)
+    table = _table(
+        "", "verdict", "objective", "unpolished", "off direct", "iterations", "seconds", *["starts"] * searched
+    )
+    for item in compared.everyone:
+        difference = compared.difference(item.label)
+        judged, starts = item.judged, item.found.starts
+        cells = [
+            item.label,
+            item.verdict.outcome.value,
+            "" if item.objective is None else f"{item.objective:.0e}",
+            "" if difference is None else f"{difference.unpolished:.0e}",
+            "" if difference is None else f"{difference.largest:.0e}",
+            "" if judged is None else f"{judged.solution.iterations}",
+            "" if judged is None else f"{item.found.seconds:.3f}",
+        ]
+        if searched:
+            cells.append("" if starts is None else f"{starts.solved} of {starts.count}")
+        table.add_row(*map(Text, cells), style="" if item.certified else "red")
+    return table
+
+
+def _curvature_table(compared: Comparison) -> Table:
+    """List how many eigenvalues are positive, zero and negative where a local solver searched."""
+    table = _table("eigenvalues + 0 -", "whole Hessian", "free at start", "free at end", "convex")
+    for item in compared.contenders:
+        search = item.judged.solution.search if item.judged else None
+        if search is None:
+            continue
+        inertias = (search.inertia, search.reduced_inertia_start, search.reduced_inertia_end)
+        told = (" ".join(map(str, inertia)) for inertia in inertias)
+        table.add_row(*map(Text, (item.label, *told, convexity_in_words(compared, item))))
+    return table
+
+
+def _score_table(level: MeshLevel) -> Table:
+    """List what is known of the answer, and how far it is off."""
+    table = _table("reference", "quantity", "found", "expected", "difference", "")
+    for item in level.scores:
+        holds = f"within {item.tolerance:.1%}" if item.holds else f"MORE THAN {item.tolerance:.1%}"
+        cells = [
+            item.reference,
+            item.quantity,
+            "" if item.found is None else number(item.found),
+            number(item.expected),
+            "" if item.difference is None else f"{item.difference:+.2%}",
+            holds if item.judged else "not judged",
+        ]
+        table.add_row(*map(Text, cells), style="red" if item.judged and not item.holds else "")
+    return table
+
+
+def _mesh_table(study: Study) -> Table:
+    """List how the answer changes from mesh to mesh, with the last observed order and what it leads to."""
+    found = study.convergence
+    if found is None:
+        return _table("")
+    table = _table("mesh", *(f"refine {parts}" for parts in found.refine), "order", "limit")
+    for item in found.quantities:
+        order = item.orders[-1] if item.orders else None
+        cells = [item.name, *(f"{value:.6g}" for value in item.values)]
+        cells += ["" if order is None else f"{order:.1f}", "" if item.limit is None else f"{item.limit:.6g}"]
+        table.add_row(*map(Text, cells))
+    return table
+
+
+def _compared_how(study: Study) -> str:
+    """Say what was compared, on what."""
+    level = study.finest
+    freedom = (
+        "" if level.answer.degrees_of_freedom is None else f"{level.answer.degrees_of_freedom} degrees of freedom, "
+    )
+    took = seconds_in_words(study.seconds)
+    return f"compared with the direct solution; {freedom}{level.answer.contact.size} contact points, {took}"
+
+
 def _facts() -> Table:
     """Make a list of facts: what, and how much."""
     facts = Table.grid(padding=(0, 2))
@@ -123,10 +249,26 @@ def _add(facts: Table, what: str, how_much: str) -> None:
     facts.add_row(Text(what, "cyan"), Text(how_much))
 
 
+def _add_footprint(facts: Table, result: Result) -> None:
+    """Add where the body touches, and how hard."""
+    contact, found, units = result.contact, result.footprint, units_of(result.contact)
+    if not found.intervals:
+        _add(facts, "Contact", "nowhere")
+    for interval in found.intervals:
+        _add(facts, "Contact", f"{interval.zone}: {span(contact, interval)}")
+    if found.peak:
+        pressure = with_unit(number(found.peak.pressure), units.stress)
+        at = vector(found.peak.at, units.length, scale=size_of(contact))
+        _add(facts, "Peak pressure", f"{pressure} at {at}; per UNDEFORMED length")
+    pressed = float(contact.weights @ np.abs(result.solution.pressure))
+    force = vector(found.resultant.force, per_thickness(units), scale=pressed)
+    _add(facts, "Resultant", f"{force}, of the rigid surfaces on the body")
+
+
 def _table(*columns: str) -> Table:
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="cyan", pad_edge=False)
     for column in columns:
-        table.add_column(column, justify="right" if column in {"length", "elements", "points"} else "left")
+        table.add_column(column, justify="right" if column in RIGHT else "left")
     return table
 
 

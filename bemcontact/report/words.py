@@ -5,9 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from bemcontact.assessment.comparison import Comparison
+from bemcontact.assessment.contender import Contender
 from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.contact import CondensedContact
-from bemcontact.problem import Circle, Edge, Field, Plane, Polyline, Problem, Units
+from bemcontact.problem import Circle, Edge, Field, Plane, Polyline, Problem, Reference, Table, Units, Values
 from bemcontact.result import Result
 from bemcontact.solution import LocalSearch, Penalty, Status
 
@@ -171,3 +173,35 @@ def held_by(condensed: CondensedContact) -> str:
 def seconds_in_words(seconds: float) -> str:
     """Write seconds with two figures, or all before the point."""
     return f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
+
+
+def sentence_case(text: str) -> str:
+    """The text with a capital first letter."""
+    return text[:1].upper() + text[1:]
+
+
+def convexity_in_words(compared: Comparison, contender: Contender) -> str:
+    """Say whether QP1 or QP2 is convex on what equations and equilibrium leave free; empty for others.
+
+    QP1 is on its equations what QP3 is; QP2 is convex up to its limit of the penalty.
+    """
+    search = None if contender.judged is None else contender.judged.solution.search
+    if search is None:
+        return ""
+    if search.penalty is None:
+        matrices = next(item for item in compared.matrices if item.weights is contender.found.setting.weights)
+        return "yes" if matrices.convex else "no"
+    limit = search.penalty.convexity_limit
+    if limit is None:
+        return "yes, for every μ"
+    told = "for no μ" if limit == 0 else f"up to μ = {limit:.3g}"
+    return f"{'yes' if search.penalty.value <= limit else 'no'}, {told}"
+
+
+def reference_in_words(reference: Reference) -> str:
+    """Say what is known of an answer: a closed form by its name, or where values come from."""
+    match reference:
+        case Values() | Table():
+            return reference.source
+        case _:
+            return f"closed form, {reference.kind.replace('_', ' ')}"

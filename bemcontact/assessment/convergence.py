@@ -1,0 +1,127 @@
+"""How an answer changes as the mesh gets finer: differences, and the order that they show."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from scipy.optimize import brentq
+
+from bemcontact.assessment.footprint import Footprint
+
+ORDERS = 0.05, 12.0
+"""Orders between which one is looked for."""
+ROUND_OFF = 1e-9
+"""Change relative to the value below which it tells of round-off and no longer of the mesh."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantity:
+    """A number on one mesh after the other.
+
+    Parameters
+    ----------
+    name : of the number
+    dimension : "p", "L" or "1"
+    values : on each mesh, the coarsest first
+    orders : observed between meshes, one fewer than values where the limit is known to be zero, else two fewer; None
+        where the values show none, because they do not approach a limit steadily, or have come to it within round-off
+    limit : extrapolated with the last order; zero where that is known; None without an order
+    """
+
+    name: str
+    dimension: str
+    values: tuple[float, ...]
+    orders: tuple[float | None, ...]
+    limit: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Convergence:
+    """What changes with the mesh.
+
+    Parameters
+    ----------
+    refine : parts into which each element is cut, on each mesh
+    quantities : peak, ends of contact and asymmetry of J M
+    remark : what cannot be told, else empty
+    """
+
+    refine: tuple[int, ...]
+    quantities: tuple[Quantity, ...]
+    remark: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as numbers, lists and texts, ready for JSON."""
+        return {
+            "refine": list(self.refine),
+            "quantities": [
+                {**asdict(item), "values": list(item.values), "orders": list(item.orders)} for item in self.quantities
+            ],
+            "remark": self.remark,
+        }
+
+
+def convergence(refine: Sequence[int], footprints: Sequence[Footprint], asymmetries: Sequence[float]) -> Convergence:
+    """Compare the answer on several meshes.
+
+    Parameters
+    ----------
+    refine : parts into which each element is cut, ascending; the element length goes with the reciprocal
+    footprints : of the answer on each mesh
+    asymmetries : of J M on each mesh, zero in the limit
+
+    Returns
+    -------
+    Convergence
+        Ends of contact by their arc positions; without them where the number of intervals changes.
+    """
+    h = [1.0 / parts for parts in refine]
+    peaks = [0.0 if item.peak is None else item.peak.pressure for item in footprints]
+    quantities = [_towards_a_limit("peak pressure", "p", h, peaks)]
+    stretches = [[interval.zone for interval in item.intervals] for item in footprints]
+    remark = ""
+    if all(stretch == stretches[0] for stretch in stretches):
+        for i, zone in enumerate(stretches[0]):
+            told = f"contact {i + 1} in {zone}" if len(stretches[0]) > 1 else f"contact in {zone}"
+            for name, key in (("start", "start_arc"), ("end", "end_arc")):
+                values = [float(getattr(item.intervals[i], key)) for item in footprints]
+                quantities.append(_towards_a_limit(f"{name} of {told}", "L", h, values))
+    else:
+        remark = "the number of contact intervals changes from mesh to mesh, so their ends cannot be compared"
+    quantities.append(_towards_zero("asymmetry of J M", h, asymmetries))
+    return Convergence(refine=tuple(refine), quantities=tuple(quantities), remark=remark)
+
+
+def _towards_zero(name: str, h: Sequence[float], values: Sequence[float]) -> Quantity:
+    """A number that vanishes with the element length: from two meshes log(v/v')/log(h/h')."""
+    orders = tuple(
+        math.log(values[i] / values[i + 1]) / math.log(h[i] / h[i + 1]) if min(values[i : i + 2]) > ROUND_OFF else None
+        for i in range(len(h) - 1)
+    )
+    return Quantity(name=name, dimension="1", values=tuple(values), orders=orders, limit=0.0)
+
+
+def _towards_a_limit(name: str, dimension: str, h: Sequence[float], values: Sequence[float]) -> Quantity:
+    """A number with an unknown limit: from three meshes the q with (v - v')/(v' - v'') = (hᑫ - h'ᑫ)/(h'ᑫ - h''ᑫ)."""
+    orders = tuple(_order(h[i : i + 3], values[i : i + 3]) for i in range(len(h) - 2))
+    limit = None
+    if orders and (q := orders[-1]) is not None:
+        coarse, fine = h[-2] ** q, h[-1] ** q
+        limit = values[-1] + (values[-1] - values[-2]) * fine / (coarse - fine)
+    return Quantity(name=name, dimension=dimension, values=tuple(values), orders=orders, limit=limit)
+
+
+def _order(h: Sequence[float], values: Sequence[float]) -> float | None:
+    """The order that three meshes show, if they do."""
+    first, second = values[0] - values[1], values[1] - values[2]
+    size = ROUND_OFF * max(map(abs, values))
+    if abs(first) <= size or abs(second) <= size:
+        return None
+
+    def excess(q: float) -> float:
+        return first / second - (h[0] ** q - h[1] ** q) / (h[1] ** q - h[2] ** q)
+
+    if excess(ORDERS[0]) * excess(ORDERS[1]) > 0:
+        return None
+    return float(brentq(excess, *ORDERS))  # pyright: ignore[reportArgumentType]

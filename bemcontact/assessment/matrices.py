@@ -1,0 +1,89 @@
+"""What the condensed matrices are like: asymmetry, definiteness, condition; they decide what can be proved."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from scipy.linalg import eigvalsh
+
+from bemcontact.choices import Weights
+from bemcontact.contact import CondensedContact
+
+NEGLIGIBLE = 1e-10
+"""Entry of ZᵀJR that is round-off; by the scaling the numbers are of size one."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WeightedCompliance:
+    """J M with J over its largest entry and ‖M‖∞ = 1, and what it is on the equilibrium space {p : ℓᵀp = 0}.
+
+    Parameters
+    ----------
+    weights : which J
+    negative_weights : entries of J below zero; with any of them an objective of zero certifies nothing
+    asymmetry : |JM - MᵀJᵀ| / |JM + MᵀJᵀ| in the Frobenius norm: zero for the continuum, so that it tells of the mesh
+    smallest_eigenvalue, largest_eigenvalue : of sym(JM) on the equilibrium space; None if that is the zero vector
+    saddle : whether pᵀJR a does not vanish there, so that the objective of QP3 is a saddle in (p, a)
+    """
+
+    weights: Weights
+    negative_weights: int
+    asymmetry: float
+    smallest_eigenvalue: float | None
+    largest_eigenvalue: float | None
+    saddle: bool
+
+    @property
+    def convex(self) -> bool:
+        """Whether QP3 with these weights is strictly convex."""
+        return not self.saddle and (self.smallest_eigenvalue is None or self.smallest_eigenvalue > 0)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as numbers and texts, ready for JSON."""
+        return {**asdict(self), "weights": self.weights.value, "convex": self.convex}
+
+
+def weighted_compliance(condensed: CondensedContact, weights: Weights) -> WeightedCompliance:
+    """Look at J M.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    weights : which J
+
+    Returns
+    -------
+    WeightedCompliance
+
+    Raises
+    ------
+    ProblemError
+        The problem does not carry these weights.
+    """
+    U, T = condensed.scales
+    J = condensed.weight_matrix(weights)
+    J = J / np.abs(J).max()
+    weighted, ell = J @ condensed.compliance * (T / U), condensed.equilibrium
+    Z = np.linalg.qr(ell, mode="complete")[0][:, ell.shape[1] :]
+    symmetric = weighted + weighted.T
+    eigenvalues = eigvalsh(Z.T @ symmetric @ Z / 2) if Z.shape[1] else None
+    motions = condensed.rigid_motions / np.abs(condensed.rigid_motions).max(axis=0, initial=0.0)
+    size = float(np.linalg.norm(symmetric))
+    return WeightedCompliance(
+        weights=weights,
+        negative_weights=int(np.count_nonzero(J < 0)),
+        asymmetry=float(np.linalg.norm(weighted - weighted.T)) / size if size > 0 else 0.0,
+        smallest_eigenvalue=None if eigenvalues is None else float(eigenvalues[0]),
+        largest_eigenvalue=None if eigenvalues is None else float(eigenvalues[-1]),
+        saddle=bool(np.abs(Z.T @ J @ motions).max(initial=0.0) > NEGLIGIBLE),
+    )
+
+
+def condition(condensed: CondensedContact) -> float:
+    """Condition in the 2-norm of [[M, R], [ℓᵀ, 0]], scaled, whose inverse holds the contact stiffness rows of (12)."""
+    U, T = condensed.scales
+    R, k = condensed.rigid_motions, condensed.free_motions
+    motions = R / np.abs(R).max(axis=0, initial=0.0)
+    rows = (condensed.weights / condensed.weights.max())[:, None] * motions
+    matrix = np.block([[condensed.compliance * (T / U), motions], [rows.T, np.zeros((k, k))]])
+    return float(np.linalg.cond(matrix))

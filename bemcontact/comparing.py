@@ -1,0 +1,139 @@
+"""From a problem to formulations side by side, on one mesh or several."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from bemcontact.analysis import condensed, judged
+from bemcontact.assessment.comparison import Comparison, comparison
+from bemcontact.assessment.contender import Found
+from bemcontact.choices import FormulationName, Setting, Weights
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import NotConvexError, OptionError, SolverError
+from bemcontact.formulations import FORMULATIONS, OPTIONS, qp3
+from bemcontact.formulations.formulation import ensure_whole
+from bemcontact.formulations.plan import COMPARED, ComparisonPlan, Plan, planned_comparison
+from bemcontact.formulations.starts import search_from
+from bemcontact.problem.problem import Problem
+from bemcontact.stopwatch import Stopwatch
+from bemcontact.study import MeshLevel, Study
+
+HARMLESS = ("name", "description", "mesh")
+"""Keys of a spec that may change without changing the answer that is sought."""
+
+
+def compare(
+    problem: Problem | CondensedContact,
+    formulations: Sequence[str] = COMPARED,
+    weights: Sequence[Weights | str] = (Weights.TRIBUTARY,),
+    penalties: Sequence[float] = (1.0,),
+    *,
+    starts: int | None = None,
+    seed: int = 0,
+    progress: Callable[[str], object] | None = None,
+) -> Comparison:
+    """Solve a contact problem by several formulations and put them side by side; the direct solution is the reference.
+
+    Parameters
+    ----------
+    problem : Problem or CondensedContact
+    formulations : of "qp1", "qp2", "qp3"
+    weights : of the objectives, each of them with every formulation; `Weights` or their names
+    penalties : μ of QP2, free of units, from 1e-8 to 1e8
+    starts : how many random starts of QP1 and QP2 to make beside the null start, to count how many end at the solution
+    seed : of these
+    progress : called with the name of each stage as it begins
+
+    Returns
+    -------
+    Comparison
+        Check `certified`. A formulation that refuses is part of it, with the reason.
+
+    Raises
+    ------
+    OptionError
+        A name is unknown, a number out of range, or nothing is left to compare.
+    ProblemError
+        The problem has no answer, or does not carry the weights asked for.
+    """
+    plan = planned_comparison(formulations, weights, penalties, starts=starts, seed=seed)
+    return _side_by_side(plan, problem, Stopwatch(progress=progress)).comparison
+
+
+def study(
+    plan: ComparisonPlan,
+    problem: Problem | CondensedContact,
+    refine: Sequence[int] = (1,),
+    progress: Callable[[str], object] | None = None,
+    changes: Sequence[str] = (),
+) -> Study:
+    """Compare as planned on one mesh or several, each with all elements cut into so many parts; else as `compare`.
+
+    Parameters
+    ----------
+    plan : what to compare
+    problem : Problem or CondensedContact
+    refine : parts into which the elements are cut, for each mesh
+    progress : called with the name of each stage as it begins
+    changes : made to the problem since it was written down, such as ``material.young_modulus=2e6``
+
+    Raises
+    ------
+    OptionError
+        No mesh, one that is there twice, or a refinement of a condensed problem, which has no mesh.
+    """
+    if not refine or len({*refine}) < len(refine):
+        raise OptionError(f"the refinements must be different from each other, and at least one; found {[*refine]}")
+    if isinstance(problem, CondensedContact) and [*refine] != [1]:
+        raise OptionError("a condensed problem has no mesh to refine; refine the problem that it came from")
+    for parts in refine:
+        ensure_whole(parts, "refinement", 1)
+    levels = []
+    for parts in sorted(refine):
+        tell = progress if len(refine) == 1 or progress is None else _prefixed(progress, f"refine {parts}: ")
+        finer = problem.refined(parts) if isinstance(problem, Problem) and parts > 1 else problem
+        level = _side_by_side(plan, finer, Stopwatch(progress=tell))
+        levels.append(replace(level, refine=parts, altered=_altered(changes)))
+    return Study(settings={**plan.to_dict(), "changes": [*changes]}, levels=tuple(levels))
+
+
+def _altered(changes: Sequence[str]) -> bool:
+    """Whether changes are such that references no longer belong to the problem, and were not changed with it."""
+    keys = [change.partition("=")[0].strip().partition(".")[0] for change in changes]
+    return "reference" not in keys and any(key not in HARMLESS for key in keys)
+
+
+def _prefixed(progress: Callable[[str], object], prefix: str) -> Callable[[str], object]:
+    """Tell what is going on with the mesh before it."""
+    return lambda what: progress(prefix + what)
+
+
+def _side_by_side(plan: ComparisonPlan, problem: Problem | CondensedContact, watch: Stopwatch) -> MeshLevel:
+    """Compare on one mesh, and judge the direct solution with the boundary behind it."""
+    contact, condensation = condensed(problem, watch)
+    reference = _found(Setting(formulation=FormulationName.COMPLEMENTARITY), plan.reference, plan, contact, watch)
+    assert reference.solution is not None  # the direct solver ends with a status, never refuses
+    if any(setting.formulation == FormulationName.QP3 for setting, _ in plan.contenders):
+        with watch.stage("loading cvxpy"):
+            qp3.load()
+    found = [_found(setting, item, plan, contact, watch) for setting, item in plan.contenders]
+    with watch.stage("comparison"):
+        compared = comparison(contact, reference, found)
+    answer = judged(problem, condensation, contact, reference.solution, Weights.TRIBUTARY, watch)
+    return MeshLevel(refine=1, comparison=compared, answer=answer)
+
+
+def _found(setting: Setting, plan: Plan, whole: ComparisonPlan, contact: CondensedContact, watch: Stopwatch) -> Found:
+    """Solve by one formulation, from the null start and from random ones if they are asked for."""
+    statement, label = FORMULATIONS[plan.formulation], setting.label
+    begin, ends = time.perf_counter(), None
+    try:
+        with watch.stage(label):
+            solution = statement(contact, plan.options)
+        seconds = time.perf_counter() - begin
+        if whole.starts is not None and "start" in OPTIONS[plan.formulation]:
+            with watch.stage(f"{label}, random starts"):
+                ends = search_from(contact, statement, plan.options, whole.starts, whole.seed)
+    except (NotConvexError, OptionError, SolverError) as error:
+        return Found(setting=setting, solution=None, refusal=str(error))
+    return Found(setting=setting, solution=solution, seconds=seconds, starts=ends)

@@ -1,0 +1,53 @@
+"""Observed orders: sequences whose order and limit are known."""
+
+import pytest
+
+from bemcontact.assessment.convergence import convergence
+from bemcontact.assessment.footprint import ContactInterval, Footprint, Peak, Resultant
+
+
+def print_of(peak: float, *ends: float, zone: str = "foot") -> Footprint:
+    """Peak pressure and contact from 0 to each end."""
+    intervals = tuple(
+        ContactInterval(zone=zone, start=(0.0, 0.0), end=(end, 0.0), start_arc=0.0, end_arc=end) for end in ends
+    )
+    resultant = Resultant(force=(0.0, 1.0), moment=0.0, line_point=None)
+    return Footprint(intervals=intervals, peak=Peak(pressure=peak, at=(0.0, 0.0)), resultant=resultant)
+
+
+@pytest.mark.parametrize("refine", [(1, 2, 4), (1, 2, 3), (2, 3, 7)])
+@pytest.mark.parametrize("order", [0.5, 1.5, 2.0, 3.7])
+def test_a_power_of_the_element_length_shows_its_order(refine: tuple[int, ...], order: float):
+    """Of 10 + 3 hᑫ and 0.2 hᑫ, h = 1/refine: the order is q and the limit 10, for any ratio of meshes."""
+    peaks = [10 + 3 * parts**-order for parts in refine]
+    found = convergence(refine, [print_of(peak, 5 - peak / 10) for peak in peaks], [0.2 * k**-order for k in refine])
+    peak, start, end, asymmetry = found.quantities
+    assert peak.orders == (pytest.approx(order, rel=1e-6),)
+    assert peak.limit == pytest.approx(10, rel=1e-9)
+    assert start.orders == (None,)  # it does not move
+    assert end.limit == pytest.approx(4, rel=1e-9)
+    assert asymmetry.orders == (pytest.approx(order), pytest.approx(order))
+    assert asymmetry.limit == 0.0
+
+
+def test_values_that_go_to_and_fro_show_no_order():
+    found = convergence((1, 2, 4), [print_of(p) for p in (1.0, 3.0, 2.0)], [0.1, 0.1, 0.2])
+    assert found.quantities[0].orders == (None,)
+    assert found.quantities[0].limit is None
+    assert found.quantities[-1].orders == (pytest.approx(0.0), pytest.approx(-1.0))
+
+
+def test_two_meshes_show_only_what_vanishes():
+    found = convergence((1, 3), [print_of(1.0), print_of(1.1)], [0.9, 0.1])
+    assert found.quantities[0].orders == ()
+    assert found.quantities[-1].orders == (pytest.approx(2.0),)
+
+
+def test_contact_that_splits_has_no_ends_to_compare():
+    found = convergence((1, 2), [print_of(1.0, 2.0), print_of(1.0, 1.0, 2.0)], [0.2, 0.1])
+    assert [item.name for item in found.quantities] == ["peak pressure", "asymmetry of J M"]
+    assert "number of contact intervals changes" in found.remark
+
+
+def test_a_symmetric_matrix_shows_no_order():
+    assert convergence((1, 2), [print_of(1.0)] * 2, [0.0, 0.0]).quantities[-1].orders == (None,)
