@@ -1,7 +1,7 @@
 """From a problem to formulations side by side, on one mesh or several."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from bemcontact.analysis import condensed, judged
@@ -15,7 +15,7 @@ from bemcontact.formulations.formulation import ensure_whole
 from bemcontact.formulations.plan import COMPARED, ComparisonPlan, Plan, planned_comparison
 from bemcontact.formulations.starts import search_from
 from bemcontact.problem.problem import Problem
-from bemcontact.stopwatch import Stopwatch
+from bemcontact.stopwatch import Progress, Stopwatch
 from bemcontact.study import MeshLevel, Study
 
 HARMLESS = ("name", "description", "mesh")
@@ -30,7 +30,7 @@ def compare(
     *,
     starts: int | None = None,
     seed: int = 0,
-    progress: Callable[[str], object] | None = None,
+    progress: Progress | None = None,
 ) -> Comparison:
     """Solve a contact problem by several formulations and put them side by side; the direct solution is the reference.
 
@@ -42,7 +42,7 @@ def compare(
     penalties : μ of QP2, free of units, from 1e-8 to 1e8
     starts : how many random starts of QP1 and QP2 to make beside the null start, to count how many end at the solution
     seed : of these
-    progress : called with the name of each stage as it begins
+    progress : called with the name of each stage as it begins, and how far it has come
 
     Returns
     -------
@@ -64,7 +64,7 @@ def study(
     plan: ComparisonPlan,
     problem: Problem | CondensedContact,
     refine: Sequence[int] = (1,),
-    progress: Callable[[str], object] | None = None,
+    progress: Progress | None = None,
     changes: Sequence[str] = (),
 ) -> Study:
     """Compare as planned on one mesh or several, each with all elements cut into so many parts; else as `compare`.
@@ -74,7 +74,7 @@ def study(
     plan : what to compare
     problem : Problem or CondensedContact
     refine : parts into which the elements are cut, for each mesh
-    progress : called with the name of each stage as it begins
+    progress : called with the name of each stage as it begins, and how far it has come
     changes : made to the problem since it was written down, such as ``material.young_modulus=2e6``
 
     Raises
@@ -103,9 +103,9 @@ def _altered(changes: Sequence[str]) -> bool:
     return "reference" not in keys and any(key not in HARMLESS for key in keys)
 
 
-def _prefixed(progress: Callable[[str], object], prefix: str) -> Callable[[str], object]:
+def _prefixed(progress: Progress, prefix: str) -> Progress:
     """Tell what is going on with the mesh before it."""
-    return lambda what: progress(prefix + what)
+    return lambda stage, now: progress(prefix + stage, now)
 
 
 def _side_by_side(plan: ComparisonPlan, problem: Problem | CondensedContact, watch: Stopwatch) -> MeshLevel:
@@ -132,8 +132,15 @@ def _found(setting: Setting, plan: Plan, whole: ComparisonPlan, contact: Condens
             solution = statement(contact, plan.options)
         seconds = time.perf_counter() - begin
         if whole.starts is not None and "start" in OPTIONS[plan.formulation]:
-            with watch.stage(f"{label}, random starts"):
-                ends = search_from(contact, statement, plan.options, whole.starts, whole.seed)
+            with watch.stage(f"{label}, random starts") as say:
+                ends = search_from(
+                    contact,
+                    statement,
+                    plan.options,
+                    whole.starts,
+                    whole.seed,
+                    lambda done: say(f"{done} of {whole.starts}"),
+                )
     except (NotConvexError, OptionError, SolverError) as error:
         return Found(setting=setting, solution=None, refusal=str(error))
     return Found(setting=setting, solution=solution, seconds=seconds, starts=ends)

@@ -51,22 +51,26 @@ def busy(what: str) -> Iterator[Callable[[str], None]]:
 
 
 @contextmanager
-def stages() -> Iterator[Callable[[str], None]]:
+def stages() -> Iterator[Callable[[str, str], None]]:
     """Show a line for each stage with the time it took, on a terminal and only once it lasts.
 
     Yields
     ------
     callable
-        Takes what begins now, which ends what was before.
+        Takes the name of a stage, which ends the one before, and how far it has come.
     """
     with _patient_progress() as progress:
+        names: list[str] = []
 
-        def begin(what: str) -> None:
-            for task in progress.task_ids[-1:]:
-                progress.update(task, total=1, completed=1)
-            progress.add_task(what, total=None)
+        def tell(stage: str, now: str) -> None:
+            if names[-1:] != [stage]:
+                for task in progress.task_ids[-1:]:
+                    progress.update(task, total=1, completed=1)
+                progress.add_task(stage, total=None)
+                names.append(stage)
+            progress.update(progress.task_ids[-1], description=f"{stage}, {now}" if now else stage)
 
-        yield begin
+        yield tell
 
 
 @contextmanager
