@@ -127,7 +127,7 @@ class Study:
             "description": "" if problem is None else problem.description,
             "certified": self.certified,
             "verdict": self.finest.comparison.verdict,
-            "units": dict(self.finest.comparison.contact.units),
+            "units": {"length": "", "force": "", **self.finest.comparison.contact.units},
             "settings": self.settings,
             "levels": [level.to_dict() for level in self.levels],
             "convergence": None if self.convergence is None else self.convergence.to_dict(),

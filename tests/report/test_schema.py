@@ -1,0 +1,57 @@
+"""The schema of report.json is what a report holds: neither more nor less."""
+
+import json
+
+import numpy as np
+import pytest
+from contact_problems import random_contact
+from jsonschema import Draft202012Validator, ValidationError, validate
+
+from bemcontact import comparing
+from bemcontact.contact import CondensedContact
+from bemcontact.formulations.plan import planned_comparison
+from bemcontact.report.schema import Report, report_schema
+from bemcontact.spec import load
+
+SPURIOUS = CondensedContact.from_compliance([[1.0, 2.0], [1.0, 1.0]], [-1.0, -2.0])
+
+
+def reports() -> dict[str, dict]:
+    cylinder = load("models/cylinder_on_plane.yaml")
+    cases = {
+        "cylinder": (planned_comparison(weights=["tributary", "consistent"], penalties=[1, 1e3]), cylinder, (1, 2)),
+        "refused": (planned_comparison(["qp3"]), SPURIOUS, (1,)),
+        "spurious": (planned_comparison(["qp1", "qp2"], starts=3), SPURIOUS, (1,)),
+        "no contact": (planned_comparison(), CondensedContact.from_compliance(np.eye(2), [1.0, 1.0]), (1,)),
+        "fixed by equilibrium": (
+            planned_comparison(),
+            CondensedContact.from_compliance([[1.0]], [0.0], rigid_motions=[1.0], motion_load=-1.0),
+            (1,),
+        ),
+        "free": (planned_comparison(), random_contact(3, 7, 2), (1,)),
+    }
+    return {name: json.loads(comparing.study(*case).to_json()) for name, case in cases.items()}
+
+
+@pytest.fixture(scope="module")
+def written(request: pytest.FixtureRequest) -> dict[str, dict]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(request.config.rootpath)
+        return reports()
+
+
+def test_it_is_a_schema():
+    Draft202012Validator.check_schema(report_schema())
+
+
+def test_reports_of_all_kinds_are_valid_and_nothing_is_left_out(written: dict[str, dict]):
+    for report in written.values():
+        validate(report, report_schema(), Draft202012Validator)
+        assert json.loads(Report.model_validate(report).model_dump_json()) == report
+
+
+def test_a_report_with_a_key_too_many_or_too_few_is_not(written: dict[str, dict]):
+    report = written["free"]
+    for wrong in ({**report, "extra": 1}, {key: value for key, value in report.items() if key != "levels"}):
+        with pytest.raises(ValidationError):
+            validate(wrong, report_schema(), Draft202012Validator)
