@@ -39,3 +39,17 @@ def test_short_work_shows_nothing(monkeypatch: pytest.MonkeyPatch, capsys: pytes
     with terminal.busy("solving"):
         pass
     assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.usefixtures("no_patience")
+def test_stages_are_listed_one_below_the_other(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    with terminal.stages() as tell:
+        tell("mesh", "")
+        tell("QP1, random starts", "")
+        tell("QP1, random starts", "3 of 20")
+        time.sleep(0.3)  # a thread draws ten times in a second
+    shown = capsys.readouterr().err
+    assert "mesh" in shown
+    assert "QP1, random starts, 3 of 20" in shown
+    assert "✓" in shown
