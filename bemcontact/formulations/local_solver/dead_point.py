@@ -65,13 +65,13 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     inside one face and is an eigenvector there. If there are many of them, descents from the negative eigenvectors,
     projected onto the cone, come before the rest.
     """
-    units = unit_sizes(np.abs(H[np.ix_(cone.free, cone.free)]))
-    equal, weak = unit_rows(cone.equal * units)[0], unit_rows(cone.weak * units)[0]
-    N = null_space(equal, cone.free.size)
-    reduced = N.T @ (units[:, None] * H[np.ix_(cone.free, cone.free)] * units) @ N
+    form = H[cone.free][:, cone.free]
+    units = unit_sizes(np.abs(form))
+    N = null_space(unit_rows(cone.equal * units)[0], cone.free.size)
+    reduced = N.T @ (units[:, None] * form * units) @ N
     if _positive_semidefinite(reduced):
         return Curvature(copositive=True)
-    weak = weak @ N
+    weak = unit_rows(cone.weak * units)[0] @ N
     copositive, found = _search_faces(reduced, weak, min(faces, FEW))
     if copositive is None:
         found = _probe(reduced, weak)
@@ -93,7 +93,11 @@ def null_space(rows: Array, n: int) -> Array:
 
 def _positive_semidefinite(matrix: Array) -> bool:
     """Whether no eigenvalue is below -ZERO, by Cholesky of the shifted matrix."""
-    return is_definite(matrix + ZERO * np.eye(matrix.shape[0])) or float(np.linalg.eigvalsh(matrix)[0]) >= -ZERO
+    return (
+        matrix.size == 0
+        or is_definite(matrix + ZERO * np.eye(matrix.shape[0]))
+        or float(np.linalg.eigvalsh(matrix)[0]) >= -ZERO
+    )
 
 
 def _projected(weak: Array, d: Array) -> Array:

@@ -57,7 +57,7 @@ def unit_sizes(size: Array) -> Array:
     """Factors of rows and columns by which the rows of a symmetric matrix of sizes come to one, nearly."""
     units = np.ones(size.shape[0])
     for _ in range(SWEEPS if units.size else 0):
-        rows = np.maximum.reduce((units[:, None] * size) * units, axis=1)
+        rows = units * np.maximum.reduce(size * units, axis=1)
         units = units / np.sqrt(np.where(rows > 0.0, rows, 1.0))
     return units
 

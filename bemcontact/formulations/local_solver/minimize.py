@@ -58,8 +58,10 @@ def minimize_qp(
     ProblemError
         The data do not state a quadratic programme.
     """
-    options = options or QPOptions()
-    _check(options)
+    if options is None:
+        options = QPOptions()
+    else:
+        _check(options)
     stated = read(H, c, A, cl, cu, bl, bu)
     n = stated.c.size
     start = np.zeros(n) if x0 is None else numbers("x0", x0, n)
@@ -131,6 +133,6 @@ def _result(stated: Statement, scales: Scales, progress: Progress, finding: Find
         weakly_active=finding.weak,
         ray=None if finding.ray is None else scales.variables * finding.ray,
         certificate=None if finding.certificate is None else scales.multipliers(finding.certificate),
-        violation=float(stated.violation(stated.values(x)).max(initial=0.0)),
+        violation=float(stated.violation(stated.values(x)).max()),
         log=tuple(progress.lines),
     )

@@ -10,12 +10,12 @@ import numpy as np
 
 from bemcontact.formulations.local_solver.pricing import wrong_sign
 from bemcontact.formulations.local_solver.progress import Progress
-from bemcontact.formulations.local_solver.ratio_test import Block, nearest, side_reached
-from bemcontact.formulations.local_solver.statement import Array, Sides
+from bemcontact.formulations.local_solver.ratio_test import INFINITY, Block, nearest, side_reached
+from bemcontact.formulations.local_solver.statement import Array, Sides, Statement
 from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 
-def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tuple[Sides, Array | None]:
+def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tuple[WorkingSet, Array | None]:
     """Walk to a feasible point.
 
     Parameters
@@ -29,45 +29,59 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
 
     Returns
     -------
-    sides : (n + m,) int8 array
-        Working set at the end.
+    working : WorkingSet
+        The constraints held at the end; where the point is feasible, with all equalities and the null space.
     certificate : (n + m,) array or None
         Multipliers of infeasibility in scaled units where the sum cannot be reduced; to be verified.
     """
-    signs = violated_signs(progress)
-    if not signs.any():
-        return sides, None
-    working, n = WorkingSet(progress.statement, sides), progress.x.size
+    statement, n = progress.statement, progress.x.size
+    if not np.count_nonzero(violated_signs(progress)):
+        return _with_equalities(statement, sides), None
+    working = WorkingSet(statement, sides)
     progress.correct(working.onto(progress.x))
-    signs = violated_signs(progress) * ~working.held  # what is held is on its bound, up to rounding
-    while violated := signs.dot(signs):
-        gradient = progress.statement.transposed(signs)
+    while violated := (signs := _signs_of_others(progress, working)).dot(signs):
+        gradient = statement.transposed(signs)
         zero = fineness * progress.options.optimality_tolerance * sqrt(violated)
         multipliers = working.multipliers(gradient)
-        reduced, dropped = multipliers[:n] * working.free, None
-        if working.number == n or reduced.dot(reduced) <= zero**2:
+        reduced = multipliers[:n] * working.free if working.number < n else None
+        if reduced is None or reduced.dot(reduced) <= zero**2:
             place = wrong_sign(working, multipliers, zero, least_index=progress.least_index)
             if place is None:
-                return working.sides, _certificate(working, signs, multipliers)
+                return working, _certificate(working, signs, multipliers)
             if progress.exhausted:
-                break
+                return working, None
             dropped, along = working.drop(place)
             direction = -float(along.dot(gradient)) * along
         elif progress.exhausted:
-            break
+            return working, None
         else:
-            direction = working.within(-reduced)
+            dropped, direction = None, working.within(-reduced)
         if not _step(progress, working, signs, direction, dropped):
-            return working.sides, _certificate(working, signs, working.multipliers(gradient))
-        signs = violated_signs(progress) * ~working.held
-    return working.sides, None
+            return working, _certificate(working, signs, working.multipliers(gradient))
+    if working.number == n and working.sharp and not np.count_nonzero(statement.equality > working.held):
+        working.null_space = np.zeros((n, 0))  # a vertex: there is nothing to be made afresh
+        return working, None
+    return _with_equalities(statement, working.sides), None
+
+
+def _with_equalities(statement: Statement, sides: Sides) -> WorkingSet:
+    """Phase one ends within the tolerance; equalities are to be met as exactly as the arithmetic allows."""
+    sides = sides.copy()
+    sides[statement.equality] = 2
+    return WorkingSet(statement, sides)
 
 
 def violated_signs(progress: Progress) -> Array:
     """+1 above the upper, -1 below the lower bound, 0 within tolerance."""
     values = progress.values
-    above = values > progress.highest
-    return above.astype(float) - (values < progress.lowest)
+    return np.subtract(values > progress.highest, values < progress.lowest, dtype=float)
+
+
+def _signs_of_others(progress: Progress, working: WorkingSet) -> Array:
+    """The same, but for what is held: that is on its bound, up to rounding."""
+    signs = violated_signs(progress)
+    signs[working.held] = 0.0
+    return signs
 
 
 def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array:
@@ -84,11 +98,11 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
     length = sqrt(direction.dot(direction))
     along = progress.statement.values(direction)
     wall = nearest(progress, along, length, working.held | (signs != 0.0), working)
-    inner = None if wall is not None and wall.step == 0.0 else _breakpoint(progress, signs, along, length)
-    block = inner if wall is None or (inner is not None and inner.step <= wall.step) else wall
+    inner = _breakpoint(progress, signs, along, length, INFINITY if wall is None else wall.step)
+    block = inner or wall
     if block is None:
         return False
-    progress.move(direction, along, block.step, length)
+    progress.move(along, block.step, length)
     if working.add(block.constraint, block.side) is None:
         return False
     value = float(progress.statement.violation(progress.values).sum())
@@ -96,28 +110,31 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
     return True
 
 
-def _breakpoint(progress: Progress, signs: Array, along: Array, length: float) -> Block | None:
-    """Where the sum of infeasibilities stops falling: the violated constraint that turns the slope."""
-    statement = progress.statement
-    falling = -signs * along
+def _breakpoint(progress: Progress, signs: Array, along: Array, length: float, furthest: float) -> Block | None:
+    """Where the sum of infeasibilities stops falling, no further than that: the violated constraint that turns it."""
+    statement, falling = progress.statement, -signs * along
     towards = (falling > 1e-10 * length).nonzero()[0]
-    above, lower, upper = signs[towards] > 0.0, statement.lower[towards], statement.upper[towards]
+    lower, upper = statement.lower[towards], statement.upper[towards]
     values, speed = progress.values[towards], falling[towards]
-    near = np.where(above, values - upper, lower - values)
-    steps = np.concatenate([near, near + (upper - lower)])
-    speeds = np.concatenate([speed, speed])
-    steps /= speeds
-    order = steps.argsort(kind="stable")
-    slope = -float(falling.sum())
-    turned = (slope + speeds[order].cumsum() >= 1e-12 * slope).nonzero()[0]
-    if turned.size == 0:
+    near = np.maximum(values - upper, lower - values)
+    entering = near / speed
+    if entering.size == 0 or entering.item(entering.argmin()) > furthest:
         return None
-    at = int(order[turned[0]])
-    entering = at < towards.size
+    steps = np.concatenate([entering, (near + (upper - lower)) / speed])
+    speeds = np.concatenate([speed, speed])
+    order = steps.argsort(kind="stable")
+    slope = float(signs.dot(along))
+    turned = int(speeds[order].cumsum().searchsorted((1e-12 - 1.0) * slope))
+    if turned == order.size:
+        return None
+    at = int(order[turned])
+    step = steps.item(at)
+    if step > furthest or step == INFINITY:
+        return None
     constraint = int(towards[at % towards.size])
     if statement.equality[constraint]:
         side = 2
     else:
         onwards = side_reached(progress, constraint, along)
-        side = -onwards if entering else onwards
-    return Block(constraint=constraint, side=side, step=float(steps[at]))
+        side = -onwards if at < towards.size else onwards
+    return Block(constraint, side, step)

@@ -13,7 +13,7 @@ from bemcontact.formulations.local_solver.pricing import wrong_sign
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import Block, nearest
 from bemcontact.formulations.local_solver.reduced_hessian import ReducedHessian
-from bemcontact.formulations.local_solver.statement import Array, Sides
+from bemcontact.formulations.local_solver.statement import Array
 from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, WorkingSet
 
 
@@ -41,13 +41,13 @@ class Descent:
     ----------
     progress : Progress
         The point; it is put on the bounds of the working set.
-    sides : (n + m,) int8 array
-        Working set to begin with.
+    working : WorkingSet
+        The constraints held.
 
     Attributes
     ----------
-    working, hessian
-        The constraints held, and the Hessian on what they leave free.
+    hessian : ReducedHessian
+        The Hessian on what they leave free.
     value : float
         The scaled objective.
     dropped : int or None
@@ -60,43 +60,43 @@ class Descent:
         Whole Newton steps in a row; releases since the last step.
     """
 
-    def __init__(self, progress: Progress, sides: Sides) -> None:
+    def __init__(self, progress: Progress, working: WorkingSet) -> None:
         self.progress = progress
         self.dropped: int | None = None
         self.changed = self.broken = False
         self.whole = self.idle = 0
         self._refused: set[int] = set()
-        self.working = WorkingSet(progress.statement, sides)
-        self.hessian = ReducedHessian(progress.statement, self.working.null_space)
+        self.working = working
+        self.hessian = ReducedHessian(progress.statement, working.null_space)
         for direction in self.hessian.left_over.T:
-            self.working.fix(direction, TEMPORARY)
-        progress.correct(self.working.onto(progress.x))
+            working.fix(direction, TEMPORARY)
+        progress.correct(working.onto(progress.x))
         progress.forget()
         self.value = progress.objective
 
     def run(self) -> Outcome:
         """Walk until no constraint can be dropped with profit, or for ever."""
+        progress, working, hessian = self.progress, self.working, self.hessian
         while not self.broken:
-            if self.hessian.pending is None and self._settled():
-                newton, place = self._next(self.working.multipliers(self.progress.gradient))
+            if hessian.pending is None and self._settled():
+                newton, place = self._next(working.multipliers(progress.gradient))
                 if not newton:
                     if place is None:
                         return Outcome(ending=Ending.STATIONARY)
-                    if self.idle > 2 * self.working.number + 10:  # multipliers are noise: releases lead nowhere
+                    if self.idle > 2 * working.number + 10:  # multipliers are noise: releases lead nowhere
                         return Outcome(ending=Ending.INACCURATE)
                     self._release(place)
-            if self.progress.exhausted:
+            if progress.exhausted:
                 return Outcome(ending=Ending.LIMIT)
-            if self.hessian.pending is None:
+            if hessian.pending is None:
                 self._newton_step()
-            elif (outcome := self._follow_curvature(self.hessian.pending)) is not None:
+            elif (outcome := self._follow_curvature(hessian.pending)) is not None:
                 return outcome
         return Outcome(ending=Ending.INACCURATE)
 
     def _settled(self) -> bool:
         """Whether there is no Newton step to take, as far as that can be seen without multipliers."""
-        zero = 0.1 * self.progress.zero
-        return not self.changed or self.hessian.is_stationary(self.progress.gradient, zero)
+        return not self.changed or self.hessian.is_stationary(self.progress.gradient, 0.1 * self.progress.zero)
 
     def _release(self, place: int) -> None:
         """Drop a constraint; its direction joins the null space."""
@@ -125,7 +125,7 @@ class Descent:
         zero = progress.fine_zero(multipliers[n:], working.W, working.N)
         if loose and (np.abs(multipliers[:n] * working.free) > zero).any():
             return True, None
-        zeros = np.concatenate([zero, zero @ np.abs(working.N)])
+        zeros = np.concatenate([zero, zero.dot(np.abs(working.N))])
         return False, wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
 
     def _allowed(self, multipliers: Array) -> Array:
@@ -136,36 +136,38 @@ class Descent:
 
     def _newton_step(self) -> None:
         """Towards the minimiser on the working set, as far as the constraints allow."""
-        direction = self.hessian.newton(self.progress.gradient)
-        along = self.progress.statement.values(direction)
-        slope, length = float(self.progress.gradient.dot(direction)), sqrt(direction.dot(direction))
-        block = nearest(self.progress, along, length, self.working.held, self.working)
+        progress, working = self.progress, self.working
+        direction = self.hessian.newton(progress.gradient)
+        along = progress.statement.values(direction)
+        slope, length = float(progress.gradient.dot(direction)), sqrt(direction.dot(direction))
+        block = nearest(progress, along, length, working.held, working)
         if block is None or block.step > 1.0:
             self.changed, self.whole = False, self.whole + 1
-            self._advance(direction, along, length, 1.0, 0.5 * slope, None)
+            self._advance(along, length, 1.0, 0.5 * slope, None)
         else:
-            change = block.step * (1.0 - 0.5 * block.step) * slope
-            self._advance(direction, along, length, block.step, change, block)
+            step = block.step
+            self._advance(along, length, step, step * (1.0 - 0.5 * step) * slope, block)
 
     def _follow_curvature(self, direction: Array) -> Outcome | None:
         """Along the direction of non-positive curvature downhill to the next constraint; None if the walk goes on."""
-        slope, curvature = float(self.progress.gradient.dot(direction)), self.hessian.curvature
-        level = abs(slope) <= self.progress.zero and abs(slope) <= self._fine_slope(direction)
+        progress, working = self.progress, self.working
+        slope, curvature = float(progress.gradient.dot(direction)), self.hessian.curvature
+        level = abs(slope) <= progress.zero and abs(slope) <= self._fine_slope(direction)
         if level and curvature == 0.0:
-            self.working.fix(direction, FLAT)
+            working.fix(direction, FLAT)
             self.hessian.leave(direction)
             return None
         if slope > 0.0:
             direction, slope = -direction, -slope
-        along = self.progress.statement.values(direction)
-        block = nearest(self.progress, along, 1.0, self.working.held, self.working)
+        along = progress.statement.values(direction)
+        block = nearest(progress, along, 1.0, working.held, working)
         if level and block is not None:
-            back = nearest(self.progress, -along, 1.0, self.working.held, self.working)
+            back = nearest(progress, -along, 1.0, working.held, working)
             if back is None or _change(back, -slope, curvature) < _change(block, slope, curvature):
                 direction, along, slope, block = -direction, -along, -slope, back
         if block is None:
             return Outcome(ending=Ending.UNBOUNDED, ray=direction)
-        self._advance(direction, along, 1.0, block.step, _change(block, slope, curvature), block)
+        self._advance(along, 1.0, block.step, _change(block, slope, curvature), block)
         return None
 
     def _refuse(self, block: Block | None, step: float) -> None:
@@ -181,26 +183,23 @@ class Descent:
         of_rows = working.multipliers(self.progress.gradient)[direction.size :]
         return self.progress.level(direction, self.progress.fine_zero(of_rows, working.W, working.N))
 
-    def _advance(
-        self, direction: Array, along: Array, length: float, step: float, change: float, block: Block | None
-    ) -> None:
+    def _advance(self, along: Array, length: float, step: float, change: float, block: Block | None) -> None:
         """Take the step, by which the objective changes, and the constraint that ended it."""
-        progress, working = self.progress, self.working
-        nonpositive = int(self.hessian.pending is not None)
-        progress.move(direction, along, step, length)
+        progress, working, hessian = self.progress, self.working, self.hessian
+        nonpositive, added = int(hessian.pending is not None), None
+        progress.move(along, step, length)
         progress.look()
         if self._refused or step <= 0.0:
             self._refuse(block, step)
         if block is not None:
-            self.changed, self.whole = True, 0
-            normal = working.add(block.constraint, block.side)
+            self.changed, self.whole, added = True, 0, block.constraint
+            normal = working.add(added, block.side)
             if normal is None:
                 self.broken = True
             else:
-                self.hessian.leave(normal)
-                if block.constraint < working.free.size:
-                    self.hessian.clear(block.constraint)
-        added = None if block is None else block.constraint
+                hessian.leave(normal)
+                if added < normal.size:
+                    hessian.clear(added)
         self.value += change
         progress.write(2, self.value / progress.unit, step, added, self.dropped, working.number, nonpositive)
         self.dropped, self.idle = None, 0

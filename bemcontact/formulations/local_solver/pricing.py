@@ -19,15 +19,15 @@ def wrong_sign(working: WorkingSet, multipliers: Array, zero: float | Array, *, 
         Take the constraint of the lowest number among those with a wrong sign (Bland 1977).
     """
     wrong = working.signs * multipliers
-    n, ids = working.free.size, working.ids
     if working.temporary:
+        n, ids = working.free.size, working.ids
         of_temporary = np.where(ids == TEMPORARY, np.inf, np.abs(multipliers[n:]))
         wrong[n:] = np.where(ids < 0, of_temporary, wrong[n:])
     if not isinstance(zero, float):
         wrong = np.where(wrong > zero, wrong, -np.inf)
         zero = 0.0
     place = int(wrong.argmax())
-    if wrong[place] <= zero:
+    if wrong.item(place) <= zero:
         return None
     if least_index:
         return int(np.where(wrong > zero, working.numbers, working.held.size).argmin())

@@ -69,14 +69,14 @@ class Progress:
     lines: list[LogLine] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        lower, upper = np.abs(self.statement.lower), np.abs(self.statement.upper)
-        size = np.minimum(lower, upper)
-        self._part = 1.0 / self.x.size
-        self.long = self.options.feasibility_tolerance / PARALLEL
-        self._slack = self.options.feasibility_tolerance * np.maximum(1.0, np.where(size < np.inf, size, 1.0))
-        chosen = self.options.max_iterations
-        self.limit = 1000 + 20 * lower.size if chosen is None else chosen
-        self._travelled, self._passed, self.far = np.zeros(self.x.size), [], 0.0
+        statement, options = self.statement, self.options
+        self._part, self._least = 1.0 / self.x.size, max(statement.slope, 1e-3)
+        self._tolerance, self._rounding = options.optimality_tolerance, 100.0 * EPS * statement.row_sum
+        self.long = options.feasibility_tolerance / PARALLEL
+        self._slack = options.feasibility_tolerance * np.maximum(1.0, statement.bound_size)
+        chosen = options.max_iterations
+        self.limit = 1000 + 20 * statement.lower.size if chosen is None else chosen
+        self._travelled, self._passed, self._seen, self.far = np.zeros(self.x.size), [], None, 0.0
         self.place(self.x)
 
     @property
@@ -88,7 +88,7 @@ class Progress:
 
     def _take_in(self) -> None:
         """The points passed since the last time."""
-        self._travelled = np.maximum(self._travelled, np.abs(self._passed).max(axis=0))
+        self._travelled = np.maximum(self._travelled, np.maximum.reduce(np.abs(self._passed)))
         self._passed.clear()
 
     def forget(self) -> None:
@@ -96,7 +96,7 @@ class Progress:
         size = np.maximum(np.abs(self.x), 1.0)
         self._travelled = np.minimum(self.travelled, size)
         self.far = min(self.far, sqrt(size.dot(size)))
-        self.look()
+        self._weigh()
 
     @property
     def objective(self) -> float:
@@ -115,11 +115,13 @@ class Progress:
             Multipliers of rows, the rows, and their right inverse.
         """
         H, c, _ = self.statement.absolute
-        W, N = np.abs(rows), np.abs(inverse)
-        terms = H.dot(np.abs(self.x)) + c + np.abs(of_rows).dot(W)
+        W, terms = np.abs(rows), H.dot(np.abs(self.x)) + c
+        if of_rows.size:
+            terms += np.abs(of_rows).dot(W)
         lost = EPS * np.maximum(terms, H.dot(self.travelled))
-        rounding = 100.0 * (lost + lost.dot(N).dot(W))
-        return np.maximum(FINE * self.options.optimality_tolerance * terms, rounding)
+        if of_rows.size:
+            lost += lost.dot(np.abs(inverse)).dot(W)
+        return np.maximum(FINE * self.options.optimality_tolerance * terms, 100.0 * lost)
 
     def level(self, direction: Array, zero: Array) -> float:
         """The slope along a direction that counts as zero: of zero gradients, and of the rounding in its components."""
@@ -138,39 +140,47 @@ class Progress:
         return self.stalled > STALLED
 
     def correct(self, x: Array) -> None:
-        """Move without a step; look about afresh."""
-        if (x == self.x).all():
-            self.look()
-        else:
+        """Move without a step; know the gradient there."""
+        if np.count_nonzero(x != self.x):
             self.place(x)
+        else:
+            self.look()
 
     def place(self, x: Array) -> None:
         """Be at a point, and know all of it anew."""
         self.x, self.values = x, self.statement.values(x)
         size = np.abs(x)
         self.far = max(self.far, sqrt(size.dot(size)))
-        rounding = 10.0 * EPS * np.concatenate([size, self.statement.absolute[2].dot(size)])
-        self.slack = np.maximum(self._slack, rounding)
+        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
+        self.slack = np.maximum(self._slack, 10.0 * EPS * terms)
         self.lowest, self.highest = self.statement.lower - self.slack, self.statement.upper + self.slack
         self.look()
 
-    def move(self, direction: Array, along: Array, step: float, length: float) -> None:
+    def move(self, along: Array, step: float, length: float) -> None:
         """Take a step; `along` is [d; A d], `length` that of the direction. The gradient waits for `look`."""
         self.stalled = 0 if step * length > 1e-11 else self.stalled + 1
         if step > 0.0:
             self.far += step * length
-            self.x = self.x + step * direction
             self.values = self.values + step * along
+            self.x = self.values[: self.x.size]
 
     def look(self) -> None:
-        """The gradient at the point."""
-        self._passed.append(self.x)
+        """The gradient at the point, unless it is known."""
+        x, statement = self.x, self.statement
+        if self._seen is x:
+            return
+        self._seen = x
+        self._passed.append(x)
         if len(self._passed) > MANY:
             self._take_in()
-        product = self.statement.H.dot(self.x)
-        self.gradient = product + self.statement.c
-        terms = max(sqrt(product.dot(product) * self._part), self.statement.slope, 1e-3)
-        self.zero = max(self.options.optimality_tolerance * terms, 100.0 * EPS * self.statement.row_sum * self.far)
+        product = statement.H.dot(x)
+        self.gradient = product + statement.c
+        self._terms = max(sqrt(float(product.dot(product)) * self._part), self._least)
+        self._weigh()
+
+    def _weigh(self) -> None:
+        """What counts as a zero gradient here."""
+        self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
     def write(
         self,

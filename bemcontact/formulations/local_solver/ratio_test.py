@@ -36,7 +36,7 @@ def nearest(
     block = _first(progress, along, speed, away)
     if block is None or block.step * length > progress.long:
         nearly_all = held | (speed <= FAINT * length)
-        if (nearly_all != away).any():
+        if np.count_nonzero(nearly_all) < np.count_nonzero(away):
             block = _first(progress, along, speed, nearly_all)
             while working is not None and block is not None and working.spans(block.constraint):
                 nearly_all[block.constraint] = True  # what moves it is rounding
@@ -51,19 +51,19 @@ def _first(progress: Progress, along: Array, speed: Array, away: NDArray[np.bool
     steps = np.maximum((statement.upper - values) / along, (statement.lower - values) / along)
     steps[away] = INFINITY
     late = steps + progress.slack / speed
-    furthest = late[late.argmin()]
-    if furthest == INFINITY:
+    furthest = late.item(late.argmin())
+    if not furthest < INFINITY:  # nor is there one where the values have overflowed
         return None
     if progress.stalled <= STALLED:
         constraint = int((speed * (steps <= furthest)).argmax())
     else:
-        least = float(steps[steps.argmin()])
+        least = steps.item(steps.argmin())
         constraint = int((steps <= least + 1e-13 * max(1.0, least)).argmax())
-    return Block(constraint, side_reached(progress, constraint, along), max(float(steps[constraint]), 0.0))
+    return Block(constraint, side_reached(progress, constraint, along), max(steps.item(constraint), 0.0))
 
 
 def side_reached(progress: Progress, constraint: int, along: Array) -> int:
     """Which bound the movement reaches; 2 for an equality."""
     if progress.statement.equality[constraint]:
         return 2
-    return -1 if along[constraint] < 0.0 else 1
+    return -1 if along.item(constraint) < 0.0 else 1

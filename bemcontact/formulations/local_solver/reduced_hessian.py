@@ -27,6 +27,8 @@ class ReducedHessian:
 
     Attributes
     ----------
+    Z : (n, k) array
+        The conjugate basis.
     left_over : (n, t) array
         Directions of the start in which the Hessian is not positive definite, orthonormal; they are to be fixed.
     pending : (n,) array or None
@@ -38,23 +40,24 @@ class ReducedHessian:
     def __init__(self, statement: Statement, null_space: Array) -> None:
         n, k = null_space.shape
         self.statement = statement
-        self._top = float(statement.absolute[0].max(initial=0.0))
+        self._top = float(statement.absolute[0].max())
         self._columns = np.zeros((n, n), order="F")
-        self.size, self.left_over = 0, null_space[:, :0]
+        self.left_over = null_space[:, :0]
+        self._resize(0)
         self.pending: Array | None = None
         self.curvature = 0.0
         if k:
             reduced = null_space.T @ statement.H @ null_space
             zero = 10.0 * max(10, n) * EPS * self._top
-            factor, order, self.size = pivoted_cholesky(reduced, zero)
+            factor, order, rank = pivoted_cholesky(reduced, zero)
             ordered = null_space[:, order]
-            self.left_over = ordered[:, self.size :]
-            self.Z[:] = ordered[:, : self.size] @ inverse_triangle(factor)
+            self.left_over = ordered[:, rank:]
+            self._resize(rank)
+            self.Z[:] = ordered[:, :rank] @ inverse_triangle(factor)
 
-    @property
-    def Z(self) -> Array:
-        """The conjugate basis (n, k)."""
-        return self._columns[:, : self.size]
+    def _resize(self, size: int) -> None:
+        """Look at the leading columns."""
+        self.size, self.Z = size, self._columns[:, :size]
 
     def newton(self, gradient: Array) -> Array:
         """-Z Zᵀg: to the minimiser on the working set."""
@@ -69,21 +72,21 @@ class ReducedHessian:
 
     def enter(self, direction: Array) -> None:
         """A direction joins the null space: Z gains it, or it is pending: O(n²)."""
-        d, product = direction, self.statement.H.dot(direction)
+        d, H, Z = direction, self.statement.H, self.Z
+        product = H.dot(d)
         curvature = float(d.dot(product))
         for _ in range(2 if self.size else 0):
-            part = product.dot(self.Z)
-            d = d - self.Z.dot(part)
-            product = self.statement.H.dot(d)
+            d = d - Z.dot(product.dot(Z))
+            product = H.dot(d)
             before, curvature = curvature, float(d.dot(product))
             if abs(curvature) > 0.01 * abs(before):
                 break  # no digits were lost that a second turn would bring back
         length = float(d.dot(d))
-        clear = abs(curvature) > 1e-8 * self._top * length
+        clear = curvature == 0.0 or abs(curvature) > 1e-8 * self._top * length
         rounding = 0.0 if clear else self.statement.rounding(d)
         if curvature > rounding:
             self._columns[:, self.size] = d / sqrt(curvature)
-            self.size += 1
+            self._resize(self.size + 1)
         else:
             self.pending = d / sqrt(length)
             self.curvature = curvature / length if curvature < -rounding else 0.0
@@ -106,7 +109,7 @@ class ReducedHessian:
         sign = -1.0 if along[-1] > 0.0 else 1.0
         along[-1] -= sign * length
         add_rank_one(self.Z, -2.0 / float(along.dot(along)), self.Z.dot(along), along)
-        self.size -= 1
+        self._resize(self.size - 1)
         return sign * self._columns[:, self.size]
 
     def clear(self, variable: int) -> None:

@@ -26,7 +26,7 @@ EPS = float(np.finfo(float).eps)
 def largest(numbers: Array) -> float:
     """The largest absolute value, 0 if there is none."""
     sizes = np.abs(numbers)
-    return float(sizes[sizes.argmax()]) if sizes.size else 0.0
+    return sizes.item(sizes.argmax()) if sizes.size else 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +51,7 @@ class Statement:
     lower: Array
     upper: Array
 
-    @cached_property
+    @property
     def slope(self) -> float:
         """The largest entry of c."""
         return largest(self.c)
@@ -61,24 +61,22 @@ class Statement:
         """|H|, |c|, |A|: what rounding is measured by."""
         return np.abs(self.H), np.abs(self.c), np.abs(self.A)
 
-    @cached_property
+    @property
     def row_sum(self) -> float:
         """The largest sum of a row of |H|."""
-        return float(self.absolute[0].sum(axis=1).max())
+        return largest(self.absolute[0].dot(np.ones(self.c.size)))
+
+    @cached_property
+    def bound_size(self) -> Array:
+        """Size of the smaller bound of each constraint, 0 where it has none (n + m,)."""
+        size = np.minimum(np.abs(self.lower), np.abs(self.upper))
+        size[size == np.inf] = 0.0
+        return size
 
     @cached_property
     def equality(self) -> NDArray[np.bool_]:
         """Which constraints have one bound for both sides, or two that rounding does not tell apart (n + m,)."""
-        size = np.minimum(np.abs(self.lower), np.abs(self.upper))
-        return self.upper - self.lower <= 4.0 * EPS * np.where(size < np.inf, size, 0.0)
-
-    @cached_property
-    def empty(self) -> NDArray[np.bool_]:
-        """Which constraints are rows of zeros (n + m,)."""
-        n = self.c.size
-        found = np.zeros(self.lower.size, dtype=bool)
-        found[n:] = ~self.A.any(axis=1)
-        return found
+        return self.upper - self.lower <= 4.0 * EPS * self.bound_size
 
     def objective(self, x: Array) -> float:
         """cᵀx + xᵀHx/2."""
@@ -105,9 +103,10 @@ class Statement:
     def sides_reached(self, values: Array, slack: Array) -> Sides:
         """Which bound each constraint is at, within its slack; the nearer of two; 2 for an equality."""
         lower, upper = np.abs(values - self.lower), np.abs(values - self.upper)
-        sides = np.where(lower <= upper, -1, 1).astype(np.int8)
+        sides = np.ones(values.size, dtype=np.int8)
+        sides[lower <= upper] = -1
+        sides[self.equality] = 2
         sides[np.minimum(lower, upper) > slack] = 0
-        sides[self.equality & (sides != 0)] = 2
         return sides
 
     def rounding(self, d: Array) -> float:
@@ -145,60 +144,49 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
 
     All factors are powers of two, so that no digit of the data changes.
     """
-    D, E = _ruiz(np.abs(statement.H), np.abs(statement.A))
-    factors = _power_of_two(np.concatenate([D, E]))
-    D, E = factors[: D.size], factors[D.size :]
-    D = D * _smaller_unit(statement, D, E)
+    n = statement.c.size
+    factors = _power_of_two(_ruiz(np.abs(statement.H), np.abs(statement.A)))
+    D, E = factors[:n], factors[n:]
+    D *= _smaller_unit(statement, D, E)
     H, c, A = D[:, None] * statement.H * D, D * statement.c, E[:, None] * statement.A * D
     last = _power_of_two(1.0 / row_lengths(A))
-    E = E * last
-    unit = _near_power(1.0 / (max(largest(H.ravel()), largest(c)) or 1.0))
+    E *= last
+    A *= last[:, None]
+    unit = _near_power(1.0 / (max(largest(H), largest(c)) or 1.0))
+    H *= unit
+    c *= unit
     factors = np.concatenate([1.0 / D, E])
-    scaled = Statement(
-        H=unit * H,
-        c=unit * c,
-        A=last[:, None] * A,
-        lower=factors * statement.lower,
-        upper=factors * statement.upper,
-    )
+    scaled = Statement(H=H, c=c, A=A, lower=factors * statement.lower, upper=factors * statement.upper)
     return scaled, Scales(variables=D, rows=E, objective=unit)
 
 
-def _ruiz(H: Array, A: Array) -> tuple[Array, Array]:
+def _ruiz(H: Array, A: Array) -> Array:
     """Factors of columns and rows by which the largest entry of each comes to one, nearly (Ruiz, RAL-TR-2001-034)."""
     m, n = A.shape
-    outside = ~A.any(axis=0)
-    mixed = bool(outside.any())
-    D, E, linear, hessian = np.ones(n), np.ones(m), A, H
+    factors, linear = np.ones(n + m), A
+    D, E = factors[:n], factors[n:]
+    outside = np.maximum.reduce(A, axis=0, initial=0.0) == 0.0
+    mixed = np.count_nonzero(outside) > 0
     for _ in range(RUIZ_SWEEPS):
         columns, rows = np.maximum.reduce(linear, axis=0, initial=0.0), np.maximum.reduce(linear, axis=1)
         if mixed:
-            sizes = np.maximum.reduce(hessian, axis=1)
+            sizes = D * np.maximum.reduce(H * D, axis=1)
             columns = np.where(outside, sizes / (largest(sizes) or 1.0), columns)
-        columns[columns == 0.0] = 1.0
-        rows[rows == 0.0] = 1.0
-        D, E = D / np.sqrt(columns), E / np.sqrt(rows)
-        if _near_one(columns) and _near_one(rows):
+        sizes = np.concatenate([columns, rows])
+        sizes[sizes == 0.0] = 1.0
+        factors /= np.sqrt(sizes)
+        if sizes[sizes.argmax()] < 2.0 and sizes[sizes.argmin()] > 0.5:  # another sweep would change little
             break
         linear = E[:, None] * A * D
-        if mixed:
-            hessian = D[:, None] * H * D
-    return D, E
+    return factors
 
 
 def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
     """A unit of length that makes the largest bound about one, if all are smaller: tolerances are relative to one."""
     factors = np.concatenate([1.0 / D, E])
-    size = 0.0
-    for bounds in (statement.lower, statement.upper):
-        finite = np.abs(bounds) < np.inf
-        size = max(size, largest(bounds[finite] * factors[finite]))
+    sizes = np.abs(np.concatenate([factors * statement.lower, factors * statement.upper]))
+    size = largest(sizes[sizes < np.inf])
     return _near_power(size) if 0.0 < size < 1.0 else 1.0
-
-
-def _near_one(sizes: Array) -> bool:
-    """Whether another sweep would change little."""
-    return sizes.size == 0 or bool(sizes[sizes.argmax()] < 2.0 and sizes[sizes.argmin()] > 0.5)
 
 
 def _near_power(factor: float) -> float:
@@ -208,7 +196,7 @@ def _near_power(factor: float) -> float:
 
 def _power_of_two(factors: Array) -> Array:
     """The same of an array."""
-    return np.ldexp(1.0, np.frexp(np.minimum(np.maximum(factors, LEAST), 1.0 / LEAST) * sqrt(0.5))[1])
+    return np.ldexp(1.0, np.frexp(factors.clip(LEAST, 1.0 / LEAST) * sqrt(0.5))[1])
 
 
 def read(
@@ -228,7 +216,7 @@ def read(
     hessian = _matrix("H", H, n)
     if hessian.shape[0] != n:
         raise ProblemError(f"H has {hessian.shape[0]} rows, but c has {n} entries: H must be ({n}, {n})")
-    if not (hessian == hessian.T).all():
+    if np.count_nonzero(hessian != hessian.T):
         difference = np.abs(hessian - hessian.T).max()
         if difference > 1e-10 * np.abs(hessian).max():
             raise ProblemError(f"H is not symmetric: H - H' has entries up to {difference:.3g}; give (H + H') / 2")
@@ -239,7 +227,7 @@ def read(
         raise ProblemError("cl or cu is given without A: give the rows A that they bound, or use bl and bu")
     lower = np.concatenate([_bound("bl", bl, n, -np.inf), _bound("cl", cl, m, -np.inf)])
     upper = np.concatenate([_bound("bu", bu, n, np.inf), _bound("cu", cu, m, np.inf)])
-    if not ((lower < np.inf) & (upper > -np.inf) & (lower <= upper)).all():
+    if np.count_nonzero((lower < np.inf) & (upper > -np.inf) & (lower <= upper)) < lower.size:
         _complain(lower, upper, n)
     lower[lower <= -INFINITE], upper[upper >= INFINITE] = -np.inf, np.inf
     return Statement(H=hessian, c=linear, A=rows, lower=lower, upper=upper)
@@ -257,7 +245,7 @@ def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
     if vector.ndim != 1 or (size is not None and vector.size != size):
         expected = "one-dimensional" if size is None else f"of shape ({size},)"
         raise ProblemError(f"{name} has shape {vector.shape}: it must be {expected}")
-    if not np.isfinite(vector).all():
+    if np.count_nonzero(np.isfinite(vector)) < vector.size:
         raise ProblemError(f"{name}[{int(np.argmin(np.isfinite(vector)))}] is not finite: give finite numbers")
     return vector
 
@@ -265,7 +253,7 @@ def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
 def _floats(name: str, given: Any) -> Array:
     """An array of numbers of our own."""
     try:
-        if np.iscomplexobj(given):
+        if getattr(given, "dtype", None) != np.float64 and np.iscomplexobj(given):
             raise TypeError("it is complex")
         return np.array(given.toarray() if sparse.issparse(given) else given, dtype=float)
     except (TypeError, ValueError) as error:
@@ -277,7 +265,7 @@ def _matrix(name: str, given: Any, columns: int) -> Array:
     matrix = _floats(name, given)
     if matrix.ndim != 2 or matrix.shape[1] != columns:
         raise ProblemError(f"{name} has shape {matrix.shape}: it needs {columns} columns, one for each entry of c")
-    if not np.isfinite(matrix).all():
+    if np.count_nonzero(np.isfinite(matrix)) < matrix.size:
         raise ProblemError(f"{name} has entries that are not finite: give finite numbers")
     return matrix
 

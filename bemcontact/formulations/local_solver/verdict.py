@@ -39,14 +39,13 @@ class FirstOrder:
     def cone(self, statement: Statement) -> CriticalCone:
         """The critical cone, its normals turned inwards."""
         n = statement.c.size
-        free = np.flatnonzero(~self.strong[:n])
-        rows = statement.A[:, free]
-        inwards = np.where(self.sides == 1, -1.0, 1.0)
-        weak_bounds = np.flatnonzero(self.weak[:n])
-        bounds = np.zeros((weak_bounds.size, free.size))
-        bounds[np.arange(weak_bounds.size), np.searchsorted(free, weak_bounds)] = inwards[weak_bounds]
-        weak_rows = (inwards[n:, None] * rows)[self.weak[n:]]
-        return CriticalCone(free=free, equal=rows[self.strong[n:]], weak=np.vstack([bounds, weak_rows]))
+        free, weak = (~self.strong[:n]).nonzero()[0], self.weak.nonzero()[0]
+        inwards = np.where(self.sides[weak] == 1, -1.0, 1.0)
+        fixed, rows = weak[weak < n], weak[weak >= n] - n
+        normals = np.zeros((weak.size, free.size))
+        normals[np.arange(fixed.size), free.searchsorted(fixed)] = 1.0
+        normals[fixed.size :] = statement.A[rows][:, free]
+        return CriticalCone(free=free, equal=statement.A[self.strong[n:]][:, free], weak=inwards[:, None] * normals)
 
     def stricter(self, along: Array, blocking: int) -> "FirstOrder":
         """With a direction shut out on which the objective does not fall as far as it leads.
@@ -66,18 +65,21 @@ def first_order(progress: Progress, working: WorkingSet, multipliers: Array) -> 
     statement, x = progress.statement, progress.x
     n = x.size
     values = statement.values(x)
-    sides = statement.sides_reached(values, 2.0 * progress.slack)
-    feasible = bool((statement.violation(values) <= 2.0 * progress.slack).all())
-    residual = np.abs(progress.gradient - statement.transposed(multipliers))
-    real = working.ids >= 0
-    zero = progress.fine_zero(multipliers[working.ids[real]], working.W[real], working.N[:, real])
-    zeros = np.concatenate([zero, np.full(values.size - n, progress.zero)])
+    slack = 2.0 * progress.slack
+    feasible = np.count_nonzero(statement.violation(values) <= slack) == slack.size
+    stationary = largest(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero
+    ids, W, N = working.constraints()
+    zeros = np.full(values.size, progress.zero)
+    zeros[:n] = progress.fine_zero(multipliers[ids], W, N)
     size = np.abs(multipliers)
-    wrong = np.where(sides == 0, size, sides * multipliers) * ~statement.equality
-    held = (sides != 0) & ~statement.empty
+    sides = statement.sides_reached(values, slack)
+    held = sides != 0
+    wrong = np.where(held, sides * multipliers, size)
+    wrong[statement.equality] = 0.0
+    held[n:] &= statement.A.any(axis=1)  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
     return FirstOrder(
-        holds=feasible and bool((residual <= 2.0 * progress.zero).all()) and bool((wrong <= 2.0 * zeros).all()),
+        holds=feasible and stationary and np.count_nonzero(wrong <= 2.0 * zeros) == zeros.size,
         strong=strong,
         weak=held & ~strong,
         sides=sides,

@@ -12,8 +12,9 @@ from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import nearest
 from bemcontact.formulations.local_solver.result import QPStatus
-from bemcontact.formulations.local_solver.statement import EPS, Array, Sides
+from bemcontact.formulations.local_solver.statement import EPS, Array, Sides, largest
 from bemcontact.formulations.local_solver.verdict import FirstOrder, certified, cleaned_ray, first_order
+from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 FAILURES = 6
 """Times that a claim which fails when recomputed is taken up again with fresh factors."""
@@ -73,7 +74,8 @@ def walk(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
     failures = 0
     start: Inertia | None = None
     while failures < FAILURES:
-        sides, certificate = reach_feasibility(progress, sides, FINER**failures)
+        working, certificate = reach_feasibility(progress, sides, FINER**failures)
+        sides = working.sides
         if certificate is not None:
             certificate = certified(progress.statement, certificate)
             if certificate is not None:
@@ -82,9 +84,7 @@ def walk(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
             continue
         if progress.exhausted and violated_signs(progress).any():
             break
-        # phase one ends within the tolerance; equalities are met as exactly as the arithmetic allows
-        sides = np.where(progress.statement.equality, 2, sides).astype(np.int8)
-        descent = Descent(progress, sides)
+        descent = Descent(progress, working)
         start = start or reduced_inertia(descent)
         found = _second_phase(progress, descent)
         if isinstance(found, Finding):
@@ -135,7 +135,7 @@ def _second_order(
     rounding = 100.0 * EPS * abs(progress.objective)
     if block.step * (slope + 0.5 * block.step * curved) >= -rounding:
         return _second_order(progress, descent, conditions.stricter(along, block.constraint), multipliers)
-    progress.move(direction, along, block.step, 1.0)
+    progress.move(along, block.step, 1.0)
     progress.look()
     held = int(np.count_nonzero(conditions.strong)) + 1
     progress.write(2, progress.objective / progress.unit, block.step, block.constraint, None, held, 1)
@@ -148,13 +148,16 @@ def _strict(descent: Descent, conditions: FirstOrder) -> bool:
     Recomputed: with W N = I and W Z = 0 the columns of Z span the null space, and Zᵀ H Z = I.
     """
     working, hessian = descent.working, descent.hessian
-    if working.temporary or conditions.weak.any() or (working.held != conditions.strong).any():
+    if working.temporary or np.count_nonzero(conditions.weak) or np.count_nonzero(working.held != conditions.strong):
         return False
-    Z, n = hessian.Z, working.free.size
-    inverse = np.abs(working.W @ working.N - np.eye(working.size)).max(initial=0.0) < 1e-6
-    null = np.abs(working.W @ Z).max(initial=0.0) <= 1e-9 * np.abs(Z).max(initial=0.0)
-    definite = np.abs(Z.T @ (descent.progress.statement.H @ Z) - np.eye(hessian.size)).max(initial=0.0) < 1e-3
-    return bool(inverse and null and definite) and hessian.size + working.number == n
+    W, N, Z, H = working.W, working.N, hessian.Z, descent.progress.statement.H
+    inverse = working.size == 0 or largest(W @ N - np.eye(working.size)) < 1e-6
+    complete = hessian.size + working.number == working.free.size
+    if hessian.size == 0:
+        return inverse and complete
+    null = largest(W @ Z) <= 1e-9 * largest(Z)
+    definite = largest(Z.T @ (H @ Z) - np.eye(hessian.size)) < 1e-3
+    return inverse and null and definite and complete
 
 
 def _minimiser(descent: Descent, conditions: FirstOrder, multipliers: Array, status: QPStatus) -> Finding:
@@ -176,7 +179,7 @@ def _finding(
         status=status,
         sides=sides,
         multipliers=np.zeros(progress.values.size),
-        reduced_end=reduced_inertia(Descent(progress, sides)),
+        reduced_end=reduced_inertia(Descent(progress, WorkingSet(progress.statement, sides))),
         weak=np.zeros(0, dtype=np.intp),
         ray=ray,
         certificate=certificate,
@@ -185,11 +188,12 @@ def _finding(
 
 def _refined(progress: Progress, descent: Descent) -> Array:
     """Refine the equations of the working set from the data, twice; multipliers of all constraints."""
-    working = descent.working
-    for _ in range(2 if descent.hessian.size else 1):
-        progress.correct(working.onto(progress.x))
-        if descent.hessian.size:
-            progress.correct(progress.x + descent.hessian.newton(progress.gradient))
+    working, hessian, statement, x = descent.working, descent.hessian, progress.statement, progress.x
+    for _ in range(2 if hessian.size else 1):
+        x = working.onto(x)
+        if hessian.size:
+            x = x + hessian.newton(statement.H.dot(x) + statement.c)
+    progress.correct(x)
     n, found = working.free.size, working.multipliers(progress.gradient, refined=True)
     real = working.ids >= 0
     multipliers = np.zeros(progress.values.size)
@@ -204,11 +208,11 @@ def reduced_inertia(descent: Descent) -> Inertia:
     H is definite on the columns of Z and conjugate between them and the directions left over (Sylvester).
     """
     working, hessian = descent.working, descent.hessian
+    if hessian.pending is None and not working.temporary:
+        return hessian.size, 0, 0
     others = working.N[:, working.ids < 0]
     if hessian.pending is not None:
         others = np.column_stack([others, hessian.pending])
-    if others.shape[1] == 0:
-        return hessian.size, 0, 0
     H = descent.progress.statement.H
     others = others - hessian.Z @ (hessian.Z.T @ (H @ others))
     size = np.abs(others)

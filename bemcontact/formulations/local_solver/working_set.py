@@ -53,6 +53,8 @@ class WorkingSet:
         How many constraints are held, temporary ones included.
     N, W : (n, r) and (r, n) arrays
         Right inverse, zero in the rows of fixed variables; normals of the rows held, on all variables.
+    null_space : (n, k) array
+        Orthonormal directions that change nothing held at the start; later changes of the set leave them alone.
     ids : (r,) int array
         Constraint of each row of W; `TEMPORARY` or `FLAT` for one that is none.
     signs : (n + r,) array
@@ -72,23 +74,23 @@ class WorkingSet:
         self._N, self._W = np.zeros((n, n), order="F"), np.zeros((n, n))
         self._ids, self._signs = np.zeros(n, dtype=np.intp), np.zeros(2 * n)
         free, rows = self.free.nonzero()[0], sides[n:].nonzero()[0]
-        kept, self.null_space = rows[:0], np.eye(n)[:, free]
+        kept, null_space = rows[:0], np.eye(free.size)
         if rows.size and free.size:
             normals, length = unit_rows(A[rows][:, free])
             Y, null_space, T, independent = orthogonal(normals, DEPENDENT)
             kept = rows[independent]
             self._N[free, : kept.size] = Y @ inverse_triangle(T).T / length[independent]
-            self.null_space = np.zeros((n, null_space.shape[1]))
-            self.null_space[free] = null_space
-        r = kept.size
-        if r < rows.size:
+        self.null_space = np.zeros((n, null_space.shape[1]))
+        self.null_space[free] = null_space
+        if kept.size < rows.size:
             self.sides[n + rows], self.held[n + rows] = 0, False
             self.sides[n + kept], self.held[n + kept] = sides[n + kept], True
+        r = kept.size
         self.number = n - free.size + r
         self.temporary, self.sharp = 0, True
-        self._ids[:r], self._W[:r] = n + kept, A[kept]
         signs = self.sides * (self.sides != EQUALITY)
-        self._signs[:n], self._signs[n : n + r] = signs[:n], signs[n + kept]
+        self._signs[:n] = signs[:n]
+        self._ids[:r], self._W[:r], self._signs[n : n + r] = n + kept, A[kept], signs[n + kept]
         self._resize(r)
 
     def _resize(self, rows: int) -> None:
@@ -101,6 +103,13 @@ class WorkingSet:
     def numbers(self) -> NDArray[np.intp]:
         """The constraint of each place (n + r,): the variables, then `ids`."""
         return np.concatenate([np.arange(self.free.size), self.ids])
+
+    def constraints(self) -> tuple[NDArray[np.intp], Array, Array]:
+        """The rows that are constraints: `ids`, W and N without those that are temporary."""
+        if not self.temporary:
+            return self.ids, self.W, self.N
+        real = self.ids >= 0
+        return self.ids[real], self.W[real], self.N[:, real]
 
     def multipliers(self, gradient: Array, *, refined: bool = False) -> Array:
         """Of the fixed variables, beside the reduced gradient of the free ones, and of the rows (n + r,).
@@ -133,10 +142,9 @@ class WorkingSet:
 
     def add(self, constraint: int, side: int) -> Array | None:
         """One constraint enters; returns its normal, or None if that is in the span of the others: O(n²)."""
-        n = self.free.size
         normal = self.statement.normal(constraint)
         sign = side if side != EQUALITY else 0
-        if constraint >= n:
+        if constraint >= normal.size:
             inverse = self._hold(normal, normal.dot(self.N))
             if inverse is None:
                 return None
@@ -169,13 +177,11 @@ class WorkingSet:
 
     def _hold(self, normal: Array, along: Array) -> Array | None:
         """N loses what it has along the normal; the new column, or None if the normal is in the span."""
-        outside = normal * self.free
-        if self.size:
-            outside -= along.dot(self.W) * self.free
-            again = outside.dot(self.N)
-            if again.dot(again) > SHARP**2 * outside.dot(outside):
-                self.sharp = False
-                outside -= again.dot(self.W) * self.free
+        outside = (normal - along.dot(self.W)) * self.free
+        again = outside.dot(self.N)
+        if again.dot(again) > SHARP**2 * outside.dot(outside):
+            self.sharp = False
+            outside -= again.dot(self.W) * self.free
         size = outside.dot(normal)
         if size <= ALIKE**2:
             return None
@@ -236,6 +242,5 @@ class WorkingSet:
         x = np.where(self.held[:n], targets[:n], x)
         if self.size == 0:
             return x
-        real = self.ids >= 0
-        lack = np.where(real, targets[np.where(real, self.ids, 0)] - self.W @ x, 0.0)
-        return x + self.N @ lack
+        ids, W, N = self.constraints()
+        return x + N.dot(targets[ids] - W.dot(x))
