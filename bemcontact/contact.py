@@ -18,7 +18,8 @@ from scipy.optimize import linprog
 
 from bemcontact import output
 from bemcontact.choices import Weights
-from bemcontact.errors import ProblemError
+from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.gauge import fix_gauge
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -44,19 +45,6 @@ class StiffnessRows(NamedTuple):
     r: Array
 
 
-class Gauge(NamedTuple):
-    """Compliance and free displacement in the fixed gauge, and the shift (k,), (k, n) of the amplitudes it implies.
-
-    u_n = Δ1 + M p + R a holds before and after for every p in equilibrium, with
-    ``a_before = a_after - shift_load - shift_pressure @ p``.
-    """
-
-    compliance: Array
-    free_displacement: Array
-    shift_load: Array
-    shift_pressure: Array
-
-
 def freeze_arrays(of: Any) -> None:
     """Make the arrays of a frozen dataclass its own and read-only."""
     for item in fields(of):
@@ -64,39 +52,6 @@ def freeze_arrays(of: Any) -> None:
             frozen = array.copy()
             frozen.setflags(write=False)
             object.__setattr__(of, item.name, frozen)
-
-
-def fix_gauge(
-    compliance: Array, free_displacement: Array, rigid_motions: Array, weights: Array, motion_load: Array
-) -> Gauge:
-    """Remove from M and Δ1 what depends on how the free rigid motions were held while solving.
-
-    With ℓ = J R, P = I - R (ℓᵀR)⁻¹ ℓᵀ and p0 = -R (ℓᵀR)⁻¹ load: M' = P M P and Δ1' = P (Δ1 + M p0).
-
-    Parameters
-    ----------
-    compliance : (n, n) M [L/p]
-    free_displacement : (n,) Δ1 [L]
-    rigid_motions : (n, k) R of full column rank
-    weights : (n,) tributary J [L]
-    motion_load : (k,) work of the applied loads in the free motions
-
-    Returns
-    -------
-    Gauge
-    """
-    M, R = compliance, rigid_motions
-    ell = weights[:, None] * R
-    to_motion = np.linalg.solve(ell.T @ R, ell.T)
-    p0 = -R @ np.linalg.solve(ell.T @ R, motion_load)
-    n, k = R.shape
-    project = np.eye(n) - R @ to_motion if n > k else np.zeros((n, n))
-    return Gauge(
-        compliance=project @ M @ project,
-        free_displacement=project @ (free_displacement + M @ p0),
-        shift_load=to_motion @ free_displacement,
-        shift_pressure=to_motion @ M,
-    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -289,13 +244,22 @@ class CondensedContact:
 
     @cached_property
     def stiffness_rows(self) -> StiffnessRows:
-        """K u_n = B p + r, (12), with K = S, B = I, r = S Δ1 + V load; [S, V] the top of [[M, R], [ℓᵀ, 0]]⁻¹."""
+        """K u_n = B p + r, (12), with K = S, B = I, r = S Δ1 + V load; [S, V] the top of [[M, R], [ℓᵀ, 0]]⁻¹.
+
+        `SingularSystemError` where that has no inverse.
+        """
         n, k = self.rigid_motions.shape
         U, T = self.scales
         row_scale = np.abs(self.equilibrium).max(axis=0, initial=0.0)
         unit_rows = (self.equilibrium / row_scale).T
         bordered = np.block([[self.compliance * (T / U), self.rigid_motions], [unit_rows, np.zeros((k, k))]])
-        inverse = np.linalg.inv(bordered.T).T.astype(float)  # accurate as a left inverse, which is how K is used
+        try:
+            inverse = np.linalg.inv(bordered.T).T.astype(float)  # accurate as a left inverse, which is how K is used
+        except np.linalg.LinAlgError:
+            raise SingularSystemError(
+                "the compliance is singular: some change of pressure moves no contact point, so that pressures cannot "
+                "be told apart; give each contact point a compliance of its own"
+            ) from None
         S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / row_scale
         return StiffnessRows(S, np.eye(n), S @ self.free_displacement + V @ self.motion_load)
 

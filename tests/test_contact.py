@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from contact_problems import random_contact
 
+import bemcontact
 from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact, fix_gauge
-from bemcontact.errors import ProblemError
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
+from bemcontact.gauge import fix_gauge
 
 
 def beam(n: int) -> CondensedContact:
@@ -206,3 +208,11 @@ def test_problem_of_zeros_has_scales():
 def test_numbers_that_state_no_problem_are_refused(numbers, words):
     with pytest.raises(ProblemError, match=words):
         CondensedContact.from_compliance(**numbers)
+
+
+@pytest.mark.parametrize("compliance", [[[1.0, 1.0], [1.0, 1.0]], [[0.0, 0.0], [0.0, 0.0]]])
+def test_a_singular_compliance_is_an_error_in_words(compliance: list):
+    contact = CondensedContact.from_compliance(compliance, [-1.0, -1.0])
+    for ask in (bemcontact.solve, bemcontact.compare):
+        with pytest.raises(SingularSystemError, match="the compliance is singular"):
+            ask(contact)

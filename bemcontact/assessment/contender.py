@@ -46,6 +46,7 @@ class Judged:
     solution : ContactSolution
     objectives : under every weights of the comparison, in their order
     residuals, certificate, footprint : the judgement
+    peak : the peak pressure over T
     """
 
     solution: ContactSolution
@@ -53,6 +54,7 @@ class Judged:
     residuals: Residuals
     certificate: Certificate
     footprint: Footprint
+    peak: float
 
     def to_dict(self, contact: CondensedContact) -> dict[str, Any]:
         """Give all of it as numbers, lists and texts, ready for JSON."""
@@ -137,6 +139,7 @@ def recomputed(
         residuals=left,
         certificate=certify(contact, solution, left),
         footprint=footprint(contact, solution),
+        peak=float(solution.pressure.max(initial=0.0)) / contact.scales.pressure,
     )
 
 
@@ -161,7 +164,7 @@ def contender(
         return Contender(found=found, judged=None, objective=None, verdict=told)
     objective, reached = _own_objective(setting, judged), None
     if objective is not None and direct is not None:
-        reached = Reached(here=objective, at_contact_state=_own_objective(setting, direct) or 0.0)
+        reached = Reached(here=objective, at_contact_state=_own_objective(setting, direct) or 0.0, peak=direct.peak)
     own = None if setting.weights is None else matrices[setting.weights]
     told = verdict(judged.solution, judged.certificate, reached, own)
     return Contender(found=found, judged=judged, objective=objective, verdict=told)

@@ -37,20 +37,22 @@ class Verdict:
 
 @dataclass(frozen=True, kw_only=True)
 class Reached:
-    """The objective of a statement at an answer, and at the direct solution; free of units."""
+    """The objective of a statement at an answer, and at the direct solution; free of units, as is the peak pressure."""
 
     here: float
     at_contact_state: float
+    peak: float
 
     def __str__(self) -> str:
         """Both in words: objective 0 reached, or what it is instead of what."""
-        if abs(self.here - self.at_contact_state) <= ZERO:
-            zero = abs(self.at_contact_state) <= ZERO
+        round_off = ZERO * max(1.0, self.peak) ** 2
+        zero = abs(self.at_contact_state) <= round_off
+        if abs(self.here - self.at_contact_state) <= round_off:
             return (
                 f"objective 0 reached ({self.here:.0e})" if zero else f"objective {self.here:.1e}, as that state has it"
             )
         side = "above" if self.here > self.at_contact_state else "below"
-        there = "0" if abs(self.at_contact_state) <= ZERO else f"{self.at_contact_state:.2e}"
+        there = "0" if zero else f"{self.at_contact_state:.2e}"
         return f"objective {self.here:.2e}, {side} the {there} of the contact state"
 
 

@@ -19,8 +19,9 @@ from bemcontact.bem.mesh import Mesh, along_curve, build
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.system import System
 from bemcontact.bem.volume_loads import ParticularSolution, particular_solution, true_resultant
-from bemcontact.contact import CondensedContact, Gauge, fix_gauge
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.gauge import Gauge, fix_gauge
 from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]
