@@ -16,7 +16,7 @@ from bemcontact.result import Result
 
 ALTERED = "the problem was changed (--set), but its references were not: shown, not judged"
 """Remark on references of another problem."""
-VERSIONS = ("numpy", "scipy", "cvxpy", "clarabel")
+VERSIONS = ("numpy", "scipy", "cvxpy", "clarabel", "matplotlib", "jinja2")
 """Packages whose versions a report states."""
 
 

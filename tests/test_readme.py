@@ -64,9 +64,18 @@ def test_the_library_call_runs(block: Path, capsys: pytest.CaptureFixture[str]):
     assert [float(number) for number in re.findall(r"[\d.]+", " ".join(pressures))] == pytest.approx([3.0] * 17)
 
 
+def test_the_comparison_runs(block: Path, capsys: pytest.CaptureFixture[str]):
+    problem = bemcontact.load(block)
+    exec(compile(shown("python")[1], "README.md", "exec"), {"bemcontact": bemcontact, "problem": problem})
+    verdict, *rows = capsys.readouterr().out.splitlines()
+    assert "agree with the direct solution" in verdict
+    labels = ["QP1 ", "QP2 (μ = 0.1) ", "QP2 (μ = 10) ", "QP3 ", "direct "]
+    assert [row.partition("solves it")[0] for row in rows] == labels
+
+
 def test_the_quadratic_programme_prints_what_is_told(capsys: pytest.CaptureFixture[str]):
     """x² - 2x is least at 1; y - y² on [-1, 1/2] at -1: -1 - 2 = -3. The warm start has one step to do."""
-    call, names = shown("python")[1], {}
+    call, names = shown("python")[2], {}
     exec(compile(call, "README.md", "exec"), names)
     first, *log = capsys.readouterr().out.splitlines()
     assert first == re.search(r"print\(found\)  # (.*)", call).group(1)
@@ -98,7 +107,7 @@ def test_the_commands_run(block: Path):
 
 def test_shell_commands_name_what_exists():
     solve, test = (command.strip() for command in shown("sh"))
-    assert (ROOT / solve.split()[-1]).is_file()
+    assert (ROOT / re.search(r"models/\S+", solve)[0]).is_file()
     assert 'bemcontact = "bemcontact.cli:main"' in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     assert f"\n{test}\n" in (ROOT / ".ci" / "run").read_text(encoding="utf-8")
 

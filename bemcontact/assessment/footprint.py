@@ -73,7 +73,12 @@ class Footprint:
             "resultant": list(self.resultant.force),
             "resultant_moment": self.resultant.moment,
             "intervals": [
-                {"zone": interval.zone, "start": list(interval.start), "end": list(interval.end)}
+                {
+                    "zone": interval.zone,
+                    "start": list(interval.start),
+                    "end": list(interval.end),
+                    "arc": [interval.start_arc, interval.end_arc],
+                }
                 for interval in self.intervals
             ],
             "peak": None if peak is None else {"pressure": peak.pressure, "at": list(peak.at)},

@@ -1,7 +1,8 @@
 """One solution under every statement: F1 of QP1, F2 of QP2 and F3 of QP3, recomputed from p and u_n.
 
-All three vanish at the contact state, whatever the weights. An objective below that of another solution says nothing
-where equations or bounds are violated, so read them beside the residuals.
+All three vanish at the contact state with diagonal weights; the consistent ones couple neighbours and leave a rest. An
+objective below that of another solution says nothing where equations or bounds are violated, so read them beside the
+residuals.
 """
 
 from dataclasses import dataclass

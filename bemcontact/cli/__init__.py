@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.checking import check
+from bemcontact.cli.comparing import compare
 from bemcontact.cli.condensing import condense
 from bemcontact.cli.schemas import schema
 from bemcontact.cli.solving import solve
@@ -58,5 +59,5 @@ def bemcontact(
     """
 
 
-for command in (check, solve, condense, schema):
+for command in (check, solve, compare, condense, schema):
     app.command()(command)

@@ -24,19 +24,40 @@ def claim(spec: Path, outputs: Mapping[str, Path | None]) -> None:
             refuse(f"{option} {path} would overwrite {claimed[path.resolve()]}; name another file")
         claimed[path.resolve()] = f"the file of {option}"
         try:
-            if option == "--figure":
-                from bemcontact.report import figures
-
-                figures.ensure_known_format(path)
-            if option == "--vtk":
-                from bemcontact.report import vtk
-
-                vtk.ensure_possible(path)
-            if option == "--out" and path.suffix != ".npz":
-                raise ValueError(f"{path}: a condensed problem is written as .npz; end the file name in it")
+            _ensure_possible(option, path)
             output.ensure_writable(path)
         except (OSError, ValueError, ModuleNotFoundError) as error:
             refuse(f"{option}: {error}")
+
+
+def claim_folder(spec: Path, option: str, folder: Path | None, beside: Path | None) -> None:
+    """Likewise for the folder of a report, with the spec and another file outside of it."""
+    if folder is None:
+        return
+    for path in (spec, beside):
+        if path is not None and folder.resolve() in (path.resolve(), *path.resolve().parents):
+            refuse(f"{option} {folder} would replace {path}; name another folder")
+    from bemcontact.report.folder import ensure_folder_writable
+
+    try:
+        ensure_folder_writable(folder)
+    except OSError as error:
+        refuse(f"{option}: {error}")
+
+
+def _ensure_possible(option: str, path: Path) -> None:
+    """Refuse names of files that cannot be written in the format of an option."""
+    match option:
+        case "--figure":
+            from bemcontact.report import figures
+
+            figures.ensure_known_format(path)
+        case "--vtk":
+            from bemcontact.report import vtk
+
+            vtk.ensure_possible(path)
+        case "--out" if path.suffix != ".npz":
+            raise ValueError(f"{path}: a condensed problem is written as .npz; end the file name in it")
 
 
 def write_json(text: str) -> None:

@@ -144,6 +144,8 @@ class Interval(_Record):
     zone: str
     start: Pair
     end: Pair
+    arc: Pair
+    """Arc positions of both on the piece of boundary."""
 
 
 class Peak(_Record):

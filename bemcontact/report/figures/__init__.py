@@ -3,18 +3,29 @@
 Each ``draw_...`` function draws into axes that it is given; each ``figure_of_...`` composes a page of them.
 """
 
+from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
+from bemcontact.report.figures.course import draw_convergence, draw_history
 from bemcontact.report.figures.page import FORMATS, ensure_known_format, save
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
 from bemcontact.report.figures.result import draw_deformed, draw_gap, draw_pressure, figure_of_result
+from bemcontact.report.figures.study import figures_of
+from bemcontact.report.figures.vector_graphic import vector_graphic
 
 __all__ = [
     "FORMATS",
+    "draw_convergence",
     "draw_deformed",
+    "draw_differences",
     "draw_gap",
+    "draw_gaps",
+    "draw_history",
     "draw_pressure",
+    "draw_pressures",
     "draw_problem",
     "ensure_known_format",
     "figure_of_problem",
     "figure_of_result",
+    "figures_of",
     "save",
+    "vector_graphic",
 ]

@@ -179,7 +179,7 @@ def _ground(result: Result, near: float) -> Iterator[tuple[Array, Array]]:
     contact = result.contact
     feet = contact.points - contact.initial_gap[:, None] * contact.normals
     shown = _gap(result) <= near
-    for piece in _pieces(contact):
+    for piece in pieces_of(contact):
         for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
             if shown[stretch[0]] and len(stretch) > 1:
                 yield feet[stretch], contact.normals[stretch]
@@ -196,8 +196,8 @@ def _magnification(state: BoundaryState) -> float:
     return float(max(step for step in (1, 2, 5) if step * power <= wanted) * power)
 
 
-def _pieces(contact: CondensedContact) -> Iterator[Piece]:
-    """List the unbroken pieces of all contact zones."""
+def pieces_of(contact: CondensedContact) -> Iterator[Piece]:
+    """List the unbroken pieces of all contact zones, in the order of the contact points."""
     for order, run in enumerate(np.unique(contact.run)):
         index = np.flatnonzero(contact.run == run)
         index = index[np.argsort(contact.arc_position[index], kind="stable")]
@@ -215,7 +215,7 @@ def _draw_along(axes: Axes, result: Result, values: Array) -> None:
     """
     contact, touching = result.contact, result.touching
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
-    pieces = [*_pieces(contact)]
+    pieces = [*pieces_of(contact)]
     for piece in pieces:
         s, along, colour = contact.arc_position[piece.index], values[piece.index], piece.colour
         width = 1.5 * (2 - (piece.order + 1) / len(pieces))

@@ -1,0 +1,220 @@
+"""The pictures of a comparison along the contact zones: pressures, gaps, differences of all contenders."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
+
+from bemcontact.assessment.comparison import SAME, Contender
+from bemcontact.choices import FormulationName
+from bemcontact.contact import Array, CondensedContact
+from bemcontact.report.figures.course import COLOURS, legend_below, show_decades
+from bemcontact.report.figures.page import BLACK, GREY, PURPLE, labelled, plain, shortened
+from bemcontact.report.figures.result import Piece, pieces_of
+from bemcontact.report.words import number, units_of, with_unit
+from bemcontact.solution import ContactSolution
+from bemcontact.study import MeshLevel
+
+DASHES = ("solid", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
+"""Of the contenders of one formulation, in turn."""
+WIDEST, THINNEST = 8.0, 1.1
+"""Line widths: the direct solution lies under all others, and each one shows beside the next."""
+SPACE = 0.08
+"""Space between two pieces of the contact zones, over the length of all of them."""
+BEYOND = 1.3
+"""Multiple of the direct solution's peak at which the frame cuts off what is far from it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curve:
+    """How contenders that cannot be told apart are drawn."""
+
+    contenders: tuple[Contender, ...]
+    width: float
+    dashes: str | tuple[int, tuple[float, ...]]
+
+    @property
+    def colour(self) -> str:
+        """Its formulation's."""
+        return COLOURS[self.contenders[0].found.setting.formulation]
+
+    @property
+    def label(self) -> str:
+        """What the legend calls it."""
+        more = len(self.contenders) - 1
+        return plain(self.contenders[0].label) + (f" and {more} more" if more else "")
+
+    @property
+    def solution(self) -> ContactSolution:
+        """Of the first of them."""
+        judged = self.contenders[0].judged
+        assert judged is not None  # nothing else is made a curve of
+        return judged.solution
+
+
+def draw_pressures(axes: Axes, level: MeshLevel) -> None:
+    """Draw the pressures of all contenders along the contact zones, the direct solution, and what references expect.
+
+    Equal curves lie in each other, the direct solution's as a wide band below. A reference that is out of its range is
+    grey. What goes far beyond the direct solution is cut off, and named.
+    """
+    contact, unit = level.answer.contact, units_of(level.answer.contact).stress
+    along, curves = _Along(contact=contact), _curves(level)
+    for curve in curves:
+        along.plot(axes, curve.solution.pressure, curve)
+    known = [float(np.abs(level.answer.solution.pressure).max(initial=0.0))]
+    for item in level.expected:
+        colour, label = (PURPLE, item.name) if item.in_range else (GREY, f"{item.name}, out of its range")
+        if np.isfinite(item.pressure).any():
+            along.line(axes, item.pressure, colour, shortened(label, 40))
+            known.append(float(np.nanmax(item.pressure)))
+        elif item.peak is not None:
+            axes.axhline(
+                item.peak, color=colour, linewidth=1.2, linestyle="dotted", label=shortened(f"{label}: peak", 40)
+            )
+            known.append(item.peak)
+    found = {curve.label: float(curve.solution.pressure.max(initial=0.0)) for curve in curves}
+    _cut_off(axes, found, BEYOND * max(known), unit)
+    axes.set_ylabel(labelled("pressure", unit) + "\nper undeformed length")
+    along.finish(axes)
+
+
+def draw_gaps(axes: Axes, level: MeshLevel) -> None:
+    """Draw the gaps of all contenders along the contact zones, and the initial gap."""
+    contact, unit = level.answer.contact, units_of(level.answer.contact).length
+    along, found = _Along(contact=contact), dict[str, float]()
+    for curve in _curves(level):
+        gap = contact.initial_gap + curve.solution.displacement
+        along.plot(axes, gap, curve)
+        found[curve.label] = float(gap.max())
+    along.line(axes, contact.initial_gap, BLACK, "initial gap")
+    answer = contact.initial_gap + level.answer.solution.displacement
+    largest = max(float(contact.initial_gap.max()), float(answer.max()), contact.scales.displacement)
+    _cut_off(axes, found, BEYOND * largest, unit)
+    axes.set_ylabel(labelled("gap", unit))
+    along.finish(axes)
+
+
+def draw_differences(axes: Axes, level: MeshLevel) -> None:
+    """Draw |p - p'| over the peak, p' the direct solution, of every contender; where it is zero nothing is drawn."""
+    along, direct = _Along(contact=level.answer.contact), level.answer.solution.pressure
+    peak = float(direct.max(initial=0.0)) or level.answer.contact.scales.pressure
+    for curve in _curves(level, merged=False):
+        difference = np.abs(curve.solution.pressure - direct) / peak
+        if difference.any():
+            along.plot(axes, np.where(difference > 0, difference, np.nan), curve, marker=".")
+    show_decades(axes)
+    axes.set_ylabel("difference of pressure from the\ndirect solution, over its peak")
+    along.finish(axes)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Along:
+    """Pieces of the contact zones, laid out one after the other on one axis."""
+
+    contact: CondensedContact
+
+    @cached_property
+    def pieces(self) -> list[Piece]:
+        """In the order of the contact points."""
+        return [*pieces_of(self.contact)]
+
+    @cached_property
+    def shifts(self) -> list[float]:
+        """What each piece is moved by along the axis."""
+        arcs = [self.contact.arc_position[piece.index] for piece in self.pieces]
+        lengths = [float(np.ptp(arc)) for arc in arcs]
+        starts = np.cumsum([0.0, *(length + SPACE * sum(lengths) for length in lengths)])
+        return [float(start - arc[0]) for start, arc in zip(starts, arcs, strict=False)]
+
+    def stretches(self, values: Array) -> Iterator[tuple[Array, Array]]:
+        """Positions and values (n,) on each piece."""
+        for piece, shift in zip(self.pieces, self.shifts, strict=True):
+            yield self.contact.arc_position[piece.index] + shift, values[piece.index]
+
+    def plot(self, axes: Axes, values: Array, curve: Curve, marker: str = "") -> None:
+        """Draw values (n,) of a contender."""
+        for order, (s, along) in enumerate(self.stretches(values)):
+            label = "_" if order else curve.label
+            axes.plot(
+                s,
+                along,
+                color=curve.colour,
+                linewidth=curve.width,
+                linestyle=curve.dashes,
+                marker=marker,
+                label=label,
+                alpha=0.45 if curve.width == WIDEST else 1.0,
+                solid_capstyle="butt",
+            )
+
+    def line(self, axes: Axes, values: Array, colour: str, label: str) -> None:
+        """Draw values (n,) that no solver found."""
+        for order, (s, along) in enumerate(self.stretches(values)):
+            shown = "_" if order else label
+            axes.plot(s, along, color=colour, linewidth=1.4, linestyle=(0, (2.5, 2)), label=shown, zorder=2.5)
+
+    def finish(self, axes: Axes) -> None:
+        """Name the axis, and the pieces if there are several."""
+        axes.set_xlabel(labelled("distance along the contact zone", units_of(self.contact).length))
+        if len(self.pieces) > 1:
+            self._name_pieces(axes)
+        legend_below(axes)
+
+    def _name_pieces(self, axes: Axes) -> None:
+        """Count the distance on each piece from its own beginning."""
+        ticks, labels = [], []
+        for piece, shift in zip(self.pieces, self.shifts, strict=True):
+            s = self.contact.arc_position[piece.index]
+            own = [tick for tick in MaxNLocator(3).tick_values(s[0], s[-1]) if s[0] <= tick <= s[-1] * (1 + 1e-9)]
+            ticks += [tick + shift for tick in own]
+            labels += [f"{tick:.4g}" for tick in own]
+            middle = float(s[0] + s[-1]) / 2 + shift
+            at_top = axes.get_xaxis_transform()
+            axes.text(middle, 1.02, piece.label, transform=at_top, ha="center", va="bottom", fontsize=9, color=BLACK)
+        axes.set_xticks(ticks, labels)
+
+
+def _curves(level: MeshLevel, *, merged: bool = True) -> list[Curve]:
+    """The direct solution, then all that have a pressure, each thinner than the one before.
+
+    Those of one formulation that cannot be told apart are merged to one curve.
+    """
+    compared = level.comparison
+    everyone = [item for item in (compared.reference, *compared.contenders) if item.judged is not None]
+    groups = list[list[Contender]]()
+    for item in everyone:
+        alike = next((group for group in groups if merged and _alike(group[0], item, level)), None)
+        if alike is None:
+            groups.append([item])
+        else:
+            alike.append(item)
+    widths = [WIDEST, *np.linspace(5.0, THINNEST, max(len(groups) - 1, 1))]
+    curves, seen = list[Curve](), dict[FormulationName, int]()
+    for group, width in zip(groups, widths, strict=False):
+        name = group[0].found.setting.formulation
+        order = seen.get(name, 0)
+        seen[name] = order + 1
+        curves.append(Curve(contenders=tuple(group), width=float(width), dashes=DASHES[order % len(DASHES)]))
+    return curves
+
+
+def _alike(one: Contender, other: Contender, level: MeshLevel) -> bool:
+    """Whether two contenders of the same formulation have the same pressure, as far as can be seen."""
+    if one.judged is None or other.judged is None:
+        return False
+    apart = float(np.abs(one.judged.solution.pressure - other.judged.solution.pressure).max())
+    peak = float(level.answer.solution.pressure.max(initial=0.0)) or level.answer.contact.scales.pressure
+    return one.found.setting.formulation is other.found.setting.formulation and apart <= SAME * peak
+
+
+def _cut_off(axes: Axes, found: dict[str, float], top: float, unit: str) -> None:
+    """Keep the frame to what can be compared, and say what is outside."""
+    beyond = [f"{label} up to {with_unit(number(value), plain(unit))}" for label, value in found.items() if value > top]
+    axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
+    if beyond:
+        axes.set_ylim(-0.1 * top, top)
+        axes.set_title("beyond the frame: " + "\n".join(beyond), loc="left", fontsize=8, color=BLACK)

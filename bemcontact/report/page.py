@@ -1,0 +1,332 @@
+"""The page that a study is read on: one self-contained HTML file, from `Study.to_dict` and pictures alone."""
+
+import re
+from base64 import b64encode
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import isclose
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+
+from bemcontact.problem import Units
+from bemcontact.report.words import NEGLIGIBLE, number, per_thickness, plural, seconds_in_words, vector, with_unit
+
+Record = Mapping[str, Any]
+"""A part of a report: what stands between braces in report.json."""
+
+NOTHING = "–"
+"""Stands where there is no number."""
+
+OUTCOMES = {
+    "solves it": "good",
+    "solves it, perhaps not alone": "fair",
+    "not the solution": "bad",
+    "refused": "bad",
+}
+"""Outcome of a verdict -> how it is coloured."""
+
+VERBS = {
+    "solves it": ("{} finds the contact state", "{} find the contact state"),
+    "solves it, perhaps not alone": ("{} finds a contact state", "{} find a contact state"),
+    "not the solution": ("{} ends elsewhere", "{} end elsewhere"),
+    "refused": ("{} is refused", "{} are refused"),
+}
+"""Outcome -> what is said of one, and of several."""
+DIRECT = {
+    "solves it": "is certified, and there is no other",
+    "solves it, perhaps not alone": "meets all conditions, but another may exist",
+    "not the solution": "is none",
+}
+"""Outcome of the direct solution -> what is said of it."""
+
+PLAIN = 0.01, 1000.0
+"""Sizes of numbers that are read more easily without a power of ten."""
+MANY = 5
+"""Contenders from which on they are counted and no longer listed at the head of the page."""
+
+FORMULATIONS = {"qp1": "QP1", "qp2": "QP2", "qp3": "QP3"}
+WIDE = 500.0
+"""Points from which on a picture is wide."""
+HISTORY = "history-"
+"""What the names of the pictures of solvers begin with."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """A picture in the page.
+
+    Parameters
+    ----------
+    source : the picture itself, as a data address
+    alternative : what it shows, for those who do not see it
+    caption : above it
+    wide : whether it needs the whole width of the page
+    """
+
+    source: str
+    alternative: str
+    caption: str
+    wide: bool
+
+
+def render(report: Record, pictures: Mapping[str, bytes], spec: str | None) -> str:
+    """Write the page.
+
+    Parameters
+    ----------
+    report : what `Study.to_dict` gives, or report.json holds
+    pictures : name -> SVG, the names as of `bemcontact.report.figures.figures_of`; sections go without missing ones
+    spec : text of the spec as run, if there is one
+
+    Returns
+    -------
+    str
+        HTML that needs no other file.
+    """
+    contents = _contents(report)
+    return _template().render(
+        **contents,
+        pictures={name: _picture(name, svg, contents["level"]) for name, svg in pictures.items()},
+        courses=[name for name in pictures if name.startswith(HISTORY)],
+        spec=spec,
+    )
+
+
+def _template() -> Template:
+    """The page without its contents; what it is given is text, never markup."""
+    environment = Environment(
+        loader=PackageLoader("bemcontact.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(
+        number=_number, small=_small, percent=_percent, seconds=seconds_in_words, vector=vector, unit=with_unit,
+        plural=plural, plain=_plain, capital=_capital, statement=_statement, inertia=_inertia, outcome=OUTCOMES.get,
+    )  # fmt: skip
+    return environment.get_template("report.html")
+
+
+def _contents(report: Record) -> dict[str, Any]:
+    """What the page says, by the names that the template has for it; the finest mesh gives the answer."""
+    level = report["levels"][-1]
+    compared = level["comparison"]
+    contenders, reference = compared["contenders"], compared["reference"]
+    units = Units(length=report["units"].get("length", ""), force=report["units"].get("force", ""))
+    return {
+        "report": report,
+        "level": level,
+        "compared": compared,
+        "everyone": [*contenders, reference],
+        "apart": {item["one"]: item for item in compared["differences"] if item["other"] == reference["label"]},
+        "answer": reference["answer"],
+        "units": {"p": units.stress, "L": units.length, "1": "", "force": per_thickness(units)},
+        "verdict": _verdict(report, compared),
+        "description": [" ".join(part.split()) for part in report["description"].split("\n\n") if part.strip()],
+        "facts": [*_facts(level, units)],
+        "scores": [*_scores(level, units)],
+        "certificate": _certificate(reference["answer"], units),
+        "penalties": {item["label"]: _penalty(item, units) for item in contenders},
+        "uncertified": [item["refine"] for item in report["levels"][:-1] if not item["comparison"]["certified"]],
+        "stages": [*dict.fromkeys(stage for item in report["levels"] for stage in item["seconds"])],
+    }
+
+
+def _number(value: float | None) -> str:
+    """Five figures."""
+    return NOTHING if value is None else number(value)
+
+
+def _small(value: float | None) -> str:
+    """Two figures of a number whose size is all that matters."""
+    if not value:
+        return NOTHING if value is None else "0"
+    return f"{value:.2g}" if PLAIN[0] <= abs(value) < PLAIN[1] else f"{value:.1e}"
+
+
+def _percent(value: float | None) -> str:
+    """Relative to one, with three figures; round-off is zero."""
+    if value is None:
+        return NOTHING
+    return f"{100 * value:.3g} %" if abs(value) > NEGLIGIBLE else "0 %"
+
+
+def _plain(text: str) -> str:
+    """A name from a program, in words: local_minimum, element_length."""
+    return text.replace("_", " ")
+
+
+def _capital(sentence: str) -> str:
+    """Begin a sentence with a capital letter, and leave all others as they are."""
+    return sentence[:1].upper() + sentence[1:]
+
+
+def _statement(name: str) -> str:
+    """The name of a formulation as it is printed."""
+    return FORMULATIONS.get(name, name)
+
+
+def _inertia(inertia: Sequence[int] | None) -> str:
+    """How many eigenvalues are positive, zero and negative."""
+    if inertia is None:
+        return NOTHING
+    return f"({', '.join(map(str, inertia))})"
+
+
+def _verdict(report: Record, compared: Record) -> str:
+    """What the report says; of many contenders, how many of them."""
+    if len(compared["contenders"]) < MANY:
+        return report["verdict"]
+    outcomes = Counter(item["verdict"]["outcome"] for item in compared["contenders"])
+    direct = compared["reference"]["verdict"]["outcome"]
+    told = ", ".join(f"{VERBS[outcome][count > 1].format(count)}" for outcome, count in outcomes.items())
+    return f"Of {len(compared['contenders'])} settings {told}. The direct solution {DIRECT[direct]}."
+
+
+def _facts(level: Record, units: Units) -> Iterator[tuple[str, str]]:
+    """What the direct solution says, as what and how much."""
+    compared = level["comparison"]
+    contact, answer = compared["contact"], compared["reference"]["answer"]
+    if answer is None:
+        return
+    size = max((abs(x) for point in contact["nodes"] for x in point), default=0.0)
+    pressed = sum(w * abs(p) for w, p in zip(contact["tributary_lengths"], answer["pressure"], strict=True))
+    peak = answer["peak"]
+    if peak is None:
+        yield "Contact", "nowhere"
+    else:
+        at = vector(peak["at"], units.length, scale=size)
+        yield "Peak pressure", f"{with_unit(number(peak['pressure']), units.stress)} at {at}, per undeformed length"
+    for item in answer["intervals"]:
+        start, end = vector(item["start"], scale=size), vector(item["end"], units.length, scale=size)
+        where = f"at the point {end} alone" if item["start"] == item["end"] else f"from {start} to {end}"
+        yield f"Contact in {item['zone']}", where
+    force = vector(answer["resultant"], per_thickness(units), scale=pressed)
+    yield "Resultant", f"{force}, of the rigid surfaces on the body"
+    moment = answer["resultant_moment"] if abs(answer["resultant_moment"]) > NEGLIGIBLE * pressed * size else 0.0
+    yield "Its moment about (0, 0)", with_unit(number(moment), units.force)
+    for name, amplitude in zip(contact["motion_names"], answer["rigid_amplitudes"], strict=True):
+        yield f"Free {name}", with_unit(number(amplitude), units.length if name.startswith("translation") else "")
+    if level["force_balance"] is not None:
+        yield "Force balance of the whole body", f"{_small(level['force_balance'])} of the forces on it"
+
+
+def _scores(level: Record, units: Units) -> Iterator[dict[str, str]]:
+    """The answer beside the references, each number with its unit."""
+    told = {item["name"]: item for item in level["references"]}
+    for item in level["scores"]:
+        quantity, reference = item["quantity"], told[item["reference"]]
+        if quantity == "resultant":
+            unit = per_thickness(units)
+        elif quantity == "peak" or quantity.startswith("pressure"):
+            unit = units.stress
+        else:
+            angle = reference["against"] == "angle" and quantity.endswith("of contact")
+            unit = "°" if angle else units.length
+        verdict, colour = ("holds", "good") if item["holds"] else ("does not hold", "bad")
+        if not item["judged"]:
+            verdict, colour = "not judged", "fair"
+        yield {
+            "reference": item["reference"],
+            "quantity": quantity,
+            "found": NOTHING if item["found"] is None else with_unit(number(item["found"]), unit),
+            "expected": with_unit(number(item["expected"]), unit),
+            "difference": _percent(item["difference"]),
+            "tolerance": _percent(item["tolerance"]),
+            "verdict": verdict,
+            "colour": colour,
+        }
+
+
+def _certificate(answer: Record | None, units: Units) -> str:
+    """What is proved of the direct solution, in two sentences for an engineer."""
+    if answer is None:
+        return "The direct solver has no answer. So there is nothing to certify."
+    proved, left = answer["certificate"], answer["residuals"]
+    eigenvalue, kind = proved["smallest_eigenvalue"], proved["kind"]
+    if kind == "not a solution":
+        return f"{proved['words']} So this is not an answer to rely on."
+    names = ("penetration", "tension", "complementarity", "equilibrium")
+    holds = (
+        "The pressure was put back into the equations of the body: it presses nowhere into a rigid surface, pulls at "
+        "none, keeps the body in equilibrium, and is zero wherever there is a gap, and no more than "
+        f"{_small(max(left[name] for name in names))} of its scale is left of any of these conditions."
+    )
+    if kind != "unique":
+        return (
+            f"{holds} But a second contact state cannot be ruled out, because the smallest eigenvalue of the "
+            f"compliance ({_small(eigenvalue)}) is not positive, so that this is proved to be a solution, but not "
+            "the only one."
+        )
+    why = (
+        "Equilibrium alone fixes the pressure, so that there is no other"
+        if eigenvalue is None
+        else "Two different contact states would differ by a pressure that stores no elastic energy, and none does "
+        f"here (the smallest eigenvalue of the compliance is {_small(eigenvalue)}, and positive), so that there is no "
+        "other"
+    )
+    return f"{holds} {why}{_bound(proved['error_bound'], answer['peak'], units)}."
+
+
+def _bound(bound: float | None, peak: Record | None, units: Units) -> str:
+    """How far round-off may have moved the pressure."""
+    if bound is None or peak is None:
+        return ""
+    size = with_unit(_small(bound), units.stress)
+    return f", and round-off moves no pressure by more than {size}, {_small(bound / peak['pressure'])} of the peak"
+
+
+def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
+    """The penalty of QP2, free of units and in the user's, up to where QP2 is convex, and whether it is there."""
+    search = (contender["answer"] or {}).get("search")
+    told = search and search["penalty"]
+    if not told:
+        return None
+    unit = f"{units.force}/{units.length}⁴" if told["dimension"] == "p/L²" else f"{units.length}²/{units.force}"
+    unit = unit if units.force and units.length else ""
+    limit, value = told["convexity_limit"], told["value"]
+    written = NOTHING if limit is None else f"{number(limit)} ({with_unit(number(told['convexity_limit_raw']), unit)})"
+    return {
+        "value": f"{number(value)} ({with_unit(number(told['raw']), unit)})",
+        "limit": "any penalty" if limit is None else "no penalty" if limit == 0 else written,
+        "convex": "yes" if limit is None or (limit > 0 and (value <= limit or isclose(value, limit))) else "no",
+    }
+
+
+def _picture(name: str, svg: bytes, level: Record) -> Picture:
+    """A picture with what it shows, in words."""
+    caption = CAPTIONS.get(name)
+    if caption is None:
+        solver, _, weights = name.removeprefix(HISTORY).partition("-")
+        weighted = f" with {weights.replace('-', ' ')} weights" if weights else ""
+        caption = f"{_statement(solver)}{weighted}" if solver != "direct" else "The direct solver"
+    answer = level["comparison"]["reference"]["answer"]
+    peak = answer and answer["peak"]
+    extent = f"; the peak is {number(peak['pressure'])}" if name == "pressure" and peak else ""
+    course = ": course of the search, iteration by iteration" if name.startswith(HISTORY) else ""
+    return Picture(
+        source=f"data:image/svg+xml;base64,{b64encode(svg).decode('ascii')}",
+        alternative=f"{caption}{course}{extent}",
+        caption=caption,
+        wide=_width(svg) > WIDE,
+    )
+
+
+def _width(svg: bytes) -> float:
+    """Width in points that a picture states; 0 if it states none."""
+    stated = re.search(rb'<svg[^>]* width="([\d.]+)pt"', svg)
+    return float(stated[1]) if stated else 0.0
+
+
+CAPTIONS = {
+    "problem": "The body with its mesh, what is prescribed on it, and the rigid surfaces that it may touch",
+    "pressure": "Contact pressure of all formulations, one inside the other where they agree",
+    "gap": "Gap between the body and the rigid surfaces",
+    "deformed": "Deformed shape, by the direct solution",
+    "difference": "How far each pressure is from the direct solution",
+    "convergence": "What is left of each quantity, mesh by mesh",
+}
+"""Name of a picture -> the line below it."""

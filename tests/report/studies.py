@@ -1,0 +1,93 @@
+"""Studies of all kinds that a page and its pictures have to show; each is made once."""
+
+from functools import cache
+
+from bemcontact import comparing
+from bemcontact.contact import CondensedContact
+from bemcontact.formulations.plan import planned_comparison
+from bemcontact.problem import Problem
+from bemcontact.study import Study
+
+
+def block(**changes: object) -> Problem:
+    """A block on a table under pressure 3, so that 3 is its contact pressure; contact alone keeps it from sinking."""
+    corners = {"bottom": ([0, 0], 4), "right": ([40, 0], 2), "top": ([40, 20], 4), "left": ([0, 20], 2)}
+    edges = [{"name": name, "start": start, "elements": parts} for name, (start, parts) in corners.items()]
+    plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    stated = {
+        "name": "block <on> a table & more",
+        "units": {"length": "mm", "force": "N"},
+        "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+        "boundary": {"outer": edges},
+        "conditions": {"left": {"displacement": {"x": 0}}, "top": {"pressure": 3}},
+        "contact_zones": {"foot": {"edges": "bottom", "surface": plane}},
+        "reference": {
+            "theory": {"kind": "uniform", "pressure": 3},
+            "Hertz": {"kind": "hertz", "load": 60, "radius": 0.01, "half": True},
+        },
+    }
+    return Problem(**{**stated, **changes})  # pyright: ignore
+
+
+def roller(**changes: object) -> Problem:
+    """A quarter of a cylinder pressed on a plane, with contact that ends within the zone."""
+    arc = {"kind": "arc", "center": [0, 8], "radius": 8}
+    edges = [
+        {**arc, "name": "under", "angles": [-90, -60], "elements": 8},
+        {**arc, "name": "flank", "angles": [-60, 0], "elements": 4},
+        {"name": "top", "elements": 3},
+        {"name": "axis", "start": [0, 8], "end": [0, 0], "elements": 4},
+    ]
+    plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    stated = {
+        "name": "roller",
+        "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+        "boundary": {"outer": edges},
+        "conditions": {"top": {"pressure": 30}, "axis": {"displacement": {"x": 0}}},
+        "contact_zones": {"foot": {"edges": "under", "surface": plane}},
+    }
+    return Problem(**{**stated, **changes})  # pyright: ignore
+
+
+@cache
+def on_one_mesh() -> Study:
+    """The block, with three random starts."""
+    return comparing.study(planned_comparison(starts=3), block())
+
+
+@cache
+def on_three_meshes() -> Study:
+    """The roller, with two random starts."""
+    return comparing.study(planned_comparison(starts=2), roller(), (1, 2, 3))
+
+
+@cache
+def of_many_settings() -> Study:
+    """The roller beside Hertz, with weights that are refused, and with which QP2 ends far from the contact state."""
+    hertz = {"kind": "hertz", "load": 480, "radius": 8, "half": True}
+    plan = planned_comparison(weights=["tributary", "consistent"], penalties=[1.0, 1e3])
+    return comparing.study(plan, roller(reference={"Hertz": hertz}))
+
+
+@cache
+def without_a_body() -> Study:
+    """Three points, of which two touch; no boundary stands behind them."""
+    compliance = [[2.0, 0.5, 0.0], [0.5, 2.0, 0.5], [0.0, 0.5, 2.0]]
+    return comparing.study(planned_comparison(), CondensedContact.from_compliance(compliance, [-1.0, -0.5, 1.0]))
+
+
+@cache
+def without_contact() -> Study:
+    """Three points, none of which touches."""
+    compliance = [[2.0, 0.5, 0.0], [0.5, 2.0, 0.5], [0.0, 0.5, 2.0]]
+    return comparing.study(planned_comparison(), CondensedContact.from_compliance(compliance, [1.0, 0.5, 1.0]))
+
+
+@cache
+def not_unique() -> Study:
+    """Two points, of which each holds the body without the other: pressures (1, 0), (0, 1) and both together."""
+    contact = CondensedContact.from_compliance([[1.0, 2.0], [2.0, 1.0]], [-1.0, -1.0])
+    return comparing.study(planned_comparison(["qp1", "qp2"]), contact)
+
+
+ALL = (on_one_mesh, on_three_meshes, of_many_settings, without_a_body, without_contact, not_unique)

@@ -1,0 +1,125 @@
+"""The page in a real browser: nothing complains, all is drawn, fits, and can be read in the light and in the dark."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from chromium import Browser, browser, executable
+from studies import of_many_settings, on_three_meshes
+
+from bemcontact.report import folder
+
+pytestmark = pytest.mark.skipif(executable() is None, reason="there is no Chromium on this machine")
+
+STUDIES = {"meshes": on_three_meshes, "settings": of_many_settings}
+
+PICTURES = """
+Promise.all([...document.images].map(image => image.decode().then(() => image.naturalWidth * image.width)))
+"""
+
+WIDTHS = """
+(() => {
+  const inner = element => element.closest(".scroll, pre");
+  const wide = [...document.body.querySelectorAll("*")].filter(
+    element => !inner(element) && element.getBoundingClientRect().right > innerWidth + 0.5);
+  return [innerWidth, document.documentElement.scrollWidth, wide.map(element => element.outerHTML.slice(0, 80))];
+})()
+"""
+
+# Text is judged against the nearest background that is painted, by the formula of WCAG 2.2.
+CONTRASTS = """
+(() => {
+  const channels = colour => colour.match(/[\\d.]+/g).map(Number);
+  const linear = value => value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
+  const luminance = colour => {
+    const [r, g, b] = channels(colour).slice(0, 3).map(value => linear(value / 255));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const painted = element => {
+    for (let node = element; node; node = node.parentElement) {
+      const colour = getComputedStyle(node).backgroundColor;
+      if (!(channels(colour).length === 4 && channels(colour)[3] === 0)) return colour;
+    }
+    throw new Error("nothing is painted behind " + element.outerHTML.slice(0, 80));
+  };
+  document.querySelectorAll("details").forEach(details => { details.open = true; });
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const ratios = [];
+  while (walker.nextNode()) {
+    const element = walker.currentNode.parentElement;
+    if (!walker.currentNode.data.trim() || !element.getClientRects().length) continue;
+    const light = [getComputedStyle(element).color, painted(element)].map(luminance).sort((a, b) => b - a);
+    ratios.push([(light[0] + 0.05) / (light[1] + 0.05), element.outerHTML.slice(0, 80)]);
+  }
+  return ratios;
+})()
+"""
+
+# The mean lightness of what is opaque in a picture drawn by itself.
+LIGHTNESS = """
+(async () => {
+  const image = document.querySelector("img");
+  await image.decode();
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+  const pen = canvas.getContext("2d");
+  pen.drawImage(image, 0, 0);
+  const data = pen.getImageData(0, 0, canvas.width, canvas.height).data;
+  let sum = 0, count = 0;
+  for (let i = 0; i < data.length; i += 4)
+    if (data[i + 3] > 200) { sum += (data[i] + data[i + 1] + data[i + 2]) / 765; count += 1; }
+  return [sum / count, data[3]];
+})()
+"""
+
+
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    with browser(tmp_path_factory.mktemp("profile")) as page:
+        yield page
+
+
+@pytest.fixture(scope="module", params=STUDIES)
+def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("reports") / request.param
+    folder.save(STUDIES[request.param](), place, "name: x  # " + "long " * 60)
+    return place / "report.html"
+
+
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+@pytest.mark.parametrize("width", [380, 1200])
+def test_the_page_is_drawn_whole_and_fits(chromium: Browser, report: Path, width: int, dark: bool):
+    chromium.complaints.clear()
+    chromium.open(report, width=width, dark=dark)
+    sizes = chromium.evaluate(PICTURES)
+    assert len(sizes) == len([*(report.parent / "figures").iterdir()])
+    assert min(sizes) > 0
+    assert chromium.evaluate(WIDTHS) == [width, width, []]
+    contrasts = chromium.evaluate(CONTRASTS)
+    assert len(contrasts) > 100
+    assert min(contrasts)[0] >= 4.5, min(contrasts)
+    background = chromium.evaluate("getComputedStyle(document.body).backgroundColor")
+    assert background == ("rgb(22, 25, 29)" if dark else "rgb(255, 255, 255)")
+    assert chromium.evaluate(WIDTHS) == [width, width, []]  # with all details open
+    assert chromium.complaints == []
+
+
+def test_a_picture_is_transparent_and_its_ink_follows_the_page(chromium: Browser, report: Path):
+    seen = []
+    for dark in (False, True):
+        chromium.open(report, width=1200, dark=dark)
+        seen.append(chromium.evaluate(LIGHTNESS))
+    (light, corner), (dark, other_corner) = seen
+    assert corner == other_corner == 0
+    assert dark != pytest.approx(light, abs=0.02)
+
+
+def test_complaints_are_heard(chromium: Browser, tmp_path: Path):
+    """A page with a script that fails and a picture that is missing: without this the test above proves nothing."""
+    page = tmp_path / "bad.html"
+    page.write_text("<!DOCTYPE html><img src=none.png><script>nothing()</script>", encoding="utf-8")
+    chromium.complaints.clear()
+    chromium.open(page, width=380)
+    chromium.evaluate("1")
+    assert any("nothing is not defined" in complaint for complaint in chromium.complaints)
+    assert any("ERR_FILE_NOT_FOUND" in complaint for complaint in chromium.complaints)

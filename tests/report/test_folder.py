@@ -1,0 +1,135 @@
+"""The folder of a report: complete, replaced as a whole, and never at the cost of foreign files."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from studies import block, on_one_mesh, on_three_meshes, without_a_body
+
+from bemcontact.contact import CondensedContact
+from bemcontact.report import folder
+
+
+def files(place: Path) -> set[str]:
+    return {path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file()}
+
+
+def test_all_of_it_is_written(tmp_path: Path):
+    study, place = on_one_mesh(), tmp_path / "report"
+    folder.save(study, place, "name: block\n")
+    assert files(place) >= {"report.html", "report.json", "contact.npz", "spec.yaml", "figures/pressure.svg"}
+    assert json.loads((place / "report.json").read_text(encoding="utf-8")) == json.loads(study.to_json())
+    assert (place / "spec.yaml").read_text(encoding="utf-8") == "name: block\n"
+    matrices = CondensedContact.load(place / "contact.npz")
+    assert np.array_equal(matrices.compliance, study.finest.comparison.contact.compliance)
+    page = (place / "report.html").read_text(encoding="utf-8")
+    assert page.count("<img ") == len([*(place / "figures").iterdir()])
+    assert [*tmp_path.iterdir()] == [place]
+
+
+def test_a_study_written_twice_is_the_same(tmp_path: Path):
+    for name in ("a", "b"):
+        folder.save(on_one_mesh(), tmp_path / name)
+    for name in files(tmp_path / "a") - {"contact.npz"}:  # its archive has dates
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_an_earlier_report_is_replaced_with_all_its_files(tmp_path: Path):
+    folder.save(on_three_meshes(), tmp_path / "report", "name: roller\n")
+    folder.save(without_a_body(), tmp_path / "report")
+    left = files(tmp_path / "report")
+    assert not left & {"spec.yaml", "figures/problem.svg", "figures/convergence.svg"}
+    assert "report.html" in left
+
+
+def test_a_new_and_an_empty_folder_are_fine(tmp_path: Path):
+    (tmp_path / "empty").mkdir()
+    folder.ensure_folder_writable(tmp_path / "empty")
+    folder.ensure_folder_writable(tmp_path / "new")
+    assert [*tmp_path.iterdir()] == [tmp_path / "empty"]
+
+
+def test_foreign_files_are_never_lost(tmp_path: Path):
+    report = tmp_path / "report"
+    folder.save(on_one_mesh(), report)
+    for name in ("notes.txt", "figures/photo.jpg", ".hidden"):
+        (report / name).touch()
+        with pytest.raises(FileExistsError, match=rf"holds .*{name}.*name a new folder"):
+            folder.save(on_one_mesh(), report)
+        (report / name).unlink()
+    (report / "figures" / "deep.svg").mkdir()
+    with pytest.raises(FileExistsError, match=r"holds .*deep\.svg"):
+        folder.ensure_folder_writable(report)
+
+
+@pytest.mark.parametrize("content", ["", "[]", "{}", '{"levels": []}', "\udcff"])
+def test_a_folder_with_somebody_elses_report_is_refused(tmp_path: Path, content: str):
+    (tmp_path / "report.json").write_text(content, encoding="utf-8", errors="surrogateescape")
+    with pytest.raises(FileExistsError, match=r"has no report\.json of ours"):
+        folder.ensure_folder_writable(tmp_path)
+    (tmp_path / "report.json").rename(tmp_path / "report.html")
+    with pytest.raises(FileExistsError, match=r"has no report\.json of ours"):
+        folder.ensure_folder_writable(tmp_path)
+
+
+def test_a_file_in_the_way_is_refused(tmp_path: Path):
+    (tmp_path / "report").touch()
+    with pytest.raises(OSError, match="is a file; name a folder"):
+        folder.ensure_folder_writable(tmp_path / "report")
+
+
+KILLED = """
+import json, os, random, signal, sys, time
+from pathlib import Path
+from studies import on_one_mesh
+from bemcontact.report import folder
+
+place, chance, seen = Path(sys.argv[1]), random.Random(0), set()
+study = on_one_mesh()
+folder.save(study, place, "warm")
+begin = time.monotonic()
+folder.save(study, place, "first")
+longest = 2 * (time.monotonic() - begin)
+names = {path.relative_to(place).as_posix() for path in place.rglob("*")}
+for kill in range(int(sys.argv[2])):
+    child = os.fork()
+    if not child:
+        for run in range(10**6):
+            folder.save(study, place, f"{kill} {run}")
+    time.sleep(chance.uniform(0, longest))
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    spec = (place / "spec.yaml").read_text()
+    assert {path.relative_to(place).as_posix() for path in place.rglob("*")} == names
+    assert json.loads((place / "report.json").read_text())["name"] == study.name
+    page = (place / "report.html").read_text()
+    assert f"<pre>{spec}</pre>" in page and page.endswith("</html>"), spec
+    seen.add(spec)
+print(len(seen))
+"""
+
+
+def test_a_killed_run_leaves_the_old_report_or_the_new_one(tmp_path: Path):
+    """Killed at random moments of endless saving, each time page, numbers and spec are of one and the same run."""
+    paths = os.pathsep.join([str(Path(__file__).parent), *filter(None, [os.environ.get("PYTHONPATH")])])
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED, str(tmp_path / "report"), "5"],
+        env={**os.environ, "PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout) > 1
+
+
+def test_the_page_names_the_problem(tmp_path: Path):
+    folder.save(on_one_mesh(), tmp_path / "report")
+    page = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
+    assert "block &lt;on&gt; a table &amp; more" in page
+    assert block().name not in page

@@ -1,0 +1,189 @@
+"""The page: its numbers are those of report.json, it needs nothing else, and a user's text stays text."""
+
+import copy
+import json
+import re
+from collections.abc import Callable
+from html.parser import HTMLParser
+from typing import Any
+
+import pytest
+from studies import ALL, block, not_unique, of_many_settings, on_one_mesh, on_three_meshes, without_a_body
+
+from bemcontact.report import words
+from bemcontact.report.page import render
+from bemcontact.study import Study
+
+SVG = b'<svg xmlns="http://www.w3.org/2000/svg"/>'
+EMPTY = {"meta", "link", "img", "br", "hr", "input"}
+"""Elements without an end."""
+
+
+class Reader(HTMLParser):
+    """Reads a page, and finds fault with it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.text = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in EMPTY:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if "style" not in self.open:
+            self.text += data
+
+
+def read(page: str) -> Reader:
+    reader = Reader()
+    reader.feed(page)
+    reader.close()
+    assert reader.open == []
+    reader.text = " ".join(reader.text.split())
+    return reader
+
+
+def report_of(study: Study) -> dict[str, Any]:
+    """The report as another program reads it from the file."""
+    return json.loads(study.to_json())
+
+
+PICTURES = dict.fromkeys(("problem", "pressure", "gap", "deformed", "history-qp1", "history-qp2-consistent"), SVG)
+
+
+@pytest.mark.parametrize("study", ALL, ids=lambda study: study.__name__)
+def test_the_page_is_whole_and_needs_nothing_else(study: Callable[[], Study]):
+    page = render(report_of(study()), PICTURES, "name: x")
+    reader = read(page)
+    assert page.startswith("<!DOCTYPE html>")
+    addresses = [attrs[key] for _, attrs in reader.tags for key in ("src", "href") if key in attrs]
+    assert all(address and address.startswith(("data:", "#")) for address in addresses)
+    assert not {"script", "iframe", "object", "base"} & {tag for tag, _ in reader.tags}
+    assert "url(" not in page
+    assert "@import" not in page
+    names = [attrs["id"] for _, attrs in reader.tags if "id" in attrs]
+    assert len(names) == len({*names})
+    assert {address[1:] for address in addresses if address and address.startswith("#")} <= {*names}
+    pictures = [attrs for tag, attrs in reader.tags if tag == "img"]
+    assert len(pictures) == len(PICTURES)
+    assert all(picture["alt"] for picture in pictures)
+    assert not re.search(r"\b(None|nan|inf|Undefined|True|False)\b", reader.text)
+
+
+def test_numbers_come_from_the_report_alone():
+    """Another peak, difference and eigenvalue in the report are others on the page, and those of the study are gone."""
+    report = report_of(on_three_meshes())
+    peak = words.number(report["levels"][-1]["comparison"]["reference"]["answer"]["peak"]["pressure"])
+    changed = copy.deepcopy(report)
+    compared = changed["levels"][-1]["comparison"]
+    compared["reference"]["answer"]["peak"]["pressure"] = 77.125
+    changed["convergence"]["quantities"][0]["values"][-1] = 77.5
+    compared["agreement"] = 0.0125
+    compared["matrices"]["condition"] = 4321e5
+    before, after = read(render(report, {}, None)).text, read(render(changed, {}, None)).text
+    assert f"{peak} " in before
+    assert f"{peak} " not in after
+    for told in ("77.125", "77.5", "0.013 × the peak", "4.3e+08"):
+        assert told not in before
+        assert told in after
+
+
+def test_a_text_of_the_user_stays_text():
+    report = report_of(on_one_mesh())
+    report["description"] = "<b>bold</b>\nsame paragraph\n\nnext & last"
+    reader = read(render(report, {}, "name: </pre><script>alert(1)</script>"))
+    assert "block <on> a table & more" in reader.text
+    assert "<b>bold</b> same paragraph" in reader.text
+    assert "</pre><script>alert(1)</script>" in reader.text
+    assert not {"script", "b", "on"} & {tag for tag, _ in reader.tags}
+
+
+def test_each_contender_stands_there_with_its_verdict():
+    report = report_of(of_many_settings())
+    text = read(render(report, {}, None)).text
+    for contender in report["levels"][-1]["comparison"]["contenders"]:
+        assert contender["label"] in text
+        assert contender["verdict"]["words"][1:] in text
+
+
+def test_many_contenders_are_counted_at_the_head():
+    """QP1 and QP3 with two weights, QP2 with two penalties too: eight, beside a certified direct solution."""
+    report = report_of(of_many_settings())
+    outcomes = [item["verdict"]["outcome"] for item in report["levels"][-1]["comparison"]["contenders"]]
+    head = read(render(report, {}, None)).text.split("Asked")[0]
+    assert f"Of 8 settings {outcomes.count('solves it')} find the contact state" in head
+    assert f"{outcomes.count('refused')} is refused" in head
+    assert "The direct solution is certified, and there is no other." in head
+    assert "Not certified." in head
+    assert report["verdict"][1:] in read(render(report, {}, None)).text
+
+
+def test_a_coarser_mesh_that_is_not_certified_is_named():
+    report = report_of(on_three_meshes())
+    report["certified"] = report["levels"][1]["comparison"]["certified"] = False
+    head = read(render(report, {}, None)).text.split("Asked")[0]
+    assert "The comparison on the coarser mesh (refine 2) is not certified." in head
+
+
+def test_sections_go_without_what_there_is_not():
+    alone = read(render(report_of(without_a_body()), {"pressure": SVG}, None)).text
+    assert "From mesh to mesh" not in alone
+    assert "Beside what is known" not in alone
+    assert "How each solver got there" not in alone
+    assert "The spec as run" not in alone
+    whole = read(render(report_of(on_three_meshes()), PICTURES, "name: x")).text
+    assert "From mesh to mesh" in whole
+    assert "How each solver got there" in whole
+    assert "The spec as run" in whole
+
+
+@pytest.mark.parametrize(
+    ("study", "says"),
+    [(on_one_mesh, "so that there is no other"), (not_unique, "proved to be a solution, but not the only one")],
+)
+def test_the_certificate_is_two_sentences(study: Callable[[], Study], says: str):
+    text = read(render(report_of(study()), {}, None)).text
+    certificate = text.split("Why one should believe it ")[1].split(" The certificate is about")[0]
+    assert certificate.count(". ") + certificate.endswith(".") == 2
+    assert says in certificate
+
+
+def test_references_are_judged_in_their_range_only():
+    """Uniform pressure is exact; the contact of Hertz of a radius of 0.01 is a fifth of it wide."""
+    report = report_of(on_one_mesh())
+    text = read(render(report, {}, None)).text
+    held = [score["holds"] for score in report["levels"][0]["scores"] if score["judged"]]
+    assert held
+    assert all(held)
+    shown = len(report["levels"][0]["scores"]) - len(held)
+    assert shown
+    assert text.count("not judged") >= shown
+    assert f"{len(held)} of {len(held)} hold, {shown} out of range" in text
+    (remark,) = (item["remark"] for item in report["levels"][0]["references"] if item["remark"])
+    assert remark[1:] in text
+
+
+def test_the_penalty_stands_beside_where_qp2_is_convex():
+    """With μ = 1000 it is not: the whole Hessian has negative eigenvalues where the limit lies below."""
+    report = report_of(of_many_settings())
+    section = render(report, {}, None).split('id="convexity"')[1]
+    for contender in report["levels"][0]["comparison"]["contenders"]:
+        if contender["formulation"] == "qp2" and contender["weights"] == "tributary":
+            told = contender["answer"]["search"]["penalty"]
+            row = section.split(f'">{contender["label"]}</th>')[1].split("</tr>")[0]
+            assert words.number(told["convexity_limit"]) in row
+            assert (">yes<" in row) == (told["value"] <= told["convexity_limit"])
+
+
+def test_the_spec_is_shown_as_it_ran():
+    spec = "name: x\nmaterial: {young_modulus: 1}  # 'quoted'\n"
+    page = render(report_of(on_one_mesh()), {}, spec)
+    assert spec.strip() in "".join(re.findall(r"<pre>(.*?)</pre>", page, re.DOTALL)).replace("&#39;", "'")
+    assert block().name in read(page).text
