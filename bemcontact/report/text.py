@@ -144,7 +144,8 @@ def study_summary(study: Study) -> RenderableType:
     for note in answer.notes:
         _add(facts, "Note", note)
     style = "bold green" if study.certified else "bold red"
-    word = "certified" if study.certified else "NOT certified"
+    unproved = "NOT ALL certified" if compared.reference.certified else "NOT certified"
+    word = "certified" if study.certified else unproved
     words = [sentence_case(compared.verdict), *_uncertified_meshes(study)]
     facts.add_row(Text("Verdict", "bold"), Text.assemble((word, style), ". ", " ".join(words)))
     tables = [_contender_table(compared), _curvature_table(compared), _score_table(level), _mesh_table(study)]

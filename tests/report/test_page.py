@@ -121,7 +121,7 @@ def test_many_contenders_are_counted_at_the_head():
     assert f"Of 8 settings {outcomes.count('solves it')} find the contact state" in head
     assert f"{outcomes.count('refused')} is refused" in head
     assert "The direct solution is certified, and there is no other." in head
-    assert "Not certified." in head
+    assert "Not all certified." in head
     assert report["verdict"][1:] in read(render(report, {}, None)).text
 
 
