@@ -177,7 +177,7 @@ def judged(
         judged = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, judged)
         where = footprint(contact, solution)
-        touching = contact.touching(solution.pressure, solution.displacement)
+        touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
         notes = (*contact.notes, *solution.notes, *remarks.of_few_points(touching))
         if condensation is not None:
             notes += (*remarks.of_zone_ends(condensation.body, touching), *remarks.of_size(condensation.body, where))

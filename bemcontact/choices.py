@@ -63,11 +63,13 @@ class Setting:
     formulation : its name
     weights : of its objective, or None if it has none
     penalty : μ of QP2, free of units, else None
+    tells_penalty : whether the label tells the penalty even if it is the default, beside others
     """
 
     formulation: FormulationName
     weights: Weights | None = None
     penalty: float | None = None
+    tells_penalty: bool = False
 
     @property
     def label(self) -> str:
@@ -77,6 +79,6 @@ class Setting:
         other = []
         if self.weights is not Weights.TRIBUTARY:
             other.append(self.weights.value.replace("_", " "))
-        if self.penalty is not None and self.penalty != 1.0:
-            other.append(f"μ = {self.penalty:g}")
+        if self.penalty is not None and (self.tells_penalty or self.penalty != 1.0):
+            other.append(f"μ = {self.penalty:.15g}")
         return f"{self.formulation.upper()} ({', '.join(other)})" if other else self.formulation.upper()

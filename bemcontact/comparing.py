@@ -9,27 +9,32 @@ from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Found
 from bemcontact.choices import FormulationName, Setting, Weights
 from bemcontact.contact import CondensedContact
-from bemcontact.errors import NotConvexError, OptionError, SolverError
+from bemcontact.errors import NotConvexError, OptionError, Path, SolverError
 from bemcontact.formulations import FORMULATIONS, OPTIONS, qp3
 from bemcontact.formulations.formulation import ensure_whole
 from bemcontact.formulations.plan import COMPARED, ComparisonPlan, Plan, planned_comparison
 from bemcontact.formulations.starts import search_from
+from bemcontact.problem.key_path import parsed_path
 from bemcontact.problem.problem import Problem
 from bemcontact.stopwatch import Progress, Stopwatch
 from bemcontact.study import MeshLevel, Study
 
-HARMLESS = ("name", "description", "mesh")
+HARMLESS = ("name", "description", "mesh", "reference")
 """Keys of a spec that may change without changing the answer that is sought."""
+MESHING = ("elements", "grading", "ratio", "towards")
+"""Keys of an edge of which that is true."""
+COMMENTS = (("tolerance",), ("reason",), ("source",))
+"""Keys of a reference that do not change what it says."""
 
 
 def compare(
     problem: Problem | CondensedContact,
     formulations: Sequence[str] = COMPARED,
     weights: Sequence[Weights | str] = (Weights.TRIBUTARY,),
-    penalties: Sequence[float] = (1.0,),
+    penalties: Sequence[float] | None = None,
     *,
     starts: int | None = None,
-    seed: int = 0,
+    seed: int | None = None,
     progress: Progress | None = None,
 ) -> Comparison:
     """Solve a contact problem by several formulations and put them side by side; the direct solution is the reference.
@@ -39,10 +44,10 @@ def compare(
     problem : Problem or CondensedContact
     formulations : of "qp1", "qp2", "qp3"
     weights : of the objectives, each of them with every formulation; `Weights` or their names
-    penalties : μ of QP2, free of units, from 1e-8 to 1e8
+    penalties : μ of QP2, free of units, from 1e-8 to 1e8; 1 if not given
     starts : how many random starts of QP1 and QP2 to make beside the null start, to count how many end at the solution
-    seed : of these
-    progress : called with the name of each stage as it begins, and how far it has come
+    seed : of these, 0 if not given
+    progress : called with two texts, the name of a stage and how far it has come, which is empty as it begins
 
     Returns
     -------
@@ -83,24 +88,43 @@ def study(
         No mesh, one that is there twice, or a refinement of a condensed problem, which has no mesh.
     """
     if not refine or len({*refine}) < len(refine):
-        raise OptionError(f"the refinements must be different from each other, and at least one; found {[*refine]}")
+        told = ", ".join(map(str, refine)) or "none"
+        raise OptionError(f"the refinements must be different from each other, and at least one; found {told}")
     if isinstance(problem, CondensedContact) and [*refine] != [1]:
         raise OptionError("a condensed problem has no mesh to refine; refine the problem that it came from")
     for parts in refine:
         ensure_whole(parts, "refinement", 1)
     levels = []
-    for parts in sorted(refine):
+    for parts in sorted(map(int, refine)):
         tell = progress if len(refine) == 1 or progress is None else _prefixed(progress, f"refine {parts}: ")
         finer = problem.refined(parts) if isinstance(problem, Problem) and parts > 1 else problem
         level = _side_by_side(plan, finer, Stopwatch(progress=tell))
-        levels.append(replace(level, refine=parts, altered=_altered(changes)))
+        levels.append(replace(level, refine=parts, outdated=outdated(problem, changes)))
     return Study(settings={**plan.to_dict(), "changes": [*changes]}, levels=tuple(levels))
 
 
-def _altered(changes: Sequence[str]) -> bool:
-    """Whether changes are such that references no longer belong to the problem, and were not changed with it."""
-    keys = [change.partition("=")[0].strip().partition(".")[0] for change in changes]
-    return "reference" not in keys and any(key not in HARMLESS for key in keys)
+def outdated(problem: Problem | CondensedContact, changes: Sequence[str]) -> frozenset[str]:
+    """Name the references of a problem that were left as they are by changes which alter the answer.
+
+    Parameters
+    ----------
+    problem : with its references
+    changes : such as ``material.young_modulus=2e6``
+
+    Returns
+    -------
+    frozenset of str
+    """
+    paths = [parsed_path(change.partition("=")[0].strip()) for change in changes]
+    if isinstance(problem, CondensedContact) or not any(map(_alters, paths)):
+        return frozenset()
+    renewed = {path[1] for path in paths if path[0] == "reference" and path[2:3] not in COMMENTS and len(path) > 1}
+    return frozenset({*problem.reference} - renewed)
+
+
+def _alters(path: Path) -> bool:
+    """Whether a change of the value at a path of keys changes the answer that is sought."""
+    return path[0] not in HARMLESS and not (path[0] == "boundary" and path[-1] in MESHING)
 
 
 def _prefixed(progress: Progress, prefix: str) -> Progress:

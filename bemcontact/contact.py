@@ -30,6 +30,10 @@ INTERFERENCE = 1e-6
 """Part of the widest gap that counts as interference; a linear program knows no less."""
 
 
+PEAK = 1e-12
+"""Part of T below which the largest pressure is round-off, and nothing touches."""
+
+
 class ContactScales(NamedTuple):
     """Typical displacement U [L] and pressure T [p] of a contact problem, by which residuals are divided."""
 
@@ -271,6 +275,11 @@ class CondensedContact:
         """Which points (n,) are in contact, p/T > δ/U, from p (n,) [p] and u_n (n,) [L]: unmoved by a solver's dust."""
         U, T = self.scales
         return pressure / T > (self.initial_gap + displacement) / U
+
+    def peak(self, pressure: Array) -> float:
+        """The largest of the pressures p (n,), [p]; zero if that is round-off beside T."""
+        peak = float(pressure.max(initial=0.0))
+        return peak if peak > PEAK * self.scales.pressure else 0.0
 
     def weight_matrix(self, weights: Weights) -> Array:
         """The J (n, n) [L] of the objective; `ProblemError` where the problem does not carry these weights."""

@@ -87,7 +87,9 @@ class RandomStarts:
 
     @property
     def _head(self) -> str:
-        return f"{self.solved} of {self.count} random starts (seed {self.seed}) end at the contact state"
+        states = sum(end.solution.status is Status.SOLVED for end in self.ends)
+        where = "the contact state" if states <= 1 else f"a contact state, of which there are {states}"
+        return f"{self.solved} of {self.count} random starts (seed {self.seed}) end at {where}"
 
     def to_dict(self) -> dict[str, Any]:
         """Give it as numbers, lists and texts, ready for JSON."""

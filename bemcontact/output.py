@@ -91,6 +91,8 @@ def ensure_folder_place(path: Path) -> None:
         raise NotADirectoryError(f"{path} is a file; name a folder")
     if target.is_mount():
         raise OSError(f"{path} is where a file system is mounted, and cannot be replaced; name a folder in it")
+    if target in (here := Path.cwd(), *here.parents):
+        raise OSError(f"{path} is the current directory or one above it, and cannot be replaced; name a folder in it")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no directory {target.parent}; make it first")
     probe = _beside(target)
@@ -144,7 +146,10 @@ def _put(new: Path, target: Path) -> None:
     """Give a folder the name of another, which loses it; the other is left under the first name, or removed."""
     if not target.exists():
         os.rename(new, target)
-    elif not _exchanged(new, target):
+        _flush_directory(target.parent)
+        return
+    shutil.copymode(target, new)
+    if not _exchanged(new, target):
         aside = new.with_suffix(".old")
         os.rename(target, aside)
         try:

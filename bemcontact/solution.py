@@ -37,6 +37,11 @@ class Penalty:
     convexity_limit_raw: float | None
     dimension: str
 
+    @property
+    def convex(self) -> bool:
+        """Whether QP2 is convex with this μ where equilibrium is kept, up to round-off of the limit."""
+        return self.convexity_limit is None or self.value <= self.convexity_limit * (1 + 1e-9)
+
 
 @dataclass(frozen=True, kw_only=True)
 class LocalSearch:

@@ -14,8 +14,8 @@ from bemcontact.problem.problem import Problem
 from bemcontact.reference import Expected, Score, expected, score
 from bemcontact.result import Result
 
-ALTERED = "the problem was changed (--set), but its references were not: shown, not judged"
-"""Remark on references of another problem."""
+ALTERED = "the problem was changed (--set), but this reference was not: shown, not judged"
+"""Remark on a reference of another problem."""
 VERSIONS = ("numpy", "scipy", "cvxpy", "clarabel", "matplotlib", "jinja2")
 """Packages whose versions a report states."""
 
@@ -29,20 +29,20 @@ class MeshLevel:
     refine : parts into which each stated element is cut
     comparison : of the formulations
     answer : the direct solution, judged, with the boundary behind it
-    altered : whether the problem is no longer the one that its references are of
+    outdated : names of references that are of another problem, which was changed without them
     """
 
     refine: int
     comparison: Comparison
     answer: Result
-    altered: bool = False
+    outdated: frozenset[str] = frozenset()
 
     @cached_property
     def expected(self) -> tuple[Expected, ...]:
         """What the references of the problem say at the contact points."""
         problem = self.answer.problem
         found = () if problem is None else expected(problem, self.answer.contact)
-        return tuple(replace(item, in_range=False, remark=ALTERED) if self.altered else item for item in found)
+        return tuple(_outdated(item) if item.name in self.outdated else item for item in found)
 
     @cached_property
     def scores(self) -> tuple[Score, ...]:
@@ -138,6 +138,12 @@ class Study:
     def to_json(self, indent: int | None = 2) -> str:
         """Write `to_dict` as JSON; every number in it is finite."""
         return json.dumps(self.to_dict(), indent=indent, allow_nan=False, ensure_ascii=False)
+
+
+def _outdated(expected: Expected) -> Expected:
+    """A reference of another problem."""
+    remark = f"{expected.remark}; {ALTERED}" if expected.remark else ALTERED
+    return replace(expected, in_range=False, remark=remark)
 
 
 def _versions() -> dict[str, str]:

@@ -81,7 +81,7 @@ def test_several_meshes_weights_and_penalties(block: Path):
 
 def test_json_holds_what_the_schema_says(block: Path, tmp_path: Path):
     written = tmp_path / "compared.json"
-    assert run("compare", block, "--formulations", "qp3", "--json", written).exit_code == 0
+    assert run("compare", block, "--formulations", " QP3 ", "--json", written).exit_code == 0
     printed = json.loads(run("compare", block, "--formulations", "qp3", "--json", "-").output)
     stored = json.loads(written.read_text(encoding="utf-8"))
     schema = json.loads(run("schema", "--report").output)
@@ -111,6 +111,10 @@ def test_what_is_not_certified_ends_with_status_1(block: Path, monkeypatch: pyte
     [
         (("--formulations", "qp4"), "no formulation 'qp4'"),
         (("--weights", "tributary,,"), "no weights ''"),
+        (("--formulations", "complementarity"), "is the reference of every comparison"),
+        (("--formulations", "qp1", "--penalty", "1"), "a penalty is an option of qp2"),
+        (("--seed", "3"), "a seed goes with random starts"),
+        (("--out", "."), "--out . would replace"),
         (("--penalty", "1,x"), "--penalty: expected numbers with commas between, found 'x'"),
         (("--penalty", "0"), "the penalty must be a number"),
         (("--refine", "1,1.5"), "--refine: expected whole numbers with commas between, found '1.5'"),

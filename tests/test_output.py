@@ -207,5 +207,7 @@ def test_a_place_that_can_take_no_folder_is_refused_with_the_reason(tmp_path: Pa
         output.ensure_folder_place(tmp_path / "none" / "report")
     with pytest.raises(OSError, match="cannot be written: File name too long"):
         output.ensure_folder_place(tmp_path / ("a" * 250))
+    with pytest.raises(OSError, match="is the current directory or one above it"):
+        output.ensure_folder_place(Path())
     with pytest.raises(OSError, match="is where a file system is mounted"):
         output.ensure_folder_place(Path("/"))

@@ -60,6 +60,8 @@ def test_one_mesh_has_no_convergence():
         (("mesh.refine=2", "name=other"), True),
         (("conditions.top.pressure=4",), False),
         (("material.young_modulus=1",), False),
+        (("boundary.outer.top.elements=3",), True),
+        (("conditions.top.pressure=4", "reference.uniform.tolerance=0.1"), False),
         (("conditions.top.pressure=4", "reference.uniform.pressure=4"), True),
     ],
 )
@@ -82,7 +84,7 @@ def test_a_condensed_problem_has_no_mesh_and_no_references():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"formulations": ["qp4"]}, "no formulation 'qp4'; take one of qp1, qp2, qp3"),
+        ({"formulations": ["qp4"]}, "no formulation 'qp4' to compare; take one of qp1, qp2, qp3"),
         ({"formulations": ["complementarity"]}, "is the reference of every comparison"),
         ({"formulations": ["qp1", "qp1"]}, "the formulations must be different from each other"),
         ({"formulations": []}, "and at least one"),
@@ -91,8 +93,9 @@ def test_a_condensed_problem_has_no_mesh_and_no_references():
         ({"penalties": ["x"]}, "the penalty must be a number from 1e-08"),
         ({"formulations": ["qp1"], "penalties": [2.0]}, "a penalty is an option of qp2"),
         ({"formulations": ["qp3"], "starts": 3}, "random starts are for qp1 and qp2"),
+        ({"seed": 3}, "a seed goes with random starts"),
         ({"starts": 0}, "the number of starts must be a whole number of at least 1"),
-        ({"seed": -1}, "the seed must be a whole number"),
+        ({"starts": 1, "seed": -1}, "the seed must be a whole number"),
     ],
 )
 def test_mistakes_in_options_are_found_before_any_work(options: dict, words: str):

@@ -26,7 +26,15 @@ SAME = 1e-6
 MANY = 4
 """Contenders above which those that agree are counted and not named."""
 SOLVING = (Outcome.SOLVES, Outcome.SOLVES_PERHAPS_NOT_ALONE)
+"""Outcomes of an answer that is a contact state."""
+MEETING = (*SOLVING, Outcome.LEFT_OPEN)
 """Outcomes of an answer that meets all conditions."""
+OF_DIRECT = {
+    Outcome.SOLVES: "the direct solution is certified, and there is no other",
+    Outcome.SOLVES_PERHAPS_NOT_ALONE: "the direct solution meets all conditions, but they may have other solutions",
+    Outcome.LEFT_OPEN: "round-off leaves open whether the direct solution is near the contact state",
+}
+"""What the outcome of the direct solution says of the whole."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,9 +111,19 @@ class Comparison:
 
     @property
     def agreement(self) -> float | None:
-        """The largest `Difference.largest` from the reference; None if no contender has a pressure."""
-        of_reference = [item.largest for item in self.differences if item.other == self.reference.label]
-        return max(of_reference, default=None)
+        """The largest `Difference.largest` from the reference of contenders that meet all conditions; None of none."""
+        meeting = [item.label for item in self.contenders if item.verdict.outcome in MEETING]
+        return max((item.largest for name in meeting if (item := self.difference(name))), default=None)
+
+    @property
+    def heading(self) -> str:
+        """What is certified, in a few words."""
+        if self.certified:
+            return "certified"
+        if not self.reference.certified:
+            return "NOT certified"
+        failing = sum(not item.certified for item in self.contenders)
+        return f"the contact state is certified, but {failing} of {len(self.contenders)} formulations did not find it"
 
     def difference(self, label: str) -> Difference | None:
         """How far a contender is from the reference; None if it has no pressure, or is the reference."""
@@ -118,6 +136,7 @@ class Comparison:
             "name": self.contact.name,
             "version": bemcontact.__version__,
             "certified": self.certified,
+            "heading": self.heading,
             "verdict": self.verdict,
             "agreement": self.agreement,
             "contact": contact_record(self.contact),
@@ -175,10 +194,12 @@ def comparison(contact: CondensedContact, reference: Found, found: Sequence[Foun
 
 def _differences(contact: CondensedContact, base: Contender, judged: Sequence[Contender]) -> tuple[Difference, ...]:
     """Of all pairs, those with the reference first."""
-    found = {item.label: item.judged.solution for item in [*judged, base] if item.judged is not None}
-    of_base = found[base.label].pressure if base.label in found else np.zeros(contact.size)
-    peak = float(of_base.max(initial=0.0)) or contact.scales.pressure
-    size = float(np.sqrt(contact.weights @ of_base**2)) or peak * float(np.sqrt(contact.weights.sum()))
+    solved = [base] if base.verdict.outcome in MEETING else []
+    found = {item.label: item.judged.solution for item in [*judged, *solved] if item.judged is not None}
+    of_base = next(reversed(found.values())).pressure if found else np.zeros(contact.size)
+    peak = contact.peak(of_base) or contact.scales.pressure
+    size = float(np.sqrt(contact.weights @ of_base**2)) if contact.peak(of_base) else 0.0
+    size = size or peak * float(np.sqrt(contact.weights.sum()))
     pairs = sorted(combinations(found, 2), key=lambda pair: pair[1] != base.label)
     return tuple(_difference(contact, (one, found[one]), (other, found[other]), peak, size) for one, other in pairs)
 
@@ -209,23 +230,20 @@ def _whole(base: Contender, judged: Sequence[Contender], differences: Sequence[D
     labels = {item.label for item in [*solving, base]}
     apart = max((item.largest for item in differences if {item.one, item.other} <= labels), default=0.0)
     sentences = []
-    if base.verdict.outcome not in SOLVING:
-        sentences.append("the direct solver found no contact state")
-    elif solving and apart <= SAME:
+    if base.verdict.outcome is Outcome.NOT_THE_SOLUTION:
+        did = f", but {_listed(solving, len(judged))} did" if solving else ""
+        sentences.append(f"the direct solver found no contact state{did}")
+    elif solving and (apart <= SAME or base.verdict.outcome is not Outcome.SOLVES_PERHAPS_NOT_ALONE):
         agree = "agrees" if len(solving) == 1 else "agree"
-        exactly = "exactly" if apart == 0 else f"to {apart:.0e} of the peak"
+        exactly = "exactly" if apart == 0 else f"to {apart:.1e} of the peak"
         sentences.append(f"{_listed(solving, len(judged))} {agree} with the direct solution {exactly}")
     elif solving:
-        sentences.append(
-            f"there is more than one contact state: {_listed([*solving, base], 0)} differ by {apart:.1e} of the peak"
-        )
-    for outcome in (Outcome.NOT_THE_SOLUTION, Outcome.REFUSED):
+        sentences.append(f"{_listed([*solving, base], 0)} meet all conditions, but differ by {apart:.1e} of the peak")
+    for outcome in (Outcome.NOT_THE_SOLUTION, Outcome.LEFT_OPEN, Outcome.REFUSED):
         if failing := [item for item in judged if item.verdict.outcome is outcome]:
             sentences.append(f"{outcome.value}: {_listed(failing, 0)}")
-    if base.verdict.outcome is Outcome.SOLVES:
-        sentences.append("the direct solution is certified, and there is no other")
-    if base.verdict.outcome is Outcome.SOLVES_PERHAPS_NOT_ALONE:
-        sentences.append("the direct solution meets all conditions, but another may exist")
+    if base.verdict.outcome in OF_DIRECT:
+        sentences.append(OF_DIRECT[base.verdict.outcome])
     return f"{'; '.join(sentences)}."
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bemcontact.assessment.certificate import Certificate, certify
+from bemcontact.assessment.certificate import Certificate, CertificateKind, certify
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.matrices import WeightedCompliance
 from bemcontact.assessment.objectives import Objectives, objectives
@@ -78,12 +78,14 @@ class Contender:
     judged : None if it could not be asked
     objective : of its own statement with its own weights, scaled; None for the direct solution
     verdict : Verdict
+    convex : whether its program is convex on what equations and equilibrium leave free; None for the direct solution
     """
 
     found: Found
     judged: Judged | None
     objective: float | None
     verdict: Verdict
+    convex: bool | None
 
     @property
     def label(self) -> str:
@@ -106,6 +108,7 @@ class Contender:
             "certified": self.certified,
             "verdict": self.verdict.to_dict(),
             "objective": self.objective,
+            "convex": self.convex,
             "seconds": self.found.seconds,
             "starts": None if starts is None else starts.to_dict(),
             "answer": None if self.judged is None else self.judged.to_dict(contact),
@@ -158,16 +161,20 @@ def contender(
     -------
     Contender
     """
-    setting = found.setting
-    if judged is None:
-        told = refused(found.refusal, matrices[setting.weights or Weights.TRIBUTARY])
-        return Contender(found=found, judged=None, objective=None, verdict=told)
-    objective, reached = _own_objective(setting, judged), None
-    if objective is not None and direct is not None:
-        reached = Reached(here=objective, at_contact_state=_own_objective(setting, direct) or 0.0, peak=direct.peak)
+    setting, tributary = found.setting, Weights.TRIBUTARY
     own = None if setting.weights is None else matrices[setting.weights]
-    told = verdict(judged.solution, judged.certificate, reached, own)
-    return Contender(found=found, judged=judged, objective=objective, verdict=told)
+    if judged is None:
+        told = refused(found.refusal, matrices[setting.weights or tributary], matrices[tributary])
+        return Contender(found=found, judged=None, objective=None, verdict=told, convex=own.convex if own else None)
+    objective, reached = _own_objective(setting, judged), None
+    if objective is not None:
+        known = direct is not None and direct.certificate.kind is not CertificateKind.NOT_A_SOLUTION
+        at_contact_state = _own_objective(setting, direct) if known and direct is not None else None
+        reached = Reached(here=objective, at_contact_state=at_contact_state, peak=judged.peak)
+    told = verdict(judged.solution, judged.certificate, reached, own, matrices[tributary])
+    search = judged.solution.search
+    convex = search.penalty.convex if search and search.penalty else own.convex if own else None
+    return Contender(found=found, judged=judged, objective=objective, verdict=told, convex=convex)
 
 
 def _own_objective(setting: Setting, judged: Judged) -> float | None:

@@ -7,7 +7,7 @@ from typing import Any
 
 from scipy.optimize import brentq
 
-from bemcontact.assessment.footprint import Footprint
+from bemcontact.assessment.footprint import ContactInterval, Footprint
 
 ORDERS = 0.05, 12.0
 """Orders between which one is looked for."""
@@ -26,7 +26,7 @@ class Quantity:
     values : on each mesh, the coarsest first
     orders : observed between meshes, one fewer than values where the limit is known to be zero, else two fewer; None
         where the values show none, because they do not approach a limit steadily, or have come to it within round-off
-    limit : extrapolated with the last order; zero where that is known; None without an order
+    limit : extrapolated with the last order; zero where that is known and the values fall; None without an order
     """
 
     name: str
@@ -77,20 +77,32 @@ def convergence(refine: Sequence[int], footprints: Sequence[Footprint], asymmetr
         Ends of contact by their arc positions; without them where the number of intervals changes.
     """
     h = [1.0 / parts for parts in refine]
-    peaks = [0.0 if item.peak is None else item.peak.pressure for item in footprints]
-    quantities = [_towards_a_limit("peak pressure", "p", h, peaks)]
+    peaks = [item.peak.pressure for item in footprints if item.peak is not None]
+    quantities = [_towards_a_limit("peak pressure", "p", h, peaks)] if len(peaks) == len(h) else []
     stretches = [[interval.zone for interval in item.intervals] for item in footprints]
     remark = ""
     if all(stretch == stretches[0] for stretch in stretches):
         for i, zone in enumerate(stretches[0]):
-            told = f"contact {i + 1} in {zone}" if len(stretches[0]) > 1 else f"contact in {zone}"
+            place, of = stretches[0][: i + 1].count(zone), stretches[0].count(zone)
+            told = f"contact {place} in {zone}, along it" if of > 1 else f"contact in {zone}, along it"
             for name, key in (("start", "start_arc"), ("end", "end_arc")):
-                values = [float(getattr(item.intervals[i], key)) for item in footprints]
+                values = _unwound([item.intervals[i] for item in footprints], key)
                 quantities.append(_towards_a_limit(f"{name} of {told}", "L", h, values))
     else:
-        remark = "the number of contact intervals changes from mesh to mesh, so their ends cannot be compared"
+        remark = "the contact intervals are not the same on all meshes, so that their ends cannot be compared"
     quantities.append(_towards_zero("asymmetry of J M", h, asymmetries))
     return Convergence(refine=tuple(refine), quantities=tuple(quantities), remark=remark)
+
+
+def _unwound(intervals: Sequence[ContactInterval], key: str) -> list[float]:
+    """Arc positions on one mesh after the other, on closed runs counted on from the one before by the nearest way."""
+    values: list[float] = []
+    for interval in intervals:
+        value = float(getattr(interval, key))
+        if values and math.isfinite(interval.perimeter):
+            value += round((values[-1] - value) / interval.perimeter) * interval.perimeter
+        values.append(value)
+    return values
 
 
 def _towards_zero(name: str, h: Sequence[float], values: Sequence[float]) -> Quantity:
@@ -99,7 +111,8 @@ def _towards_zero(name: str, h: Sequence[float], values: Sequence[float]) -> Qua
         math.log(values[i] / values[i + 1]) / math.log(h[i] / h[i + 1]) if min(values[i : i + 2]) > ROUND_OFF else None
         for i in range(len(h) - 1)
     )
-    return Quantity(name=name, dimension="1", values=tuple(values), orders=orders, limit=0.0)
+    falls = orders[-1] is not None and orders[-1] > 0
+    return Quantity(name=name, dimension="1", values=tuple(values), orders=orders, limit=0.0 if falls else None)
 
 
 def _towards_a_limit(name: str, dimension: str, h: Sequence[float], values: Sequence[float]) -> Quantity:

@@ -22,6 +22,8 @@ class ContactInterval:
     zone : name of the contact zone
     start, end : (x, y) in the order of the boundary [L]
     start_arc, end_arc : their arc positions on the run [L]; across the seam of a closed run they go on counting
+    run : number of the run
+    perimeter : of the run if it closes on itself, else infinity [L]
     """
 
     zone: str
@@ -29,6 +31,8 @@ class ContactInterval:
     end: Point
     start_arc: float
     end_arc: float
+    run: int = 0
+    perimeter: float = float("inf")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,7 +107,7 @@ def footprint(condensed: CondensedContact, solution: ContactSolution) -> Footpri
     Footprint
     """
     gap = condensed.initial_gap + solution.displacement
-    touching = condensed.touching(solution.pressure, solution.displacement)
+    touching = condensed.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
     pieces = sorted(set(zip(condensed.zone.tolist(), condensed.run.tolist(), strict=True)))
     return Footprint(
         intervals=tuple(
@@ -129,6 +133,8 @@ class _Path:
     touching: NDArray[np.bool_]
     first: int
     last: int
+    run: int
+    perimeter: float
 
 
 def _path(condensed: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
@@ -146,6 +152,8 @@ def _path(condensed: CondensedContact, zone: int, run: int, gap: Array, touching
         touching=touching[around],
         first=m * (len(turns) // 2),
         last=m * (len(turns) // 2 + 1),
+        run=run,
+        perimeter=float(perimeter),
     )
 
 
@@ -165,7 +173,13 @@ def _intervals(path: _Path, zone: str) -> list[ContactInterval]:
 def _interval(path: _Path, zone: str, start: float, end: float) -> ContactInterval:
     """An interval from its arc positions."""
     return ContactInterval(
-        zone=zone, start=_at(path, start), end=_at(path, end), start_arc=float(start), end_arc=float(end)
+        zone=zone,
+        start=_at(path, start),
+        end=_at(path, end),
+        start_arc=float(start),
+        end_arc=float(end),
+        run=path.run,
+        perimeter=path.perimeter,
     )
 
 

@@ -10,7 +10,7 @@ from bemcontact.choices import Weights
 from bemcontact.contact import CondensedContact
 
 NEGLIGIBLE = 1e-10
-"""Entry of ZᵀJR that is round-off; by the scaling the numbers are of size one."""
+"""Entry of ZᵀJR, or part of the largest eigenvalue, that is round-off; by the scaling the numbers are of size one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,9 +34,16 @@ class WeightedCompliance:
     saddle: bool
 
     @property
+    def definite(self) -> bool:
+        """Whether sym(JM) has no negative eigenvalue on the equilibrium space, up to round-off."""
+        if self.smallest_eigenvalue is None or self.largest_eigenvalue is None:
+            return True
+        return self.smallest_eigenvalue >= -NEGLIGIBLE * abs(self.largest_eigenvalue)
+
+    @property
     def convex(self) -> bool:
-        """Whether QP3 with these weights is strictly convex."""
-        return not self.saddle and (self.smallest_eigenvalue is None or self.smallest_eigenvalue > 0)
+        """Whether QP3 with these weights is convex, up to round-off."""
+        return self.definite and not self.saddle
 
     def to_dict(self) -> dict[str, Any]:
         """Give it as numbers and texts, ready for JSON."""

@@ -58,9 +58,10 @@ def residuals(condensed: CondensedContact, solution: ContactSolution, force_bala
     p, u_n = solution.pressure, solution.displacement
     gap = condensed.initial_gap + u_n
     K, B, r = condensed.stiffness_rows
-    ell, R = condensed.equilibrium, condensed.rigid_motions
+    R = condensed.rigid_motions
     strange = u_n - condensed.free_displacement - condensed.compliance @ p
-    strange = strange - R @ np.linalg.solve(ell.T @ R, ell.T @ strange)
+    root = np.sqrt(condensed.weights)
+    strange = strange - R @ np.linalg.lstsq(root[:, None] * R, root * strange, rcond=None)[0]
     return Residuals(
         penetration=_largest(-gap / U),
         tension=_largest(-p / T),

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from bemcontact.assessment.advice import advice
 from bemcontact.assessment.certificate import Certificate, CertificateKind
 from bemcontact.assessment.matrices import WeightedCompliance
 from bemcontact.choices import Weights
@@ -18,6 +17,7 @@ class Outcome(Enum):
 
     SOLVES = "solves it"
     SOLVES_PERHAPS_NOT_ALONE = "solves it, perhaps not alone"
+    LEFT_OPEN = "left open by round-off"
     NOT_THE_SOLUTION = "not the solution"
     REFUSED = "refused"
 
@@ -37,15 +37,17 @@ class Verdict:
 
 @dataclass(frozen=True, kw_only=True)
 class Reached:
-    """The objective of a statement at an answer, and at the direct solution; free of units, as is the peak pressure."""
+    """The objective of a statement at an answer, and at the contact state if that is known; all free of units."""
 
     here: float
-    at_contact_state: float
+    at_contact_state: float | None
     peak: float
 
     def __str__(self) -> str:
         """Both in words: objective 0 reached, or what it is instead of what."""
         round_off = ZERO * max(1.0, self.peak) ** 2
+        if self.at_contact_state is None:
+            return f"objective {self.here:.2e}"
         zero = abs(self.at_contact_state) <= round_off
         if abs(self.here - self.at_contact_state) <= round_off:
             return (
@@ -53,11 +55,16 @@ class Reached:
             )
         side = "above" if self.here > self.at_contact_state else "below"
         there = "0" if zero else f"{self.at_contact_state:.2e}"
-        return f"objective {self.here:.2e}, {side} the {there} of the contact state"
+        apart = "" if zero else f"{abs(self.here - self.at_contact_state):.0e} "
+        return f"objective {self.here:.2e}, {apart}{side} the {there} of the contact state"
 
 
 def verdict(
-    solution: ContactSolution, certificate: Certificate, reached: Reached | None, matrices: WeightedCompliance | None
+    solution: ContactSolution,
+    certificate: Certificate,
+    reached: Reached | None,
+    matrices: WeightedCompliance | None,
+    tributary: WeightedCompliance,
 ) -> Verdict:
     """Say what an answer is worth.
 
@@ -66,7 +73,7 @@ def verdict(
     solution : of any formulation
     certificate : of that solution
     reached : the objective of its own statement; None where it has none
-    matrices : of its own weights; None likewise
+    matrices, tributary : of its own weights, None likewise, and of the tributary ones
 
     Returns
     -------
@@ -87,17 +94,23 @@ def verdict(
                 f"the compliance is not positive definite (smallest eigenvalue "
                 f"{certificate.smallest_eigenvalue:.1e}), so that another state may exist",
             )
+        case CertificateKind.OPEN:
+            return Verdict(
+                outcome=Outcome.LEFT_OPEN,
+                words=f"meets all conditions to their tolerance: {told}but in floating-point numbers its pressure "
+                "cannot be told from others that are far from it",
+            )
         case CertificateKind.NOT_A_SOLUTION:
             return Verdict(
                 outcome=Outcome.NOT_THE_SOLUTION,
                 words=_why_not(solution, certificate, reached),
-                reason="" if matrices is None else _of_weights(matrices),
+                reason="" if matrices is None else _of_weights(matrices, tributary),
             )
 
 
-def refused(reason: str, matrices: WeightedCompliance) -> Verdict:
+def refused(reason: str, matrices: WeightedCompliance, tributary: WeightedCompliance) -> Verdict:
     """Say that a formulation could not be asked, with what its weights do to the matrices."""
-    return Verdict(outcome=Outcome.REFUSED, words=f"{reason}.", reason=_of_weights(matrices))
+    return Verdict(outcome=Outcome.REFUSED, words=f"{reason}.", reason=_of_weights(matrices, tributary))
 
 
 def _why_unique(certificate: Certificate) -> str:
@@ -108,31 +121,31 @@ def _why_unique(certificate: Certificate) -> str:
 
 
 def _why_not(solution: ContactSolution, certificate: Certificate, reached: Reached | None) -> str:
-    """Why an answer is none, and the way out."""
+    """Why an answer is none."""
     ended = {
         Status.SOLVED: "its solver's end is not the contact state",
         Status.LOCAL_MINIMUM: "stationary but not the solution",
     }.get(solution.status, solution.status.value)
     told = "" if reached is None else f": {reached}"
-    return f"{ended}{told}; {certificate.complaint}. {advice(solution)}"
+    return f"{ended}{told}; {certificate.complaint}."
 
 
-def _of_weights(matrices: WeightedCompliance) -> str:
-    """What weights other than tributary ones do."""
+def _of_weights(matrices: WeightedCompliance, tributary: WeightedCompliance) -> str:
+    """What weights other than tributary ones do that those do not."""
     if matrices.weights is Weights.TRIBUTARY:
         return ""
     name, parts = matrices.weights.value.replace("_", "-"), []
     if matrices.negative_weights:
         parts.append(
             f"the {name} weights have {matrices.negative_weights} negative entries, which reward pressure at one "
-            "node for a gap at its neighbour, so that the least objective is not that of the contact state"
+            "node for a gap at its neighbour, so that the least objective need not be that of the contact state"
         )
     if matrices.saddle:
         parts.append(
             f"the work of the {name} weights in the body's free rigid motions does not follow from equilibrium, so "
             "that the objective is a saddle in pressures and motions"
         )
-    if matrices.smallest_eigenvalue is not None and matrices.smallest_eigenvalue <= 0:
+    if tributary.convex and matrices.smallest_eigenvalue is not None and not matrices.definite:
         parts.append(
             f"J M with the {name} weights is indefinite on the equilibrium space (eigenvalues from "
             f"{matrices.smallest_eigenvalue:.1e} to {matrices.largest_eigenvalue:.1e}), although the body is elastic: "

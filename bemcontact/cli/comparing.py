@@ -7,7 +7,7 @@ import typer
 
 from bemcontact.choices import FormulationName, Weights
 from bemcontact.cli.failures import UNCERTIFIED, claim, claim_folder, told, write_json
-from bemcontact.cli.options import STANDARD_OUTPUT, JsonOption, SetOption, SpecArgument, several
+from bemcontact.cli.options import STANDARD_OUTPUT, JsonOption, SetOption, SpecArgument, names, several
 from bemcontact.output import whole_file
 from bemcontact.terminal import show, stages, tell
 
@@ -22,7 +22,9 @@ def compare(
     weights: Annotated[
         str, typer.Option(metavar="NAME,…", help=f"Weights of the objectives: {', '.join(Weights)}.")
     ] = Weights.TRIBUTARY,
-    penalty: Annotated[str, typer.Option(metavar="μ,…", help="qp2: penalties, such as 1e-6,1e-3,1,1e3.")] = "1",
+    penalty: Annotated[
+        str | None, typer.Option(metavar="μ,…", help="qp2: penalties, such as 1e-6,1e-3,1,1e3.", show_default="1")
+    ] = None,
     starts: Annotated[
         int | None,
         typer.Option(
@@ -32,7 +34,9 @@ def compare(
             show_default=False,
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, metavar="S", help="Other random starts for each S.")] = 0,
+    seed: Annotated[
+        int | None, typer.Option(min=0, metavar="S", help="Other random starts for each S.", show_default="0")
+    ] = None,
     refine: Annotated[
         str, typer.Option(metavar="K,…", help="Split each element into K parts; several compare the meshes.")
     ] = "1",
@@ -64,14 +68,14 @@ def compare(
         claim(spec, {"--json": json_claim})
         claim_folder(spec, "--out", out, json_claim)
         parts = several(refine, "--refine", "whole number", int)
-        penalties = several(penalty, "--penalty", "number", float)
+        penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
         say("reading", "")
         from bemcontact import comparing
         from bemcontact import spec as spec_file
         from bemcontact.formulations.plan import planned_comparison
         from bemcontact.report import text
 
-        plan = planned_comparison(formulations.split(","), weights.split(","), penalties, starts=starts, seed=seed)
+        plan = planned_comparison(names(formulations), names(weights), penalties, starts=starts, seed=seed)
         problem = spec_file.load(spec, overrides or ())
         study = comparing.study(plan, problem, parts, say, overrides or ())
         if out:

@@ -33,6 +33,11 @@ STANDARD_OUTPUT = Path("-")
 """The file name that means standard output."""
 
 
+def names(text: str) -> list[str]:
+    """Read names with commas between them, in any case."""
+    return [item.strip().lower() for item in text.split(",")]
+
+
 def several(text: str, option: str, kind: str, read: Callable[[str], Number]) -> list[Number]:
     """Read numbers with commas between them; `OptionError` says of what kind they should be, and which is not."""
     numbers = []

@@ -109,10 +109,10 @@ class ComparisonPlan:
 def planned_comparison(
     formulations: Sequence[str] = COMPARED,
     weights: Sequence[Weights | str] = (Weights.TRIBUTARY,),
-    penalties: Sequence[float] = (1.0,),
+    penalties: Sequence[float] | None = None,
     *,
     starts: int | None = None,
-    seed: int = 0,
+    seed: int | None = None,
 ) -> ComparisonPlan:
     """Read the options of `bemcontact.compare`.
 
@@ -129,29 +129,44 @@ def planned_comparison(
     OptionError
         A name is unknown, a number out of range, something is there twice or not at all, or is of no use.
     """
-    names = _several(formulations, "formulations", lambda name: _named(FormulationName, name, "formulation"))
+    names = _several(formulations, "formulations", _compared)
     kinds = _several(weights, "weights", lambda name: _named(Weights, name, "weights"))
-    values = _several(penalties, "penalties", lambda value: value)
+    values = _several((1.0,) if penalties is None else penalties, "penalties", _as_float)
     if FormulationName.COMPLEMENTARITY in names:
         raise OptionError("complementarity is the reference of every comparison; leave it out of the formulations")
-    if FormulationName.QP2 not in names and values != (1.0,):
+    if FormulationName.QP2 not in names and penalties is not None:
         raise OptionError("a penalty is an option of qp2, which is not among the formulations; add it")
+    if starts is None and seed is not None:
+        raise OptionError("a seed goes with random starts; say how many (starts)")
     if starts is not None:
         ensure_whole(starts, "number of starts", 1)
         if names == (FormulationName.QP3,):
             raise OptionError("random starts are for qp1 and qp2, which are not among the formulations; add one")
-    ensure_whole(seed, "seed", 0)
+    if seed is not None:
+        ensure_whole(seed, "seed", 0)
     settings = [
-        Setting(formulation=name, weights=kind, penalty=value)
+        Setting(formulation=name, weights=kind, penalty=value, tells_penalty=len(values) > 1)
         for name, kind in product(names, kinds)
         for value in (values if name == FormulationName.QP2 else (None,))
     ]
     return ComparisonPlan(
         reference=planned(FormulationName.COMPLEMENTARITY),
         contenders=tuple((setting, _plan_of(setting)) for setting in settings),
-        starts=starts,
-        seed=seed,
+        starts=None if starts is None else int(starts),
+        seed=0 if seed is None else int(seed),
     )
+
+
+def _compared(name: str) -> FormulationName:
+    """Read the name of a formulation that can be compared with the direct solution."""
+    if name not in [*FormulationName]:
+        raise OptionError(f"no formulation '{name}' to compare; take one of {', '.join(COMPARED)}")
+    return FormulationName(name)
+
+
+def _as_float(value: object) -> Any:
+    """A number of any kind as a float; what is none is refused by `FormulationOptions`."""
+    return float(value) if isinstance(value, Real) else value
 
 
 def _plan_of(setting: Setting) -> Plan:
@@ -166,7 +181,8 @@ def _several(items: Sequence[Any], what: str, read: Callable[[Any], Item]) -> tu
     listed = [items] if isinstance(items, str | Real) else [*items]
     found = tuple(map(read, listed))
     if not found or len({*found}) < len(found):
-        raise OptionError(f"the {what} must be different from each other, and at least one; found {listed}")
+        told = ", ".join(map(str, listed)) or "none"
+        raise OptionError(f"the {what} must be different from each other, and at least one; found {told}")
     return found
 
 

@@ -133,7 +133,8 @@ def convexity_limit(condensed: CondensedContact, options: FormulationOptions) ->
     if n == k:
         return np.inf
     W = Z.T @ J @ problem.compliance @ Z
-    if eigvalsh(W + W.T, subset_by_index=(0, 0))[0] <= 0:
+    curvatures = eigvalsh(W + W.T)
+    if curvatures[0] <= n * np.finfo(float).eps * curvatures[-1]:
         return 0.0
     if options.rows is Rows.STIFFNESS:  # with w = Wᵀz the pencil is that of W⁻¹ alone
         inverse = np.linalg.inv(W)

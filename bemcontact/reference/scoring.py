@@ -8,8 +8,9 @@ import numpy as np
 
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.contact import Array, CondensedContact
+from bemcontact.problem import Table, Values
 from bemcontact.reference.expectation import Expected
-from bemcontact.reference.positions import BoolArray, Frame, coordinates, in_zone
+from bemcontact.reference.positions import LEVEL, BoolArray, Frame, coordinates, in_zone
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +78,7 @@ def _scores(expected: Expected, contact: CondensedContact, footprint: Footprint,
     if expected.contact_length is not None:
         length = sum(item.end_arc - item.start_arc for item in intervals)
         yield _relative(expected, "contact length", length, expected.contact_length)
-    yield from _end_scores(expected, intervals)
+    yield from _end_scores(expected, contact, intervals, here & (pressure > 0))
     if expected.resultant is not None:
         yield _relative(expected, "resultant", _force(contact, pressure, here), expected.resultant)
     if expected.compared.any():
@@ -102,20 +103,37 @@ def _score(expected: Expected, quantity: str, found: float | None, value: float,
     )
 
 
-def _end_scores(expected: Expected, intervals: Sequence[ContactInterval]) -> Iterator[Score]:
+def _end_scores(
+    expected: Expected, contact: CondensedContact, intervals: Sequence[ContactInterval], touching: BoolArray
+) -> Iterator[Score]:
     """Smallest and largest coordinate of contact, relative to its extent."""
     if expected.along is None:
         return
-    points = np.array([end for item in intervals for end in (item.start, item.end)]).reshape(-1, 2)
-    arc = np.array([end for item in intervals for end in (item.start_arc, item.end_arc)])
-    here = coordinates(expected.along, points, arc)
+    courses = [_course(expected.along, contact, interval, touching) for interval in intervals]
+    here = np.concatenate(courses) if courses else np.zeros(0)
+    size = 360.0 if expected.along.against == "angle" else float(np.ptp(contact.points, axis=0).max())
+    extent = float(np.ptp(here)) if len(here) else 0.0
     for quantity, value, pick in (("start", expected.start, np.min), ("end", expected.end, np.max)):
         if value is None:
             continue
         found = float(pick(here)) if len(here) else None
-        extent = float(np.ptp(here)) if len(here) else 0.0
-        difference = (found - value) / extent if found is not None and extent > 0 else None
+        if found is not None and expected.along.against == "angle":
+            found += 360.0 * round((value - found) / 360.0)
+        difference = (found - value) / extent if found is not None and extent > LEVEL * size else None
         yield _score(expected, f"{quantity} of contact", found, value, difference)
+
+
+def _course(along: Values | Table, contact: CondensedContact, interval: ContactInterval, touching: BoolArray) -> Array:
+    """The coordinate (k,) from one end of an interval to the other, an angle without jumps."""
+    index = np.flatnonzero(touching & (contact.run == interval.run))
+    arc = contact.arc_position[index]
+    if np.isfinite(interval.perimeter):
+        arc = arc + interval.perimeter * np.ceil((interval.start_arc - arc) / interval.perimeter)
+    inside = np.flatnonzero((arc >= interval.start_arc) & (arc <= interval.end_arc))
+    inside = inside[np.argsort(arc[inside])]
+    points = np.vstack([interval.start, contact.points[index[inside]], interval.end])
+    course = coordinates(along, points, np.hstack([interval.start_arc, arc[inside], interval.end_arc]))
+    return np.unwrap(course, period=360.0) if along.against == "angle" else course
 
 
 def _force(contact: CondensedContact, pressure: Array, here: BoolArray) -> float:
@@ -125,11 +143,15 @@ def _force(contact: CondensedContact, pressure: Array, here: BoolArray) -> float
 
 
 def _pressure_scores(expected: Expected, contact: CondensedContact, pressure: Array) -> Iterator[Score]:
-    """Largest difference over the peak of the reference, and √(Σ w (p - e)² / Σ w e²), w the tributary lengths."""
+    """Largest difference over the peak of the reference, and √(Σ w (p - e)² / Σ w e²), w the tributary lengths.
+
+    Where the reference expects none at all, relative to the peak of the answer, or to T.
+    """
     known, found = expected.pressure[expected.compared], pressure[expected.compared]
     weights = contact.weights[expected.compared]
     largest = float(np.abs(found - known).max())
-    peak = expected.peak or float(np.abs(known).max())
-    yield _score(expected, "pressure (largest difference)", largest, 0.0, largest / peak if peak > 0 else None)
+    own = contact.peak(pressure) or contact.scales.pressure
+    peak = expected.peak or float(np.abs(known).max()) or own
+    yield _score(expected, "pressure (largest difference)", largest, 0.0, largest / peak)
     off, norm = (float(np.sqrt(weights @ value**2 / weights.sum())) for value in (found - known, known))
-    yield _score(expected, "pressure (mean square)", off, 0.0, off / norm if norm > 0 else None)
+    yield _score(expected, "pressure (mean square)", off, 0.0, off / (norm or own))

@@ -1,6 +1,7 @@
 """The folder that a study is written to: page, numbers, pictures, matrices and spec, all of them or none."""
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +12,8 @@ from bemcontact.study import Study
 
 PAGE, NUMBERS, PICTURES, MATRICES, SPEC = "report.html", "report.json", "figures", "contact.npz", "spec.yaml"
 """What stands in a folder."""
+PICTURE = re.compile(r"(problem|pressure|gap|deformed|difference|convergence|history-[a-z0-9-]+)\.svg")
+"""What the pictures are called, as of `figures_of`."""
 OURS = {"settings", "levels", "convergence", "versions"}
 """Keys by which our report.json is known."""
 
@@ -77,7 +80,9 @@ def _foreign(folder: Path) -> Iterator[Path]:
     for path in sorted(folder.iterdir()):
         if path.name == PICTURES and path.is_dir():
             yield from (
-                picture for picture in sorted(path.iterdir()) if picture.suffix != ".svg" or not picture.is_file()
+                picture
+                for picture in sorted(path.iterdir())
+                if not (PICTURE.fullmatch(picture.name) and picture.is_file())
             )
         elif path.name not in (PAGE, NUMBERS, MATRICES, SPEC) or not path.is_file():
             yield path

@@ -5,7 +5,6 @@ from base64 import b64encode
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import isclose
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
@@ -22,6 +21,7 @@ NOTHING = "–"
 OUTCOMES = {
     "solves it": "good",
     "solves it, perhaps not alone": "fair",
+    "left open by round-off": "fair",
     "not the solution": "bad",
     "refused": "bad",
 }
@@ -30,13 +30,15 @@ OUTCOMES = {
 VERBS = {
     "solves it": ("{} finds the contact state", "{} find the contact state"),
     "solves it, perhaps not alone": ("{} finds a contact state", "{} find a contact state"),
+    "left open by round-off": ("{} is left open", "{} are left open"),
     "not the solution": ("{} ends elsewhere", "{} end elsewhere"),
     "refused": ("{} is refused", "{} are refused"),
 }
 """Outcome -> what is said of one, and of several."""
 DIRECT = {
     "solves it": "is certified, and there is no other",
-    "solves it, perhaps not alone": "meets all conditions, but another may exist",
+    "solves it, perhaps not alone": "meets all conditions, but they may have other solutions",
+    "left open by round-off": "is left open by round-off",
     "not the solution": "is none",
 }
 """Outcome of the direct solution -> what is said of it."""
@@ -255,6 +257,8 @@ def _certificate(answer: Record | None, units: Units) -> str:
         "none, keeps the body in equilibrium, and is zero wherever there is a gap, and no more than "
         f"{_small(max(left[name] for name in names))} of its scale is left of any of these conditions."
     )
+    if kind == "left open by round-off":
+        return f"{holds} But in floating-point numbers this pressure cannot be told from others that are far from it."
     if kind != "unique":
         return (
             f"{holds} But a second contact state cannot be ruled out, because the smallest eigenvalue of the "
@@ -292,7 +296,6 @@ def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
     return {
         "value": f"{number(value)} ({with_unit(number(told['raw']), unit)})",
         "limit": "any penalty" if limit is None else "no penalty" if limit == 0 else written,
-        "convex": "yes" if limit is None or (limit > 0 and (value <= limit or isclose(value, limit))) else "no",
     }
 
 

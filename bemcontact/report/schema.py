@@ -222,19 +222,24 @@ class Contender(_Record):
     verdict: Verdict
     objective: float | None
     """Of its own statement, scaled."""
+    convex: bool | None
+    """On what equations and equilibrium leave free."""
     seconds: float
     starts: Starts | None
     answer: Answer | None
 
 
 class Difference(_Record):
-    """Of two pressures, over the peak, in the mean square, and of what the first's solver found before the polish."""
+    """Of two pressures."""
 
     one: str
     other: str
     largest: float
+    """Over the peak of the direct solution."""
     mean_square: float
+    """Over that of the direct solution."""
     unpolished: float
+    """As `largest`, of what the first's solver found before its polish, from the polished other."""
 
 
 class Weighted(_Record):
@@ -262,8 +267,11 @@ class Comparison(_Record):
     name: str
     version: str
     certified: bool
+    heading: str
+    """What is certified, in a few words."""
     verdict: str
     agreement: float | None
+    """Largest difference of those that meet all conditions from the direct solution, over the peak."""
     contact: Contact
     contenders: list[Contender]
     reference: Contender

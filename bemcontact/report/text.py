@@ -144,8 +144,7 @@ def study_summary(study: Study) -> RenderableType:
     for note in answer.notes:
         _add(facts, "Note", note)
     style = "bold green" if study.certified else "bold red"
-    unproved = "NOT ALL certified" if compared.reference.certified else "NOT certified"
-    word = "certified" if study.certified else unproved
+    word = "certified" if study.certified else compared.heading
     words = [sentence_case(compared.verdict), *_uncertified_meshes(study)]
     facts.add_row(Text("Verdict", "bold"), Text.assemble((word, style), ". ", " ".join(words)))
     tables = [_contender_table(compared), _curvature_table(compared), _score_table(level), _mesh_table(study)]
@@ -186,14 +185,14 @@ def _contender_table(compared: Comparison) -> Table:
 
 def _curvature_table(compared: Comparison) -> Table:
     """List how many eigenvalues are positive, zero and negative where a local solver searched."""
-    table = _table("eigenvalues + 0 -", "whole Hessian", "free at start", "free at end", "convex")
+    table = _table("eigenvalues + 0 -", "whole Hessian", "free at start", "free at end", "convex in equilibrium")
     for item in compared.contenders:
         search = item.judged.solution.search if item.judged else None
         if search is None:
             continue
         inertias = (search.inertia, search.reduced_inertia_start, search.reduced_inertia_end)
         told = (" ".join(map(str, inertia)) for inertia in inertias)
-        table.add_row(*map(Text, (item.label, *told, convexity_in_words(compared, item))))
+        table.add_row(*map(Text, (item.label, *told, convexity_in_words(item))))
     return table
 
 
@@ -207,7 +206,7 @@ def _score_table(level: MeshLevel) -> Table:
             item.quantity,
             "" if item.found is None else number(item.found),
             number(item.expected),
-            "" if item.difference is None else f"{item.difference:+.2%}",
+            "" if item.difference is None else f"{round(item.difference, 6) + 0.0:+.2%}",
             holds if item.judged else "not judged",
         ]
         table.add_row(*map(Text, cells), style="red" if item.judged and not item.holds else "")
@@ -220,9 +219,12 @@ def _mesh_table(study: Study) -> Table:
     if found is None:
         return _table("")
     table = _table("mesh", *(f"refine {parts}" for parts in found.refine), "order", "limit")
+    units = units_of(study.finest.answer.contact)
+    labels = {"p": units.stress, "L": units.length, "1": ""}
     for item in found.quantities:
         order = item.orders[-1] if item.orders else None
-        cells = [item.name, *(f"{value:.6g}" for value in item.values)]
+        unit = labels[item.dimension]
+        cells = [f"{item.name}, {unit}" if unit else item.name, *(f"{value:.6g}" for value in item.values)]
         cells += ["" if order is None else f"{order:.1f}", "" if item.limit is None else f"{item.limit:.6g}"]
         table.add_row(*map(Text, cells))
     return table
@@ -269,7 +271,8 @@ def _add_footprint(facts: Table, result: Result) -> None:
 def _table(*columns: str) -> Table:
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="cyan", pad_edge=False)
     for column in columns:
-        table.add_column(column, justify="right" if column in RIGHT else "left")
+        numbers = column in RIGHT
+        table.add_column(column, justify="right" if numbers else "left", no_wrap=numbers, overflow="fold")
     return table
 
 

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.assessment.comparison import Comparison
 from bemcontact.assessment.contender import Contender
 from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.contact import CondensedContact
@@ -180,22 +179,16 @@ def sentence_case(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def convexity_in_words(compared: Comparison, contender: Contender) -> str:
-    """Say whether QP1 or QP2 is convex on what equations and equilibrium leave free; empty for others.
-
-    QP1 is on its equations what QP3 is; QP2 is convex up to its limit of the penalty.
-    """
+def convexity_in_words(contender: Contender) -> str:
+    """Say whether a program is convex on what equations and equilibrium leave free, and up to which penalty it is."""
     search = None if contender.judged is None else contender.judged.solution.search
-    if search is None:
-        return ""
-    if search.penalty is None:
-        matrices = next(item for item in compared.matrices if item.weights is contender.found.setting.weights)
-        return "yes" if matrices.convex else "no"
+    told = "yes" if contender.convex else "no"
+    if search is None or search.penalty is None:
+        return told
     limit = search.penalty.convexity_limit
     if limit is None:
-        return "yes, for every μ"
-    told = "for no μ" if limit == 0 else f"up to μ = {limit:.3g}"
-    return f"{'yes' if search.penalty.value <= limit else 'no'}, {told}"
+        return f"{told}, for every μ"
+    return f"{told}, for no μ" if limit == 0 else f"{told}, up to μ = {limit:.3g}"
 
 
 def reference_in_words(reference: Reference) -> str:

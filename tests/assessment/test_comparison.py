@@ -55,7 +55,10 @@ def test_a_spurious_local_minimum_is_not_the_solution():
     assert spurious.judged.solution.status is Status.LOCAL_MINIMUM
     assert spurious.objective == pytest.approx(2 / (2 * 2 / 3))
     assert spurious.verdict.outcome is Outcome.NOT_THE_SOLUTION
-    assert "stationary but not the solution: objective 1.50e+00, above the 0" in spurious.verdict.words
+    assert (
+        "stationary but not the solution: objective 1.50e+00, above the 0 of the contact state"
+        in spurious.verdict.words
+    )
     assert found.reference.verdict.outcome is Outcome.SOLVES_PERHAPS_NOT_ALONE
     assert found.reference.judged is not None
     assert found.reference.judged.solution.pressure == pytest.approx([0.0, 2.0])
@@ -75,7 +78,7 @@ def test_two_contact_states_are_told():
         Found(setting=Setting(formulation=FormulationName.COMPLEMENTARITY), solution=mirrored),
         [Found(setting=setting, solution=other)],
     )
-    assert "there is more than one contact state: QP1 and direct differ by 1.0e+00 of the peak" in found.verdict
+    assert "QP1 and direct meet all conditions, but differ by 1.0e+00 of the peak" in found.verdict
     assert found.contenders[0].verdict.outcome is Outcome.SOLVES_PERHAPS_NOT_ALONE
     assert not found.certified
 
@@ -138,3 +141,44 @@ def test_no_contact_at_all_is_an_answer():
     found = comparing.compare(CondensedContact.from_compliance(np.eye(3), np.ones(3)))
     assert found.certified
     assert found.agreement == 0.0
+
+
+def test_a_direct_solver_that_fails_is_no_contact_state_to_compare_with():
+    """Its point is no reference: M p + q = 0 at p = (1/3, 4/3, 2/3) solves the problem, and QP1 finds that."""
+    M, q = [[0.0, 0.0, 3.0], [-2.0, -1.0, 3.0], [-2.0, 3.0, -2.0]], [-2.0, 0.0, -2.0]
+    found = comparing.compare(CondensedContact.from_compliance(M, q), ["qp1"])
+    assert found.reference.verdict.outcome is Outcome.NOT_THE_SOLUTION
+    assert found.contenders[0].judged.solution.pressure == pytest.approx([1 / 3, 4 / 3, 2 / 3])  # pyright: ignore
+    assert found.verdict.startswith("the direct solver found no contact state, but QP1 did")
+    assert "contact state" not in found.contenders[0].verdict.words
+    assert found.difference("QP1") is None
+    assert found.agreement is None
+
+
+def test_round_off_leaves_nearly_singular_problems_open():
+    """M = ones + 1e-13 I: (1, 0) meets all conditions, but so does (1 - s, s) to 1e-13 s."""
+    contact = CondensedContact.from_compliance(np.ones((2, 2)) + 1e-13 * np.eye(2), [-1.0, -0.5])
+    found = comparing.compare(contact, ["qp1"])
+    assert found.reference.verdict.outcome is Outcome.LEFT_OPEN
+    assert "round-off leaves open" in found.verdict
+    assert not found.certified
+
+
+def test_a_pressure_of_round_off_is_no_peak():
+    """A free body without load that touches nowhere: p = 0 up to 1e-18, which differs from 0 by nothing of T."""
+    M = [[2.8, 0.8, -0.3], [0.8, 1.6, -1.0], [-0.3, -1.0, 1.7]]
+    motions = {"rigid_motions": [1.0, 1.0, 1.0], "motion_load": [0.0]}
+    found = comparing.compare(CondensedContact.from_compliance(M, [-0.2, -0.2, 2.1], **motions))
+    assert found.certified
+    assert found.agreement < 1e-12  # pyright: ignore
+
+
+def test_numbers_of_numpy_are_numbers():
+    found = comparing.compare(random_contact(1, 5, 0), ["qp2"], penalties=[np.float32(0.5)], starts=np.int64(2))
+    json.loads(found.to_json())
+
+
+def test_labels_tell_penalties_apart():
+    found = comparing.compare(random_contact(1, 5, 0), ["qp2"], penalties=[1.0, 0.001, 0.0010000001])
+    assert [item.label for item in found.contenders] == ["QP2 (μ = 1)", "QP2 (μ = 0.001)", "QP2 (μ = 0.0010000001)"]
+    assert len(found.differences) == 6

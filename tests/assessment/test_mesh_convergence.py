@@ -1,5 +1,7 @@
 """Observed orders: sequences whose order and limit are known."""
 
+import dataclasses
+
 import pytest
 
 from bemcontact.assessment.convergence import convergence
@@ -46,8 +48,28 @@ def test_two_meshes_show_only_what_vanishes():
 def test_contact_that_splits_has_no_ends_to_compare():
     found = convergence((1, 2), [print_of(1.0, 2.0), print_of(1.0, 1.0, 2.0)], [0.2, 0.1])
     assert [item.name for item in found.quantities] == ["peak pressure", "asymmetry of J M"]
-    assert "number of contact intervals changes" in found.remark
+    assert "not the same on all meshes" in found.remark
 
 
 def test_a_symmetric_matrix_shows_no_order():
     assert convergence((1, 2), [print_of(1.0)] * 2, [0.0, 0.0]).quantities[-1].orders == (None,)
+
+
+def test_positions_on_a_closed_run_are_counted_on():
+    """A start at 1 before the seam of a perimeter of 50 and at 0.5 before it: 49, 49.5 and -0.25 are 49.75."""
+
+    def ring(start: float) -> Footprint:
+        interval = ContactInterval(
+            zone="rim", start=(0.0, 0.0), end=(1.0, 0.0), start_arc=start, end_arc=start + 2.0, perimeter=50.0
+        )
+        return dataclasses.replace(print_of(1.0), intervals=(interval,))
+
+    found = convergence((1, 2, 4), [ring(49.0), ring(49.5), ring(-0.25)], [0.1, 0.1, 0.1])
+    assert found.quantities[1].values == pytest.approx([49.0, 49.5, 49.75])
+    assert found.quantities[1].limit == pytest.approx(50.0)
+
+
+def test_a_mesh_without_contact_has_no_peak_to_compare():
+    nowhere = dataclasses.replace(print_of(1.0), peak=None, intervals=())
+    found = convergence((1, 2, 4), [nowhere, print_of(1.0), print_of(1.1)], [0.4, 0.2, 0.1])
+    assert [item.name for item in found.quantities] == ["asymmetry of J M"]

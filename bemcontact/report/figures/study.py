@@ -46,7 +46,7 @@ def figures_of(study: Study) -> dict[str, Figure]:
     if level.answer.boundary is not None:
         figures["deformed"], axes = _page(4.2)
         draw_deformed(axes, level.answer)
-    if (level.comparison.agreement or 0.0) > ROUND_OFF:
+    if max((item.largest for item in level.comparison.differences), default=0.0) > ROUND_OFF:
         figures["difference"], axes = _page(3.9)
         draw_differences(axes, level)
     for name, contenders in _recorded(level).items():
