@@ -1,10 +1,10 @@
 """The contact points of a mesh: pairs (zone, node) with gap, normal, and the weights that belong to them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from bemcontact.bem import quadrature, shape_functions
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.mesh import Mesh
 from bemcontact.problem.problem import Problem
+from bemcontact.problem.rigid_surface import Closest, DeflectedContour, RigidSurface
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -55,6 +56,15 @@ class ContactPoints:
     element: IntArray
     local: IntArray
     point: IntArray
+
+    @classmethod
+    def none(cls, mesh: Mesh) -> Self:
+        """No points: a body that touches nothing."""
+        none, numbers = np.zeros(0), np.zeros(0, int)
+        return cls(
+            mesh=mesh, node=numbers, zone=numbers, run=numbers, arc_position=none, run_length=none,
+            normals=np.zeros((0, 2)), gap=none, element=numbers, local=numbers, point=numbers,
+        )  # fmt: skip
 
     def __len__(self) -> int:
         """Return the number of points."""
@@ -101,19 +111,39 @@ def _half_lengths(mesh: Mesh) -> Array:
     return np.column_stack(halves)
 
 
-def contact_points(problem: Problem, mesh: Mesh, values: BoundaryValues) -> ContactPoints:
-    """List the contact points of all zones; the middle node of an element is always one."""
+def contact_points(
+    problem: Problem, mesh: Mesh, values: BoundaryValues, deflections: Mapping[str, Array]
+) -> ContactPoints:
+    """List the contact points of all zones; the middle node of an element is always one.
+
+    Parameters
+    ----------
+    problem, mesh, values : the stages up to here
+    deflections : by zone, for those on a deflected contour: displacement (N, 2) [L] of the nodes that shapes it
+
+    Returns
+    -------
+    ContactPoints
+    """
     halves = _half_lengths(mesh)
     pieces: list[_Piece] = []
-    for number, zone in enumerate(problem.contact_zones.values()):
+    for number, (name, zone) in enumerate(problem.contact_zones.items()):
         in_zone = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in zone.edges])
         for elements, closed in _runs(mesh, in_zone):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
-            gap, normals = zone.surface.closest(mesh.nodes[nodes])
+            gap, normals = _closest(zone.surface, mesh, nodes, deflections.get(name))
             free = ~_held_along(normals, values.displacement_given[nodes])
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
             pieces.append(_Piece(number, elements, length, nodes[free], arc[free], normals[free], gap[free]))
     return _joined(mesh, pieces)
+
+
+def _closest(surface: RigidSurface, mesh: Mesh, nodes: IntArray, deflection: Array | None) -> Closest:
+    """Gap and normal at nodes: of the shape at their places, or of the contour that they are deflected to."""
+    if isinstance(surface, DeflectedContour):
+        assert deflection is not None
+        return surface.behind(deflection[nodes])
+    return surface.closest(mesh.nodes[nodes])
 
 
 class _Piece(NamedTuple):

@@ -13,7 +13,7 @@ def check(
 ) -> None:
     """Validate a spec and say what is seen in it: edges, contact zones, mesh, loads, and what holds the body.
 
-    Nothing is solved, but a body that nothing holds, or that its load pulls off its support, is found out.
+    No contact is solved, but a body that nothing holds, or that its load pulls off its support, is found out.
 
     [bold]Examples[/bold]
       bemcontact check models/cylinder_on_plane.yaml

@@ -9,7 +9,7 @@ from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 from bemcontact.problem.problem import MeshDensity, Problem, Units
 from bemcontact.problem.reference import Crack, FlatPunch, Hertz, Reference, ShrinkFit, Table, Uniform, Values
-from bemcontact.problem.rigid_surface import Circle, Closest, Plane, Polyline
+from bemcontact.problem.rigid_surface import Circle, Closest, DeflectedContour, Plane, Polyline, RigidSurface, Shape
 
 __all__ = [
     "Arc",
@@ -21,6 +21,7 @@ __all__ = [
     "Condition",
     "ContactZone",
     "Crack",
+    "DeflectedContour",
     "Edge",
     "EllipseArc",
     "Field",
@@ -36,6 +37,8 @@ __all__ = [
     "Polyline",
     "Problem",
     "Reference",
+    "RigidSurface",
+    "Shape",
     "ShrinkFit",
     "Table",
     "Temperature",
