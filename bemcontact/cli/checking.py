@@ -1,7 +1,7 @@
 """The command check: what is seen in a spec."""
 
 from bemcontact.cli.failures import claim, told
-from bemcontact.cli.options import FigureOption, RefineOption, SetOption, SpecArgument
+from bemcontact.cli.options import FigureOption, RefineOption, SetOption, SpecArgument, VariantOption
 from bemcontact.terminal import busy, show
 
 
@@ -10,6 +10,7 @@ def check(
     figure: FigureOption = None,
     refine: RefineOption = 1,
     overrides: SetOption = None,
+    variant: VariantOption = None,
 ) -> None:
     """Validate a spec and say what is seen in it: edges, contact zones, mesh, loads, and what holds the body.
 
@@ -20,13 +21,13 @@ def check(
       bemcontact check models/cylinder_on_plane.yaml --figure problem.svg
       bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
     """
-    with told(spec, overrides), busy("checking"):
+    with told(spec, overrides, variant), busy("checking"):
         claim(spec, {"--figure": figure})
         from bemcontact import spec as spec_file
         from bemcontact.bem.condense import body_of
         from bemcontact.report import text
 
-        body = body_of(spec_file.load(spec, overrides or ()).refined(refine))
+        body = body_of(spec_file.load(spec, overrides or (), variant).refined(refine))
         if figure:
             from bemcontact.report import figures
 

@@ -10,6 +10,7 @@ from bemcontact.problem.material import Material
 from bemcontact.problem.problem import MeshDensity, Problem, Units
 from bemcontact.problem.reference import Crack, FlatPunch, Hertz, Reference, ShrinkFit, Table, Uniform, Values
 from bemcontact.problem.rigid_surface import Circle, Closest, DeflectedContour, Plane, Polyline, RigidSurface, Shape
+from bemcontact.problem.variant import Variant
 
 __all__ = [
     "Arc",
@@ -45,4 +46,5 @@ __all__ = [
     "Uniform",
     "Units",
     "Values",
+    "Variant",
 ]

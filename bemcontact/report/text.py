@@ -79,6 +79,9 @@ def problem_summary(body: Body) -> RenderableType:
         _add(facts, "Held by contact", motion)
     for name, reference in problem.reference.items():
         _add(facts, "Reference", f"{name}: {reference_in_words(reference)}")
+    for name, variant in problem.variants.items():
+        told = variant.description.strip() or ", ".join(f"{key}={value}" for key, value in variant.set.items())
+        _add(facts, "Variant", f"{name}: {told}")
     for note in body.notes:
         _add(facts, "Note", note)
     return Group(Text(problem.name, "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)
