@@ -608,6 +608,32 @@ def test_schema_takes_what_is_right():
     assert as_seen_by_an_editor(MODEL.read_text(encoding="utf-8")) == []
 
 
+@pytest.mark.parametrize("path", sorted(MODEL.parent.glob("*.yaml")), ids=lambda path: path.stem)
+def test_schema_takes_the_models(path):
+    """Written anew, for YAML 1.1 takes 2e6 for a text."""
+    assert as_seen_by_an_editor(bemcontact.spec.as_run(path, ["mesh.refine=1"])) == []
+
+
+CONTOUR = "{kind: deflected_contour, direction: [0, 1], conditions: {top: {pressure: 2}}}"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "message"),
+    [
+        ("direction: [0, 1], ", "", "contact_zones.foot.surface", "'direction' is a required property"),
+        ("pressure: 2", "presure: 2", "contact_zones.foot.surface.conditions.top", "('presure' was unexpected)"),
+        ("conditions: {top: {pressure: 2}}", "conditions: 2", "contact_zones.foot.surface.conditions", "not of type"),
+        ("set: {mesh.refine: 2}", "set: {}", "variants.fine.set", "{} should be non-empty"),
+        ("set: {mesh.refine: 2}", "sets: {}", "variants.fine", "'set' is a required property"),
+    ],
+)
+def test_schema_knows_contours_and_variants(old, new, path, message):
+    text = SPEC.replace("{kind: plane, point: [0, 0], normal: [0, 1]}", CONTOUR).replace("1e3", "1.0e+3")
+    text += "variants: {fine: {set: {mesh.refine: 2}}}\n"
+    assert as_seen_by_an_editor(text) == []
+    assert (path, True) in [(found, message in words) for found, words in as_seen_by_an_editor(text.replace(old, new))]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "path", "message"),
     [
