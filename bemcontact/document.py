@@ -48,6 +48,14 @@ class Document:
     findings: tuple[Finding, ...] = ()
     change: Mark | None = None
 
+    def below(self, path: Path) -> "Document":
+        """Take the value at a path as a document of its own."""
+        data = self.data
+        for key in path:
+            data = data[key]
+        places = {other[len(path) :]: place for other, place in self.places.items() if other[: len(path)] == path}
+        return Document(data=data, places=places)
+
     def changed(self, path: Path, entry: "Document", mark: Mark) -> "Document":
         """Replace or add one value, all of which comes from the place of the mark."""
         kept = {other: place for other, place in self.places.items() if other[: len(path)] != path}

@@ -13,6 +13,7 @@ from bemcontact.problem import Problem
 from bemcontact.problem.key_path import existing_path, parsed_path
 from bemcontact.problem.stated import described, number_hint
 from bemcontact.text_file import place_after, text_of
+from bemcontact.variation import varied
 
 _REQUIRED = ", ".join(key for key, item in Problem.model_fields.items() if item.is_required())
 _HINTS = {
@@ -28,13 +29,14 @@ _HINTS = {
 """What usually is wrong where the parser says so."""
 
 
-def load(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Problem:
+def load(path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: str | None = None) -> Problem:
     """Read a problem from a YAML file.
 
     Parameters
     ----------
     path : the file, in UTF-8 (or UTF-16 with a byte order mark)
     overrides : changes such as ``material.young_modulus=2e6``, made before anything is checked
+    variant : name of a variant that the file states, to which the changes are made; the problem itself if None
 
     Returns
     -------
@@ -43,20 +45,20 @@ def load(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Problem
     Raises
     ------
     SpecError
-        If there is no such file, or it states no problem: a line ``file:line:column: key.path: message`` for each
-        complaint.
+        If there is no such file or variant, or it states no problem: a line ``file:line:column: key.path: message``
+        for each complaint.
     """
-    return loads(text_of(path), os.fspath(path), overrides)
+    return loads(text_of(path), os.fspath(path), overrides, variant)
 
 
-def loads(text: str, name: str = "<string>", overrides: Sequence[str] = ()) -> Problem:
+def loads(text: str, name: str = "<string>", overrides: Sequence[str] = (), variant: str | None = None) -> Problem:
     """Read a problem from a text, as `load` does from a file.
 
     Parameters
     ----------
     text : YAML
     name : what to call the text in complaints
-    overrides : changes such as ``material.young_modulus=2e6``, made before anything is checked
+    overrides, variant : as of `load`
 
     Returns
     -------
@@ -67,15 +69,15 @@ def loads(text: str, name: str = "<string>", overrides: Sequence[str] = ()) -> P
     SpecError
         A line ``name:line:column: key.path: message`` for each complaint.
     """
-    return _stated(_stages(text, name, overrides))
+    return _stated(_stages(text, name, overrides, variant))
 
 
-def as_run(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> str:
+def as_run(path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: str | None = None) -> str:
     """Give the text of a spec with the changes made: the file as it is if there are none, else YAML without comments.
 
     Parameters
     ----------
-    path, overrides : what a problem is read from, by `load`
+    path, overrides, variant : what a problem is read from, by `load`
 
     Returns
     -------
@@ -88,18 +90,20 @@ def as_run(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> str:
         There is no such file, or a change cannot be made.
     """
     text = text_of(path)
-    if not overrides:
+    if not overrides and variant is None:
         return text
-    return written(_stages(text, os.fspath(path), overrides)[-1].data)
+    return written(_stages(text, os.fspath(path), overrides, variant)[-1].data)
 
 
-def located(error: ProblemError, path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> SpecError:
+def located(
+    error: ProblemError, path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: str | None = None
+) -> SpecError:
     """Tell where in its file a problem is wrong of which that was found out only after it had been read.
 
     Parameters
     ----------
     error : what was found
-    path, overrides : what the problem was read from, by `load`
+    path, overrides, variant : what the problem was read from, by `load`
 
     Returns
     -------
@@ -108,7 +112,7 @@ def located(error: ProblemError, path: str | os.PathLike[str], overrides: Sequen
         as a whole.
     """
     name = os.fspath(path)
-    document = _stages(text_of(path), name, overrides)[-1]
+    document = _stages(text_of(path), name, overrides, variant)[-1]
     whole = [(Mark(0, 0, name), complaint.message) for complaint in error.complaints if not complaint.path]
     return SpecError(one_line_each([*whole, *(document.located(item) for item in error.complaints if item.path)]))
 
@@ -121,10 +125,12 @@ def schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **stated}
 
 
-def _stages(text: str, name: str, overrides: Sequence[str]) -> list[Document]:
+def _stages(text: str, name: str, overrides: Sequence[str], variant: str | None) -> list[Document]:
     """Read a text, and make the changes one after the other; the first is the text alone."""
     stages = [_parsed(text, name)]
     _check_mapping(stages[0], name)
+    if variant is not None:
+        stages += varied(stages[0], variant)
     for override in overrides:
         stages.append(_overridden(stages[-1], override))
     return stages

@@ -147,6 +147,45 @@ def test_set_and_refine_change_the_problem(block: Path):
     assert found["pressure"] == pytest.approx([6.0] * 17, rel=1e-9)  # twice the load, twice the elements
 
 
+def test_a_variant_is_listed_and_taken(block: Path, tmp_path: Path):
+    coarse = "\nvariants:\n  coarse: {description: half of the elements, set: {boundary.outer.bottom.elements: 2}}\n"
+    block.write_text(BLOCK + coarse, encoding="utf-8")
+    assert "coarse: half of the elements" in run("check", block).stdout
+    answer = run("solve", block, "--variant", "coarse", "--json", "-")
+    assert answer.exit_code == 0
+    assert json.loads(answer.stdout)["contact_nodes"] == 5
+    assert json.loads(answer.stdout)["name"] == "block on a table, coarse"
+    assert run("condense", block, "--variant", "coarse", "--out", tmp_path / "block.npz").exit_code == 0
+    assert CondensedContact.load(tmp_path / "block.npz").size == 5
+    refused = run("check", block, "--variant", "course")
+    assert refused.exit_code == 2
+    assert "--variant course: unknown variant 'course'; did you mean 'coarse'?" in refused.stderr
+
+
+CONTOUR = """
+conditions:
+  left: {displacement: {x: 0}}
+  top: {pressure: 3}
+contact_zones:
+  foot:
+    edges: bottom
+    surface:
+      kind: deflected_contour
+      conditions: {right: {traction: {x: 1}}}
+      direction: [0, 1]
+"""
+
+
+def test_a_contour_that_cannot_be_found_is_located(block: Path):
+    """Contact would hold the block, but it is not there when the contour is found."""
+    text = BLOCK[: BLOCK.index("conditions:")] + CONTOUR
+    block.write_text(text, encoding="utf-8")
+    answer = run("check", block)
+    line = text.splitlines().index("      conditions: {right: {traction: {x: 1}}}") + 1
+    assert answer.exit_code == 2
+    assert f"block.yaml:{line}:19: contact_zones.foot.surface.conditions: with these" in " ".join(answer.stderr.split())
+
+
 def test_check_says_what_it_sees(block: Path):
     answer = run("check", block, "--set", "boundary.outer[0].elements=5")
     assert answer.exit_code == 0, answer.stderr

@@ -481,6 +481,61 @@ def test_what_is_found_out_later_is_located_in_the_file(tmp_path):
     ]
 
 
+VARIED = f"""{SPEC}variants:
+  fine:
+    set:
+      boundary.outer.bottom.elements: 12
+      material.poisson_ratio: 0.25
+  steep: {{set: {{"conditions.top.pressure": {{constant: 5, x: 1}}}}}}
+"""
+
+
+def test_variant_is_set_before_the_overrides():
+    problem = bemcontact.spec.loads(VARIED, overrides=["boundary.outer.top.elements=7"], variant="fine")
+    assert [edge.elements for edge in problem.boundary.edges] == [12, 2, 7, 2, 8]
+    assert (problem.name, problem.variants) == ("block on a plane, fine", {})
+    overridden = bemcontact.spec.loads(VARIED, overrides=["material.poisson_ratio=0.1"], variant="fine")
+    assert overridden.material.poisson_ratio == 0.1
+    assert bemcontact.spec.loads(VARIED).edge("bottom").elements == 4
+
+
+@pytest.mark.parametrize("variant", ["fine", "steep"])
+def test_variant_is_that_of_the_problem(variant, tmp_path):
+    path = tmp_path / "block.yaml"
+    path.write_text(VARIED, encoding="utf-8")
+    problem = bemcontact.spec.load(path, variant=variant)
+    assert problem == bemcontact.spec.load(path).variant(variant)
+    assert bemcontact.spec.loads(bemcontact.spec.as_run(path, variant=variant)) == problem
+    assert bemcontact.spec.loads(bemcontact.spec.as_run(path, ["mesh.refine=2"], variant)) == problem.refined(2)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "variant", "line"),
+    [
+        ("ratio: 0.25", "ratio: 0.7", None, "block.yaml:33:31: variants.fine.set.material.poisson_ratio: with this"),
+        ("ratio: 0.25", "ratio: 0.7", "fine", "block.yaml:33:31: material.poisson_ratio: must be greater than -1"),
+        ("outer.bottom", "outer.bot", None, "block.yaml:32:36: variants.fine.set.boundary.outer.bot.elements: "),
+        ("outer.bottom", "outer.bot", "fine", "block.yaml:32:36: variants.fine.set.boundary.outer.bot.elements: "),
+        ("    set:", "    sat:", "fine", "block.yaml:31:5: variants.fine.sat: unknown key 'sat'; did you mean 'set'?"),
+        ("", "", "fime", "--variant fime: unknown variant 'fime'; did you mean 'fine'?"),
+    ],
+)
+def test_mistakes_in_variants_have_their_place(old, new, variant, line):
+    text = VARIED.replace(old, new, 1)
+    with pytest.raises(SpecError) as caught:
+        bemcontact.spec.loads(text, "block.yaml", variant=variant)
+    (found,) = str(caught.value).splitlines()
+    assert found.startswith(line)
+
+
+def test_what_is_found_out_later_of_a_variant_is_located_in_it(tmp_path):
+    path = tmp_path / "block.yaml"
+    path.write_text(VARIED, encoding="utf-8")
+    error = ProblemError(Complaint(path=("conditions", "top", "pressure"), message="pulls the body off"))
+    located = bemcontact.spec.located(error, path, variant="steep")
+    assert str(located) == f"{path}:34:44: conditions.top.pressure: pulls the body off"
+
+
 def test_file_is_read_in_the_encodings_of_editors(tmp_path):
     for encoding in ("utf-8", "utf-8-sig", "utf-16"):
         for newline in ("\n", "\r\n"):
@@ -549,7 +604,34 @@ def test_limits_are_keywords_of_json_schema_and_not_of_pydantic():
 
 def test_schema_takes_what_is_right():
     assert as_seen_by_an_editor(SPEC.replace("1e3", "1.0e+3")) == []
+    assert as_seen_by_an_editor(VARIED.replace("1e3", "1.0e+3")) == []
     assert as_seen_by_an_editor(MODEL.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("path", sorted(MODEL.parent.glob("*.yaml")), ids=lambda path: path.stem)
+def test_schema_takes_the_models(path):
+    """Written anew, for YAML 1.1 takes 2e6 for a text."""
+    assert as_seen_by_an_editor(bemcontact.spec.as_run(path, ["mesh.refine=1"])) == []
+
+
+CONTOUR = "{kind: deflected_contour, direction: [0, 1], conditions: {top: {pressure: 2}}}"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "message"),
+    [
+        ("direction: [0, 1], ", "", "contact_zones.foot.surface", "'direction' is a required property"),
+        ("pressure: 2", "presure: 2", "contact_zones.foot.surface.conditions.top", "('presure' was unexpected)"),
+        ("conditions: {top: {pressure: 2}}", "conditions: 2", "contact_zones.foot.surface.conditions", "not of type"),
+        ("set: {mesh.refine: 2}", "set: {}", "variants.fine.set", "{} should be non-empty"),
+        ("set: {mesh.refine: 2}", "sets: {}", "variants.fine", "'set' is a required property"),
+    ],
+)
+def test_schema_knows_contours_and_variants(old, new, path, message):
+    text = SPEC.replace("{kind: plane, point: [0, 0], normal: [0, 1]}", CONTOUR).replace("1e3", "1.0e+3")
+    text += "variants: {fine: {set: {mesh.refine: 2}}}\n"
+    assert as_seen_by_an_editor(text) == []
+    assert (path, True) in [(found, message in words) for found, words in as_seen_by_an_editor(text.replace(old, new))]
 
 
 @pytest.mark.parametrize(

@@ -9,18 +9,18 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs
 from scipy.optimize import nnls
 
 from bemcontact.bem.boundary_values import BoundaryValues, applied_traction, boundary_values
 from bemcontact.bem.contact_points import ContactPoints, contact_points
-from bemcontact.bem.influence import Block
+from bemcontact.bem.deflection import deflections
+from bemcontact.bem.factorisation import solve
 from bemcontact.bem.mesh import Mesh, along_curve, build
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.system import System
 from bemcontact.bem.volume_loads import ParticularSolution, particular_solution, true_resultant
 from bemcontact.contact import CondensedContact
-from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.errors import ProblemError
 from bemcontact.gauge import Gauge, fix_gauge
 from bemcontact.problem.problem import Problem
 
@@ -30,13 +30,11 @@ UNSEEN = 1e-9
 """Largest normal displacement, relative to the motion's own, of a rigid motion that no contact point sees."""
 BALANCED = 1e-9
 """Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as none."""
-SINGULAR = 1e-15
-"""Reciprocal condition number below which the system counts as singular."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
-    """A problem on its mesh, before any integral: what is known, where contact may be, how it may move rigidly.
+    """A problem on its mesh, before it is condensed: what is known, where contact may be, how it may move rigidly.
 
     Parameters
     ----------
@@ -107,11 +105,12 @@ def body_of(problem: Problem) -> Body:
     Raises
     ------
     ProblemError
-        If the loads pull the body off its support, move it in a way that no contact resists, or do not press it on.
+        If the loads pull the body off its support, move it in a way that no contact resists, or do not press it on;
+        or if the conditions of a deflected contour do not hold the body.
     """
     mesh = build(problem)
     values = boundary_values(problem, mesh)
-    points = contact_points(problem, mesh, values)
+    points = contact_points(problem, mesh, values, deflections(problem, mesh))
     motions = free_rigid_motions(mesh, values.displacement_given)
     seen, unseen = _split_by_contact(points, motions)
     body = Body(
@@ -259,85 +258,4 @@ def _observe(system: System, response: Array) -> Array:
     for normal, column in zip(points.normals.T, system.unknowns.displacement[points.node].T, strict=True):
         free = column >= 0
         result[free] += normal[free, None] * response[column[free]]
-    return result
-
-
-def assemble(system: System) -> tuple[Array, Array]:
-    """Set up the bordered matrix (in Fortran order, to be factorised in place) and the right sides.
-
-    Parameters
-    ----------
-    system : System
-
-    Returns
-    -------
-    matrix : (size, size)
-    right : (size, 1 + n)
-    """
-    unknowns = system.unknowns.size
-    matrix = np.zeros((system.size, system.size), order="F")
-    transposed = matrix.T
-    right = np.zeros((system.size, 1 + len(system.points)), order="F")
-
-    def place(block: Block) -> None:
-        for rows in system.rows(block):
-            first = 0
-            for part in rows.left:
-                transposed[first : first + len(part), rows.at] = part
-                first += len(part)
-            right[rows.at] = rows.right.T
-
-    system.influence.each_block(system.equations.collocation, place)
-    matrix[:unknowns, unknowns:] = system.border
-    matrix[unknowns:, :unknowns] = system.null_vectors.T
-    return matrix, right
-
-
-def solve(system: System) -> Array:
-    """Solve for the loads and for unit pressures: LU in place, then one step of refinement on rows computed anew.
-
-    Parameters
-    ----------
-    system : System
-
-    Returns
-    -------
-    (size, 1 + n)
-
-    Raises
-    ------
-    SingularSystemError
-    """
-    lange, getrf, gecon, getrs = get_lapack_funcs(("lange", "getrf", "gecon", "getrs"), dtype=float)
-    matrix, right = assemble(system)
-    norm = lange("1", matrix)
-    factors, pivots, info = getrf(matrix, overwrite_a=True)
-    reciprocal = gecon(factors, norm)[0] if info == 0 else 0.0
-    if reciprocal < SINGULAR:
-        raise SingularSystemError(
-            "the equations of the body have no unique solution (reciprocal condition number "
-            f"{reciprocal:.1e}); look for coincident edges, or elements of very different length side by side"
-        )
-    response, _ = getrs(factors, pivots, right)
-    correction, _ = getrs(factors, pivots, residual(system, response), overwrite_b=True)
-    return response + correction
-
-
-def residual(system: System, response: Array) -> Array:
-    """Right sides less matrix times response, (size, 1 + n), from rows computed anew: no second matrix is kept."""
-    unknowns = system.unknowns.size
-    z, s = response[:unknowns], response[unknowns:]
-    result = np.zeros_like(response, order="F")
-
-    def place(block: Block) -> None:
-        for rows in system.rows(block):
-            first = 0
-            for part in rows.left:
-                rows.right[:] -= z[first : first + len(part)].T @ part
-                first += len(part)
-            result[rows.at] = rows.right.T
-
-    system.influence.each_block(system.equations.collocation, place)
-    result[:unknowns] -= system.border @ s
-    result[unknowns:] = -system.null_vectors.T @ z
     return result

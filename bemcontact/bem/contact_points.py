@@ -1,10 +1,10 @@
 """The contact points of a mesh: pairs (zone, node) with gap, normal, and the weights that belong to them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from bemcontact.bem import quadrature, shape_functions
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.mesh import Mesh
 from bemcontact.problem.problem import Problem
+from bemcontact.problem.rigid_surface import Closest, DeflectedContour, RigidSurface
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -21,6 +22,8 @@ PARALLEL = 1e-9
 """Sine of the angle below which the rigid normal lies along a prescribed axis."""
 ALIKE = 1e-9
 """Difference of two normals, or of two gaps over the size of the body, at one node that counts as none."""
+SMOOTH = 0.05
+"""Sine of the angle between elements below which the boundary is smooth: quadratic elements on a curve kink a bit."""
 ARC_ORDER = 12
 """Gauss points for arc lengths and the consistent weights."""
 
@@ -29,7 +32,9 @@ ARC_ORDER = 12
 class ContactPoints:
     """Candidates for contact, zone by zone, run by run, along the boundary.
 
-    A node whose motion along the rigid normal is prescribed by a condition is no candidate; its pressure is zero.
+    A node whose motion along the rigid normal is prescribed by a condition is no candidate; its pressure is zero. But
+    where contact goes on smoothly beyond such a node, as at the tip of a closed slit, so does pressure: the middle node
+    of the element carries that of the end node too, and counts its length among its own.
 
     Parameters
     ----------
@@ -55,6 +60,15 @@ class ContactPoints:
     element: IntArray
     local: IntArray
     point: IntArray
+
+    @classmethod
+    def none(cls, mesh: Mesh) -> Self:
+        """No points: a body that touches nothing."""
+        none, numbers = np.zeros(0), np.zeros(0, int)
+        return cls(
+            mesh=mesh, node=numbers, zone=numbers, run=numbers, arc_position=none, run_length=none,
+            normals=np.zeros((0, 2)), gap=none, element=numbers, local=numbers, point=numbers,
+        )  # fmt: skip
 
     def __len__(self) -> int:
         """Return the number of points."""
@@ -82,7 +96,7 @@ class ContactPoints:
         for element in np.unique(self.element):
             at = self.element == element
             k, i = self.local[at], self.point[at]
-            J[np.ix_(i, i)] += local[element][np.ix_(k, k)]
+            np.add.at(J, np.ix_(i, i), local[element][np.ix_(k, k)])
         return J
 
 
@@ -101,27 +115,59 @@ def _half_lengths(mesh: Mesh) -> Array:
     return np.column_stack(halves)
 
 
-def contact_points(problem: Problem, mesh: Mesh, values: BoundaryValues) -> ContactPoints:
-    """List the contact points of all zones; the middle node of an element is always one."""
+def contact_points(
+    problem: Problem, mesh: Mesh, values: BoundaryValues, deflections: Mapping[str, Array]
+) -> ContactPoints:
+    """List the contact points of all zones; the middle node of an element is always one.
+
+    Parameters
+    ----------
+    problem, mesh, values : the stages up to here
+    deflections : by zone, for those on a deflected contour: displacement (N, 2) [L] of the nodes that shapes it
+
+    Returns
+    -------
+    ContactPoints
+    """
     halves = _half_lengths(mesh)
     pieces: list[_Piece] = []
-    for number, zone in enumerate(problem.contact_zones.values()):
+    for number, (name, zone) in enumerate(problem.contact_zones.items()):
         in_zone = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in zone.edges])
         for elements, closed in _runs(mesh, in_zone):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
-            gap, normals = zone.surface.closest(mesh.nodes[nodes])
+            gap, normals = _closest(zone.surface, mesh, nodes, deflections.get(name))
             free = ~_held_along(normals, values.displacement_given[nodes])
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
-            pieces.append(_Piece(number, elements, length, nodes[free], arc[free], normals[free], gap[free]))
+            goes_on = (False, False) if closed else _goes_on(mesh, values, elements, normals, gap)
+            pieces.append(_Piece(number, elements, length, goes_on, nodes[free], arc[free], normals[free], gap[free]))
     return _joined(mesh, pieces)
 
 
+def _closest(surface: RigidSurface, mesh: Mesh, nodes: IntArray, deflection: Array | None) -> Closest:
+    """Gap and normal at nodes: of the shape at their places, or of the contour that they are deflected to."""
+    if isinstance(surface, DeflectedContour):
+        assert deflection is not None
+        return surface.behind(deflection[nodes])
+    return surface.closest(mesh.nodes[nodes])
+
+
+def _goes_on(mesh: Mesh, values: BoundaryValues, elements: IntArray, normals: Array, gap: Array) -> tuple[bool, bool]:
+    """Whether contact goes on beyond the first and the last node of a run, over an element that a condition holds."""
+    first, after = elements[0], mesh.elements[elements[-1], 2]  # an element has the number of its start node
+    here, beyond = np.array([first, after]), np.array([mesh.before[first], after])
+    normals, gap = normals[[0, -1]], gap[[0, -1]] + np.sum(normals[[0, -1]] * values.displacement[here], axis=1)
+    smooth, closed = abs(mesh.turns[here]) < SMOOTH, abs(gap) <= ALIKE * mesh.size
+    start, end = smooth & closed & _held_along(normals, values.traction_unknown[beyond])
+    return bool(start), bool(end)
+
+
 class _Piece(NamedTuple):
-    """One run: its zone, elements and length, and its points."""
+    """One run: its zone, elements and length, whether contact goes on beyond its ends, and its points."""
 
     zone: int
     elements: IntArray
     length: float
+    goes_on: tuple[bool, bool]
     nodes: IntArray
     arc: Array
     normals: Array
@@ -141,8 +187,12 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
     for first, piece in zip(np.cumsum([0, *sizes]), pieces, strict=False):
         point_of = np.full(len(mesh.nodes), -1)
         point_of[piece.nodes] = number[first : first + len(piece.nodes)]
+        carrier = point_of[mesh.elements[piece.elements]]
+        for goes_on, element, end in zip(piece.goes_on, (0, -1), (0, 2), strict=True):
+            if goes_on:
+                carrier[element, end] = carrier[element, 1]
         elements.append(np.repeat(piece.elements, 3))
-        points.append(point_of[mesh.elements[piece.elements]].ravel())
+        points.append(carrier.ravel())
     point = np.concatenate(points)
     used = point >= 0
     return ContactPoints(

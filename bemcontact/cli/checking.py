@@ -1,7 +1,7 @@
 """The command check: what is seen in a spec."""
 
 from bemcontact.cli.failures import claim, told
-from bemcontact.cli.options import FigureOption, RefineOption, SetOption, SpecArgument
+from bemcontact.cli.options import FigureOption, RefineOption, SetOption, SpecArgument, VariantOption
 from bemcontact.terminal import busy, show
 
 
@@ -10,23 +10,24 @@ def check(
     figure: FigureOption = None,
     refine: RefineOption = 1,
     overrides: SetOption = None,
+    variant: VariantOption = None,
 ) -> None:
     """Validate a spec and say what is seen in it: edges, contact zones, mesh, loads, and what holds the body.
 
-    Nothing is solved, but a body that nothing holds, or that its load pulls off its support, is found out.
+    No contact is solved, but a body that nothing holds, or that its load pulls off its support, is found out.
 
     [bold]Examples[/bold]
       bemcontact check models/cylinder_on_plane.yaml
       bemcontact check models/cylinder_on_plane.yaml --figure problem.svg
       bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
     """
-    with told(spec, overrides), busy("checking"):
+    with told(spec, overrides, variant), busy("checking"):
         claim(spec, {"--figure": figure})
         from bemcontact import spec as spec_file
         from bemcontact.bem.condense import body_of
         from bemcontact.report import text
 
-        body = body_of(spec_file.load(spec, overrides or ()).refined(refine))
+        body = body_of(spec_file.load(spec, overrides or (), variant).refined(refine))
         if figure:
             from bemcontact.report import figures
 

@@ -7,7 +7,7 @@ import typer
 
 from bemcontact.choices import FormulationName, Weights
 from bemcontact.cli.failures import UNCERTIFIED, claim, claim_folder, told, write_json
-from bemcontact.cli.options import STANDARD_OUTPUT, JsonOption, SetOption, SpecArgument, names, several
+from bemcontact.cli.options import STANDARD_OUTPUT, JsonOption, SetOption, SpecArgument, VariantOption, names, several
 from bemcontact.output import whole_file
 from bemcontact.terminal import show, stages, tell
 
@@ -40,6 +40,7 @@ def compare(
     refine: Annotated[
         str, typer.Option(metavar="K,…", help="Split each element into K parts; several compare the meshes.")
     ] = "1",
+    variant: VariantOption = None,
     overrides: SetOption = None,
     out: Annotated[
         Path | None,
@@ -63,7 +64,7 @@ def compare(
       bemcontact compare models/cylinder_on_plane.yaml --formulations qp2 --penalty 1e-6,1e-3,1,1e3
       bemcontact compare models/cylinder_on_plane.yaml --starts 100
     """
-    with told(spec, overrides), stages() as say:
+    with told(spec, overrides, variant), stages() as say:
         json_claim = None if json_file == STANDARD_OUTPUT else json_file
         claim(spec, {"--json": json_claim})
         claim_folder(spec, "--out", out, json_claim)
@@ -76,13 +77,13 @@ def compare(
         from bemcontact.report import text
 
         plan = planned_comparison(names(formulations), names(weights), penalties, starts=starts, seed=seed)
-        problem = spec_file.load(spec, overrides or ())
+        problem = spec_file.load(spec, overrides or (), variant)
         study = comparing.study(plan, problem, parts, say, overrides or ())
         if out:
             say("report", "")
             from bemcontact.report import folder
 
-            folder.save(study, out, spec_file.as_run(spec, overrides or ()))
+            folder.save(study, out, spec_file.as_run(spec, overrides or (), variant))
         if json_file and json_file != STANDARD_OUTPUT:
             with whole_file(json_file) as temporary:
                 temporary.write_text(study.to_json() + "\n", encoding="utf-8")

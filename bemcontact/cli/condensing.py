@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.failures import claim, told
-from bemcontact.cli.options import RefineOption, SetOption, SpecArgument
+from bemcontact.cli.options import RefineOption, SetOption, SpecArgument, VariantOption
 from bemcontact.terminal import busy, show
 
 
@@ -15,6 +15,7 @@ def condense(
     out: Annotated[Path, typer.Option(metavar="FILE.npz", help="Where to write.", show_default=False)],
     refine: RefineOption = 1,
     overrides: SetOption = None,
+    variant: VariantOption = None,
 ) -> None:
     """Reduce a body to its contact points and save compliance, gaps and weights as one .npz file.
 
@@ -24,13 +25,13 @@ def condense(
       bemcontact condense models/cylinder_on_plane.yaml --out cylinder.npz
       bemcontact condense models/cylinder_on_plane.yaml --refine 2 --out fine.npz
     """
-    with told(spec, overrides), busy("condensing"):
+    with told(spec, overrides, variant), busy("condensing"):
         claim(spec, {"--out": out})
         from bemcontact import analysis
         from bemcontact import spec as spec_file
         from bemcontact.report import text
 
-        condensed = analysis.condense(spec_file.load(spec, overrides or ()).refined(refine))
+        condensed = analysis.condense(spec_file.load(spec, overrides or (), variant).refined(refine))
         condensed.save(out)
     with told(spec):
         show(text.condensed_summary(condensed, out))

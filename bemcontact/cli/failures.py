@@ -72,7 +72,9 @@ def refuse(message: str) -> NoReturn:
 
 
 @contextmanager
-def told(spec: Path | None = None, overrides: Sequence[str] | None = None) -> Iterator[None]:
+def told(
+    spec: Path | None = None, overrides: Sequence[str] | None = None, variant: str | None = None
+) -> Iterator[None]:
     """Turn all that can go wrong on purpose into one text on standard error, about a spec, and an exit status."""
     try:
         yield
@@ -87,7 +89,7 @@ def told(spec: Path | None = None, overrides: Sequence[str] | None = None) -> It
             refuse(str(error))
         from bemcontact import spec as spec_file
 
-        refuse(str(spec_file.located(error, spec, overrides or ())))
+        refuse(str(spec_file.located(error, spec, overrides or (), variant)))
     except OSError as error:
         where = error.filename or ("standard output" if error.errno else "")
         refuse(f"{where}: {error.strerror}" if where else str(error))

@@ -21,6 +21,15 @@ SetOption = Annotated[
         show_default=False,
     ),
 ]
+VariantOption = Annotated[
+    str | None,
+    typer.Option(
+        "--variant",
+        metavar="NAME",
+        help="Take a variant of the spec; check lists them. --set comes on top.",
+        show_default=False,
+    ),
+]
 FigureOption = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Draw a picture; FILE ends in .png, .svg or .pdf.", show_default=False),

@@ -8,7 +8,15 @@ import typer
 from bemcontact import output
 from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, Weights
 from bemcontact.cli.failures import UNCERTIFIED, claim, told, write_json
-from bemcontact.cli.options import STANDARD_OUTPUT, FigureOption, JsonOption, RefineOption, SetOption, SpecArgument
+from bemcontact.cli.options import (
+    STANDARD_OUTPUT,
+    FigureOption,
+    JsonOption,
+    RefineOption,
+    SetOption,
+    SpecArgument,
+    VariantOption,
+)
 from bemcontact.terminal import busy, show, tell
 
 
@@ -51,6 +59,7 @@ def solve(
     ] = None,
     refine: RefineOption = 1,
     overrides: SetOption = None,
+    variant: VariantOption = None,
     figure: FigureOption = None,
     json_file: JsonOption = None,
     vtk_file: Annotated[
@@ -72,7 +81,7 @@ def solve(
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp1
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --starts 20
     """
-    with told(spec, overrides), busy("solving") as say:
+    with told(spec, overrides, variant), busy("solving") as say:
         json_claim = None if json_file == STANDARD_OUTPUT else json_file
         claim(spec, {"--figure": figure, "--json": json_claim, "--vtk": vtk_file})
         from bemcontact import analysis
@@ -92,7 +101,7 @@ def solve(
             starts=starts,
             max_iterations=max_iterations,
         )
-        problem = spec_file.load(spec, overrides or ()).refined(refine)
+        problem = spec_file.load(spec, overrides or (), variant).refined(refine)
         result = analysis.carry_out(
             plan, problem, lambda done: say(f"solving, start {min(done + 1, starts or 1)} of {starts}")
         )

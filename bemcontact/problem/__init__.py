@@ -9,7 +9,8 @@ from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 from bemcontact.problem.problem import MeshDensity, Problem, Units
 from bemcontact.problem.reference import Crack, FlatPunch, Hertz, Reference, ShrinkFit, Table, Uniform, Values
-from bemcontact.problem.rigid_surface import Circle, Closest, Plane, Polyline
+from bemcontact.problem.rigid_surface import Circle, Closest, DeflectedContour, Plane, Polyline, RigidSurface, Shape
+from bemcontact.problem.variant import Variant
 
 __all__ = [
     "Arc",
@@ -21,6 +22,7 @@ __all__ = [
     "Condition",
     "ContactZone",
     "Crack",
+    "DeflectedContour",
     "Edge",
     "EllipseArc",
     "Field",
@@ -36,10 +38,13 @@ __all__ = [
     "Polyline",
     "Problem",
     "Reference",
+    "RigidSurface",
+    "Shape",
     "ShrinkFit",
     "Table",
     "Temperature",
     "Uniform",
     "Units",
     "Values",
+    "Variant",
 ]

@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from bemcontact.problem.rigid_surface import RigidSurface
+from bemcontact.problem.rigid_surface import StatedSurface
 from bemcontact.problem.stated import Name, Stated
 
 
@@ -26,5 +26,5 @@ class ContactZone(Stated):
 
     edges: EdgeNames
     """The name of the edge, or a list of names of edges, that may touch the surface."""
-    surface: RigidSurface
+    surface: StatedSurface
     """The rigid surface."""

@@ -11,7 +11,7 @@ from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import MOST_ELEMENTS
-from bemcontact.problem.rigid_surface import Circle, Plane, Polyline
+from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, Polyline, RigidSurface, Shape
 
 LARGEST_TURNING = radians(60)
 """Largest angle by which a quadratic element may turn: beyond it the element strays visibly from its arc."""
@@ -60,6 +60,8 @@ def _turns_too_much(edge: Edge, refine: int) -> str:
 def facing_complaints(boundary: Boundary, zones: Mapping[Path, ContactZone]) -> list[Complaint]:
     """Check that the normal of each rigid surface points into the body, where they are closest to each other.
 
+    The direction of a deflected contour, which is close to its own body, must nowhere point out of it.
+
     Parameters
     ----------
     boundary : with the edges of the zones
@@ -68,14 +70,17 @@ def facing_complaints(boundary: Boundary, zones: Mapping[Path, ContactZone]) -> 
     edges = {edge.name: edge for edge in boundary.edges}
     complaints = []
     for path, zone in zones.items():
-        facing = [_facing(edges[name], zone.surface) for name in zone.edges]
-        _, cosine, name = min((*closest, name) for closest, name in zip(facing, zone.edges, strict=True))
+        members = [edges[name] for name in zone.edges]
+        if isinstance(zone.surface, DeflectedContour):
+            cosine, name = max((_outward(edge, zone.surface), edge.name) for edge in members)
+        else:
+            _, cosine, name = min((*_facing(edge, zone.surface), edge.name) for edge in members)
         if cosine > ALONG:
             complaints.append(Complaint(path=(*path, "surface"), message=_faces_away(name, zone.surface)))
     return complaints
 
 
-def _facing(edge: Edge, surface: Plane | Circle | Polyline) -> tuple[float, float]:
+def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:
     """Least distance of an edge from a surface, and the cosine between its outward and the surface's normal there."""
     fractions = np.linspace(0, 1, 8 * edge.elements + 1)
     gap, normals = surface.closest(edge.points(fractions))
@@ -84,7 +89,12 @@ def _facing(edge: Edge, surface: Plane | Circle | Polyline) -> tuple[float, floa
     return float(np.abs(gap[closest])), float(cosine[closest])
 
 
-def _faces_away(edge: str, surface: Plane | Circle | Polyline) -> str:
+def _outward(edge: Edge, surface: DeflectedContour) -> float:
+    """Largest cosine between an outward normal and the direction: a contour may be near to any point of the edge."""
+    return float((edge.normals(np.linspace(0, 1, 8 * edge.elements + 1)) @ surface.unit_direction).max())
+
+
+def _faces_away(edge: str, surface: RigidSurface) -> str:
     """Say how the surface is to be turned round."""
     match surface:
         case Plane():
@@ -94,5 +104,8 @@ def _faces_away(edge: str, surface: Plane | Circle | Polyline) -> str:
             way_out = f"is the body {'inside' if surface.body == 'outside' else 'outside'} the circle?"
         case Polyline():
             way_out = "list its points in the opposite order, so that the body is on their left"
+        case DeflectedContour():
+            x, y = surface.direction
+            way_out = f"turn the direction round: [{0 - x:g}, {0 - y:g}], or make the zone smaller"
     rule = "the rigid surface's normal must point from the surface into the body"
     return f"{rule}, but at '{edge}' it points out of it; {way_out}"

@@ -6,6 +6,7 @@ from bemcontact.errors import Complaint
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.geometry import Line
+from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.stated import KeyComplaint, unknown_word
 from bemcontact.problem.written import Written
 
@@ -13,13 +14,15 @@ from bemcontact.problem.written import Written
 def name_complaints(boundary: Written, conditions: Written, zones: Written) -> list[Complaint]:
     """Check that conditions and contact zones refer to edges that there are, and share none.
 
+    Where a contour is deflected nothing touches, so that the edges of a zone may have conditions there.
+
     Parameters
     ----------
     boundary, conditions, zones : these parts of a problem, right or wrong; what is unreadable in them is passed over
     """
     names = _names(boundary)
     complaints: list[Complaint] = []
-    for condition in conditions.each():
+    for condition in (*conditions.each(), *_conditions_of_contours(zones)):
         if names is not None and (name := str(condition.path[-1])) not in names:
             complaints.append(KeyComplaint(path=condition.path, message=unknown_word("edge", name, names)))
     zone_of: dict[str, str] = {}
@@ -54,6 +57,14 @@ def _members(zones: Written) -> Iterator[tuple[str, Written]]:
         for member in edges.each():
             if isinstance(member.value, str):
                 yield str(zone.path[-1]), member
+
+
+def _conditions_of_contours(zones: Written) -> Iterator[Written]:
+    """List the conditions under which contours are deflected."""
+    for zone in zones.each():
+        surface = zone.below(ContactZone, "surface")
+        if surface.below(DeflectedContour, "kind").value == "deflected_contour":
+            yield from surface.below(DeflectedContour, "conditions").each()
 
 
 def _twice(edge: str, first: str, second: str) -> str:

@@ -1,5 +1,7 @@
 """A problem: a body, what acts on it, and the rigid surfaces that it may touch. Checked as a whole when it is made."""
 
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Annotated, Any, Self
 
 from pydantic import (
@@ -23,6 +25,7 @@ from bemcontact.problem.loads import Loads
 from bemcontact.problem.material import Material
 from bemcontact.problem.reference import StatedReference, Words, reference_complaints
 from bemcontact.problem.stated import Count, Name, Stated, Text, complain, complaints_of, unknown_word
+from bemcontact.problem.variant import Variant, blamed
 from bemcontact.problem.written import Written
 
 
@@ -86,6 +89,8 @@ class Problem(Stated):
     """Refinement of the mesh."""
     reference: dict[Words, StatedReference] = Field(default_factory=dict)
     """What is known of the answer, by name: closed forms and published values, with which it is compared."""
+    variants: dict[Name, Variant] = Field(default_factory=dict)
+    """The same problem with other values, such as another mesh, by the name of the variant."""
 
     @model_validator(mode="wrap")
     @classmethod
@@ -97,6 +102,8 @@ class Problem(Stated):
         except ValidationError as error:
             made, written, complaints = None, Written((), data), complaints_of(error)
         complaints += cls._mismatches(written)
+        if made is not None and not complaints:
+            complaints += made._broken_variants()
         if made is None or complaints:
             raise ProblemError(complaints)
         return made
@@ -127,6 +134,33 @@ class Problem(Stated):
     def refined(self, parts: int) -> Self:
         """Cut each element into so many equal parts."""
         return self.with_value("mesh.refine", self.mesh.refine * parts)
+
+    def variant(self, name: str) -> Self:
+        """Take a variant: its values set, its name added to that of the problem, and no variants any more.
+
+        Raises
+        ------
+        ProblemError
+            If there is no such variant.
+        """
+        if name not in self.variants:
+            raise ProblemError(Complaint(path=("variants",), message=unknown_word("variant", name, self.variants)))
+        values, data = self.variants[name], self.model_dump(exclude={"variants"})
+        paths = values.paths(data)
+        for key, path in paths.items():
+            data = with_entry(data, path, values.set[key])
+        try:
+            return type(self)(**{**data, "name": f"{data['name']}, {name}"})
+        except ProblemError as error:
+            raise ProblemError([*blamed(error, paths)]) from None
+
+    def _broken_variants(self) -> Iterator[Complaint]:
+        """Try all variants, so that a mistake in one is found before somebody asks for it."""
+        for name in self.variants:
+            try:
+                self.variant(name)
+            except ProblemError as error:
+                yield from (replace(item, path=("variants", name, *item.path)) for item in error.complaints)
 
     def with_value(self, path: str, value: Any) -> Self:
         """Change one value and check the problem anew.

@@ -1,4 +1,4 @@
-"""Rigid surfaces: signed distance and unit normal, from the surface into the body, at any point of the plane."""
+"""Rigid surfaces: gap and unit normal, from the surface into the body."""
 
 from itertools import pairwise
 from typing import Annotated, Literal, NamedTuple, Self
@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from bemcontact.problem.conditions import Condition
 from bemcontact.problem.kinds import ByKind
-from bemcontact.problem.stated import Point, Positive, Stated, complain
+from bemcontact.problem.loads import Loads
+from bemcontact.problem.stated import Name, Point, Positive, Stated, complain
 
 Array = NDArray[np.float64]
 
@@ -27,7 +29,7 @@ class Plane(Stated):
     """A straight surface without end."""
 
     kind: Literal["plane"] = "plane"
-    """The shape of the surface: plane, circle, or polyline."""
+    """The shape of the surface: plane, circle, polyline, or deflected_contour."""
     point: Point
     """Any point [x, y] of the surface."""
     normal: Point
@@ -43,8 +45,7 @@ class Plane(Stated):
     @property
     def unit_normal(self) -> Point:
         """The normal, of length 1."""
-        length = float(np.hypot(*self.normal))
-        return self.normal[0] / length, self.normal[1] / length
+        return _of_length_one(self.normal)
 
     def closest(self, points: Array) -> Closest:
         """Gap and normal at points (k, 2) [L]."""
@@ -57,7 +58,7 @@ class Circle(Stated):
     """A rigid disc with the body outside, or a rigid hole with the body inside."""
 
     kind: Literal["circle"] = "circle"
-    """The shape of the surface: plane, circle, or polyline."""
+    """The shape of the surface: plane, circle, polyline, or deflected_contour."""
     center: Point
     """The centre [x, y]."""
     radius: Positive
@@ -76,7 +77,7 @@ class Polyline(Stated):
     """Straight pieces from point to point, the first and the last going on without end, the body on the left."""
 
     kind: Literal["polyline"] = "polyline"
-    """The shape of the surface: plane, circle, or polyline."""
+    """The shape of the surface: plane, circle, polyline, or deflected_contour."""
     points: Annotated[tuple[Point, ...], Field(min_length=2)]
     """The corners [x, y] in order; the body is on the left of one who walks along them."""
 
@@ -116,6 +117,48 @@ class Polyline(Stated):
         return Closest(np.einsum("ki,ki->k", offset, normals), normals)
 
 
+class DeflectedContour(Stated):
+    """The contour that the body itself is deflected to by other loads, touching nothing.
+
+    The gap is measured between the two places of one material point, along a fixed direction d: ε = -u·d, where u is
+    the displacement under the other loads. Those are the conditions of the problem with those given here in place of
+    what they have for the same edges, and the loads on the volume given here; those of the problem do not act.
+    """
+
+    kind: Literal["deflected_contour"] = "deflected_contour"
+    """The shape of the surface: plane, circle, polyline, or deflected_contour."""
+    conditions: Annotated[dict[Name, Condition], Field(default_factory=dict)]
+    """What is prescribed on edges instead of the problem's own conditions there, by edge name; others are kept."""
+    loads: Loads = Loads()
+    """Loads on the volume that deflect the contour; none if left out, whatever the problem has."""
+    direction: Point
+    """The direction [x, y] in which the gap is measured, from the surface into the body, of any length."""
+
+    @model_validator(mode="after")
+    def _deflected(self) -> Self:
+        """Refuse a direction that is none, and a contour of the very problem."""
+        if not np.hypot(*self.direction) > 0:
+            raise complain("the direction [0, 0] is none; let it point from the surface into the body")
+        if not self.conditions and self.loads == Loads():
+            raise complain("nothing says what deflects the contour; give conditions that differ from the problem's")
+        return self
+
+    @property
+    def unit_direction(self) -> Point:
+        """The direction, of length 1."""
+        return _of_length_one(self.direction)
+
+    def behind(self, displacement: Array) -> Closest:
+        """Gap and normal at points that the other loads displace by (k, 2) [L]."""
+        direction = np.array(self.unit_direction)
+        return Closest(-(displacement @ direction), np.tile(direction, (len(displacement), 1)))
+
+
+def _of_length_one(vector: Point) -> Point:
+    length = float(np.hypot(*vector))
+    return vector[0] / length, vector[1] / length
+
+
 def _unit(vectors: Array, otherwise: Array) -> Array:
     """Unit vectors along vectors (k, 2); along `otherwise` where they vanish."""
     length = np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
@@ -123,8 +166,15 @@ def _unit(vectors: Array, otherwise: Array) -> Array:
     return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
 
 
-RigidSurface = Annotated[
-    Plane | Circle | Polyline,
-    ByKind(what="a rigid surface", kinds={"plane": Plane, "circle": Circle, "polyline": Polyline}),
+Shape = Plane | Circle | Polyline
+"""A rigid surface that has a gap at any point of the plane."""
+RigidSurface = Shape | DeflectedContour
+"""The surface that the body may touch."""
+StatedSurface = Annotated[
+    RigidSurface,
+    ByKind(
+        what="a rigid surface",
+        kinds={"plane": Plane, "circle": Circle, "polyline": Polyline, "deflected_contour": DeflectedContour},
+    ),
 ]
-"""The surface that the body may touch; `kind` says which."""
+"""A rigid surface as it is written; `kind` says which."""

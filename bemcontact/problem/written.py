@@ -39,7 +39,9 @@ class Written(NamedTuple):
             yield self._replace(path=(*self.path, key), value=value)
 
     def read(self, model: type[Part]) -> Part | None:
-        """Make the part that the value states; None if it is wrong by itself."""
+        """Make the part that the value states, if it is not made yet; None if it is wrong by itself."""
+        if isinstance(self.value, model):
+            return self.value
         try:
             return model.model_validate(self.value)
         except ValidationError:

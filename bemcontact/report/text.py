@@ -14,9 +14,10 @@ from rich.text import Text
 from bemcontact.assessment.comparison import Comparison
 from bemcontact.bem.condense import Body
 from bemcontact.contact import CondensedContact
-from bemcontact.problem import Problem
+from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.words import (
     convexity_in_words,
+    deflected_by,
     held_by,
     number,
     per_thickness,
@@ -69,12 +70,18 @@ def problem_summary(body: Body) -> RenderableType:
     _add(facts, "Degrees of freedom", f"{mesh.degrees_of_freedom}")
     for load in volume_loads(problem):
         _add(facts, "Volume load", load)
+    for name, zone in problem.contact_zones.items():
+        if isinstance(zone.surface, DeflectedContour):
+            _add(facts, "Contour", f"of {name}, deflected by {deflected_by(zone.surface, problem)}")
     _add(facts, "Total load", f"{_total_load(body)}, reactions not counted")
     _add(facts, "Held by conditions", "all rigid motions" if not len(body.motions) else "all but those below")
     for motion in body.seen.describe():
         _add(facts, "Held by contact", motion)
     for name, reference in problem.reference.items():
         _add(facts, "Reference", f"{name}: {reference_in_words(reference)}")
+    for name, variant in problem.variants.items():
+        told = variant.description.strip() or ", ".join(f"{key}={value}" for key, value in variant.set.items())
+        _add(facts, "Variant", f"{name}: {told}")
     for note in body.notes:
         _add(facts, "Note", note)
     return Group(Text(problem.name, "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)

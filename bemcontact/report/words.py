@@ -8,7 +8,22 @@ from numpy.typing import NDArray
 from bemcontact.assessment.contender import Contender
 from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.contact import CondensedContact
-from bemcontact.problem import Circle, Edge, Field, Plane, Polyline, Problem, Reference, Table, Units, Values
+from bemcontact.problem import (
+    Circle,
+    Condition,
+    DeflectedContour,
+    Edge,
+    Field,
+    Loads,
+    Plane,
+    Polyline,
+    Problem,
+    Reference,
+    RigidSurface,
+    Table,
+    Units,
+    Values,
+)
 from bemcontact.result import Result
 from bemcontact.solution import LocalSearch, Penalty, Status
 
@@ -57,23 +72,30 @@ def _range(values: NDArray[np.float64]) -> str:
 def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
     """Say what an edge is told: ``u_x = 0``, ``t_y = -3.6 kN/cm²``, ``pressure 3 N/mm²``, ``may touch in foot``."""
     yield from (f"may touch in {name}" for name, zone in problem.contact_zones.items() if edge.name in zone.edges)
-    condition = problem.conditions.get(edge.name)
-    if condition is None:
-        return
+    if edge.name in problem.conditions:
+        yield from _conditions(problem.conditions[edge.name], edge, problem.units)
+
+
+def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]:
+    """Say what a condition prescribes on an edge."""
     for symbol, fields, unit in (
-        ("u", condition.displacement, problem.units.length),
-        ("t", condition.traction, problem.units.stress),
+        ("u", condition.displacement, units.length),
+        ("t", condition.traction, units.stress),
     ):
         for axis, field in (("x", fields.x), ("y", fields.y)):
             if field is not None:
                 yield f"{symbol}_{axis} = {field_on(field, edge, unit)}"
     if condition.pressure is not None:
-        yield f"pressure {field_on(condition.pressure, edge, problem.units.stress)}"
+        yield f"pressure {field_on(condition.pressure, edge, units.stress)}"
 
 
 def volume_loads(problem: Problem) -> Iterator[str]:
     """Say what acts on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0)``."""
-    loads = problem.loads
+    return _volume_loads(problem.loads, problem)
+
+
+def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
+    """Say what loads do to the volume of the body."""
     if loads.gravity:
         yield f"gravity {vector(loads.gravity.acceleration)}"
     if loads.centrifugal:
@@ -83,7 +105,7 @@ def volume_loads(problem: Problem) -> Iterator[str]:
         yield f"temperature change {_range(loads.temperature.change.at(points))}"
 
 
-def surface_in_words(surface: Plane | Circle | Polyline) -> str:
+def surface_in_words(surface: RigidSurface) -> str:
     """Say what a rigid surface is."""
     match surface:
         case Plane():
@@ -93,6 +115,17 @@ def surface_in_words(surface: Plane | Circle | Polyline) -> str:
         case Polyline():
             first, last = vector(surface.points[0]), vector(surface.points[-1])
             return f"polyline of {len(surface.points)} points from {first} to {last}"
+        case DeflectedContour():
+            return f"own contour, deflected; gap along {vector(surface.unit_direction)}"
+
+
+def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
+    """Say what deflects a contour: ``top t_y = -50 kN/cm²``; kept conditions are not repeated."""
+    told = [
+        f"{name} {', '.join(_conditions(condition, problem.edge(name), problem.units))}"
+        for name, condition in surface.conditions.items()
+    ]
+    return "; ".join([*told, *_volume_loads(surface.loads, problem)])
 
 
 def verdict(result: Result) -> str:

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from bemcontact.bem.boundary_values import BoundaryValues
-from bemcontact.bem.condense import solve
 from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.factorisation import solve
 from bemcontact.bem.mesh import Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
 from bemcontact.bem.system import System
@@ -60,14 +60,6 @@ def even(count: int) -> np.ndarray:
     return np.linspace(0, 1, count + 1)
 
 
-def no_points(mesh: Mesh) -> ContactPoints:
-    none, numbers = np.zeros(0), np.zeros(0, int)
-    return ContactPoints(
-        mesh=mesh, node=numbers, zone=numbers, run=numbers, arc_position=none, run_length=none,
-        normals=np.zeros((0, 2)), gap=none, element=numbers, local=numbers, point=numbers,
-    )  # fmt: skip
-
-
 def values_of(
     mesh: Mesh,
     fixed: dict[str, str],
@@ -95,7 +87,7 @@ def system_of(
     mesh: Mesh, material: Material, values: BoundaryValues, motions: RigidMotions, loads: Loads | None = None
 ) -> System:
     return System(
-        mesh=mesh, material=material, values=values, points=no_points(mesh), motions=motions,
+        mesh=mesh, material=material, values=values, points=ContactPoints.none(mesh), motions=motions,
         particular=particular_solution(loads or Loads(), material, mesh),
     )  # fmt: skip
 

@@ -125,6 +125,51 @@ def test_node_whose_normal_motion_is_prescribed_is_no_candidate():
     assert (np.hypot(*symmetric.mesh.nodes[symmetric.points.node].T) == 0).any()
 
 
+def partly_held(beyond, surface=PLANE, mirrored=False, slope=0.0, graded=1.0):
+    """A block 2 x 1 under pressure 10 whose bottom may touch on one half and has a condition on the other."""
+    names = ["foot", "beyond"] if not mirrored else ["beyond", "foot"]
+    zone = {"name": names[0], "start": [0, 0], "elements": 4, "grading": {"ratio": graded, "towards": "end"}}
+    edges = [zone, {"name": names[1], "start": [1, 0], "elements": 4}, *rectangle(2, 1, 4, 3)[1:]]
+    edges[2]["start"] = [2, slope]
+    conditions = {"top": {"pressure": 10}, "left": {"displacement": {"x": 0}}, "beyond": beyond}
+    return body_of(problem(edges, {"foot": ("foot", surface)}, conditions=conditions))
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("graded", [1, 20])
+def test_contact_that_goes_on_beyond_a_held_node(mirrored, graded):
+    """Uniform pressure 10 on the half that may touch, next to one that is held: so it is up to the node they share."""
+    body = partly_held({"displacement": {"y": 0}}, mirrored=mirrored, graded=graded)
+    result = solve(condense(body).contact)
+    assert result.certified
+    assert len(body.points) == 8  # not the held node
+    assert body.points.tributary.sum() == pytest.approx(1, rel=1e-13)
+    assert body.points.consistent.sum() == pytest.approx(1, rel=1e-13)
+    assert result.solution.pressure == pytest.approx(np.full(8, 10.0), rel=1e-10)
+    assert result.footprint.resultant.force == pytest.approx([0, 10], abs=1e-9)
+    assert solve(body.problem).residuals.force_balance < 1e-12
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        partly_held(
+            {"displacement": {"y": 0}}, surface={**PLANE, "point": [0, -0.01]}
+        ),  # a step: the gap is open there
+        partly_held({"displacement": {"y": 0}}, slope=0.2),  # a corner of 11 degrees
+        partly_held({"displacement": {"y": -0.01}}),  # held where it would be in the plane
+    ],
+)
+def test_contact_that_ends_at_a_held_node(body):
+    """Nothing tells how pressure goes on there; it is zero at the node."""
+    assert len(body.points) == 8
+    assert body.points.tributary.sum() == pytest.approx(1 - 1 / 4 / 6, rel=1e-13)
+
+
+def test_contact_beside_an_edge_that_is_held_along_itself_has_its_end_node():
+    assert len(partly_held({"displacement": {"x": 0}}).points) == 9
+
+
 def test_weights_integrate_pressure():
     """Σ w = Σ J = length; tributary shares (1, 4, 2, 4, 1)/6 and the consistent matrix of two unit elements."""
     points = body_of(block({"left": {"displacement": {"x": 0}}, "top": {"pressure": 1}}, along=2)).points

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from bodies import arc, even, mesh_of, rectangle, solved, system_of, values_of, without_rigid_motion
 
-from bemcontact.bem.condense import solve
+from bemcontact.bem.factorisation import solve
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.problem.material import Material
 

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf
 
 from bemcontact.bem.compiled import far_sums
-from bemcontact.bem.condense import assemble, body_of
+from bemcontact.bem.condense import body_of
+from bemcontact.bem.factorisation import assemble
 from bemcontact.bem.system import System
 from bemcontact.problem.problem import Problem
 

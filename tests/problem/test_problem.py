@@ -3,7 +3,19 @@
 import pytest
 
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Arc, Boundary, Condition, ContactZone, Field, Line, Material, Plane, Problem, Units
+from bemcontact.problem import (
+    Arc,
+    Boundary,
+    Condition,
+    ContactZone,
+    DeflectedContour,
+    Field,
+    Line,
+    Material,
+    Plane,
+    Problem,
+    Units,
+)
 from bemcontact.problem.problem import MeshDensity
 
 
@@ -138,3 +150,30 @@ def test_surface_that_faces_away_is_refused_with_the_way_out(surface, way_out):
 def test_what_is_no_mapping_is_refused(data):
     with pytest.raises(ProblemError, match="expected a mapping with the keys name, description"):
         Problem.model_validate(data)
+
+
+def on_its_contour(**changes):
+    surface = {"kind": "deflected_contour", "conditions": {"top": {"pressure": 20}}, "direction": [0, 1], **changes}
+    return {"foot": {"edges": ["arc"], "surface": surface}}
+
+
+def test_contour_is_part_of_the_data():
+    problem = Problem(**{**parts(), "contact_zones": on_its_contour()})
+    assert Problem(**problem.model_dump()) == problem
+    changed = problem.with_value("contact_zones.foot.surface.conditions.top.pressure", 30)
+    surface = changed.contact_zones["foot"].surface
+    assert isinstance(surface, DeflectedContour)
+    assert surface.conditions["top"].pressure == Field(constant=30)
+
+
+def test_contour_may_load_the_edges_that_touch():
+    assert Problem(**{**parts(), "contact_zones": on_its_contour(conditions={"arc": {"pressure": 1}})})
+
+
+def test_contour_is_checked_with_the_body():
+    assert complaints(contact_zones=on_its_contour(conditions={"tap": {"pressure": 1}})) == [
+        "contact_zones.foot.surface.conditions.tap: unknown edge 'tap'; did you mean 'top'?"
+    ]
+    (found,) = complaints(contact_zones=on_its_contour(direction=[0, -3]))
+    assert found.startswith("contact_zones.foot.surface: the rigid surface's normal must point from the surface into")
+    assert found.endswith("at 'arc' it points out of it; turn the direction round: [0, 3], or make the zone smaller")

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Circle, Plane, Polyline
+from bemcontact.problem import Circle, DeflectedContour, Plane, Polyline
 
 COORDINATE = st.floats(-10, 10)
 POINT = st.tuples(COORDINATE, COORDINATE)
@@ -137,3 +137,28 @@ def test_surfaces_without_a_side_are_refused(surface, keys, words):
     with pytest.raises(ProblemError) as caught:
         surface(**keys)
     assert words in str(caught.value)
+
+
+PULL = {"top": {"traction": {"y": -50}}}
+
+
+def test_gap_of_a_contour_is_the_way_of_the_same_material_point():
+    contour = DeflectedContour(conditions=PULL, direction=(0, 2))  # pyright: ignore
+    gap, normals = contour.behind(np.array([[7.0, -3.0], [0.0, 0.5]]))
+    assert contour.unit_direction == (0, 1)
+    assert gap == pytest.approx([3, -0.5])
+    assert normals == pytest.approx(np.array([[0, 1], [0, 1]]))
+
+
+@pytest.mark.parametrize(
+    ("parts", "words"),
+    [
+        ({"conditions": PULL, "direction": (0, 0)}, "has no direction|is none"),
+        ({"direction": (0, 1)}, "nothing says what deflects"),
+        ({"conditions": PULL}, "direction: missing"),
+        ({"conditions": {"top": {}}, "direction": (0, 1)}, "conditions.top"),
+    ],
+)
+def test_contours_that_are_none(parts, words):
+    with pytest.raises(ProblemError, match=words):
+        DeflectedContour(**parts)

@@ -15,7 +15,7 @@ from matplotlib.text import Annotation
 
 from bemcontact import analysis
 from bemcontact.bem import mesh
-from bemcontact.problem import Problem
+from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report import figures
 from bemcontact.report.figures.marks import draw_ground
 
@@ -127,8 +127,19 @@ def test_rigid_surfaces_are_drawn_where_they_are():
     problem = beam_over_a_circle()
     axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
     points = np.concatenate([np.column_stack(line.get_data()) for line in axes.lines if line.get_color() == "#7d838c"])
-    gap, _ = problem.contact_zones["drum"].surface.closest(points)
+    surface = problem.contact_zones["drum"].surface
+    assert not isinstance(surface, DeflectedContour)
+    gap, _ = surface.closest(points)
     assert gap == pytest.approx(0, abs=1e-12 * 100)
+
+
+def test_a_deflected_contour_is_drawn_as_far_from_the_edge_as_the_gap_is():
+    contour = {"kind": "deflected_contour", "conditions": {"top": {"traction": {"y": -1.2}}}, "direction": [0, 1]}
+    problem = beam_over_a_circle().with_value("contact_zones.drum.surface", contour)
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    gap = analysis.condense(problem).initial_gap  # without the clamped node, which does not move
+    (ground,) = (line for line in grey_lines(axes) if len(line) == len(gap) + 1)
+    assert ground[:, 1] == pytest.approx(np.append(0.0, -gap), abs=1e-12 * 50)
 
 
 def test_result_page_has_pressure_gap_and_shape(result: analysis.Result):
@@ -187,7 +198,8 @@ def test_rigid_surfaces_stand_only_beside_a_body_to_scale(result: analysis.Resul
         assert bool(grey_lines(axes)) == (factor_of(axes) == 1) != ("not drawn" in axes.get_title(loc="left"))
         assert result.problem is not None
         for line in grey_lines(axes):
-            gaps = [zone.surface.closest(line)[0] for zone in result.problem.contact_zones.values()]
+            surfaces = [zone.surface for zone in result.problem.contact_zones.values()]
+            gaps = [surface.closest(line)[0] for surface in surfaces if not isinstance(surface, DeflectedContour)]
             assert min(np.abs(gap).max() for gap in gaps) < 1e-9 * 100
         shown.append(bool(grey_lines(axes)))
     assert not shown[0]

@@ -11,7 +11,7 @@ from bemcontact import analysis
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.bem.condense import body_of
 from bemcontact.contact import CondensedContact
-from bemcontact.problem import Circle, Field, Plane, Polyline, Problem, Units
+from bemcontact.problem import Circle, DeflectedContour, Field, Plane, Polyline, Problem, Units
 from bemcontact.report import text, words
 from bemcontact.solution import LocalSearch, Penalty, Status
 
@@ -65,6 +65,8 @@ def test_surfaces_in_words():
     assert words.surface_in_words(circle) == "circle about (1, 2), radius 3, body inside"
     polyline = Polyline(kind="polyline", points=((0, 0), (1, 0), (2, 1)))
     assert words.surface_in_words(polyline) == "polyline of 3 points from (0, 0) to (2, 1)"
+    contour = DeflectedContour(conditions={"top": {"pressure": 1}}, direction=(0, 2))  # pyright: ignore
+    assert words.surface_in_words(contour) == "own contour, deflected; gap along (0, 1)"
 
 
 def test_unit_labels():
@@ -101,6 +103,15 @@ def test_a_result_that_is_not_certified_says_so(result: analysis.Result):
     doubtful = dataclasses.replace(result, certificate=certificate, solution=solution)
     assert words.verdict(doubtful) == f"The solver: {Status.ITERATION_LIMIT.value}. Another may exist."
     assert "NOT certified" in printed(text.result_summary(doubtful))
+
+
+def test_what_deflects_a_contour_is_told():
+    zone = {"edges": ["bottom"], "surface": {"kind": "deflected_contour", "direction": [0, 1], "conditions": {
+        "top": {"displacement": {"x": 0, "y": -0.25}}, "right": {"traction": {"x": 3}},
+    }}}  # fmt: skip
+    answer = printed(text.problem_summary(body_of(block().with_value("contact_zones.foot", zone))))
+    assert "own contour, deflected; gap along (0, 1)" in answer
+    assert "of foot, deflected by top u_x = 0, u_y = -0.25 mm; right t_x = 3 N/mm²" in answer
 
 
 def test_all_notes_of_a_result_are_printed(result: analysis.Result):

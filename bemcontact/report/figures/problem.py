@@ -14,8 +14,20 @@ from numpy.typing import NDArray
 
 from bemcontact.bem import shape_functions
 from bemcontact.bem.boundary_values import applied_traction
+from bemcontact.bem.deflection import deflections
 from bemcontact.bem.mesh import Mesh
-from bemcontact.problem import AxisFields, Circle, Condition, Edge, Field, Plane, Polyline, Problem
+from bemcontact.problem import (
+    AxisFields,
+    Circle,
+    Condition,
+    DeflectedContour,
+    Edge,
+    Field,
+    Plane,
+    Polyline,
+    Problem,
+    Shape,
+)
 from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
 from bemcontact.report.figures.page import (
     BLACK,
@@ -68,7 +80,7 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     _fill_body(axes, problem)
     _draw_mesh(axes, problem, mesh)
     outline = [edge.points(np.linspace(0, 1, 60)) for edge in problem.boundary.edges]
-    marks = [*_draw_supports(axes, problem), *_draw_loads(axes, problem), *_draw_surfaces(axes, problem)]
+    marks = [*_draw_supports(axes, problem), *_draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
     drawn = np.concatenate([*outline, *marks])
     frame_plan(axes, drawn, problem.units.length)
     _draw_legend(axes, problem)
@@ -169,10 +181,12 @@ def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
     yield Name(text=sense, colour=BLACK, anchors=np.tile(spin.center, (8, 1)), directions=around)
 
 
-def _draw_surfaces(axes: Axes, problem: Problem) -> Iterator[Array]:
+def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     """Draw the rigid surfaces with their normals, as far as they face the body."""
     size = problem.boundary.size
     for zone in problem.contact_zones.values():
+        if isinstance(zone.surface, DeflectedContour):
+            continue
         edges = [problem.edge(name) for name in zone.edges]
         facing = np.concatenate([edge.points(np.linspace(0, 1, 60)) for edge in edges])
         points, normals = _surface_line(zone.surface, facing, size)
@@ -180,9 +194,26 @@ def _draw_surfaces(axes: Axes, problem: Problem) -> Iterator[Array]:
         middle = facing[len(facing) // 2][None]
         gap, normal = zone.surface.closest(middle)
         yield draw_arrows(axes, middle - gap[:, None] * normal, 0.09 * size * normal, GREY)
+    yield from _draw_contours(axes, problem, mesh)
 
 
-def _surface_line(surface: Plane | Circle | Polyline, facing: Array, size: float) -> tuple[Array, Array]:
+def _draw_contours(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
+    """Draw each edge that a deflected contour faces once more, as far away from its place as the gap is."""
+    size = problem.boundary.size
+    for name, displacement in deflections(problem, mesh).items():
+        zone = problem.contact_zones[name]
+        assert isinstance(zone.surface, DeflectedContour)
+        gap, normals = zone.surface.behind(displacement)
+        feet = mesh.nodes - gap[:, None] * normals
+        for edge in zone.edges:
+            elements = mesh.elements[mesh.edge == mesh.edge_names.index(edge)]
+            nodes = np.append(elements[:, :2], elements[-1, 2])
+            yield draw_ground(axes, feet[nodes], normals[nodes], 0.03 * size, GREY)
+            middle = nodes[len(nodes) // 2][None]
+            yield draw_arrows(axes, feet[middle], 0.09 * size * normals[middle], GREY)
+
+
+def _surface_line(surface: Shape, facing: Array, size: float) -> tuple[Array, Array]:
     """Points (k, 2) of a rigid surface, in order, and its unit normals there."""
     match surface:
         case Plane():

@@ -1,0 +1,140 @@
+"""A rigid surface that is the deflected contour of the same body: its gap, how it is found, contact on it."""
+
+import numpy as np
+import pytest
+
+from bemcontact.analysis import condense, solve
+from bemcontact.bem.condense import body_of
+from bemcontact.errors import ProblemError
+from bemcontact.problem import Problem
+
+HELD = {"displacement": {"x": 0, "y": 0}}
+CONTOUR = ("contact_zones", "seat", "surface")
+
+
+def contour(conditions, **more):
+    return {"kind": "deflected_contour", "conditions": conditions, "direction": [0, 1], **more}
+
+
+def bar(surface, conditions, width=2.0, height=1.0, modulus=1000.0, ratio=0.0, zones=None, **more):
+    """A rectangle on four edges, with Poisson's ratio 0, so that stress along y moves nothing along x."""
+    return Problem(
+        name="bar",
+        material={"young_modulus": modulus, "poisson_ratio": ratio},
+        boundary={
+            "outer": [
+                {"name": "bottom", "start": [0, 0], "elements": 6},
+                {"name": "right", "start": [width, 0], "elements": 3},
+                {"name": "top", "start": [width, height], "elements": 5},
+                {"name": "left", "start": [0, height], "elements": 3},
+            ]
+        },
+        conditions=conditions,
+        contact_zones={"seat": {"edges": "bottom", "surface": surface}, **(zones or {})},
+        **more,
+    )  # pyright: ignore
+
+
+def lowered(by):
+    return {"displacement": {"x": 0, "y": -by}}
+
+
+def test_bar_pressed_further_than_its_contour():
+    """The contour is lower by 0.01, the bar by 0.03: it is shortened by 0.02 of its height 1, p = 1000 · 0.02."""
+    result = solve(bar(contour({"top": lowered(0.01)}), {"top": lowered(0.03)}))
+    assert result.certified
+    assert result.contact.initial_gap == pytest.approx(np.full(13, 0.01), rel=1e-12)
+    assert result.contact.normals == pytest.approx(np.tile([0.0, 1.0], (13, 1)))
+    assert result.solution.pressure == pytest.approx(np.full(13, 20.0), rel=1e-10)
+
+
+def test_what_the_contour_does_not_replace_is_kept():
+    """The top is held for both; a pull of 5 on the bottom lengthens the bar by 5/1000 of its height."""
+    gap = body_of(bar(contour({"bottom": {"pressure": -5}}), {"top": HELD})).points.gap
+    assert gap == pytest.approx(np.full(13, 0.005), rel=1e-11)
+
+
+def test_volume_loads_of_the_problem_do_not_deflect_the_contour():
+    """A hanging bar is lengthened by ρ g h²/2E = 0.03 by its weight; the problem's own weight does not count."""
+    weight = {"gravity": {"density": 6, "acceleration": [0, -10]}}
+    hanging = body_of(bar(contour({}, loads=weight), {"top": HELD}))
+    assert hanging.points.gap == pytest.approx(np.full(13, 0.03), rel=1e-3)  # weight is quadratic along the sides
+    heavy = bar(contour({"top": lowered(0.01)}), {"top": HELD}, loads=weight)
+    assert body_of(heavy).points.gap == pytest.approx(np.full(13, 0.01), rel=1e-12)
+
+
+def test_pressure_is_the_sum_of_what_shapes_the_contour_and_what_comes_on_top():
+    """By superposition: a pull of -3 - 2x shapes it, lowering the top by 0.01 between walls adds D · 0.01 everywhere.
+
+    D = E (1 - ν) / ((1 + ν) (1 - 2ν)), the modulus of a bar that cannot widen. The mesh has the sum exactly.
+    """
+    walls = {"right": {"displacement": {"x": 0}}, "left": {"displacement": {"x": 0}}}
+    bent = contour({"bottom": {"pressure": {"constant": -3, "x": -2}}, "top": lowered(0)})
+    result = solve(bar(bent, {**walls, "top": lowered(0.01)}, ratio=0.3))
+    x = result.contact.points[:, 0]
+    assert result.certified
+    assert np.ptp(result.contact.initial_gap) > 1e-3  # the contour is bent
+    assert result.solution.pressure == pytest.approx(1000 * 0.7 / (1.3 * 0.4) * 0.01 - 3 - 2 * x, rel=1e-9)
+
+
+def test_units_of_length_and_force_change_nothing():
+    """In mm and N instead of m and kN: lengths 1e3, stresses 1e-3, the same contact."""
+    conditions = {"left": HELD, "top": {"traction": {"y": -4}}}
+    in_m = bar(contour({"top": {"traction": {"y": -1}}}), conditions, width=6.0)
+    conditions = {"left": HELD, "top": {"traction": {"y": -4e-3}}}
+    in_mm = bar(contour({"top": {"traction": {"y": -1e-3}}}), conditions, width=6e3, height=1e3, modulus=1.0)
+    first, second = condense(in_m), condense(in_mm)
+    assert second.initial_gap == pytest.approx(1e3 * first.initial_gap, rel=1e-9)
+    pressure = solve(first).solution.pressure
+    assert solve(second).solution.pressure * 1e3 == pytest.approx(pressure, abs=1e-8 * abs(pressure).max())
+
+
+def test_direction_counts_and_its_length_does_not():
+    conditions, other = {"left": HELD, "top": {"traction": {"y": -4}}}, {"top": {"traction": {"y": -1, "x": 3}}}
+    straight, steep, slanted = (
+        body_of(bar({**contour(other), "direction": direction}, conditions)).points
+        for direction in ([0, 1], [0, 7.5], [-3, 4])
+    )
+    assert steep.gap == pytest.approx(straight.gap, rel=1e-14)
+    assert slanted.normals[0] == pytest.approx([-0.6, 0.8])
+    assert abs(slanted.gap - 0.8 * straight.gap).max() > 0.1 * abs(straight.gap).max()  # u has a part along x
+
+
+def test_zones_on_other_surfaces_stand_beside_it():
+    """A wall beside the bar keeps its own gap, and is not there when the contour is found."""
+    wall = {"edges": "right", "surface": {"kind": "plane", "point": [2.25, 0], "normal": [-1, 0]}}
+    body = body_of(bar(contour({"top": lowered(0.01)}), {"top": HELD}, zones={"wall": wall}))
+    assert body.points.gap[body.points.zone == 0] == pytest.approx(np.full(13, 0.01), rel=1e-12)
+    assert body.points.gap[body.points.zone == 1] == pytest.approx(np.full(6, 0.25), rel=1e-12)  # one end is held
+
+
+def test_contour_is_found_on_the_mesh_of_the_problem():
+    """Bending of a clamped bar: a gap at every node of a finer mesh too, and the one at the free end settles."""
+    problem = bar(contour({"top": {"traction": {"y": -1}}}), {"left": HELD, "top": {"traction": {"y": -2}}}, width=6.0)
+    meshes = [body_of(problem.refined(parts)).points for parts in (1, 2, 4)]
+    assert [len(points) for points in meshes] == [12, 24, 48]  # two nodes for each element; the clamped one is none
+    first, second, third = (points.gap[-1] for points in meshes)
+    assert abs(second - third) < 0.5 * abs(first - third) < 0.02 * third
+
+
+def test_body_must_be_held_without_contact():
+    """Contact holds it when it is solved, but nothing does when the contour is found."""
+    with pytest.raises(
+        ProblemError, match=r"against the translation along \(0, 1\).*prescribe displacements"
+    ) as caught:
+        body_of(bar(contour({"top": {"pressure": 1}}), {"top": {"pressure": 3}, "left": {"displacement": {"x": 0}}}))
+    assert caught.value.complaints[0].path == (*CONTOUR, "conditions")
+
+
+@pytest.mark.parametrize(
+    ("own", "kept", "path"),
+    [
+        ({"top": lowered(0.01)}, {"left": HELD, "top": HELD}, ("conditions", "left")),
+        ({"left": HELD}, {"left": lowered(0.01), "top": lowered(0.01)}, (*CONTOUR, "conditions", "left")),
+    ],
+)
+def test_contradictions_are_found_where_they_are_stated(own, kept, path):
+    """The second edge at the corner is blamed: by what is kept of the problem, or by what replaces it."""
+    with pytest.raises(ProblemError, match="different displacements") as caught:
+        body_of(bar(contour(own), kept))
+    assert {complaint.path[: len(path)] for complaint in caught.value.complaints} == {path}
