@@ -54,7 +54,7 @@ def test_a_table_that_fits_and_a_verdict(block: Path):
         "solves it",
         "certified.",
         "uniform",
-        "within 1.0%",
+        "within 1%",
         "Peak pressure  3",
     ):
         assert words in answer.output, words

@@ -207,7 +207,8 @@ def _score_table(level: MeshLevel) -> Table:
     """List what is known of the answer, and how far it is off."""
     table = _table("reference", "quantity", "found", "expected", "difference", "")
     for item in level.scores:
-        holds = f"within {item.tolerance:.1%}" if item.holds else f"MORE THAN {item.tolerance:.1%}"
+        allowed = f"{100 * item.tolerance:.2g}%"
+        holds = f"within {allowed}" if item.holds else f"MORE THAN {allowed}"
         cells = [
             item.reference,
             item.quantity,
