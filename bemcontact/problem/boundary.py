@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import model_validator
 
 from bemcontact.errors import Complaint, Path, ProblemError, dotted
-from bemcontact.problem.curves import CircularArc, Edge
-from bemcontact.problem.geometry import AnyEdge, Arc, Line, StatedLoop
+from bemcontact.problem.curves import CircularArc, Curve, Edge
+from bemcontact.problem.geometry import AnyEdge, Arc, Grading, Line, Place, StatedLoop
 from bemcontact.problem.loops import loop_complaints
 from bemcontact.problem.stated import Point, Stated, validation_error
 
@@ -18,6 +18,10 @@ RADIUS_TOLERANCE = 1e-6
 """Relative difference of the two radii of an arc given by its ends: coordinates are written with a few digits."""
 JOINT_TOLERANCE = 1e-9
 """Distance of two edge ends, over the size of the body, below which they are one point."""
+ON_EDGE = 1e-3
+"""Distance of a place from its edge over the length of the edge up to which it is on it: people round coordinates."""
+APART = 1e-12
+"""Difference of two fractions of the length of an edge below which they are one place."""
 
 
 class Boundary(Stated):
@@ -46,6 +50,8 @@ class Boundary(Stated):
             complaints = [complaint for path, loop in stated for complaint in _ill_joined(path, loop, self.size)]
         if not complaints:
             complaints = loop_complaints(self.loops, self.loop_paths)
+            for (path, loop), joined in zip(stated, self.loops, strict=True):
+                complaints += _misplaced_ends(path, loop, joined)
         if complaints:
             raise validation_error("Boundary", complaints)
         return self
@@ -162,8 +168,9 @@ def _joined(loop: Sequence[AnyEdge]) -> tuple[Edge, ...]:
     edges = []
     for i, edge in enumerate(loop):
         start, end = joints[i], joints[(i + 1) % len(loop)]
-        ratio, towards = (edge.grading.ratio, edge.grading.towards) if edge.grading else (1.0, "start")
         curve = edge.curve(start, end)
+        grading = edge.grading or Grading(ratio=1.0, towards="start")
+        towards = grading.towards
         edges.append(
             Edge(
                 name=edge.name,
@@ -171,8 +178,35 @@ def _joined(loop: Sequence[AnyEdge]) -> tuple[Edge, ...]:
                 start=start,
                 end=end,
                 elements=edge.elements,
-                ratio=ratio,
-                towards=towards,
+                ratio=grading.ratio,
+                towards=towards if isinstance(towards, str) else _fraction(curve, towards),
+                ends_at=tuple(sorted(_fraction(curve, place) for place in edge.ends_at)),
             )
         )
     return tuple(edges)
+
+
+def _fraction(curve: Curve, place: Place) -> float:
+    """Fraction of the arc length at a place that is a fraction already, or a point."""
+    return curve.fraction_at(place) if isinstance(place, tuple) else place
+
+
+def _misplaced_ends(path: Path, loop: Sequence[AnyEdge], joined: Sequence[Edge]) -> Iterator[Complaint]:
+    """Find element ends that are asked for beside their edge, at its ends, twice, or too many."""
+    for i, (edge, shape) in enumerate(zip(loop, joined, strict=True)):
+        taken = [0.0, 1.0]
+        for key, place in edge.places:
+            fraction = _fraction(shape.curve, place)
+            if isinstance(place, tuple):
+                (nearest,) = shape.points(np.array([fraction]))
+                if (off := dist(place, nearest)) > ON_EDGE * shape.length:
+                    message = f"the point {_written(place)} is {off:.3g} away from '{edge.name}'; take one on the edge"
+                    yield Complaint(path=(*path, i, *key), message=message)
+                    continue
+            if min(abs(fraction - other) for other in taken) < APART:
+                message = f"an element of '{edge.name}' ends there anyway; leave it out, or take another place"
+                yield Complaint(path=(*path, i, *key), message=message)
+            taken.append(fraction)
+        if edge.elements < len(taken) - 1:
+            message = f"'{edge.name}' cannot end elements at {len(taken) - 2} places with fewer than {len(taken) - 1}"
+            yield Complaint(path=(*path, i, "elements"), message=f"{message} elements; found {edge.elements}")
