@@ -272,6 +272,13 @@ BROKEN = {
         "boundary.outer[3].elements",
         ("2 places with fewer than 3 elements", "found 2"),
     ),
+    "fit that is no yes or no": Broken(
+        "name: block on a plane",
+        "name: block on a plane\nmesh: {fit_contact_edges: 3}",
+        "2:27",
+        "mesh.fit_contact_edges",
+        ("true or false", "found 3"),
+    ),
     "name twice": Broken(
         "name: bore", "name: right", "21:16", "boundary.holes[0][0].name", ("'right' is taken by outer[1]",)
     ),

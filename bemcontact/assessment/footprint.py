@@ -22,6 +22,7 @@ class ContactInterval:
     zone : name of the contact zone
     start, end : (x, y) in the order of the boundary [L]
     start_arc, end_arc : their arc positions on the run [L]; across the seam of a closed run they go on counting
+    run : number of the unbroken piece of boundary that it is on
     """
 
     zone: str
@@ -29,6 +30,11 @@ class ContactInterval:
     end: Point
     start_arc: float
     end_arc: float
+    run: int = 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give zone and ends as texts and lists, ready for JSON."""
+        return {"zone": self.zone, "start": list(self.start), "end": list(self.end)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,10 +78,7 @@ class Footprint:
         return {
             "resultant": list(self.resultant.force),
             "resultant_moment": self.resultant.moment,
-            "intervals": [
-                {"zone": interval.zone, "start": list(interval.start), "end": list(interval.end)}
-                for interval in self.intervals
-            ],
+            "intervals": [interval.to_dict() for interval in self.intervals],
             "peak": None if peak is None else {"pressure": peak.pressure, "at": list(peak.at)},
         }
 
@@ -104,7 +107,7 @@ def footprint(condensed: CondensedContact, solution: ContactSolution) -> Footpri
         intervals=tuple(
             interval
             for zone, run in pieces
-            for interval in _intervals(_path(condensed, zone, run, gap, touching), condensed.zone_names[zone])
+            for interval in _intervals(_path(condensed, zone, run, gap, touching), condensed.zone_names[zone], run)
         ),
         peak=_peak(condensed, solution.pressure),
         resultant=_resultant(condensed, solution.pressure),
@@ -144,23 +147,23 @@ def _path(condensed: CondensedContact, zone: int, run: int, gap: Array, touching
     )
 
 
-def _intervals(path: _Path, zone: str) -> list[ContactInterval]:
+def _intervals(path: _Path, zone: str, run: int) -> list[ContactInterval]:
     """The unbroken stretches of contact of a run; a closed run in contact all around is one, from its first point."""
     if path.first and path.touching.all():
-        return [_interval(path, zone, path.arc[path.first], path.arc[path.last])]
+        return [_interval(path, zone, run, path.arc[path.first], path.arc[path.last])]
     edges = np.diff(np.concatenate([[0], path.touching.astype(int), [0]]))
     begins, ends = np.flatnonzero(edges > 0).tolist(), (np.flatnonzero(edges < 0) - 1).tolist()
     return [
-        _interval(path, zone, _end(path, begin, -1), _end(path, finish, +1))
+        _interval(path, zone, run, _end(path, begin, -1), _end(path, finish, +1))
         for begin, finish in zip(begins, ends, strict=True)
         if path.first <= begin < path.last
     ]
 
 
-def _interval(path: _Path, zone: str, start: float, end: float) -> ContactInterval:
+def _interval(path: _Path, zone: str, run: int, start: float, end: float) -> ContactInterval:
     """An interval from its arc positions."""
     return ContactInterval(
-        zone=zone, start=_at(path, start), end=_at(path, end), start_arc=float(start), end_arc=float(end)
+        zone=zone, start=_at(path, start), end=_at(path, end), start_arc=float(start), end_arc=float(end), run=run
     )
 
 

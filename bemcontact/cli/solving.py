@@ -8,7 +8,15 @@ import typer
 from bemcontact import output
 from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, Weights
 from bemcontact.cli.failures import UNCERTIFIED, claim, told, write_json
-from bemcontact.cli.options import STANDARD_OUTPUT, FigureOption, JsonOption, RefineOption, SetOption, SpecArgument
+from bemcontact.cli.options import (
+    STANDARD_OUTPUT,
+    FigureOption,
+    FitOption,
+    JsonOption,
+    RefineOption,
+    SetOption,
+    SpecArgument,
+)
 from bemcontact.terminal import busy, show, tell
 
 
@@ -50,6 +58,7 @@ def solve(
         int | None, typer.Option(min=1, metavar="N", help="Stop the solver after N iterations.", show_default="its own")
     ] = None,
     refine: RefineOption = 1,
+    fit_edges: FitOption = False,
     overrides: SetOption = None,
     figure: FigureOption = None,
     json_file: JsonOption = None,
@@ -68,6 +77,7 @@ def solve(
       bemcontact solve models/cylinder_on_plane.yaml
       bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
       bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
+      bemcontact solve models/cylinder_on_plane.yaml --fit-edges
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp1
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --starts 20
@@ -93,6 +103,8 @@ def solve(
             max_iterations=max_iterations,
         )
         problem = spec_file.load(spec, overrides or ()).refined(refine)
+        if fit_edges:
+            problem = problem.with_value("mesh.fit_contact_edges", True)
         result = analysis.carry_out(
             plan, problem, lambda done: say(f"solving, start {min(done + 1, starts or 1)} of {starts}")
         )

@@ -1,6 +1,6 @@
 """The outline of the body: closed loops of named edges, the outer one anticlockwise, holes clockwise."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from math import dist, pi
 from typing import Self
@@ -12,7 +12,7 @@ from bemcontact.errors import Complaint, Path, ProblemError, dotted
 from bemcontact.problem.curves import CircularArc, Curve, Edge
 from bemcontact.problem.geometry import AnyEdge, Arc, Grading, Line, Place, StatedLoop
 from bemcontact.problem.loops import loop_complaints
-from bemcontact.problem.stated import Point, Stated, validation_error
+from bemcontact.problem.stated import Point, Stated, unknown_word, validation_error
 
 RADIUS_TOLERANCE = 1e-6
 """Relative difference of the two radii of an arc given by its ends: coordinates are written with a few digits."""
@@ -71,6 +71,22 @@ class Boundary(Stated):
         """All loops with both ends of their edges known, the outer one first."""
         return tuple(_joined(loop) for loop in self.stated_loops)
 
+    def with_element_ends(self, ends: Mapping[str, Sequence[float]]) -> Self:
+        """State all element ends of some edges; else as of `Problem`. The curves, checked already, stay as they are."""
+        known = [edge.name for edge in self.edges]
+        if unknown := [name for name in ends if name not in known]:
+            raise ProblemError(Complaint(path=(), message=unknown_word("edge", unknown[0], known)))
+        outer, *holes = [tuple(_with_ends(edge, ends.get(edge.name)) for edge in loop) for loop in self.stated_loops]
+        changed = type(self).model_construct(outer=outer, holes=tuple(holes))
+        complaints = [
+            complaint
+            for path, loop, joined in zip(self.loop_paths, changed.stated_loops, changed.loops, strict=True)
+            for complaint in _misplaced_ends(path, loop, joined)
+        ]
+        if complaints:
+            raise ProblemError(complaints)
+        return changed
+
     @property
     def edges(self) -> tuple[Edge, ...]:
         """All edges, loop by loop."""
@@ -81,6 +97,14 @@ class Boundary(Stated):
         """Diameter of the bounding box [L]."""
         points = np.vstack([edge.polyline() for edge in self.edges])
         return float(np.hypot(*np.ptp(points, axis=0)))
+
+
+def _with_ends(edge: AnyEdge, ends: Sequence[float] | None) -> AnyEdge:
+    """Give an edge all its element ends, or leave it."""
+    if ends is None:
+        return edge
+    inner = tuple(map(float, ends))
+    return type(edge)(**{**edge.model_dump(), "elements": len(inner) + 1, "grading": None, "ends_at": inner})
 
 
 def _doubled_names(loops: Iterable[tuple[Path, Sequence[AnyEdge]]]) -> Iterator[Complaint]:
