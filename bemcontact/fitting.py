@@ -48,8 +48,8 @@ def fitted(problem: Problem, progress: Callable[[str], object] | None = None) ->
     The complementarity problem is solved on the mesh as stated, the elements of each contact zone are placed anew by
     `fitted_ends`, and so on until no element end moves by more than a fifth of the shorter element beside it, four
     times at most. All this is done without `mesh.refine`, which then cuts the fitted elements: so finer meshes contain
-    each other, an observed order means something, and fitting costs little. The ends are located to a small part of the
-    shortest element, so that cutting it a few times does not show where they are off.
+    each other, an observed order means something, and fitting costs little. But the ends of contact are then those of
+    the mesh that was cut: where they matter to many digits, state more elements instead.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def fitted(problem: Problem, progress: Callable[[str], object] | None = None) ->
     fit = MeshFit(
         passes=tuple(FitPass(intervals=trial.intervals, movement=trial.movement) for trial in trials),
         kept=kept,
-        settled=trials[kept].settled,
+        settled=trials[kept].settled and not trials[kept].notes,
         notes=(*_told(trials, kept), *failed, *dict.fromkeys(note for trial in trials for note in trial.notes)),
     )
     return problem.with_element_ends(trials[kept].placed), fit
@@ -197,17 +197,17 @@ def _too_few(run: ZoneRun) -> str:
 def _told(trials: Sequence[_Trial], kept: int) -> Iterator[str]:
     """Say how many meshes it took, what moved, and what did not settle."""
     first, last = trials[0], trials[kept]
-    if first.asked is not None and not first.asked and not first.notes:
-        yield "the mesh is as stated: contact ends nowhere inside a zone, so there was nothing to fit it to"
-        return
-    if kept == 0:
-        word = "fits the ends of contact already" if first.settled else "was left as stated"
-        yield f"the mesh {word}{'' if first.settled else ', for no fitted one came to rest'}"
-    else:
+    if kept:
         moved = [*_moved(first.intervals, last.intervals)]
         yield "; ".join([f"mesh fitted to the ends of contact in {kept} pass{'es' * (kept > 1)}", *moved])
-    if kept and not last.settled:
-        yield f"the ends of contact still move by {last.movement:.1g} of an element where the mesh was kept"
+        if not last.settled:
+            still = f"the ends of contact still move by {last.movement:.1g} of an element from pass to pass"
+            yield f"{still}; more elements in the zone settle them"
+    elif first.asked:
+        settled = "the mesh fits the ends of contact already"
+        yield settled if first.settled else "the mesh was left as stated, for no fitted one came to rest"
+    elif first.asked is not None and not first.notes:
+        yield "the mesh is as stated: contact ends nowhere inside a zone, so there was nothing to fit it to"
     for number, (before, after) in enumerate(pairwise(trials), 1):
         if len(before.intervals) != len(after.intervals):
             counts = f"from {len(before.intervals)} to {len(after.intervals)}"

@@ -1,6 +1,8 @@
 """Meshes that find the ends of contact: how exact they are, what they leave alone, what they say."""
 
 import json
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,10 +12,14 @@ from typer.testing import CliRunner
 
 import bemcontact
 from bemcontact import cli, comparing, fitting
+from bemcontact.assessment.footprint import footprint
+from bemcontact.errors import ProblemError
 from bemcontact.fitting import SETTLED, fitted
+from bemcontact.formulations import complementarity
 from bemcontact.formulations.plan import planned_comparison
 from bemcontact.mesh_fit import MeshFit
 from bemcontact.problem import Problem
+from bemcontact.solution import Status
 
 HALF_WIDTH = 2.7685
 """Of the cylinder, by finite elements on four meshes; see the description of the model."""
@@ -205,7 +211,50 @@ def test_too_few_elements_are_told():
     stated = cylinder(3)
     found, fit = fit_of(stated)
     assert_same_elements(found, stated, 0)
-    assert any("too few elements to grade them towards its ends of contact" in note for note in fit.notes)
+    assert not fit.settled
+    (note,) = fit.notes
+    assert "too few elements to grade them towards its ends of contact" in note
+
+
+def test_contact_that_vanishes_on_the_way_is_told(monkeypatch):
+    """The second solve is made to see no contact on the left foot; the third sees it again."""
+    seen = []
+
+    def blinking(contact, solution):
+        seen.append(footprint(contact, solution))
+        return replace(seen[-1], intervals=seen[-1].intervals[1:]) if len(seen) == 2 else seen[-1]
+
+    monkeypatch.setattr(fitting, "footprint", blinking)
+    _, fit = fit_of(table())
+    assert [len(item.intervals) for item in fit.passes[:3]] == [2, 1, 2]
+    assert any("number of contact intervals changed from 2 to 1 with the mesh of pass 1" in note for note in fit.notes)
+    assert fit.passes[1].movement is None  # it asks for a mesh that is divided in another way
+    assert fit.kept != 1
+
+
+def test_a_problem_without_a_contact_state_is_not_fitted(monkeypatch):
+    """A solver that breaks down at once."""
+    broken = lambda contact: replace(complementarity.solve(contact), status=Status.NUMERICAL_FAILURE)  # noqa: E731
+    monkeypatch.setattr(fitting, "complementarity", SimpleNamespace(solve=broken))
+    stated = cylinder(6)
+    found, fit = fit_of(stated)
+    assert_same_elements(found, stated, 0)
+    assert fit.notes == ("the mesh could not be fitted to a state of contact: broke down numerically",)
+    assert not fit.settled
+
+
+@pytest.mark.parametrize(
+    ("ends", "words"),
+    [
+        ({"sole": [0.5]}, "unknown edge 'sole'"),
+        ({"foot": [0.5, 0.5]}, "ends there anyway"),
+        ({"foot": [1.5]}, "between 0 and 1"),
+        ({"flank": []}, "too few elements for the bend"),
+    ],
+)
+def test_element_ends_are_checked(ends, words):
+    with pytest.raises(ProblemError, match=words):
+        cylinder(6).with_element_ends(ends)
 
 
 def test_a_mesh_that_cannot_be_made_is_given_up(monkeypatch):

@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 
 CONTACT_SHARE = 2.0
 """Elements on the side of a contact edge that is in contact, to those on the open side, where this is no longer."""
+SHORTEST = 1e-3
+"""Least element, over the shortest side in contact: shorter ones gain little, and cost digits of the certificate."""
 LEAST = 2
 """Elements on each side of a contact edge."""
 CLOSE = 1e-2
@@ -109,7 +111,8 @@ def fitted_ends(run: ZoneRun, touched: Sequence[Touched]) -> Array | None:
         counted = _counted(run, _shared(block))
         if counted is None:
             return None
-        ends += [_graded(run, part)[1:] for part in counted]
+        shortest = SHORTEST * min((part.reach for part in counted if part.touched and part.sides), default=0.0)
+        ends += [_graded(run, part, shortest)[1:] for part in counted]
     positions = np.concatenate(ends)
     if not run.closed:
         return positions
@@ -197,12 +200,12 @@ def _fine_enough(run: ZoneRun, part: _Part) -> int:
     return part.sides * ceil(3 * part.reach / longest)
 
 
-def _graded(run: ZoneRun, part: _Part) -> Array:
+def _graded(run: ZoneRun, part: _Part, shortest: float) -> Array:
     """Element ends of a part, from its low to its high end; as they are where contact ends on neither side."""
     low, high = part.low, part.high
     if not part.sides:
         return np.array([low, *_inside(run.ends, run, low, high), high])
-    ends = cubic_ends(part.count, both=part.sides == 2)
+    ends = cubic_ends(part.count, both=part.sides == 2, shortest=shortest / part.width)
     if part.low_free:
         if part.high == run.length and not part.high_free:
             ends = _gentle(ends, run.neighbours[1] / part.width)

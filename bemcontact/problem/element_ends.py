@@ -9,9 +9,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-SHORTEST = 1e-4
-"""Least element over the length that is graded cubically: shorter ones gain nothing, and cost digits."""
-
 
 def graded_ends(elements: int, ratio: float, towards: str | float, places: Sequence[float] = ()) -> Array:
     """Element ends (elements + 1,) from 0 to 1, some of them at given places.
@@ -67,18 +64,25 @@ def _lengths_about(elements: int, ratio: float, place: float) -> Array:
     return np.concatenate(sides(min(range(1, elements), key=unlike)))
 
 
-def cubic_ends(elements: int, *, both: bool) -> Array:
-    """Element ends (elements + 1,) from 0 to 1 that crowd to 0 like the cubes of equal steps, or to both ends."""
+def cubic_ends(elements: int, *, both: bool, shortest: float = 0.0) -> Array:
+    """Element ends (elements + 1,) from 0 to 1 that crowd to 0 like the cubes of equal steps, or to both ends.
+
+    Parameters
+    ----------
+    elements : number of elements, at least 1
+    both : whether to crowd to both ends, from the middle
+    shortest : least length; where cubes would be shorter, they are mixed with as many equal steps as that takes
+    """
     step = np.arange(elements + 1) / elements
     if not both:
-        return _cubed(step, elements)
-    half = _cubed(2 * step[: elements // 2 + 1], elements / 2) / 2
+        return _cubed(step, elements, shortest)
+    half = _cubed(2 * step[: elements // 2 + 1], elements / 2, 2 * shortest) / 2
     return np.concatenate([half, 1 - half[: (elements + 1) // 2][::-1]])
 
 
-def _cubed(step: Array, count: float) -> Array:
-    """Cubes of steps, with as much of the steps themselves as the least element needs."""
-    even = max(0.0, SHORTEST - count**-3) * count
+def _cubed(step: Array, count: float, shortest: float) -> Array:
+    """(1 - e) s³ + e s of steps s, with the least e >= 0 for which the first is not too short."""
+    even = max(0.0, shortest - count**-3) / (1 / count - count**-3) if count > 1 else 0.0
     return (1 - even) * step**3 + even * step
 
 

@@ -66,7 +66,7 @@ def test_a_mirrored_run_is_divided_in_the_mirror(start, end, elements):
     np.testing.assert_allclose(mirrored, 1 - ends[::-1], atol=1e-12)
 
 
-@given(st.floats(0.05, 0.9), st.integers(16, 40))
+@given(st.floats(1e-3, 0.9), st.integers(20, 80))
 def test_elements_across_an_end_of_contact_are_not_too_different(end, elements):
     """The open side's first is at most CONTACT_SHARE³ times as long: what is left over by whole numbers is a half."""
     ends = ends_of(run_of([1.0], [elements]), touched(0, end, start_free=False))

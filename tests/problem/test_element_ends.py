@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bemcontact.problem.curves import Edge, Segment
-from bemcontact.problem.element_ends import SHORTEST, cubic_ends, graded_ends, graded_lengths, moved_onto
+from bemcontact.problem.element_ends import cubic_ends, graded_ends, graded_lengths, moved_onto
 
 PLACES = st.lists(st.integers(1, 99), min_size=1, max_size=4, unique=True).map(lambda places: sorted(places))
 
@@ -86,11 +86,15 @@ def test_ends_between_two_contact_edges_are_cubes_of_either_side():
     np.testing.assert_allclose(cubic_ends(5, both=True), 1 - cubic_ends(5, both=True)[::-1], atol=1e-16)
 
 
-@pytest.mark.parametrize("elements", [22, 100, 1000])
-def test_many_elements_never_become_shorter_than_stated(elements):
-    lengths = np.diff(cubic_ends(elements, both=False))
-    assert lengths[0] == lengths.min() == pytest.approx(SHORTEST, rel=0.01)
+@pytest.mark.parametrize("both", [False, True])
+@pytest.mark.parametrize("elements", [40, 51, 500])
+def test_elements_never_become_shorter_than_stated(elements, both):
+    lengths = np.diff(cubic_ends(elements, both=both, shortest=1e-3))
+    assert lengths[0] == pytest.approx(1e-3, rel=1e-12)
+    assert lengths.min() == pytest.approx(1e-3, rel=1e-9)
     assert lengths.sum() == pytest.approx(1, rel=1e-14)
+    coarse = cubic_ends(4, both=both, shortest=1e-3)
+    np.testing.assert_array_equal(coarse, cubic_ends(4, both=both))  # long enough anyway
 
 
 def test_refinement_cuts_the_elements_between_the_places():
