@@ -193,6 +193,7 @@ def test_a_zone_without_contact_stays_as_stated():
 def test_contact_on_part_of_a_closed_zone_is_found_wherever_the_zone_begins():
     """The ends of contact do not depend on the seam: to 1e-4 of the radius."""
     found = [fit_of(ring(seam)) for seam in (0, 100)]
+    assert all(fit.settled and fit.kept for _, fit in found)
     ends = [fit.passes[fit.kept].intervals[0] for _, fit in found]
     assert ends[0].start == pytest.approx(ends[1].start, abs=1e-3)
     assert ends[0].end == pytest.approx(ends[1].end, abs=1e-3)
@@ -263,6 +264,7 @@ def test_a_mesh_that_cannot_be_made_is_given_up(monkeypatch):
     found, fit = fit_of(ring())
     assert fit.kept == 0
     assert not fit.settled
+    assert fit.notes[0] == "the mesh was left as stated, for no fitted one came to rest"
     assert any("the mesh of pass 1 was given up" in note and "turns by" in note for note in fit.notes)
     assert_same_elements(found, ring(), 0)
 

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 CONTACT_SHARE = 2.0
 """Elements on the side of a contact edge that is in contact, to those on the open side, where this is no longer."""
-SHORTEST = 1e-3
+SHORTEST = 5e-4
 """Least element, over the shortest side in contact: shorter ones gain little, and cost digits of the certificate."""
 LEAST = 2
 """Elements on each side of a contact edge."""
@@ -175,11 +175,13 @@ def _counted(run: ZoneRun, block: Sequence[_Part]) -> list[_Part] | None:
     whole = block[0].low_free  # all round a closed run
     left = len(run.ends) - 1 if whole else 1 + len(_inside(run.ends, run, block[0].low, block[-1].high))
     least = [max(LEAST * part.sides, 1 + len(_inside(run.joints, run, part.low, part.high))) for part in block]
-    fine = [max(count, _fine_enough(run, part)) for count, part in zip(least, block, strict=True)]
-    counts = fine if sum(fine) <= left else least
-    left -= sum(counts)
-    if left < 0:
+    for slack in (1.0, 1.5, 2.0, np.inf):
+        counts = [max(count, _fine_enough(run, part, slack)) for count, part in zip(least, block, strict=True)]
+        if sum(counts) <= left:
+            break
+    else:
         return None
+    left -= sum(counts)
     rivals = list(range(len(block)))
     while left:
         claim = [block[i].share / (counts[i] + 0.5) * (1 + 1e-6 * block[i].width / run.length) for i in rivals]
@@ -193,11 +195,11 @@ def _counted(run: ZoneRun, block: Sequence[_Part]) -> list[_Part] | None:
     return [replace(part, count=count) for part, count in zip(block, counts, strict=True)]
 
 
-def _fine_enough(run: ZoneRun, part: _Part) -> int:
-    """Number of elements of which the longest, 3 b/n of a side, keeps below `LONGEST` and `TURNING`."""
+def _fine_enough(run: ZoneRun, part: _Part, slack: float) -> int:
+    """Number of elements of which the longest, 3 b/n of a side, keeps below so many times `LONGEST` and `TURNING`."""
     bend = max(edge.turning_per_length for edge in run.edges)
     longest = min(LONGEST * run.length / (len(run.ends) - 1), TURNING / bend if bend > 0 else np.inf)
-    return part.sides * ceil(3 * part.reach / longest)
+    return part.sides * ceil(3 * part.reach / (slack * longest))
 
 
 def _graded(run: ZoneRun, part: _Part, shortest: float) -> Array:
