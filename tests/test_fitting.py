@@ -21,7 +21,7 @@ from bemcontact.mesh_fit import MeshFit
 from bemcontact.problem import Problem
 from bemcontact.solution import Status
 
-HALF_WIDTH = 2.7685
+HALF_WIDTH, PEAK = 2.7685, 183.335
 """Of the cylinder, by finite elements on four meshes; see the description of the model."""
 
 
@@ -81,6 +81,18 @@ def test_end_of_contact_converges_with_order_three(cylinders):
     assert error[24] <= error[6] / 64
     assert error[12] <= 1e-4
     assert cylinders[12].footprint.intervals[0].end[0] == pytest.approx(HALF_WIDTH, rel=1e-4)
+
+
+@pytest.mark.parametrize("formulation", ["qp1", "qp2", "qp3", "complementarity"])
+def test_the_shipped_cylinder_fitted(cylinders, formulation):
+    """With 180 degrees of freedom: half-width to 1e-4, peak to 5e-4 of finite elements, pressure to 5e-4 in L2."""
+    model = bemcontact.load("models/cylinder_on_plane.yaml").with_value("mesh.fit_contact_edges", True)
+    result = bemcontact.solve(model, formulation)
+    assert result.certified
+    assert result.degrees_of_freedom <= 180
+    assert result.footprint.intervals[0].end[0] == pytest.approx(HALF_WIDTH, rel=1e-4)
+    assert result.footprint.peak.pressure == pytest.approx(PEAK, rel=5e-4)
+    assert pressure_error(result, cylinders[96]) <= 5e-4
 
 
 def test_passes_are_told(cylinders):
