@@ -1,6 +1,7 @@
 """From a problem to a judged result: condense, solve, assess, recover; here both halves of the house work."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from bemcontact import remarks
 from bemcontact.assessment.certificate import certify
@@ -13,10 +14,12 @@ from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, We
 from bemcontact.contact import CondensedContact
 from bemcontact.ends import RandomStarts
 from bemcontact.errors import ProblemError
+from bemcontact.fitting import fitted
 from bemcontact.formulations import FORMULATIONS, Start
 from bemcontact.formulations.formulation import ensure_whole
 from bemcontact.formulations.plan import Plan, planned
 from bemcontact.formulations.starts import search_from
+from bemcontact.mesh_fit import MeshFit
 from bemcontact.problem.problem import Problem
 from bemcontact.result import Result
 from bemcontact.solution import ContactSolution
@@ -33,6 +36,7 @@ def condense(problem: Problem) -> CondensedContact:
     Returns
     -------
     CondensedContact
+        On the fitted mesh if the problem asks for one; its notes tell.
 
     Raises
     ------
@@ -42,7 +46,9 @@ def condense(problem: Problem) -> CondensedContact:
         If the equations of the body have no unique solution.
     """
     ensure_kind(problem, Problem)
-    return condense_body(body_of(problem)).contact
+    problem, fit = fitted(problem)
+    contact = condense_body(body_of(problem)).contact
+    return contact if fit is None else replace(contact, notes=(*fit.notes, *contact.notes))
 
 
 def ensure_kind(problem: object, *kinds: type) -> None:
@@ -121,10 +127,22 @@ def carry_out(
 ) -> Result:
     """Solve a contact problem as planned, and judge the answer; all else is as of `solve`."""
     watch = Stopwatch()
+    problem, fit = fitted_to_contact(problem, watch)
     contact, condensation = condensed(problem, watch)
     with watch.stage("solution"):
         solution, ends = plan.start.search(contact, FORMULATIONS[plan.formulation], plan.options, progress)
-    return judged(problem, condensation, contact, solution, plan.options.weights, watch, ends)
+    return judged(problem, condensation, contact, solution, plan.options.weights, watch, ends, fit)
+
+
+def fitted_to_contact(
+    problem: Problem | CondensedContact, watch: Stopwatch
+) -> tuple[Problem | CondensedContact, MeshFit | None]:
+    """Fit the mesh to the ends of contact where the problem asks for it, as `fitting.fitted` does."""
+    ensure_kind(problem)
+    if isinstance(problem, CondensedContact) or not problem.mesh.fit_contact_edges:
+        return problem, None
+    with watch.stage("mesh fit") as say:
+        return fitted(problem, say)
 
 
 def condensed(problem: Problem | CondensedContact, watch: Stopwatch) -> tuple[CondensedContact, Condensation | None]:
@@ -154,6 +172,7 @@ def judged(
     weights: Weights,
     watch: Stopwatch,
     ends: RandomStarts | None = None,
+    fit: MeshFit | None = None,
 ) -> Result:
     """Recover the boundary behind a solution, and judge both.
 
@@ -164,6 +183,7 @@ def judged(
     weights : of the objective
     watch : with the stages so far
     ends : of random starts, if several were made
+    fit : how the mesh was fitted, if it was
 
     Returns
     -------
@@ -178,7 +198,7 @@ def judged(
         certificate = certify(contact, solution, judged)
         where = footprint(contact, solution)
         touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
-        notes = (*contact.notes, *solution.notes, *remarks.of_few_points(touching))
+        notes = (*(() if fit is None else fit.notes), *contact.notes, *solution.notes, *remarks.of_few_points(touching))
         if condensation is not None:
             notes += (*remarks.of_zone_ends(condensation.body, touching), *remarks.of_size(condensation.body, where))
     gap = contact.initial_gap + solution.displacement
@@ -196,6 +216,7 @@ def judged(
         notes=notes,
         seconds=watch.seconds,
         starts=ends,
+        mesh_fit=fit,
     )
 
 

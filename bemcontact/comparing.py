@@ -4,7 +4,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
-from bemcontact.analysis import condensed, judged
+from bemcontact.analysis import condensed, fitted_to_contact, judged
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Found
 from bemcontact.choices import FormulationName, Setting, Weights
@@ -14,6 +14,7 @@ from bemcontact.formulations import FORMULATIONS, OPTIONS, qp3
 from bemcontact.formulations.formulation import ensure_whole
 from bemcontact.formulations.plan import COMPARED, ComparisonPlan, Plan, planned_comparison
 from bemcontact.formulations.starts import search_from
+from bemcontact.mesh_fit import MeshFit
 from bemcontact.problem.key_path import parsed_path
 from bemcontact.problem.problem import Problem
 from bemcontact.stopwatch import Progress, Stopwatch
@@ -62,7 +63,9 @@ def compare(
         The problem has no answer, or does not carry the weights asked for.
     """
     plan = planned_comparison(formulations, weights, penalties, starts=starts, seed=seed)
-    return _side_by_side(plan, problem, Stopwatch(progress=progress)).comparison
+    watch = Stopwatch(progress=progress)
+    problem, fit = fitted_to_contact(problem, watch)
+    return _side_by_side(plan, problem, watch, fit).comparison
 
 
 def study(
@@ -73,6 +76,8 @@ def study(
     changes: Sequence[str] = (),
 ) -> Study:
     """Compare as planned on one mesh or several, each with all elements cut into so many parts; else as `compare`.
+
+    A mesh that is to be fitted to the ends of contact is fitted once, and then cut.
 
     Parameters
     ----------
@@ -94,11 +99,14 @@ def study(
         raise OptionError("a condensed problem has no mesh to refine; refine the problem that it came from")
     for parts in refine:
         ensure_whole(parts, "refinement", 1)
+    fitting = Stopwatch(progress=progress)
+    problem, fit = fitted_to_contact(problem, fitting)
     levels = []
     for parts in sorted(map(int, refine)):
         tell = progress if len(refine) == 1 or progress is None else _prefixed(progress, f"refine {parts}: ")
         finer = problem.refined(parts) if isinstance(problem, Problem) and parts > 1 else problem
-        level = _side_by_side(plan, finer, Stopwatch(progress=tell))
+        watch = Stopwatch(progress=tell, seconds={} if levels else fitting.seconds)
+        level = _side_by_side(plan, finer, watch, fit)
         levels.append(replace(level, refine=parts, outdated=outdated(problem, changes)))
     return Study(settings={**plan.to_dict(), "changes": [*changes]}, levels=tuple(levels))
 
@@ -132,7 +140,9 @@ def _prefixed(progress: Progress, prefix: str) -> Progress:
     return lambda stage, now: progress(prefix + stage, now)
 
 
-def _side_by_side(plan: ComparisonPlan, problem: Problem | CondensedContact, watch: Stopwatch) -> MeshLevel:
+def _side_by_side(
+    plan: ComparisonPlan, problem: Problem | CondensedContact, watch: Stopwatch, fit: MeshFit | None
+) -> MeshLevel:
     """Compare on one mesh, and judge the direct solution with the boundary behind it."""
     contact, condensation = condensed(problem, watch)
     reference = _found(Setting(formulation=FormulationName.COMPLEMENTARITY), plan.reference, plan, contact, watch)
@@ -143,7 +153,7 @@ def _side_by_side(plan: ComparisonPlan, problem: Problem | CondensedContact, wat
     found = [_found(setting, item, plan, contact, watch) for setting, item in plan.contenders]
     with watch.stage("comparison"):
         compared = comparison(contact, reference, found)
-    answer = judged(problem, condensation, contact, reference.solution, Weights.TRIBUTARY, watch)
+    answer = judged(problem, condensation, contact, reference.solution, Weights.TRIBUTARY, watch, fit=fit)
     return MeshLevel(refine=1, comparison=compared, answer=answer)
 
 

@@ -15,6 +15,7 @@ from bemcontact.bem.recovery import BoundaryState
 from bemcontact.choices import Weights
 from bemcontact.contact import CondensedContact
 from bemcontact.ends import RandomStarts
+from bemcontact.mesh_fit import MeshFit
 from bemcontact.problem.problem import Problem
 from bemcontact.record import contact_record, solution_record
 from bemcontact.solution import ContactSolution
@@ -26,7 +27,7 @@ class Result:
 
     Parameters
     ----------
-    problem : what was asked, or None if a condensed problem was
+    problem : what was asked, with the element ends of a fitted mesh; None if a condensed problem was
     contact : the condensed problem
     solution : what the formulation found
     weights : of the objective
@@ -38,6 +39,7 @@ class Result:
     notes : what a person should know: of the condensation, of the solver, of the mesh
     seconds : spent on each stage
     starts : where the searches from random starts ended, if several were asked for
+    mesh_fit : how the mesh was fitted to the ends of contact, if that was asked for
     """
 
     problem: Problem | None
@@ -53,6 +55,7 @@ class Result:
     notes: tuple[str, ...]
     seconds: dict[str, float]
     starts: RandomStarts | None = None
+    mesh_fit: MeshFit | None = None
 
     def __repr__(self) -> str:
         """One line: name, formulation, verdict, peak."""
@@ -89,6 +92,7 @@ class Result:
             **contact_record(self.contact),
             **solution_record(self.contact, self.solution),
             **self.footprint.to_dict(),
+            "mesh_fit": None if self.mesh_fit is None else self.mesh_fit.to_dict(),
             "weights": self.weights.value,
             "objective": self.objective,
             "starts": None if self.starts is None else self.starts.to_dict(),

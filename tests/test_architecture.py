@@ -10,15 +10,16 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-ABOVE = ("result", "study", "analysis", "comparing", "report", "cli")
+ABOVE = ("mesh_fit", "result", "fitting", "study", "analysis", "comparing", "report", "cli")
 """Rooms that put both halves of the house together."""
 
 NEVER = {
     "bemcontact.bem": ("spec", "solution", "ends", "formulations", "assessment", "reference", *ABOVE),
     "bemcontact.formulations": ("spec", "problem", "bem", "assessment", "reference", *ABOVE),
     "bemcontact.assessment": ("spec", "problem", "bem", "formulations", "reference", *ABOVE),
-    "bemcontact.result": ("spec", "study", "analysis", "comparing", "report", "cli"),
+    "bemcontact.result": ("spec", "fitting", "study", "analysis", "comparing", "report", "cli"),
     "bemcontact.study": ("spec", "bem", "formulations", "analysis", "comparing", "report", "cli"),
+    "bemcontact.fitting": ("spec", "result", "study", "analysis", "comparing", "report", "cli"),
     "bemcontact.analysis": ("spec", "study", "comparing", "report", "cli"),
     "bemcontact.comparing": ("spec", "bem", "report", "cli"),
     "bemcontact.report": ("spec", "formulations", "analysis", "comparing", "cli"),
@@ -33,6 +34,7 @@ ONLY = {
     "bemcontact.contact": ("bemcontact.choices", "bemcontact.errors", "bemcontact.gauge", "bemcontact.output"),
     "bemcontact.solution": ("bemcontact.contact",),
     "bemcontact.ends": ("bemcontact.solution",),
+    "bemcontact.mesh_fit": ("bemcontact.assessment.footprint",),
     "bemcontact.formulations.local_solver": ("bemcontact.errors", "bemcontact.formulations.local_solver"),
     "bemcontact.problem": ("bemcontact.errors", "bemcontact.problem"),
     "bemcontact.reference": (

@@ -1,9 +1,11 @@
 """A spec file: what is read, and where and in which words every mistake is reported."""
 
 import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from jsonschema import Draft202012Validator
@@ -221,6 +223,61 @@ BROKEN = {
     ),
     "grading less than 1": Broken(
         "ratio: 3", "ratio: 0.3", "18:24", "boundary.outer[2].grading.ratio", ("at least 1", "found 0.3")
+    ),
+    "grading towards nothing": Broken(
+        "towards: both",
+        "towards: left",
+        "18:36",
+        "boundary.outer[2].grading.towards",
+        ("start, end, both, middle, a fraction of the length, or a point", "'left'"),
+    ),
+    "grading towards an end by number": Broken(
+        "towards: both", "towards: 1.0", "18:36", "boundary.outer[2].grading.towards", ("between 0 and 1", "found 1")
+    ),
+    "grading towards a point elsewhere": Broken(
+        "towards: both", "towards: [1, 1.1]", "18:36", "boundary.outer[2].grading.towards", ("0.1 away from 'top'",)
+    ),
+    "element end beside the edge": Broken(
+        "{name: left, elements: 2}",
+        "{name: left, elements: 2, ends_at: [[0.5, 0.5]]}",
+        "19:43",
+        "boundary.outer[3].ends_at[0]",
+        ("the point (0.5, 0.5) is 0.5 away from 'left'",),
+    ),
+    "element end at the end of the edge": Broken(
+        "{name: left, elements: 2}",
+        "{name: left, elements: 2, ends_at: [[0, 1]]}",
+        "19:43",
+        "boundary.outer[3].ends_at[0]",
+        ("ends there anyway",),
+    ),
+    "element end twice": Broken(
+        "{name: left, elements: 2}",
+        "{name: left, elements: 4, ends_at: [0.5, [0, 0.5]]}",
+        "19:48",
+        "boundary.outer[3].ends_at[1]",
+        ("ends there anyway",),
+    ),
+    "element end in words": Broken(
+        "{name: left, elements: 2}",
+        "{name: left, elements: 2, ends_at: [middle]}",
+        "19:43",
+        "boundary.outer[3].ends_at[0]",
+        ("a fraction of the length such as 0.4, or a point", "'middle'"),
+    ),
+    "more element ends than elements": Broken(
+        "{name: left, elements: 2}",
+        "{name: left, elements: 2, ends_at: [0.2, 0.4]}",
+        "19:30",
+        "boundary.outer[3].elements",
+        ("2 places with fewer than 3 elements", "found 2"),
+    ),
+    "fit that is no yes or no": Broken(
+        "name: block on a plane",
+        "name: block on a plane\nmesh: {fit_contact_edges: 3}",
+        "2:27",
+        "mesh.fit_contact_edges",
+        ("true or false", "found 3"),
     ),
     "name twice": Broken(
         "name: bore", "name: right", "21:16", "boundary.holes[0][0].name", ("'right' is taken by outer[1]",)
@@ -640,6 +697,14 @@ def test_schema_knows_contours_and_variants(old, new, path, message):
         ("1e3", "-210.0e+3", "material.young_modulus", "-210000.0 is less than or equal to the minimum of 0"),
         ("poisson_ratio: .3", "poisson_ratio: 0.6", "material.poisson_ratio", "greater than the maximum of 0.5"),
         ("ratio: 3", "ratio: 0.3", "boundary.outer[2].grading", "is not valid"),
+        ("towards: both", "towards: left", "boundary.outer[2].grading", "is not valid"),
+        ("towards: both", "towards: 1.5", "boundary.outer[2].grading", "is not valid"),
+        (
+            "{name: left, elements: 2}",
+            "{name: left, elements: 2, ends_at: [1.5]}",
+            "boundary.outer[3].ends_at[0]",
+            "1.5 is greater than or equal to the maximum of 1",
+        ),
         ("{name: left, elements: 2}", "{name: left}", "boundary.outer[3]", "'elements' is a required property"),
         ("elements: 8}", "elements: 0}", "boundary.holes[0][0].elements", "0 is less than the minimum of 1"),
         ("radius: 0.25", "radius: 0.25, knots: 2", "boundary.holes[0][0]", "('knots' was unexpected)"),
@@ -664,3 +729,21 @@ def test_model_of_the_paper_fits_on_a_page():
     assert 4 * problem.mesh.refine * sum(edge.elements for edge in problem.boundary.edges) <= 260
     assert "2.7685" in problem.description
     assert "183.335" in problem.description
+
+
+@pytest.mark.parametrize("place", ["0.25", "[1.5, 1]"])
+def test_elements_end_at_a_fraction_or_a_point(place):
+    """The top runs from (2, 1) to (0, 1), so that (1.5, 1) is a quarter of its length from its start."""
+    stated = bemcontact.spec.loads(SPEC.replace("towards: both}", f"towards: both}}\n      ends_at: [{place}]"))
+    graded = bemcontact.spec.loads(SPEC.replace("towards: both", f"towards: {place}"))
+    for problem in (stated, graded):
+        assert problem.edge("top").breakpoints()[1] == 0.25
+        assert as_seen_by_an_editor(SPEC.replace("towards: both", f"towards: {place}").replace("1e3", "1.0e+3")) == []
+
+
+@pytest.mark.parametrize(("angle", "fraction"), [(337.5, 1 / 16), (90, 0.75), (0.01, 1 - 0.01 / 360)])
+def test_elements_end_at_a_point_of_an_arc(angle, fraction):
+    """The bore runs clockwise from 360 degrees."""
+    x, y = 1 + 0.25 * math.cos(math.radians(angle)), 0.5 + 0.25 * math.sin(math.radians(angle))
+    problem = bemcontact.spec.loads(SPEC.replace("elements: 8}", f"elements: 16, ends_at: [[{x!r}, {y!r}]]}}"))
+    assert np.abs(problem.edge("bore").breakpoints() - fraction).min() <= 1e-14

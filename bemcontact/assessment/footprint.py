@@ -22,8 +22,8 @@ class ContactInterval:
     zone : name of the contact zone
     start, end : (x, y) in the order of the boundary [L]
     start_arc, end_arc : their arc positions on the run [L]; across the seam of a closed run they go on counting
-    run : number of the run
-    perimeter : of the run if it closes on itself, else infinity [L]
+    run : number of the unbroken piece of boundary that it is on
+    perimeter : of that piece if it closes on itself, else infinity [L]
     """
 
     zone: str
@@ -33,6 +33,15 @@ class ContactInterval:
     end_arc: float
     run: int = 0
     perimeter: float = float("inf")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give zone and ends as texts and lists, ready for JSON."""
+        return {
+            "zone": self.zone,
+            "start": list(self.start),
+            "end": list(self.end),
+            "arc": [self.start_arc, self.end_arc],
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,15 +85,7 @@ class Footprint:
         return {
             "resultant": list(self.resultant.force),
             "resultant_moment": self.resultant.moment,
-            "intervals": [
-                {
-                    "zone": interval.zone,
-                    "start": list(interval.start),
-                    "end": list(interval.end),
-                    "arc": [interval.start_arc, interval.end_arc],
-                }
-                for interval in self.intervals
-            ],
+            "intervals": [interval.to_dict() for interval in self.intervals],
             "peak": None if peak is None else {"pressure": peak.pressure, "at": list(peak.at)},
         }
 

@@ -7,7 +7,16 @@ import typer
 
 from bemcontact.choices import FormulationName, Weights
 from bemcontact.cli.failures import UNCERTIFIED, claim, claim_folder, told, write_json
-from bemcontact.cli.options import STANDARD_OUTPUT, JsonOption, SetOption, SpecArgument, VariantOption, names, several
+from bemcontact.cli.options import (
+    STANDARD_OUTPUT,
+    FitOption,
+    JsonOption,
+    SetOption,
+    SpecArgument,
+    VariantOption,
+    names,
+    several,
+)
 from bemcontact.output import whole_file
 from bemcontact.terminal import show, stages, tell
 
@@ -40,6 +49,7 @@ def compare(
     refine: Annotated[
         str, typer.Option(metavar="K,…", help="Split each element into K parts; several compare the meshes.")
     ] = "1",
+    fit_edges: FitOption = False,
     variant: VariantOption = None,
     overrides: SetOption = None,
     out: Annotated[
@@ -78,6 +88,8 @@ def compare(
 
         plan = planned_comparison(names(formulations), names(weights), penalties, starts=starts, seed=seed)
         problem = spec_file.load(spec, overrides or (), variant)
+        if fit_edges:
+            problem = problem.with_value("mesh.fit_contact_edges", True)
         study = comparing.study(plan, problem, parts, say, overrides or ())
         if out:
             say("report", "")

@@ -30,6 +30,9 @@ VariantOption = Annotated[
         show_default=False,
     ),
 ]
+FitOption = Annotated[
+    bool, typer.Option("--fit-edges", help="Grade the contact zones towards the ends of contact, once they are found.")
+]
 FigureOption = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Draw a picture; FILE ends in .png, .svg or .pdf.", show_default=False),

@@ -11,6 +11,7 @@ from bemcontact.cli.failures import UNCERTIFIED, claim, told, write_json
 from bemcontact.cli.options import (
     STANDARD_OUTPUT,
     FigureOption,
+    FitOption,
     JsonOption,
     RefineOption,
     SetOption,
@@ -58,6 +59,7 @@ def solve(
         int | None, typer.Option(min=1, metavar="N", help="Stop the solver after N iterations.", show_default="its own")
     ] = None,
     refine: RefineOption = 1,
+    fit_edges: FitOption = False,
     overrides: SetOption = None,
     variant: VariantOption = None,
     figure: FigureOption = None,
@@ -77,6 +79,7 @@ def solve(
       bemcontact solve models/cylinder_on_plane.yaml
       bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
       bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
+      bemcontact solve models/cylinder_on_plane.yaml --fit-edges
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp1
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --starts 20
@@ -102,6 +105,8 @@ def solve(
             max_iterations=max_iterations,
         )
         problem = spec_file.load(spec, overrides or (), variant).refined(refine)
+        if fit_edges:
+            problem = problem.with_value("mesh.fit_contact_edges", True)
         result = analysis.carry_out(
             plan, problem, lambda done: say(f"solving, start {min(done + 1, starts or 1)} of {starts}")
         )

@@ -1,6 +1,6 @@
 """The outline of the body: closed loops of named edges, the outer one anticlockwise, holes clockwise."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from math import dist, pi
 from typing import Self
@@ -9,15 +9,19 @@ import numpy as np
 from pydantic import model_validator
 
 from bemcontact.errors import Complaint, Path, ProblemError, dotted
-from bemcontact.problem.curves import CircularArc, Edge
-from bemcontact.problem.geometry import AnyEdge, Arc, Line, StatedLoop
+from bemcontact.problem.curves import CircularArc, Curve, Edge
+from bemcontact.problem.geometry import AnyEdge, Arc, Grading, Line, Place, StatedLoop
 from bemcontact.problem.loops import loop_complaints
-from bemcontact.problem.stated import Point, Stated, validation_error
+from bemcontact.problem.stated import Point, Stated, unknown_word, validation_error
 
 RADIUS_TOLERANCE = 1e-6
 """Relative difference of the two radii of an arc given by its ends: coordinates are written with a few digits."""
 JOINT_TOLERANCE = 1e-9
 """Distance of two edge ends, over the size of the body, below which they are one point."""
+ON_EDGE = 1e-3
+"""Distance of a place from its edge over the length of the edge up to which it is on it: people round coordinates."""
+APART = 1e-12
+"""Difference of two fractions of the length of an edge below which they are one place."""
 
 
 class Boundary(Stated):
@@ -46,6 +50,8 @@ class Boundary(Stated):
             complaints = [complaint for path, loop in stated for complaint in _ill_joined(path, loop, self.size)]
         if not complaints:
             complaints = loop_complaints(self.loops, self.loop_paths)
+            for (path, loop), joined in zip(stated, self.loops, strict=True):
+                complaints += _misplaced_ends(path, loop, joined)
         if complaints:
             raise validation_error("Boundary", complaints)
         return self
@@ -65,6 +71,22 @@ class Boundary(Stated):
         """All loops with both ends of their edges known, the outer one first."""
         return tuple(_joined(loop) for loop in self.stated_loops)
 
+    def with_element_ends(self, ends: Mapping[str, Sequence[float]]) -> Self:
+        """State all element ends of some edges; else as of `Problem`. The curves, checked already, stay as they are."""
+        known = [edge.name for edge in self.edges]
+        if unknown := [name for name in ends if name not in known]:
+            raise ProblemError(Complaint(path=(), message=unknown_word("edge", unknown[0], known)))
+        outer, *holes = [tuple(_with_ends(edge, ends.get(edge.name)) for edge in loop) for loop in self.stated_loops]
+        changed = type(self).model_construct(outer=outer, holes=tuple(holes))
+        complaints = [
+            complaint
+            for path, loop, joined in zip(self.loop_paths, changed.stated_loops, changed.loops, strict=True)
+            for complaint in _misplaced_ends(path, loop, joined)
+        ]
+        if complaints:
+            raise ProblemError(complaints)
+        return changed
+
     @property
     def edges(self) -> tuple[Edge, ...]:
         """All edges, loop by loop."""
@@ -75,6 +97,14 @@ class Boundary(Stated):
         """Diameter of the bounding box [L]."""
         points = np.vstack([edge.polyline() for edge in self.edges])
         return float(np.hypot(*np.ptp(points, axis=0)))
+
+
+def _with_ends(edge: AnyEdge, ends: Sequence[float] | None) -> AnyEdge:
+    """Give an edge all its element ends, or leave it."""
+    if ends is None:
+        return edge
+    inner = tuple(map(float, ends))
+    return type(edge)(**{**edge.model_dump(), "elements": len(inner) + 1, "grading": None, "ends_at": inner})
 
 
 def _doubled_names(loops: Iterable[tuple[Path, Sequence[AnyEdge]]]) -> Iterator[Complaint]:
@@ -162,8 +192,9 @@ def _joined(loop: Sequence[AnyEdge]) -> tuple[Edge, ...]:
     edges = []
     for i, edge in enumerate(loop):
         start, end = joints[i], joints[(i + 1) % len(loop)]
-        ratio, towards = (edge.grading.ratio, edge.grading.towards) if edge.grading else (1.0, "start")
         curve = edge.curve(start, end)
+        grading = edge.grading or Grading(ratio=1.0, towards="start")
+        towards = grading.towards
         edges.append(
             Edge(
                 name=edge.name,
@@ -171,8 +202,35 @@ def _joined(loop: Sequence[AnyEdge]) -> tuple[Edge, ...]:
                 start=start,
                 end=end,
                 elements=edge.elements,
-                ratio=ratio,
-                towards=towards,
+                ratio=grading.ratio,
+                towards=towards if isinstance(towards, str) else _fraction(curve, towards),
+                ends_at=tuple(sorted(_fraction(curve, place) for place in edge.ends_at)),
             )
         )
     return tuple(edges)
+
+
+def _fraction(curve: Curve, place: Place) -> float:
+    """Fraction of the arc length at a place that is a fraction already, or a point."""
+    return curve.fraction_at(place) if isinstance(place, tuple) else place
+
+
+def _misplaced_ends(path: Path, loop: Sequence[AnyEdge], joined: Sequence[Edge]) -> Iterator[Complaint]:
+    """Find element ends that are asked for beside their edge, at its ends, twice, or too many."""
+    for i, (edge, shape) in enumerate(zip(loop, joined, strict=True)):
+        taken = [0.0, 1.0]
+        for key, place in edge.places:
+            fraction = _fraction(shape.curve, place)
+            if isinstance(place, tuple):
+                (nearest,) = shape.points(np.array([fraction]))
+                if (off := dist(place, nearest)) > ON_EDGE * shape.length:
+                    message = f"the point {_written(place)} is {off:.3g} away from '{edge.name}'; take one on the edge"
+                    yield Complaint(path=(*path, i, *key), message=message)
+                    continue
+            if min(abs(fraction - other) for other in taken) < APART:
+                message = f"an element of '{edge.name}' ends there anyway; leave it out, or take another place"
+                yield Complaint(path=(*path, i, *key), message=message)
+            taken.append(fraction)
+        if edge.elements < len(taken) - 1:
+            message = f"'{edge.name}' cannot end elements at {len(taken) - 2} places with fewer than {len(taken) - 1}"
+            yield Complaint(path=(*path, i, "elements"), message=f"{message} elements; found {edge.elements}")

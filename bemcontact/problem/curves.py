@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan2, cos, degrees, fsum, hypot, pi, radians, sin
+from math import atan2, cos, degrees, hypot, pi, radians, sin
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ellipeinc
+
+from bemcontact.problem.element_ends import graded_ends
 
 Array = NDArray[np.float64]
 Pair = tuple[float, float]
@@ -31,6 +33,10 @@ class Curve(Protocol):
 
     def polyline(self) -> Array:
         """Points (k, 2) from start to end between which the curve is as good as straight."""
+        ...
+
+    def fraction_at(self, point: Pair) -> float:
+        """Fraction in [0, 1] of the arc length at which a point of the curve lies, or near which one beside it."""
         ...
 
 
@@ -58,6 +64,11 @@ class Segment:
     def polyline(self) -> Array:
         """Both ends (2, 2)."""
         return np.array([self.start, self.end])
+
+    def fraction_at(self, point: Pair) -> float:
+        """Fraction in [0, 1] of the arc length, of the nearest point."""
+        along, off = np.subtract(self.end, self.start), np.subtract(point, self.start)
+        return float(np.clip(along @ off / self.length**2, 0, 1))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,6 +102,11 @@ class CircularArc:
         """Points (k, 2) about one degree apart: the chords stray from the arc by 4e-5 of the radius."""
         return self.at(np.linspace(0, 1, _chords(self.sweep) + 1))
 
+    def fraction_at(self, point: Pair) -> float:
+        """Fraction in [0, 1] of the arc length, of the point in the same direction from the centre."""
+        x, y = np.subtract(point, self.center)
+        return _part_of_sweep(atan2(y, x), self.start_angle, self.sweep)
+
 
 @dataclass(frozen=True, kw_only=True)
 class EllipticArc:
@@ -123,6 +139,14 @@ class EllipticArc:
     def polyline(self) -> Array:
         """Points (k, 2) about one degree of eccentric angle apart."""
         return self._at_eccentric_angle(self.start_angle + np.linspace(0, 1, _chords(self.sweep) + 1) * self.sweep)
+
+    def fraction_at(self, point: Pair) -> float:
+        """Fraction in [0, 1] of the arc length, of the point with the same eccentric angle."""
+        (a, b), (x, y) = self.semi_axes, np.subtract(point, self.center)
+        c, s = cos(self.rotation), sin(self.rotation)
+        part = _part_of_sweep(atan2((c * y - s * x) / b, (c * x + s * y) / a), self.start_angle, self.sweep)
+        first, here, last = self._arc_length(self.start_angle + np.array([0.0, part, 1.0]) * self.sweep)
+        return float((here - first) / (last - first))
 
     def _at_eccentric_angle(self, t: Array) -> Array:
         """Points (k, 2) at eccentric angles t (k,)."""
@@ -170,7 +194,8 @@ class Edge:
     start, end : ends [L]; the very same numbers as the neighbours have
     elements : number of elements
     ratio : longest over shortest element, in geometric progression
-    towards : where the short elements are: "start", "end", or "both"
+    towards : where the short elements are: "start", "end", "both", "middle", or a fraction of the arc length
+    ends_at : fractions of the arc length at which elements end, ascending, beside 0 and 1
     """
 
     name: str
@@ -179,7 +204,8 @@ class Edge:
     end: Pair
     elements: int
     ratio: float = 1.0
-    towards: str = "start"
+    towards: str | float = "start"
+    ends_at: tuple[float, ...] = ()
 
     @property
     def length(self) -> float:
@@ -206,10 +232,7 @@ class Edge:
 
     @cached_property
     def _coarse_breakpoints(self) -> Array:
-        lengths = graded_lengths(self.elements, self.ratio, self.towards)
-        breakpoints = np.concatenate([[0.0], np.cumsum(lengths)])
-        breakpoints[-1] = 1.0
-        return breakpoints
+        return graded_ends(self.elements, self.ratio, self.towards, self.ends_at)
 
     def breakpoints(self, refine: int = 1) -> Array:
         """Fractions (elements · refine + 1,) of the element ends, each stated element cut into `refine` equal parts."""
@@ -222,6 +245,12 @@ class Edge:
         """Largest angle in radians by which one element turns."""
         return float(np.abs(np.diff(self.curve.tangent_angle(self.breakpoints(refine)))).max())
 
+    @property
+    def turning_per_length(self) -> float:
+        """Mean curvature [1/L], whichever way the edge bends."""
+        first, last = self.curve.tangent_angle(np.array([0.0, 1.0]))
+        return float(abs(last - first)) / self.length
+
     def polyline(self) -> Array:
         """Points (k, 2) from start to end between which the edge is as good as straight."""
         points = self.curve.polyline()
@@ -229,22 +258,12 @@ class Edge:
         return points
 
 
-def graded_lengths(elements: int, ratio: float, towards: str) -> Array:
-    """Lengths (elements,) of sum 1 in geometric progression, longest : shortest = ratio.
-
-    Parameters
-    ----------
-    elements : number of elements, at least 1
-    ratio : longest over shortest
-    towards : end of the short elements: "start", "end", or "both"
-    """
-    place = np.arange(elements)
-    if towards == "end":
-        place = place[::-1]
-    if towards == "both":
-        place = np.minimum(place, place[::-1])
-    lengths = ratio ** (place / max(place.max(), 1))
-    return lengths / fsum(lengths)
+def _part_of_sweep(angle: float, start: float, sweep: float) -> float:
+    """Part in [0, 1] of a sweep at which an angle in radians lies, or the end of it that is nearer."""
+    turned = (angle - start if sweep > 0 else start - angle) % (2 * pi)
+    if turned > (abs(sweep) + 2 * pi) / 2:
+        turned = 0.0
+    return min(turned / abs(sweep), 1.0)
 
 
 def _chords(sweep: float) -> int:

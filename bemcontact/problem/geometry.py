@@ -1,10 +1,11 @@
 """Edges as they are written: a line, an arc of a circle or of an ellipse, with its number of elements."""
 
-from math import atan2, hypot, pi, radians
-from typing import Annotated, Literal, Self
+from math import atan2, hypot, isfinite, pi, radians
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_validator
 
+from bemcontact.errors import Path
 from bemcontact.problem.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
 from bemcontact.problem.kinds import ByKind
 from bemcontact.problem.stated import (
@@ -17,10 +18,57 @@ from bemcontact.problem.stated import (
     PositivePair,
     Stated,
     complain,
+    described,
 )
 
 MOST_ELEMENTS = 10_000
 """On one boundary; the dense matrix of so many quadratic elements takes 13 gigabytes."""
+
+
+SIDES = ("start", "end", "both", "middle")
+"""Words for where the short elements of an edge are."""
+
+
+def _place(value: Any) -> float | Point:
+    """Read a place on an edge, a fraction of its length or a point."""
+    numbers = value if isinstance(value, list | tuple) else [value]
+    if not all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers):
+        raise complain(f"expected a fraction of the length such as 0.4, or a point [x, y]; found {described(value)}")
+    if isinstance(value, list | tuple):
+        if len(value) != 2 or not all(map(isfinite, value)):
+            raise complain(f"a point has two coordinates such as [0.0, 1.5]; found {described(value)}")
+        return float(value[0]), float(value[1])
+    if not 0 < value < 1:
+        raise complain(f"a fraction of the length lies between 0 and 1, where the edge itself ends; found {value:g}")
+    return float(value)
+
+
+def _towards(value: Any) -> str | float | Point:
+    """Read where the short elements are."""
+    if isinstance(value, str):
+        if value not in SIDES:
+            words = f"{', '.join(SIDES)}, a fraction of the length, or a point [x, y]"
+            raise complain(f"expected one of {words}; found {described(value)}")
+        return value
+    return _place(value)
+
+
+_PLACE_SCHEMA: dict[str, Any] = {
+    "type": ["number", "array"],
+    "exclusiveMinimum": 0,
+    "exclusiveMaximum": 1,
+    "items": {"type": "number"},
+    "minItems": 2,
+    "maxItems": 2,
+}
+Place = Annotated[float | Point, PlainValidator(_place), WithJsonSchema(_PLACE_SCHEMA)]
+"""A place on an edge: a fraction of its length from its start, or a point (x, y)."""
+Towards = Annotated[
+    str | float | Point,
+    PlainValidator(_towards),
+    WithJsonSchema({"anyOf": [{"enum": [*SIDES]}, _PLACE_SCHEMA]}),
+]
+"""Where the short elements are."""
 
 
 class Grading(Stated):
@@ -28,8 +76,9 @@ class Grading(Stated):
 
     ratio: Annotated[float, Strict(), Field(ge=1, le=1e6)]
     """The ratio of the longest element to the shortest, such as 4."""
-    towards: Literal["start", "end", "both"]
-    """The end of the edge with the short elements: start, end, or both."""
+    towards: Towards
+    """Where the short elements are: start, end, both, middle, or a place at which elements then end: a fraction of the
+    length of the edge, or a point [x, y] on it."""
 
 
 class _StatedEdge(Stated):
@@ -41,6 +90,17 @@ class _StatedEdge(Stated):
     """The number of boundary elements along the edge, such as elements: 8."""
     grading: Grading | None = None
     """Grading of the element lengths; equal lengths if left out."""
+    ends_at: tuple[Place, ...] = ()
+    """Places at which elements must end: fractions of the length of the edge, or points [x, y] on it. The nearest
+    element ends are moved there, the others in proportion."""
+
+    @property
+    def places(self) -> tuple[tuple[Path, Place], ...]:
+        """All places at which elements must end, each with its path of keys."""
+        stated: list[tuple[Path, Place]] = [(("ends_at", i), place) for i, place in enumerate(self.ends_at)]
+        if self.grading is not None and not isinstance(self.grading.towards, str):
+            stated.append((("grading", "towards"), self.grading.towards))
+        return tuple(stated)
 
 
 class Line(_StatedEdge):

@@ -1,6 +1,6 @@
 """A problem: a body, what acts on it, and the rigid surfaces that it may touch. Checked as a whole when it is made."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, Self
 
@@ -24,7 +24,7 @@ from bemcontact.problem.key_path import existing_path, parsed_path, with_entry
 from bemcontact.problem.loads import Loads
 from bemcontact.problem.material import Material
 from bemcontact.problem.reference import StatedReference, Words, reference_complaints
-from bemcontact.problem.stated import Count, Name, Stated, Text, complain, complaints_of, unknown_word
+from bemcontact.problem.stated import Count, Flag, Name, Stated, Text, complain, complaints_of, unknown_word
 from bemcontact.problem.variant import Variant, blamed
 from bemcontact.problem.written import Written
 
@@ -48,6 +48,8 @@ class MeshDensity(Stated):
 
     refine: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] = 1
     """The number of equal parts into which each stated element is cut."""
+    fit_contact_edges: Flag = False
+    """Whether to find the ends of contact first and grade the elements of the contact zones towards them."""
 
 
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
@@ -161,6 +163,29 @@ class Problem(Stated):
                 self.variant(name)
             except ProblemError as error:
                 yield from (replace(item, path=("variants", name, *item.path)) for item in error.complaints)
+
+    def with_element_ends(self, ends: Mapping[str, Sequence[float]]) -> Self:
+        """State all element ends of some edges, and fit no mesh any more.
+
+        Parameters
+        ----------
+        ends : by the name of an edge, fractions of its length at which its elements end, ascending, without 0 and 1
+
+        Returns
+        -------
+        Problem
+            A new one; `mesh.refine` is kept.
+
+        Raises
+        ------
+        ProblemError
+            If an edge does not exist, or its elements cannot end there, would turn too much or are too many.
+        """
+        boundary = self.boundary.with_element_ends(ends)
+        if complaints := mesh_complaints(boundary, ("boundary",), self.mesh.refine):
+            raise ProblemError(complaints)
+        mesh = self.mesh.model_copy(update={"fit_contact_edges": False})
+        return self.model_copy(update={"boundary": boundary, "mesh": mesh})
 
     def with_value(self, path: str, value: Any) -> Self:
         """Change one value and check the problem anew.

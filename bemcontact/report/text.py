@@ -68,6 +68,8 @@ def problem_summary(body: Body) -> RenderableType:
     )
     _add(facts, "Mesh", f"{len(mesh.elements)} elements, {len(mesh.nodes)} nodes, {len(body.points)} contact points")
     _add(facts, "Degrees of freedom", f"{mesh.degrees_of_freedom}")
+    if problem.mesh.fit_contact_edges:
+        _add(facts, "Mesh fit", "solve and compare grade the contact zones towards the ends of contact")
     for load in volume_loads(problem):
         _add(facts, "Volume load", load)
     for name, zone in problem.contact_zones.items():

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bemcontact.problem.curves import CircularArc, Edge, EllipticArc, Segment, graded_lengths, unit_vector
+from bemcontact.problem.curves import CircularArc, Edge, EllipticArc, Segment, unit_vector
+from bemcontact.problem.element_ends import graded_lengths
 
 FRACTIONS = np.linspace(0, 1, 41)
 CURVES = {
@@ -183,3 +184,11 @@ def test_unit_vectors_at_right_angles_are_exact(angle, expected):
 @given(st.floats(-720, 720))
 def test_unit_vectors_have_length_one(angle):
     assert hypot(*unit_vector(angle)) == pytest.approx(1, rel=1e-15)
+
+
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("fraction", [0.0, 1e-6, 0.3, 0.7, 1.0])
+def test_a_point_of_a_curve_knows_where_it_is(name, fraction):
+    curve = CURVES[name]
+    (point,) = curve.at(np.array([fraction]))
+    assert curve.fraction_at(tuple(point)) == pytest.approx(fraction, abs=1e-14)

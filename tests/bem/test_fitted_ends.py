@@ -1,0 +1,168 @@
+"""Element ends graded to ends of contact: where they lie, how many there are, what is left as it was."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bemcontact.bem.fitted_ends import CONTACT_SHARE, Touched, fitted_ends, resolved
+from bemcontact.bem.zone_runs import ZoneRun
+from bemcontact.problem.curves import Edge, Segment
+
+
+def run_of(lengths: Sequence[float], elements: Sequence[int], *, closed: bool = False, **changes: Any) -> ZoneRun:
+    """Straight edges in a row, each with equal elements; of a closed run nobody asks whether it really closes."""
+    joints = np.concatenate([[0.0], np.cumsum(lengths)])
+    edges = tuple(
+        Edge(name=f"edge {i}", curve=Segment(start=(a, 0.0), end=(b, 0.0)), start=(a, 0.0), end=(b, 0.0), elements=n)
+        for i, (a, b, n) in enumerate(zip(joints[:-1], joints[1:], elements, strict=True))
+    )
+    breakpoints = tuple(edge.breakpoints() for edge in edges)
+    ends = np.concatenate([[0.0], *(a + e.length * f[1:] for a, e, f in zip(joints, edges, breakpoints, strict=False))])
+    known: dict[str, Any] = {"corner": np.zeros(len(joints), bool), "neighbours": (np.inf, np.inf)}
+    return ZoneRun(
+        number=0, zone="zone", edges=edges, closed=closed, arc=ends, breakpoints=breakpoints, **known | changes
+    )
+
+
+def touched(start: float, end: float, *, start_free: bool = True, end_free: bool = True) -> Touched:
+    return Touched(start=start, end=end, start_free=start_free, end_free=end_free)
+
+
+def ends_of(run: ZoneRun, *stretches: Touched) -> np.ndarray:
+    found = fitted_ends(run, resolved(run, stretches))
+    assert found is not None
+    assert len(found) == len(run.ends)  # no element is made or lost
+    assert found[0] == 0
+    assert found[-1] == run.length
+    assert np.all(np.diff(found) > 0)
+    return found
+
+
+def test_one_end_of_contact_in_a_zone():
+    """Contact from the start to 3 of 4: two of three elements inside, ends at 3 ∓ b (i/n)³."""
+    ends = ends_of(run_of([4.0], [12]), touched(0, 3, start_free=False))
+    np.testing.assert_allclose(ends[:9], 3 - 3 * (1 - np.arange(9) / 8) ** 3, atol=1e-15)
+    np.testing.assert_allclose(ends[8:], 3 + (np.arange(5) / 4) ** 3, rtol=1e-15)
+
+
+def test_two_ends_of_contact_are_graded_to_from_the_middle():
+    ends = ends_of(run_of([6.0], [30]), touched(2, 4))
+    np.testing.assert_allclose(ends, 6 - ends[::-1], atol=1e-14)  # alike on both sides
+    at = int(np.flatnonzero(ends == 2)[0])
+    assert ends[30 - at] == 4
+    inside = ends[at : 31 - at]
+    n = (len(inside) - 1) / 2
+    np.testing.assert_allclose(inside[: len(inside) // 2], 2 + (np.arange(len(inside) // 2) / n) ** 3, rtol=1e-13)
+
+
+@given(st.floats(0.05, 0.45), st.floats(0.5, 0.95), st.integers(14, 60))
+def test_a_mirrored_run_is_divided_in_the_mirror(start, end, elements):
+    ends = ends_of(run_of([1.0], [elements]), touched(start, end))
+    mirrored = ends_of(run_of([1.0], [elements]), touched(1 - end, 1 - start))
+    np.testing.assert_allclose(mirrored, 1 - ends[::-1], atol=1e-12)
+
+
+@given(st.floats(1e-3, 0.9), st.integers(20, 80))
+def test_elements_across_an_end_of_contact_are_not_too_different(end, elements):
+    """The open side's first is at most CONTACT_SHARE³ times as long: what is left over by whole numbers is a half."""
+    ends = ends_of(run_of([1.0], [elements]), touched(0, end, start_free=False))
+    at = int(np.flatnonzero(np.isclose(ends, end, rtol=1e-12))[0])
+    assert (ends[at + 1] - end) / (end - ends[at - 1]) <= 1.5 * CONTACT_SHARE**3
+
+
+def test_joints_of_edges_stay_element_ends():
+    run = run_of([1.0, 0.5, 2.5], [3, 2, 7])
+    ends = ends_of(run, touched(0, 1.7, start_free=False))
+    assert {0.0, 1.0, 1.5, 1.7, 4.0} <= set(ends.tolist())
+    stated = run.fractions(ends)
+    assert sum(len(inside) + 1 for inside in stated.values()) == 12
+    assert all(0 < fraction < 1 for inside in stated.values() for fraction in inside)
+    assert stated["edge 2"][0:1] != ()
+
+
+def test_contact_that_ends_at_a_joint_all_but_is_graded_to_the_joint():
+    """A hundredth of an element is no element."""
+    run = run_of([2.0, 2.0], [8, 8])
+    assert resolved(run, [touched(0, 2.002)])[0].end == 2.0
+    assert resolved(run, [touched(0, 2.003)])[0].end == 2.003
+    assert resolved(run, [touched(1, 3.998)]) == (touched(1, 4.0, end_free=False),)
+    assert resolved(run, [touched(0.001, 3)]) == (touched(0, 3, start_free=False),)
+    assert resolved(run, [touched(1.999, 2.001)]) == ()
+
+
+def test_a_corner_at_which_contact_ends_divides_the_zone():
+    """Contact from 1.2 to the corner at 2: the edge beyond stays as it was stated."""
+    run = run_of([2.0, 3.0], [10, 6], corner=np.array([False, True, False]))
+    ends = ends_of(run, touched(1.2, 2.0, end_free=False))
+    np.testing.assert_allclose(ends[10:], np.linspace(2, 5, 7), rtol=1e-15)
+    assert 1.2 in ends[:10]
+
+
+def test_two_contacts_share_the_elements():
+    ends = ends_of(run_of([10.0], [40]), touched(1, 3), touched(6, 8))
+    assert {1.0, 3.0, 6.0, 8.0} <= set(ends.tolist())
+    counts = [np.count_nonzero((ends >= low) & (ends < high)) for low, high in ((1, 3), (6, 8))]
+    assert counts[0] == counts[1] > 10  # 8 shares of two times four, of about 12 in all
+
+
+def test_contacts_that_nearly_meet_share_what_is_between_them():
+    ends = ends_of(run_of([10.0], [40]), touched(2, 4.99), touched(5.01, 8))
+    between = ends[(ends >= 4.99) & (ends <= 5.01)]
+    assert len(between) >= 5  # two elements for each of the ends
+    np.testing.assert_allclose(between, 10 - between[::-1], rtol=1e-14)
+
+
+@pytest.mark.parametrize("shift", [0.0, 3.0, 9.0, -4.0])
+def test_a_closed_run_is_divided_alike_wherever_it_begins(shift):
+    """In the contact, if the seam lies elsewhere."""
+    run = run_of([12.0], [48], closed=True)
+    ends = ends_of(run, touched(4 + shift, 7 + shift))
+    turned = np.sort(np.mod(ends[:-1] - shift, 12))
+    near = turned[(turned >= 4) & (turned <= 7)]
+    np.testing.assert_allclose(near, 11 - near[::-1], atol=1e-13)
+    assert len(near) >= 21
+    assert near[0] == pytest.approx(4, rel=1e-14)
+
+
+def test_contact_may_lie_across_the_seam_of_a_closed_run():
+    ends = ends_of(run_of([12.0], [48], closed=True), touched(10, 13))
+    assert {0.0, 1.0, 10.0, 12.0} <= set(ends.tolist())
+
+
+def test_a_closed_run_with_a_corner_where_contact_ends():
+    run = run_of([6.0, 6.0], [12, 12], closed=True, corner=np.array([False, True, False]))
+    ends = ends_of(run, touched(4, 6, end_free=False))
+    assert {4.0, 6.0} <= set(ends.tolist())
+
+
+def test_the_last_element_does_not_jump_to_a_short_neighbour():
+    """The open side's last would be 37/64 of 2; the neighbour beyond the zone is 0.2, of which four times are 0.8."""
+    rough = ends_of(run_of([4.0], [12]), touched(0, 2, start_free=False))
+    gentle = ends_of(run_of([4.0], [12], neighbours=(np.inf, 0.2)), touched(0, 2, start_free=False))
+    assert np.diff(rough)[-1] > 0.8 * (1 + 1e-9)
+    assert np.diff(gentle)[-1] == pytest.approx(0.8, rel=1e-12)
+    at = int(np.flatnonzero(gentle == 2)[0])
+    np.testing.assert_array_equal(rough[: at + 1], gentle[: at + 1])  # nothing changes inside
+
+
+def test_a_neighbour_that_is_out_of_reach_changes_nothing():
+    rough = ends_of(run_of([4.0], [12]), touched(0, 2, start_free=False))
+    np.testing.assert_array_equal(
+        ends_of(run_of([4.0], [12], neighbours=(np.inf, 1e-6)), touched(0, 2, start_free=False)), rough
+    )
+
+
+def test_too_few_elements_are_told():
+    """Two on each side of each end of contact."""
+    assert fitted_ends(run_of([4.0], [7]), [touched(1, 3)]) is None
+    assert fitted_ends(run_of([4.0], [8]), [touched(1, 3)]) is not None
+
+
+def test_elements_are_neither_very_long_nor_turned_far_where_there_are_enough():
+    """A short contact on a long zone: none is longer than six times the mean."""
+    ends = ends_of(run_of([10.0], [60]), touched(0, 0.01, start_free=False))
+    assert np.diff(ends).max() <= 6 * 10 / 60

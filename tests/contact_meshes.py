@@ -1,0 +1,134 @@
+"""Problems whose contact ends inside a zone, for the tests of meshes that find these ends."""
+
+from typing import Any
+
+import bemcontact
+from bemcontact.problem import Problem
+
+CYLINDER = """
+name: cylinder, a zone of equal elements
+material: {{young_modulus: {E}, poisson_ratio: 0.3}}
+boundary:
+  outer:
+    - {{name: foot, kind: arc, center: [0, {R}], radius: {R}, angles: [-90, -61.6], elements: {n}}}
+    - {{name: flank, kind: arc, center: [0, {R}], radius: {R}, angles: [-61.6, 0], elements: 12,
+       grading: {{ratio: 8, towards: start}}}}
+    - {{name: top, elements: 6}}
+    - {{name: axis, start: [0, {R}], end: [0, 0], elements: 12, grading: {{ratio: 8, towards: end}}}}
+conditions:
+  top: {{pressure: {p}}}
+  axis: {{displacement: {{x: 0}}}}
+contact_zones:
+  foot: {{edges: foot, surface: {{kind: plane, point: [0, 0], normal: [0, 1]}}}}
+mesh: {{fit_contact_edges: true}}
+"""
+TABLE = """
+name: table on two round feet, loaded on one side
+material: {young_modulus: 1000, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: left foot, kind: arc, center: [-2, 1.5], radius: 1.5, angles: [225, 315], elements: 10}
+    - {name: bridge, elements: 4}
+    - {name: right foot, kind: arc, center: [2, 1.5], radius: 1.5, angles: [225, 315], elements: 10}
+    - {name: right, elements: 5}
+    - {name: top, start: [3.0606601717798214, 3], end: [-3.0606601717798214, 3], elements: 8}
+    - {name: left, elements: 5}
+conditions:
+  top: {pressure: {constant: 8, x: 1}}
+contact_zones:
+  feet: {edges: [left foot, bridge, right foot], surface: {kind: plane, point: [0, 0], normal: [0, 1]}}
+mesh: {fit_contact_edges: true}
+"""
+BLOCK = """
+name: block on a plane
+material: {young_modulus: 1000, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: bottom, start: [0, 0], elements: 8, grading: {ratio: 5, towards: both}}
+    - {name: right, start: [4, 0], elements: 6}
+    - {name: top, start: [4, 2], elements: 6}
+    - {name: left, start: [0, 2], elements: 4}
+conditions:
+  top: {pressure: 3}
+contact_zones:
+  foot: {edges: EDGES, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}
+mesh: {fit_contact_edges: true}
+"""
+CANTILEVER = """
+name: cantilever above a plane
+material: {young_modulus: 2e4, poisson_ratio: 0.29}
+boundary:
+  outer:
+    - {name: lower, start: [0, 0], end: [40, 0], elements: 10}
+    - {name: tip of lower, end: [50, 0], elements: 10}
+    - {name: end, end: [50, 5], elements: 4}
+    - {name: upper, elements: 20}
+    - {name: clamp, start: [0, 5], elements: 4}
+conditions:
+  upper: {pressure: 3.6}
+  clamp: {displacement: {x: 0, y: 0}}
+contact_zones:
+  tip: {edges: tip of lower, surface: {kind: plane, point: [0, -1], normal: [0, 1]}}
+mesh: {fit_contact_edges: true}
+"""
+RING = """
+name: ring on a pin
+material: {young_modulus: 210e3, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: rim, kind: arc, center: [0, 0], radius: 20, angles: [0, 180], elements: 12}
+    - {name: under, kind: arc, center: [0, 0], radius: 20, angles: [180, 360], elements: 12}
+  holes:
+    - [{name: bore, kind: arc, center: [0, 0], radius: 10, angles: [SEAM], elements: 36}]
+conditions:
+  under: {traction: {y: -25}}
+contact_zones:
+  pin: {edges: bore, surface: {kind: circle, center: [0, 0], radius: 9.98, body: outside}}
+mesh: {fit_contact_edges: true}
+"""
+
+
+def cylinder(elements: int, *, length: float = 1.0, stress: float = 1.0, load: float = 1.0) -> Problem:
+    """The paper's cylinder with equal elements in its zone, in any units, under a part of its load."""
+    text = CYLINDER.format(E=1000 * stress, R=8 * length, n=elements, p=50.625 * load * stress)
+    return bemcontact.loads(text)
+
+
+def table() -> Problem:
+    """Two contacts in one zone of three edges, more load on the right."""
+    return bemcontact.loads(TABLE)
+
+
+def block(edges: str) -> Problem:
+    """A block on a plane, in contact up to its corners."""
+    return bemcontact.loads(BLOCK.replace("EDGES", edges))
+
+
+def cantilever() -> Problem:
+    """The paper's last problem: contact starts at 42.395 and goes on to the free end."""
+    return bemcontact.loads(CANTILEVER)
+
+
+def ring(seam: float = 0.0) -> Problem:
+    """Contact on part of a closed zone, which begins at an angle in degrees."""
+    return bemcontact.loads(RING.replace("SEAM", f"{seam}, {seam - 360}"))
+
+
+def mirrored(problem: Problem) -> Problem:
+    """The same in a mirror, x for -x, run through the other way; of circles about the origin, lines and planes."""
+    data: dict[str, Any] = problem.model_dump()
+    outer, holes = data["boundary"]["outer"], data["boundary"]["holes"]
+    for edge in [*outer, *(edge for hole in holes for edge in hole)]:
+        if edge["grading"]:
+            edge["grading"]["towards"] = {"start": "end", "end": "start"}[edge["grading"]["towards"]]
+        if "center" in edge:
+            edge["center"] = (-edge["center"][0], edge["center"][1])
+            edge["angles"] = tuple(180 - angle for angle in reversed(edge["angles"]))
+        else:
+            start, end = problem.edge(edge["name"]).end, problem.edge(edge["name"]).start
+            edge["start"], edge["end"] = (-start[0], start[1]), (-end[0], end[1])
+    data["boundary"] = {"outer": outer[::-1], "holes": [hole[::-1] for hole in holes]}
+    for condition in data["conditions"].values():
+        if condition["pressure"]:
+            condition["pressure"]["x"] *= -1
+    return Problem(**data)
