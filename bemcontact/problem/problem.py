@@ -165,7 +165,7 @@ class Problem(Stated):
                 yield from (replace(item, path=("variants", name, *item.path)) for item in error.complaints)
 
     def with_element_ends(self, ends: Mapping[str, Sequence[float]]) -> Self:
-        """State all element ends of some edges, and fit no mesh any more.
+        """State all element ends of some edges; no mesh is fitted any more, and variants, which state others, are left out.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ class Problem(Stated):
         if complaints := mesh_complaints(boundary, ("boundary",), self.mesh.refine):
             raise ProblemError(complaints)
         mesh = self.mesh.model_copy(update={"fit_contact_edges": False})
-        return self.model_copy(update={"boundary": boundary, "mesh": mesh})
+        return self.model_copy(update={"boundary": boundary, "mesh": mesh, "variants": {}})
 
     def with_value(self, path: str, value: Any) -> Self:
         """Change one value and check the problem anew.
