@@ -165,7 +165,7 @@ class Problem(Stated):
                 yield from (replace(item, path=("variants", name, *item.path)) for item in error.complaints)
 
     def with_element_ends(self, ends: Mapping[str, Sequence[float]]) -> Self:
-        """State all element ends of some edges; no mesh is fitted any more, and variants, which state others, are left out.
+        """State all element ends of some edges; no mesh is fitted any more, and variants are left out.
 
         Parameters
         ----------
