@@ -1,6 +1,7 @@
 """What is asked: the body, what acts on it, and the rigid surfaces that it may touch; frozen, checked, no numerics."""
 
 from bemcontact.problem.boundary import Boundary
+from bemcontact.problem.closed_form import Crack, FlatPunch, Hertz, ProppedBeam, ShrinkFit, Uniform
 from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import Edge
@@ -8,7 +9,7 @@ from bemcontact.problem.geometry import Arc, EllipseArc, Grading, Line
 from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 from bemcontact.problem.problem import MeshDensity, Problem, Units
-from bemcontact.problem.reference import Crack, FlatPunch, Hertz, Reference, ShrinkFit, Table, Uniform, Values
+from bemcontact.problem.reference import Reference, Table, Values
 from bemcontact.problem.rigid_surface import Circle, Closest, DeflectedContour, Plane, Polyline, RigidSurface, Shape
 from bemcontact.problem.variant import Variant
 
@@ -37,6 +38,7 @@ __all__ = [
     "Plane",
     "Polyline",
     "Problem",
+    "ProppedBeam",
     "Reference",
     "RigidSurface",
     "Shape",

@@ -6,8 +6,20 @@ import numpy as np
 
 from bemcontact.contact import Array, CondensedContact
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Crack, FlatPunch, Hertz, Problem, Reference, ShrinkFit, Table, Uniform, Values
+from bemcontact.problem import (
+    Crack,
+    FlatPunch,
+    Hertz,
+    Problem,
+    ProppedBeam,
+    Reference,
+    ShrinkFit,
+    Table,
+    Uniform,
+    Values,
+)
 from bemcontact.reference.closed_forms import (
+    BeamOverProp,
     ClosedCrack,
     HertzContact,
     PunchOnHalfPlane,
@@ -28,6 +40,10 @@ HALF_PLANE = 10.0
 """How far a body goes that counts as a half-plane, in half-widths of contact; Hertz and punch are off by 0.5 % then."""
 INFINITE_PANEL = 20.0
 """How far a panel goes that counts as infinite, in half-lengths a of the crack; it is off by 3.4 (a/size)², 0.9 %."""
+SLENDER = 10.0
+"""Least span of a beam, in heights."""
+PRESSING = 0.25
+"""Least part of the free sag of a beam that its prop takes back; what is uncertain of the sag grows by 1 over it."""
 
 SOURCES: dict[type[Reference], str] = {
     Hertz: "Hertz; Johnson 1985, section 4.2",
@@ -35,6 +51,7 @@ SOURCES: dict[type[Reference], str] = {
     ShrinkFit: "Lamé; Timoshenko and Goodier 1970, article 28",
     Uniform: "uniform compression",
     Crack: "elliptical opening in an infinite panel, by superposition",
+    ProppedBeam: "beam theory with Timoshenko's shear",
 }
 """Kind of closed form -> where it comes from."""
 
@@ -44,6 +61,7 @@ TOLERANCES: dict[type[Reference], tuple[float, str]] = {
     ShrinkFit: (0.01, "exact in the linear theory; all is for the mesh"),
     Uniform: (0.01, "exact in the linear theory; all is for the mesh"),
     Crack: (0.02, "the smallest panel in its range is off by 0.9 %, the rest is for the mesh"),
+    ProppedBeam: (0.02, "beam theory is off by up to 1.3 % in its range, the rest is for the mesh"),
     Values: (0.01, "printed values of three digits, and the mesh"),
     Table: (0.05, "points are read off a figure to some per cent of its height"),
 }
@@ -102,6 +120,8 @@ def _expected(name: str, stated: Reference, problem: Problem, contact: Condensed
             return _uniform(silent, stated.pressure, contact)
         case Crack():
             return _crack(silent, stated, problem, contact)
+        case ProppedBeam():
+            return _propped_beam(silent, stated, problem)
         case Values():
             return _values(silent, stated, contact)
         case Table():
@@ -194,6 +214,34 @@ def _crack(silent: Expected, stated: Crack, problem: Problem, contact: Condensed
         in_range=in_range,
         remark="" if in_range else _shown(remark),
     )
+
+
+def _propped_beam(silent: Expected, stated: ProppedBeam, problem: Problem) -> Expected:
+    """The force of one support, in range for a slender beam that presses well on its prop."""
+    form = BeamOverProp(
+        load=stated.load,
+        span=stated.span,
+        height=stated.height,
+        gap=stated.gap,
+        modulus=contact_modulus(problem.material),
+        shear_modulus=problem.material.shear_modulus,
+    )
+    if stated.support == "prop" and not form.prop:
+        return replace(silent, in_range=False, remark="the beam does not reach its prop")
+    remark = _beyond_beam(stated, form)
+    force = form.end if stated.support == "end" else form.prop / (2 if stated.half else 1)
+    return replace(silent, resultant=force, in_range=not remark, remark=remark)
+
+
+def _beyond_beam(stated: ProppedBeam, form: BeamOverProp) -> str:
+    """Why beam theory is out of its range; nothing if it is not."""
+    slenderness = stated.span / stated.height
+    if slenderness < SLENDER * (1 - 1e-9):
+        return _shown(f"beam theory needs a slender beam; this one is {slenderness:.2g} heights long")
+    if 0 < form.sag - stated.gap < PRESSING * form.sag * (1 - 1e-9):
+        part = 1 - stated.gap / form.sag
+        return _shown(f"the beam barely reaches its prop, by {100 * part:.2g} % of its sag")
+    return ""
 
 
 def _shrink_fit(stated: ShrinkFit, problem: Problem) -> float:

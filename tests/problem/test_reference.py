@@ -7,7 +7,7 @@ import yaml
 from jsonschema import Draft202012Validator
 
 import bemcontact
-from bemcontact.problem import Crack, FlatPunch, Hertz, Problem, ShrinkFit, Table, Uniform, Values
+from bemcontact.problem import Crack, FlatPunch, Hertz, Problem, ProppedBeam, ShrinkFit, Table, Uniform, Values
 
 BODY = """\
 name: block on a plane
@@ -32,6 +32,7 @@ GOOD = {
     "disc": ("{kind: shrink_fit, rigid: bore, inner_radius: 0, outer_radius: 2, interference: 0.01}", ShrinkFit),
     "block": ("{kind: uniform, pressure: 5, tolerance: 0.001, reason: patch test}", Uniform),
     "crack": ("{kind: crack, half_length: 3, half_height: 0.3, compression: 75, center: [0, 0]}", Crack),
+    "beam": ("{kind: propped_beam, support: prop, load: 1, span: 20, height: 1, gap: 0}", ProppedBeam),
     "finite elements": ("{kind: values, source: own computation, peak: 183.335, start: -1, end: 1}", Values),
     "[SS92], Fig. 4": ("{kind: table, source: figure, zone: foot, pressure: [[1, 170], [0, 183]]}", Table),
     "angles": (
@@ -126,6 +127,16 @@ REFUSED = {
         "0, outer_radius:",
         "reference.it.inner_radius: must be greater than 0 on a pin; a disc",
     ),
+    "unknown support": (
+        "{kind: propped_beam, support: middle, load: 1, span: 20, height: 1, gap: 0}",
+        "middle, load",
+        "reference.it.support: expected 'prop' or 'end', found the text 'middle'",
+    ),
+    "prop above the beam": (
+        "{kind: propped_beam, support: prop, load: 1, span: 20, height: 1, gap: -1}",
+        "-1}",
+        "reference.it.gap: must be at least 0, found -1",
+    ),
     "per cent": (
         "{kind: uniform, pressure: 5, tolerance: 2}",
         "2}",
@@ -217,6 +228,7 @@ def test_each_mistake_is_refused_with_its_place(case: str):
         "{kind: hertz, load: 1, radius: 1}",
         "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0]}",
         "{kind: crack, half_length: 3, half_height: 0.3, compression: 75, center: [0, 0]}",
+        "{kind: propped_beam, support: prop, load: 1, span: 20, height: 1, gap: 0}",
         "{kind: values, source: s, half_width: 2}",
         "{kind: table, source: s, against: arc, pressure: [[0, 1], [1, 1]]}",
     ],
@@ -289,4 +301,4 @@ def test_the_block_of_the_readme_is_read():
     start = readme.index("\nreference:\n") + 1
     block = readme[start : readme.index("```", start)]
     references = bemcontact.loads(BODY + block).reference.values()
-    assert len({type(reference) for reference in references}) == 7
+    assert len({type(reference) for reference in references}) == 8

@@ -139,3 +139,33 @@ reference:
   table: {kind: table, source: statics, zone: wall, against: y, pressure: [[0.6, 2], [0.2, 4]]}
 """
 """Uniform compression 5 on the plane and 3 on the wall; one reference is wrong on purpose."""
+
+
+def propped_beam(span: float, gap: float) -> str:
+    """Half of a lightly loaded beam of height 1 on small rollers, that sinks by a part of its sag onto a middle one."""
+    middle, load = span / 2, 1e-4 * (20 / span) ** 4
+    sag = load * span * (5 / 8 * span**3 / 4000 + span * 2.6 / (2 * 4 * 5 / 6 * 1000))
+    beam = f"load: {load!r}, span: {span}, height: 1, gap: {gap * sag!r}, half: true"
+    roller = "kind: circle, radius: 0.5, body: outside"
+    return f"""
+name: propped beam
+material: {{young_modulus: 1000, poisson_ratio: 0.3, state: plane_stress}}
+boundary:
+  outer:
+    - {{name: overhang, start: [-1, 0], elements: 6, grading: {{ratio: 20, towards: end}}}}
+    - {{name: seat left, start: [-0.05, 0], elements: 4, grading: {{ratio: 10, towards: end}}}}
+    - {{name: seat right, start: [0, 0], elements: 4, grading: {{ratio: 10, towards: start}}}}
+    - {{name: under, start: [0.05, 0], elements: 24, grading: {{ratio: 30, towards: both}}}}
+    - {{name: middle, start: [{middle - 0.05}, 0], elements: 4, grading: {{ratio: 10, towards: end}}}}
+    - {{name: axis, start: [{middle}, 0], elements: 6, grading: {{ratio: 20, towards: start}}}}
+    - {{name: loaded, start: [{middle}, 1], elements: 20}}
+    - {{name: top end, start: [0, 1], elements: 2}}
+    - {{name: left, start: [-1, 1], elements: 2}}
+conditions: {{loaded: {{pressure: {load!r}}}, axis: {{displacement: {{x: 0}}}}}}
+contact_zones:
+  end: {{edges: [seat left, seat right], surface: {{center: [0, -0.5], {roller}}}}}
+  prop: {{edges: middle, surface: {{center: [{middle}, {-0.5 - gap * sag!r}], {roller}}}}}
+reference:
+  end: {{kind: propped_beam, support: end, zone: end, {beam}}}
+  prop: {{kind: propped_beam, support: prop, zone: prop, {beam}}}
+"""

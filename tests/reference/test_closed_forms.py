@@ -7,7 +7,14 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from bemcontact.problem import Material
-from bemcontact.reference.closed_forms import ClosedCrack, HertzContact, PunchOnHalfPlane, ShrunkRing, contact_modulus
+from bemcontact.reference.closed_forms import (
+    BeamOverProp,
+    ClosedCrack,
+    HertzContact,
+    PunchOnHalfPlane,
+    ShrunkRing,
+    contact_modulus,
+)
 
 STATES = ("plane_strain", "plane_stress")
 
@@ -130,3 +137,37 @@ def test_flat_opening_is_a_slit():
     )
     assert ellipse.pressure_along_plane == pytest.approx(slit.pressure_along_plane, rel=2e-6)
     assert 0 < slit.pressure_along_plane < 75
+
+
+def beam(gap: float, *, height: float = 2.0, shear_modulus: float = 400.0) -> BeamOverProp:
+    return BeamOverProp(load=0.3, span=30.0, height=height, gap=gap, modulus=1000.0, shear_modulus=shear_modulus)
+
+
+@pytest.mark.parametrize("part", [0.0, 0.3, 0.999, 1.0, 1.7])
+def test_beam_bends_down_to_its_prop(part: float):
+    """From the end force alone: slope φ = ∫ M/EI up to the middle, where it is 0, and w = ∫ φ + V/κGh. w is the gap."""
+    sag = beam(0.0).sag
+    form = beam(part * sag)
+    assert 2 * form.end + form.prop == pytest.approx(0.3 * 30, rel=1e-14)
+    assert (form.prop > 0) == (part < 1)
+
+    def shear(x: float) -> float:
+        return (form.end - 0.3 * x) / (5 / 6 * 400 * 2)
+
+    def slope(x: float) -> float:
+        return quad(lambda s: (form.end * s - 0.3 * s**2 / 2) / (1000 * 2**3 / 12), x, 15)[0]
+
+    sunk = quad(lambda x: slope(x) + shear(x), 0, 15)[0]
+    assert sunk == pytest.approx(min(part, 1.0) * sag, rel=1e-10, abs=1e-10 * sag)
+
+
+def test_stiff_prop_of_a_thin_beam_takes_five_eighths():
+    """The textbook's 1.25 q L of two spans L, and 3/8 q L at the ends, where shear does not count."""
+    form = beam(0.0, height=0.01)
+    assert form.prop == pytest.approx(5 / 8 * 0.3 * 30, rel=1e-5)
+    assert form.end == pytest.approx(3 / 16 * 0.3 * 30, rel=1e-5)
+
+
+def test_prop_of_a_beam_that_only_shears_takes_half():
+    """Without bending each span hangs between its ends like a string: half of its load to either."""
+    assert beam(0.0, shear_modulus=1e-6).prop == pytest.approx(0.3 * 30 / 2, rel=1e-6)

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from known_answers import BLOCK, crack, hertz, punch, ring
+from known_answers import BLOCK, crack, hertz, propped_beam, punch, ring
 
 import bemcontact
 from bemcontact.reference import Expected, expected
@@ -131,6 +131,46 @@ def test_ring_presses_everywhere_alike(rigid: str):
     one, contact = only(ring("plane_strain", rigid))
     assert one.compared.all()
     assert one.pressure == pytest.approx(np.full(contact.size, one.peak))
+
+
+def supports(span: float, gap: float, *overrides: str) -> tuple[Expected, Expected]:
+    """The references to the end and to the prop of a beam."""
+    problem = bemcontact.loads(propped_beam(span, gap), overrides=overrides)
+    end, prop = expected(problem, bemcontact.condense(problem))
+    return end, prop
+
+
+def test_supports_of_a_beam_share_its_load():
+    """Of half a beam the prop has half of its force, of a whole one all of it; no pressure is told of."""
+    end, prop = supports(20.0, 0.5)
+    assert end.resultant is not None
+    assert prop.resultant is not None
+    assert end.resultant + prop.resultant == pytest.approx(1e-4 * 10, rel=1e-12)
+    assert prop.in_range
+    assert not prop.compared.any()
+    _, whole = supports(20.0, 0.5, "reference.prop.half=false")
+    assert whole.resultant == pytest.approx(2 * prop.resultant, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("span", "gap", "remark"),
+    [
+        (9.0, 0.5, "beam theory needs a slender beam; this one is 9 heights long: shown, not judged"),
+        (10.0, 0.8, "the beam barely reaches its prop, by 20 % of its sag: shown, not judged"),
+    ],
+)
+def test_beam_out_of_range_is_shown_and_not_judged(span: float, gap: float, remark: str):
+    for one in supports(span, gap):
+        assert not one.in_range
+        assert one.remark == remark
+        assert one.resultant is not None
+
+
+def test_beam_that_misses_its_prop_rests_on_its_ends():
+    end, prop = supports(20.0, 1.1)
+    assert end.in_range
+    assert end.resultant == pytest.approx(1e-4 * 10, rel=1e-12)
+    assert (prop.in_range, prop.resultant, prop.remark) == (False, None, "the beam does not reach its prop")
 
 
 def test_zones_of_a_block():

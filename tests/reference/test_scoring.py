@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from known_answers import BLOCK, crack, hertz, pillow, punch, ring
+from known_answers import BLOCK, crack, hertz, pillow, propped_beam, punch, ring
 
 import bemcontact
 from bemcontact.assessment.footprint import Footprint, Resultant
@@ -101,6 +101,16 @@ def test_shrink_fit(state: str, rigid: str):
     found = scores(bemcontact.loads(ring(state, rigid)))
     assert all(item.judged and item.holds for item in found.values())
     assert found["fit", "pressure (largest difference)"].difference < 3e-3
+
+
+@pytest.mark.parametrize(("span", "prop", "end"), [(10.0, 8e-3, 1.3e-2), (20.0, 2e-3, 2.1e-3)])
+@pytest.mark.parametrize("gap", [0.0, 0.5, 0.75])
+def test_propped_beam(span: float, prop: float, end: float, gap: float):
+    """Off by as much as the closed form says of itself at 10 and at 20 heights, whatever part of the sag the gap is."""
+    found = scores(bemcontact.loads(propped_beam(span, gap)).refined(3))
+    assert all(item.judged and item.holds for item in found.values())
+    assert abs(found["prop", "resultant"].difference) < prop
+    assert abs(found["end", "resultant"].difference) < end
 
 
 def test_block_between_walls():
