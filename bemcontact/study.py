@@ -60,6 +60,7 @@ class MeshLevel:
             "notes": list(answer.notes),
             "force_balance": answer.residuals.force_balance,
             "equilibrium_slack": answer.equilibrium_slack,
+            "mesh_fit": None if answer.mesh_fit is None else answer.mesh_fit.to_dict(),
             "comparison": self.comparison.to_dict(),
             "references": [item.to_dict() for item in self.expected],
             "scores": [item.to_dict() for item in self.scores],

@@ -318,6 +318,21 @@ class Score(_Record):
     holds: bool
 
 
+class FitPass(_Record):
+    """A mesh on the way to one fitted to the ends of contact; how far these would move an element end."""
+
+    movement: float | None
+    intervals: list[Interval]
+
+
+class MeshFit(_Record):
+    """How the mesh was fitted to the ends of contact: the mesh as stated, then each fitted one."""
+
+    settled: bool
+    kept: int
+    passes: list[FitPass]
+
+
 class Level(_Record):
     """The comparison on one mesh, each stated element cut into `refine` parts."""
 
@@ -327,6 +342,7 @@ class Level(_Record):
     notes: list[str]
     force_balance: float | None
     equilibrium_slack: float | None
+    mesh_fit: MeshFit | None
     comparison: Comparison
     references: list[Expected]
     scores: list[Score]

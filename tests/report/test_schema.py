@@ -20,6 +20,7 @@ def reports() -> dict[str, dict]:
     cylinder = load("models/cylinder_on_plane.yaml")
     cases = {
         "cylinder": (planned_comparison(weights=["tributary", "consistent"], penalties=[1, 1e3]), cylinder, (1, 2)),
+        "fitted": (planned_comparison(["qp3"]), cylinder.with_value("mesh.fit_contact_edges", True), (1,)),
         "refused": (planned_comparison(["qp3"]), SPURIOUS, (1,)),
         "spurious": (planned_comparison(["qp1", "qp2"], starts=3), SPURIOUS, (1,)),
         "no contact": (planned_comparison(), CondensedContact.from_compliance(np.eye(2), [1.0, 1.0]), (1,)),
