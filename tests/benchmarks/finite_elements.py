@@ -16,7 +16,7 @@ from typing import Any
 
 import finite_elements_bodies as bodies
 import numpy as np
-from finite_elements_contact import Array, Level, Touch, node_at
+from finite_elements_contact import Array, Field, Touch, node_at
 from numpy.typing import ArrayLike
 from rich.console import Console
 from rich.table import Table
@@ -55,7 +55,7 @@ class Problem:
     """
 
     touch: Callable[[int], Touch]
-    coordinate: Level
+    coordinate: Field
     label: str
     singular: tuple[int, ...]
     points: dict[str, tuple[float, float]]
@@ -117,9 +117,13 @@ class Limit:
 
     def of(self, value: Callable[[Touch], Array | float]) -> tuple[Array, Array]:
         """A value extrapolated from the last two meshes, and how far the last one is from it."""
-        coarse, fine = np.asarray(value(self._coarse)), np.asarray(value(self._fine))
-        step = (fine - coarse) / (2**ORDER - 1)
-        return fine + step, abs(step)
+        return extrapolated(np.asarray(value(self._coarse)), np.asarray(value(self._fine)))
+
+
+def extrapolated(coarse: Array, fine: Array) -> tuple[Array, Array]:
+    """The limit of values with an error in h^ORDER, from those on h and h/2, and how far the latter are from it."""
+    step = (fine - coarse) / (2**ORDER - 1)
+    return fine + step, abs(step)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,7 +19,7 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 Place = Callable[[Array, Array], Sequence[Array]]
-Level = Callable[[Array, Array], Array]  # also a coordinate
+Field = Callable[[Array, Array], Array]
 
 ORDER = 6
 """Of the quadrature: 4 for straight elements, the rest for the curved ones."""
@@ -73,7 +73,7 @@ class ElasticBody:
     mesh: MeshTri2
     young_modulus: float
     poisson_ratio: float
-    held: tuple[tuple[Level, int], ...] = ()
+    held: tuple[tuple[Field, int], ...] = ()
 
     @cached_property
     def basis(self) -> Basis:
@@ -101,7 +101,7 @@ class ElasticBody:
         """Unknowns that are zero."""
         return np.concatenate([self.freedoms[axis, np.unique(self.sides(level))] for level, axis in self.held])
 
-    def sides(self, level: Level) -> IntArray:
+    def sides(self, level: Field) -> IntArray:
         """Nodes (m, 3), the middle one in between, of the sides on the boundary where level(x, y) = 0."""
         outer = self.mesh.boundary_facets()
         ends = np.asarray(self.mesh.facets)[:, outer]
@@ -113,7 +113,7 @@ class ElasticBody:
         tangents = np.einsum("qi,mix->mqx", SLOPES, self.nodes[sides])
         return WEIGHTS * np.hypot(tangents[..., 0], tangents[..., 1])
 
-    def traction(self, level: Level, value: Sequence[float]) -> Array:
+    def traction(self, level: Field, value: Sequence[float]) -> Array:
         """Nodal forces of a uniform traction (2,) [p] on a side."""
         sides, load = self.sides(level), np.zeros(self.freedoms.size)
         lengths = self.along_sides(sides) @ SHAPES
@@ -209,7 +209,7 @@ def node_at(nodes: Array, point: Sequence[float]) -> int:
 
 
 def press(
-    body: ElasticBody, load: Array, side: Level, coordinate: Level, normal: Place, gap: Callable[[IntArray], Array]
+    body: ElasticBody, load: Array, side: Field, coordinate: Field, normal: Place, gap: Callable[[IntArray], Array]
 ) -> Touch:
     """Press a body on a rigid frictionless surface.
 
@@ -257,7 +257,7 @@ def local_axes(body: ElasticBody, nodes: IntArray, normals: Array) -> tuple[spar
     axis = np.argmax(abs(normals), axis=1)
     freedom, other = body.freedoms[axis, nodes], body.freedoms[1 - axis, nodes]
     held = np.isin(freedom, body.held_freedoms) | np.isin(other, body.held_freedoms)
-    if (abs(normals[held]).max(axis=1, initial=0.0, where=np.ones_like(normals[held], bool)) < 1 - 1e-12).any():
+    if held.any() and abs(normals[held]).max(axis=1).min() < 1 - 1e-12:
         raise ValueError("a held node of the candidate side needs a normal along an axis")
     x, y = body.freedoms[:, nodes]
     columns = np.concatenate([freedom, other, freedom, other])
