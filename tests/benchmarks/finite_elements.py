@@ -33,7 +33,7 @@ EXPECTED = {1: (0.03, 1.0), 4: (0.005, 0.5)}
 LEGEND = """\
 ±: how far the finer mesh is from the limit. Forces are relative to the resultant, p to its peak, displacements to the
 largest of the table; ends of contact are in node spacings of the coordinate.
-Away from ends: by an element of the model's mesh, and by 5 % of the contact, from ends that are not of symmetry.
+Away from ends: by an element of the first mesh, and by 5 % of the contact, from ends that are not of symmetry.
 (!): p away from ends off by more than 3 % at refine 1 or 0.5 % at 4, or an end by more than one or half a spacing."""
 AWAY = 0.05
 """Of the length of contact: farther from its ends pressures are judged."""
@@ -144,7 +144,7 @@ class Pair:
     ----------
     problem, limit : and its solution by finite elements
     edges : names of those that may touch
-    refine : of the meshes, the first that of the model
+    refine : of the meshes
     results : what the package makes known of its solution on each
     """
 
@@ -165,7 +165,7 @@ class Pair:
         return nodes[np.argsort(nodes[:, 0])]
 
     def stretch(self, part: float) -> tuple[float, float]:
-        """Coordinates that are an element of the model's mesh, and a part of the contact, away from its ends.
+        """Coordinates that are an element of the first mesh, and a part of the contact, away from its ends.
 
         Ends that are of symmetry count as part of the contact.
         """
@@ -294,7 +294,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("problems", nargs="*", metavar="PROBLEM", help=", ".join(PROBLEMS), default=[*PROBLEMS])
     parser.add_argument("--levels", type=int, default=2, help="meshes of finite elements, at least 2")
-    parser.add_argument("--refine", nargs="+", type=int, default=[1, 4], help="meshes of bemcontact")
+    parser.add_argument("--refine", nargs="+", type=int, default=[1, 4], help="meshes of bemcontact, coarsest first")
     given = parser.parse_args()
     if unknown := set(given.problems) - set(PROBLEMS):
         parser.error(f"no problem {', '.join(sorted(unknown))}; take any of {', '.join(PROBLEMS)}")

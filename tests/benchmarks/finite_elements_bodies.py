@@ -63,8 +63,8 @@ def cylinder_on_plane(parts: int) -> Touch:
 def elliptical_crack_closure(parts: int) -> Touch:
     """Fig. 4: rays from the eccentric angles of the ellipse, where the nodes crowd to the tip, to the panel's edges."""
     corner = np.degrees(np.arctan2(10, 8))
-    angle = graded((0, 30, 34, 4), (30, corner, 12, 0.15), (corner, 90, 14, 2), parts=parts)
-    depth = graded((0, 0.25, 20, 80), (0.25, 0.8, 6, 1), (0.8, 1, 4, 0.2), parts=parts)
+    angle = graded((0, 40, 40, 4), (40, corner, 8, 0.3), (corner, 90, 14, 2), parts=parts)
+    depth = graded((0, 0.25, 20, 80), (0.25, 0.8, 5, 1), (0.8, 1, 4, 0.2), parts=parts)
 
     def place(s: Array, t: Array) -> tuple[Array, Array]:
         x, y = 3 * np.cos(np.radians(s)), 0.3 * np.sin(np.radians(s))
@@ -127,7 +127,13 @@ def bolt_in_plate(parts: int) -> Touch:
 def cantilever_flat_surface(parts: int) -> Touch:
     """Fig. 6, with E = 2e4: rigid plane 1 below the lower face."""
     x = graded(
-        (0, 25, 24, 12), (25, 40, 9, 0.4), (40, 41.5, 5, 0.3), (41.5, 43.5, 20, 1), (43.5, 50, 24, 0.1), parts=parts
+        (0, 25, 24, 12),
+        (25, 40, 9, 0.4),
+        (40, 41.5, 5, 0.3),
+        (41.5, 43.5, 20, 1),
+        (43.5, 47, 16, 3),
+        (47, 50, 14, 0.15),
+        parts=parts,
     )
     y = graded((0, 2.5, 8, 10), (2.5, 5, 8, 0.1), parts=parts)
     mesh = mapped(x, y, lambda s, t: (s, t))

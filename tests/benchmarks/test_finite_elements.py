@@ -1,5 +1,9 @@
 """The finite elements of the benchmark, where the answer is known in closed form."""
 
+from pathlib import Path
+
+import finite_elements_bodies
+import finite_elements_contact
 import numpy as np
 import pytest
 from finite_elements import extrapolated
@@ -31,6 +35,12 @@ def block(*, waves=0.0, held=((along_x, 0),)):
 
 def on_a_plane(body, load, gap=0.0):
     return press(body, load, lower, along_x, upwards, lambda nodes: np.full(len(nodes), gap))
+
+
+@pytest.mark.parametrize("module", [finite_elements_bodies, finite_elements_contact])
+def test_the_finite_elements_use_nothing_of_the_package(module):
+    assert "import bemcontact" not in (source := Path(module.__file__).read_text(encoding="utf-8"))
+    assert "from bemcontact" not in source
 
 
 def test_graded_elements():
