@@ -50,7 +50,7 @@ HOME = {
     "typer": ("bemcontact.cli",),
     "numba": ("bemcontact.bem.compiled",),
     "meshio": ("bemcontact.report.vtk",),
-    "jinja2": ("bemcontact.report.page",),
+    "jinja2": ("bemcontact.report.markup",),
     "rich": ("bemcontact.terminal", "bemcontact.report.text"),
 }
 """Foreign package -> the only rooms that import it."""
