@@ -55,6 +55,8 @@ REPRODUCTION = Contents(
     keys=frozenset({"reproduced", "refine", "problems", "versions"}),
 )
 """Of the problems of the paper."""
+KINDS = {kind.title: kind for kind in (REPORT, REPRODUCTION)}
+"""By their titles."""
 
 
 def ensure_folder_writable(folder: Path, contents: Contents = REPORT) -> None:

@@ -10,6 +10,8 @@ from bemcontact.report.words import number, with_unit
 
 FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
 """In the order of the table of iterations."""
+TINY = 1e-4
+"""Below this the size of a number is all that matters."""
 
 
 def render(record: Record, pictures: Mapping[str, bytes]) -> str:
@@ -18,7 +20,7 @@ def render(record: Record, pictures: Mapping[str, bytes]) -> str:
     Parameters
     ----------
     record : what `Reproduction.to_dict` gives, or numbers.json holds
-    pictures : name -> SVG, the names as of `bemcontact.report.figures.figures_of_reproduction`; missing ones are left out
+    pictures : name -> SVG, the names as of `bemcontact.report.figures.figures_of_reproduction`; some may be missing
 
     Returns
     -------
@@ -54,21 +56,10 @@ def verdict(record: Record) -> str:
     return f"{told} {held} of {judged} quantities are within what their references allow.{where}"
 
 
-def found_in_words(values: Sequence[float], unit: str) -> str:
-    """Write what was found: a number, from where to where, or that there is nothing to find.
-
-    Parameters
-    ----------
-    values : of a statement and a run
-    unit : its label; a number without one is written with two figures
-
-    Returns
-    -------
-    str
-    """
-    if not values:
-        return "no contact"
-    return with_unit(" to ".join(number(value) if unit else small(value) for value in values), unit)
+def found_in_words(values: Sequence[float]) -> str:
+    """Write what was found (k,): a number, from where to where, or that there is nothing to find; round-off briefly."""
+    told = (number(value) if abs(value) > TINY else small(value) for value in values)
+    return " to ".join(told) or "no contact"
 
 
 def counts(item: Record) -> Iterator[dict[str, Any]]:
@@ -100,12 +91,9 @@ def _contents(item: Record, pictures: Mapping[str, bytes]) -> dict[str, Any]:
     return {
         **item,
         "anchor": anchor,
-        "contact": found_in_words(finest["contact"], item["coordinate"]["unit"]),
+        "contact": with_unit(found_in_words(finest["contact"]), item["coordinate"]["unit"] * bool(peak)),
         "peak": with_unit(number(peak["pressure"]), units.stress) if peak else "no contact",
-        "rows": [
-            {**row, "found": [found_in_words(values, row["unit"]) for values in row["found"]]}
-            for row in item["statements"]
-        ],
+        "rows": [{**row, "found": [found_in_words(values) for values in row["found"]]} for row in item["statements"]],
         "meshes": [run["label"] for run in item["runs"] if run["variant"] is None],
         "known": [*_known(item, units)],
         "counts": [*counts(item)],

@@ -53,7 +53,12 @@ def _reproduced(plan: ComparisonPlan, paper: PaperProblem, refine: Sequence[int]
         paper=paper,
         problem=problem,
         variants=tuple(
-            Run(label=label, variant=variant, level=_once(plan, _problem(paper, variant), tell))
+            Run(
+                label=label,
+                variant=variant,
+                description=problem.variants[variant].description,
+                level=_once(plan, _problem(paper, variant), tell),
+            )
             for variant, label in paper.variants.items()
         ),
         meshes=tuple(Run(label=_fineness(level.refine), variant=None, level=level) for level in meshes),

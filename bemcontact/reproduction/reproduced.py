@@ -19,11 +19,13 @@ class Run:
     ----------
     label : what it is called
     variant : of the file, or None if it is the problem as stated
+    description : of the variant, as the file has it
     level : what came of it
     """
 
     label: str
     variant: str | None
+    description: str = ""
     level: MeshLevel
 
     def to_dict(self, axis: Values | Table) -> dict[str, Any]:
@@ -34,6 +36,7 @@ class Run:
         return {
             "label": self.label,
             "variant": self.variant,
+            "description": self.description,
             "refine": level.refine,
             "elements": sum(edge.elements for edge in problem.boundary.edges) * problem.mesh.refine,
             "dof": level.answer.degrees_of_freedom,
