@@ -112,8 +112,8 @@ CYLINDER = PaperProblem(
         "Hertz is not the solution of this problem: his formula needs a contact that is narrow beside the radius, "
         "and here its half-width is a third of it. So the right answer differs from his by some per cent, and is "
         "held against finite elements instead.",
-        "Nothing but contact holds the cylinder up. The paper used QP1 for it, since its (35)-(38) leave QP3 to "
-        "bodies that conditions hold; here QP3 has the free motion as an unknown, and finds the same.",
+        "Nothing but contact holds the cylinder up. The paper used QP1 for it, and could not have used QP3, whose "
+        "(35)-(38) need a body that conditions hold; here QP3 has the free motion as an unknown, and finds the same.",
     ),
 )
 
