@@ -76,7 +76,7 @@ def counts(item: Record) -> Iterator[dict[str, Any]]:
     """
     if item["iterations"]:
         printed = [str(item["iterations"].get(name, NOTHING)) for name in FORMULATIONS]
-        yield {"label": "the paper, by QPSOL", "printed": True, "cells": [NOTHING, *printed]}
+        yield {"label": "QPSOL, the paper", "printed": True, "cells": [NOTHING, *printed]}
     for run in item["runs"]:
         own = {solver["formulation"]: solver["iterations"] for solver in run["solvers"]}
         told = [NOTHING if own.get(name) is None else str(own[name]) for name in FORMULATIONS]
@@ -115,7 +115,7 @@ def _picture(pictures: Mapping[str, bytes], name: str, caption: str, item: Recor
 
 
 def _known(item: Record, units: Units) -> Iterator[dict[str, Any]]:
-    """The quantities of the references, each number with its unit."""
+    """The quantities of the references, with their units."""
     told = {reference["name"]: reference for reference in item["references"]}
     for score in item["scores"]:
         unit = unit_of_score(score["quantity"], told[score["reference"]], units)
@@ -124,9 +124,9 @@ def _known(item: Record, units: Units) -> Iterator[dict[str, Any]]:
             word, colour = "not judged", "fair"
         yield {
             "reference": score["reference"],
-            "quantity": score["quantity"],
-            "expected": with_unit(number(score["expected"]), unit),
-            "found": [NOTHING if value is None else with_unit(number(value), unit) for value in score["found"]],
+            "quantity": f"{score['quantity']} [{unit}]" if unit else score["quantity"],
+            "expected": number(score["expected"]),
+            "found": [NOTHING if value is None else number(value) for value in score["found"]],
             "difference": percent(score["difference"][-1]),
             "tolerance": percent(score["tolerance"]),
             "verdict": word,

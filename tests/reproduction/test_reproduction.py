@@ -1,5 +1,8 @@
 """What is put beside the paper is what a run of its own finds, and the sentences on the differences are true."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from reproductions import on_base_meshes, problem, with_coarse_mesh_judged
@@ -70,6 +73,18 @@ def test_curved_surface():
     assert high == pytest.approx(50.85, rel=1e-3)
     assert dict(curved.paper.iterations) == {"qp1": 63, "qp2": 47, "qp3": 70}
     assert all(apart < 1e-5 for (apart,) in findings(curved, Quantity.APART).values())
+
+
+def test_the_iterations_in_the_readme_are_measured():
+    """To a tenth, since round-off decides which of two equal constraints goes first."""
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    curved = problem("cantilever_curved_surface")
+    for run in curved.runs:
+        (row,) = re.findall(rf"^\| {run.label} \| ([\d |]+) \|$", readme, flags=re.MULTILINE)
+        points, *counts = map(int, row.split(" | "))
+        own = [solver["iterations"] for solver in run.to_dict(curved.axis)["solvers"]]
+        assert points == run.level.answer.contact.size
+        assert counts == pytest.approx(own[:3], rel=0.1)
 
 
 def test_forces_are_those_of_equilibrium():
