@@ -132,7 +132,7 @@ class Study:
             "settings": self.settings,
             "levels": [level.to_dict() for level in self.levels],
             "convergence": None if self.convergence is None else self.convergence.to_dict(),
-            "versions": _versions(),
+            "versions": versions(),
             "seconds": self.seconds,
         }
 
@@ -147,7 +147,7 @@ def _outdated(expected: Expected) -> Expected:
     return replace(expected, in_range=False, remark=remark)
 
 
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
     """Of the package, of Python and of what did the work."""
     found = {"bemcontact": bemcontact.__version__, "python": platform.python_version()}
     for name in VERSIONS:

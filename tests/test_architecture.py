@@ -10,7 +10,7 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-ABOVE = ("mesh_fit", "result", "fitting", "study", "analysis", "comparing", "report", "cli")
+ABOVE = ("mesh_fit", "result", "fitting", "study", "analysis", "comparing", "reproduction", "report", "cli")
 """Rooms that put both halves of the house together."""
 
 NEVER = {
@@ -22,7 +22,8 @@ NEVER = {
     "bemcontact.fitting": ("spec", "result", "study", "analysis", "comparing", "report", "cli"),
     "bemcontact.analysis": ("spec", "study", "comparing", "report", "cli"),
     "bemcontact.comparing": ("spec", "bem", "report", "cli"),
-    "bemcontact.report": ("spec", "formulations", "analysis", "comparing", "cli"),
+    "bemcontact.report": ("spec", "formulations", "analysis", "comparing", "reproduction.carrying_out", "cli"),
+    "bemcontact.reproduction": ("bem", "report", "cli"),
 }  # fmt: skip
 """Room -> rooms of ours that it never imports."""
 
@@ -52,8 +53,8 @@ HOME = {
     "typer": ("bemcontact.cli",),
     "numba": ("bemcontact.bem.compiled",),
     "meshio": ("bemcontact.report.vtk",),
-    "jinja2": ("bemcontact.report.page",),
-    "rich": ("bemcontact.terminal", "bemcontact.report.text"),
+    "jinja2": ("bemcontact.report.markup",),
+    "rich": ("bemcontact.terminal", "bemcontact.report.text", "bemcontact.report.reproduction_text"),
 }
 """Foreign package -> the only rooms that import it."""
 

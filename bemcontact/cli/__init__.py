@@ -13,6 +13,7 @@ import typer
 from bemcontact.cli.checking import check
 from bemcontact.cli.comparing import compare
 from bemcontact.cli.condensing import condense
+from bemcontact.cli.reproducing import reproduce
 from bemcontact.cli.schemas import schema
 from bemcontact.cli.solving import solve
 
@@ -59,5 +60,5 @@ def bemcontact(
     """
 
 
-for command in (check, solve, compare, condense, schema):
+for command in (check, solve, compare, reproduce, condense, schema):
     app.command()(command)

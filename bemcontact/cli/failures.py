@@ -14,9 +14,9 @@ from bemcontact.terminal import tell
 UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 
-def claim(spec: Path, outputs: Mapping[str, Path | None]) -> None:
+def claim(spec: Path | None, outputs: Mapping[str, Path | None]) -> None:
     """Refuse files (by option) that cannot be written, or that would overwrite another, before any work is done."""
-    claimed = {spec.resolve(): "the spec itself"}
+    claimed = {} if spec is None else {spec.resolve(): "the spec itself"}
     for option, path in outputs.items():
         if path is None:
             continue
@@ -30,17 +30,19 @@ def claim(spec: Path, outputs: Mapping[str, Path | None]) -> None:
             refuse(f"{option}: {error}")
 
 
-def claim_folder(spec: Path, option: str, folder: Path | None, beside: Path | None) -> None:
-    """Likewise for the folder of a report, with the spec and another file outside of it."""
+def claim_folder(
+    spec: Path | None, option: str, folder: Path | None, beside: Path | None, kind: str = "report"
+) -> None:
+    """Likewise for the folder of a report, or another kind, with the spec and another file outside of it."""
     if folder is None:
         return
     for path in (spec, beside):
         if path is not None and folder.resolve() in (path.resolve(), *path.resolve().parents):
             refuse(f"{option} {folder} would replace {path}; name another folder")
-    from bemcontact.report.folder import ensure_folder_writable
+    from bemcontact.report.folder import KINDS, ensure_folder_writable
 
     try:
-        ensure_folder_writable(folder)
+        ensure_folder_writable(folder, KINDS[kind])
     except OSError as error:
         refuse(f"{option}: {error}")
 

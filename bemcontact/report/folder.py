@@ -1,29 +1,71 @@
-"""The folder that a study is written to: page, numbers, pictures, matrices and spec, all of them or none."""
+"""The folders that studies and reproductions are written to: page, numbers, pictures and more, all or none of them."""
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 from bemcontact import output
-from bemcontact.report.figures import figures_of, vector_graphic
-from bemcontact.report.page import render
+from bemcontact.report import page, reproduction_page
+from bemcontact.report.figures import figures_of, figures_of_reproduction, vector_graphic
+from bemcontact.reproduction.reproduced import Reproduction
 from bemcontact.study import Study
 
-PAGE, NUMBERS, PICTURES, MATRICES, SPEC = "report.html", "report.json", "figures", "contact.npz", "spec.yaml"
-"""What stands in a folder."""
-PICTURE = re.compile(r"(problem|pressure|gap|deformed|difference|convergence|history-[a-z0-9-]+)\.svg")
-"""What the pictures are called, as of `figures_of`."""
-OURS = {"settings", "levels", "convergence", "versions"}
-"""Keys by which our report.json is known."""
+PICTURES = "figures"
+"""Folder of the pictures."""
 
 
-def ensure_folder_writable(folder: Path) -> None:
-    """Find out, before any work is done, whether `save` will be able to write here without loss of foreign files.
+@dataclass(frozen=True, kw_only=True)
+class Contents:
+    """What stands in a folder of ours, and by which it is known again.
 
     Parameters
     ----------
-    folder : that does not exist, is empty, or holds a report and nothing else, which will be replaced
+    title : what a folder of this kind is
+    page, numbers : names of the page, and of its numbers as JSON
+    others : names of further files
+    picture : what the pictures are called
+    keys : that the numbers have
+    """
+
+    title: str
+    page: str
+    numbers: str
+    others: tuple[str, ...] = ()
+    picture: re.Pattern[str]
+    keys: frozenset[str]
+
+
+REPORT = Contents(
+    title="report",
+    page="report.html",
+    numbers="report.json",
+    others=("contact.npz", "spec.yaml"),
+    picture=re.compile(r"(problem|pressure|gap|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"),
+    keys=frozenset({"settings", "levels", "convergence", "versions"}),
+)
+"""Of a study."""
+REPRODUCTION = Contents(
+    title="reproduction",
+    page="page.html",
+    numbers="numbers.json",
+    picture=re.compile(r"[a-z-]+-(problem|pressure)\.svg"),
+    keys=frozenset({"reproduced", "refine", "problems", "versions"}),
+)
+"""Of the problems of the paper."""
+KINDS = {kind.title: kind for kind in (REPORT, REPRODUCTION)}
+"""By their titles."""
+
+
+def ensure_folder_writable(folder: Path, contents: Contents = REPORT) -> None:
+    """Find out, before any work is done, whether a folder can be written without loss of foreign files.
+
+    Parameters
+    ----------
+    folder : that does not exist, is empty, or holds an earlier one of its kind and nothing else, which will be replaced
+    contents : its kind
 
     Raises
     ------
@@ -32,14 +74,15 @@ def ensure_folder_writable(folder: Path) -> None:
     """
     output.ensure_folder_place(folder)
     present = [*folder.iterdir()] if folder.is_dir() else []
-    foreign = [*_foreign(folder)]
+    foreign = [*_foreign(folder, contents)]
     if foreign:
         raise FileExistsError(
-            f"{folder} holds {foreign[0]}, which no report of ours has; name a new folder, or an empty one"
+            f"{folder} holds {foreign[0]}, which no {contents.title} of ours has; name a new folder, or an empty one"
         )
-    if present and not _is_report(folder / NUMBERS):
+    if present and not _is_ours(folder / contents.numbers, contents):
         raise FileExistsError(
-            f"{folder} is not empty and has no {NUMBERS} of ours; name a new folder, or one with an earlier report"
+            f"{folder} is not empty and has no {contents.numbers} of ours; name a new folder, or one with an earlier "
+            f"{contents.title}"
         )
 
 
@@ -60,21 +103,50 @@ def save(study: Study, folder: Path, spec: str | None = None) -> None:
     """
     ensure_folder_writable(folder)
     pictures = {name: vector_graphic(figure) for name, figure in figures_of(study).items()}
-    page = render(study.to_dict(), pictures, spec)
+    text = page.render(study.to_dict(), pictures, spec)
+    with _written(folder, REPORT, text, study.to_json(), pictures) as temporary:
+        study.finest.comparison.contact.save(temporary / "contact.npz")
+        if spec is not None:
+            (temporary / "spec.yaml").write_text(spec, encoding="utf-8", newline="\n")
+
+
+def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
+    """Write the problems of the paper.
+
+    Parameters
+    ----------
+    reproduction : of any of them
+    folder : that appears, or is replaced, as a whole: page.html, numbers.json, figures/*.svg
+
+    Raises
+    ------
+    OSError
+        As of `ensure_folder_writable`; nothing is changed then.
+    """
+    ensure_folder_writable(folder, REPRODUCTION)
+    pictures = {name: vector_graphic(figure) for name, figure in figures_of_reproduction(reproduction).items()}
+    text = reproduction_page.render(reproduction.to_dict(), pictures)
+    with _written(folder, REPRODUCTION, text, reproduction.to_json(), pictures):
+        pass
+
+
+@contextmanager
+def _written(
+    folder: Path, contents: Contents, text: str, numbers: str, pictures: Mapping[str, bytes]
+) -> Iterator[Path]:
+    """Write page, numbers and pictures, and give the temporary folder for what else belongs there."""
     with output.whole_folder(folder) as temporary:
         (temporary / PICTURES).mkdir()
         for name, picture in pictures.items():
             (temporary / PICTURES / f"{name}.svg").write_bytes(picture)
-        study.finest.comparison.contact.save(temporary / MATRICES)
-        if spec is not None:
-            (temporary / SPEC).write_text(spec, encoding="utf-8", newline="\n")
-        (temporary / NUMBERS).write_text(f"{study.to_json()}\n", encoding="utf-8", newline="\n")
-        (temporary / PAGE).write_text(page, encoding="utf-8", newline="\n")
-        ensure_folder_writable(folder)
+        (temporary / contents.numbers).write_text(f"{numbers}\n", encoding="utf-8", newline="\n")
+        (temporary / contents.page).write_text(text, encoding="utf-8", newline="\n")
+        yield temporary
+        ensure_folder_writable(folder, contents)
 
 
-def _foreign(folder: Path) -> Iterator[Path]:
-    """Name what a report has not."""
+def _foreign(folder: Path, contents: Contents) -> Iterator[Path]:
+    """Name what a folder of a kind has not."""
     if not folder.is_dir():
         return
     for path in sorted(folder.iterdir()):
@@ -82,16 +154,16 @@ def _foreign(folder: Path) -> Iterator[Path]:
             yield from (
                 picture
                 for picture in sorted(path.iterdir())
-                if not (PICTURE.fullmatch(picture.name) and picture.is_file())
+                if not (contents.picture.fullmatch(picture.name) and picture.is_file())
             )
-        elif path.name not in (PAGE, NUMBERS, MATRICES, SPEC) or not path.is_file():
+        elif path.name not in (contents.page, contents.numbers, *contents.others) or not path.is_file():
             yield path
 
 
-def _is_report(path: Path) -> bool:
-    """Whether a file is a report.json that `save` wrote."""
+def _is_ours(path: Path, contents: Contents) -> bool:
+    """Whether a file holds the numbers of a folder that was written here."""
     try:
-        report = json.loads(path.read_text(encoding="utf-8"))
+        numbers = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    return isinstance(report, dict) and report.keys() >= OURS
+    return isinstance(numbers, dict) and numbers.keys() >= contents.keys

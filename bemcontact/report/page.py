@@ -1,22 +1,12 @@
 """The page that a study is read on: one self-contained HTML file, from `Study.to_dict` and pictures alone."""
 
-import re
-from base64 import b64encode
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, Template
-
 from bemcontact.problem import Units
-from bemcontact.report.words import NEGLIGIBLE, number, per_thickness, plural, seconds_in_words, vector, with_unit
-
-Record = Mapping[str, Any]
-"""A part of a report: what stands between braces in report.json."""
-
-NOTHING = "–"
-"""Stands where there is no number."""
+from bemcontact.report.markup import NOTHING, Picture, Record, percent, picture, small, statement, template
+from bemcontact.report.words import NEGLIGIBLE, number, per_thickness, vector, with_unit
 
 OUTCOMES = {
     "solves it": "good",
@@ -43,34 +33,11 @@ DIRECT = {
 }
 """Outcome of the direct solution -> what is said of it."""
 
-PLAIN = 0.01, 1000.0
-"""Sizes of numbers that are read more easily without a power of ten."""
 MANY = 5
 """Contenders from which on they are counted and no longer listed at the head of the page."""
 
-FORMULATIONS = {"qp1": "QP1", "qp2": "QP2", "qp3": "QP3"}
-WIDE = 500.0
-"""Points from which on a picture is wide."""
 HISTORY = "history-"
 """What the names of the pictures of solvers begin with."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Picture:
-    """A picture in the page.
-
-    Parameters
-    ----------
-    source : the picture itself, as a data address
-    alternative : what it shows, for those who do not see it
-    caption : above it
-    wide : whether it needs the whole width of the page
-    """
-
-    source: str
-    alternative: str
-    caption: str
-    wide: bool
 
 
 def render(report: Record, pictures: Mapping[str, bytes], spec: str | None) -> str:
@@ -88,28 +55,12 @@ def render(report: Record, pictures: Mapping[str, bytes], spec: str | None) -> s
         HTML that needs no other file.
     """
     contents = _contents(report)
-    return _template().render(
+    return template("report.html", outcome=OUTCOMES.get).render(
         **contents,
         pictures={name: _picture(name, svg, contents["level"]) for name, svg in pictures.items()},
         courses=[name for name in pictures if name.startswith(HISTORY)],
         spec=spec,
     )
-
-
-def _template() -> Template:
-    """The page without its contents; what it is given is text, never markup."""
-    environment = Environment(
-        loader=PackageLoader("bemcontact.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(
-        number=_number, small=_small, percent=_percent, seconds=seconds_in_words, vector=vector, unit=with_unit,
-        plural=plural, plain=_plain, capital=_capital, statement=_statement, inertia=_inertia, outcome=OUTCOMES.get,
-    )  # fmt: skip
-    return environment.get_template("report.html")
 
 
 def _contents(report: Record) -> dict[str, Any]:
@@ -135,47 +86,6 @@ def _contents(report: Record) -> dict[str, Any]:
         "uncertified": [item["refine"] for item in report["levels"][:-1] if not item["comparison"]["certified"]],
         "stages": [*dict.fromkeys(stage for item in report["levels"] for stage in item["seconds"])],
     }
-
-
-def _number(value: float | None) -> str:
-    """Five figures."""
-    return NOTHING if value is None else number(value)
-
-
-def _small(value: float | None) -> str:
-    """Two figures of a number whose size is all that matters."""
-    if not value:
-        return NOTHING if value is None else "0"
-    return f"{value:.2g}" if PLAIN[0] <= abs(value) < PLAIN[1] else f"{value:.1e}"
-
-
-def _percent(value: float | None) -> str:
-    """Relative to one, with three figures; round-off is zero."""
-    if value is None:
-        return NOTHING
-    return f"{100 * value:.3g} %" if abs(value) > NEGLIGIBLE else "0 %"
-
-
-def _plain(text: str) -> str:
-    """A name from a program, in words: local_minimum, element_length."""
-    return text.replace("_", " ")
-
-
-def _capital(sentence: str) -> str:
-    """Begin a sentence with a capital letter, and leave all others as they are."""
-    return sentence[:1].upper() + sentence[1:]
-
-
-def _statement(name: str) -> str:
-    """The name of a formulation as it is printed."""
-    return FORMULATIONS.get(name, name)
-
-
-def _inertia(inertia: Sequence[int] | None) -> str:
-    """How many eigenvalues are positive, zero and negative."""
-    if inertia is None:
-        return NOTHING
-    return f"({', '.join(map(str, inertia))})"
 
 
 def _verdict(report: Record, compared: Record) -> str:
@@ -213,7 +123,7 @@ def _facts(level: Record, units: Units) -> Iterator[tuple[str, str]]:
     for name, amplitude in zip(contact["motion_names"], answer["rigid_amplitudes"], strict=True):
         yield f"Free {name}", with_unit(number(amplitude), units.length if name.startswith("translation") else "")
     if level["force_balance"] is not None:
-        yield "Force balance of the whole body", f"{_small(level['force_balance'])} of the forces on it"
+        yield "Force balance of the whole body", f"{small(level['force_balance'])} of the forces on it"
 
 
 def _scores(level: Record, units: Units) -> Iterator[dict[str, str]]:
@@ -221,13 +131,7 @@ def _scores(level: Record, units: Units) -> Iterator[dict[str, str]]:
     told = {item["name"]: item for item in level["references"]}
     for item in level["scores"]:
         quantity, reference = item["quantity"], told[item["reference"]]
-        if quantity == "resultant":
-            unit = per_thickness(units)
-        elif quantity == "peak" or quantity.startswith("pressure"):
-            unit = units.stress
-        else:
-            angle = reference["against"] == "angle" and quantity.endswith("of contact")
-            unit = "°" if angle else units.length
+        unit = unit_of_score(quantity, reference, units)
         verdict, colour = ("holds", "good") if item["holds"] else ("does not hold", "bad")
         if not item["judged"]:
             verdict, colour = "not judged", "fair"
@@ -236,11 +140,21 @@ def _scores(level: Record, units: Units) -> Iterator[dict[str, str]]:
             "quantity": quantity,
             "found": NOTHING if item["found"] is None else with_unit(number(item["found"]), unit),
             "expected": with_unit(number(item["expected"]), unit),
-            "difference": _percent(item["difference"]),
-            "tolerance": _percent(item["tolerance"]),
+            "difference": percent(item["difference"]),
+            "tolerance": percent(item["tolerance"]),
             "verdict": verdict,
             "colour": colour,
         }
+
+
+def unit_of_score(quantity: str, reference: Record, units: Units) -> str:
+    """Label of the unit of a quantity, as of `Score`, of which a reference speaks."""
+    if quantity == "resultant":
+        return per_thickness(units)
+    if quantity == "peak" or quantity.startswith("pressure"):
+        return units.stress
+    angle = reference["against"] == "angle" and quantity.endswith("of contact")
+    return "°" if angle else units.length
 
 
 def _certificate(answer: Record | None, units: Units) -> str:
@@ -255,21 +169,21 @@ def _certificate(answer: Record | None, units: Units) -> str:
     holds = (
         "The pressure was put back into the equations of the body: it presses nowhere into a rigid surface, pulls at "
         "none, keeps the body in equilibrium, and is zero wherever there is a gap, and no more than "
-        f"{_small(max(left[name] for name in names))} of its scale is left of any of these conditions."
+        f"{small(max(left[name] for name in names))} of its scale is left of any of these conditions."
     )
     if kind == "left open by round-off":
         return f"{holds} But in floating-point numbers this pressure cannot be told from others that are far from it."
     if kind != "unique":
         return (
             f"{holds} But a second contact state cannot be ruled out, because the smallest eigenvalue of the "
-            f"compliance ({_small(eigenvalue)}) is not positive, so that this is proved to be a solution, but not "
+            f"compliance ({small(eigenvalue)}) is not positive, so that this is proved to be a solution, but not "
             "the only one."
         )
     why = (
         "Equilibrium alone fixes the pressure, so that there is no other"
         if eigenvalue is None
         else "Two different contact states would differ by a pressure that stores no elastic energy, and none does "
-        f"here (the smallest eigenvalue of the compliance is {_small(eigenvalue)}, and positive), so that there is no "
+        f"here (the smallest eigenvalue of the compliance is {small(eigenvalue)}, and positive), so that there is no "
         "other"
     )
     return f"{holds} {why}{_bound(proved['error_bound'], answer['peak'], units)}."
@@ -279,8 +193,8 @@ def _bound(bound: float | None, peak: Record | None, units: Units) -> str:
     """How far round-off may have moved the pressure."""
     if bound is None or peak is None:
         return ""
-    size = with_unit(_small(bound), units.stress)
-    return f", and round-off moves no pressure by more than {size}, {_small(bound / peak['pressure'])} of the peak"
+    size = with_unit(small(bound), units.stress)
+    return f", and round-off moves no pressure by more than {size}, {small(bound / peak['pressure'])} of the peak"
 
 
 def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
@@ -305,23 +219,12 @@ def _picture(name: str, svg: bytes, level: Record) -> Picture:
     if caption is None:
         solver, _, weights = name.removeprefix(HISTORY).partition("-")
         weighted = f" with {weights.replace('-', ' ')} weights" if weights else ""
-        caption = f"{_statement(solver)}{weighted}" if solver != "direct" else "The direct solver"
+        caption = f"{statement(solver)}{weighted}" if solver != "direct" else "The direct solver"
     answer = level["comparison"]["reference"]["answer"]
     peak = answer and answer["peak"]
     extent = f"; the peak is {number(peak['pressure'])}" if name == "pressure" and peak else ""
     course = ": course of the search, iteration by iteration" if name.startswith(HISTORY) else ""
-    return Picture(
-        source=f"data:image/svg+xml;base64,{b64encode(svg).decode('ascii')}",
-        alternative=f"{caption}{course}{extent}",
-        caption=caption,
-        wide=_width(svg) > WIDE,
-    )
-
-
-def _width(svg: bytes) -> float:
-    """Width in points that a picture states; 0 if it states none."""
-    stated = re.search(rb'<svg[^>]* width="([\d.]+)pt"', svg)
-    return float(stated[1]) if stated else 0.0
+    return picture(svg, caption, f"{caption}{course}{extent}")
 
 
 CAPTIONS = {

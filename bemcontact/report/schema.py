@@ -16,18 +16,20 @@ OutcomeName = Annotated[str, Field(json_schema_extra={"enum": [outcome.value for
 KindName = Annotated[str, Field(json_schema_extra={"enum": [kind.value for kind in CertificateKind]})]
 
 
-class _Record(BaseModel):
+class Record(BaseModel):
+    """What stands between braces: all keys, and no others."""
+
     model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
 
-class Units(_Record):
+class Units(Record):
     """Labels of the units; numbers are never converted."""
 
     length: str
     force: str
 
 
-class Settings(_Record):
+class Settings(Record):
     """What was compared."""
 
     formulations: list[FormulationName]
@@ -41,14 +43,14 @@ class Settings(_Record):
     """Made to the spec with --set."""
 
 
-class Scales(_Record):
+class Scales(Record):
     """By which residuals and objectives are divided."""
 
     displacement: float
     pressure: float
 
 
-class Contact(_Record):
+class Contact(Record):
     """The contact points of the condensed problem; lists go point by point."""
 
     contact_nodes: int
@@ -67,7 +69,7 @@ class Contact(_Record):
     scales: Scales
 
 
-class Penalty(_Record):
+class Penalty(Record):
     """μ of QP2, free of units and raw, and up to which QP2 is convex; null if for every μ."""
 
     value: float
@@ -77,7 +79,7 @@ class Penalty(_Record):
     dimension: Literal["p/L²", "1/p"]
 
 
-class Search(_Record):
+class Search(Record):
     """How a local solver came to its end; inertias are numbers of positive, zero and negative eigenvalues."""
 
     start: str
@@ -92,7 +94,7 @@ class Search(_Record):
     penalty: Penalty | None
 
 
-class Trace(_Record):
+class Trace(Record):
     """One quantity, iteration by iteration."""
 
     quantity: str
@@ -100,14 +102,14 @@ class Trace(_Record):
     values: list[float]
 
 
-class AtPenalty(_Record):
+class AtPenalty(Record):
     """The objective of QP2 with one penalty."""
 
     penalty: float
     value: float
 
 
-class Objectives(_Record):
+class Objectives(Record):
     """One solution under every statement, scaled; all are zero at the contact state with positive diagonal weights."""
 
     weights: Weights
@@ -116,7 +118,7 @@ class Objectives(_Record):
     qp3: float
 
 
-class Residuals(_Record):
+class Residuals(Record):
     """What is left of the conditions, free of units."""
 
     penetration: float
@@ -129,7 +131,7 @@ class Residuals(_Record):
     force_balance: float | None
 
 
-class Certificate(_Record):
+class Certificate(Record):
     """What has been proved; the error bound is a pressure."""
 
     kind: KindName
@@ -138,7 +140,7 @@ class Certificate(_Record):
     words: str
 
 
-class Interval(_Record):
+class Interval(Record):
     """One unbroken stretch of contact."""
 
     zone: str
@@ -148,14 +150,14 @@ class Interval(_Record):
     """Arc positions of both on the piece of boundary."""
 
 
-class Peak(_Record):
+class Peak(Record):
     """The largest pressure, and where."""
 
     pressure: float
     at: Pair
 
 
-class Answer(_Record):
+class Answer(Record):
     """What a formulation found, and what was recomputed of it."""
 
     solver: str
@@ -180,7 +182,7 @@ class Answer(_Record):
     peak: Peak | None
 
 
-class End(_Record):
+class End(Record):
     """Where searches from random starts ended."""
 
     status: StatusName
@@ -193,7 +195,7 @@ class End(_Record):
     normal_displacement: list[float]
 
 
-class Starts(_Record):
+class Starts(Record):
     """Random starts, and how many ended at the contact state."""
 
     formulation: FormulationName
@@ -203,7 +205,7 @@ class Starts(_Record):
     ends: list[End]
 
 
-class Verdict(_Record):
+class Verdict(Record):
     """What an answer is worth, why, and where the weights are to blame the deeper reason."""
 
     outcome: OutcomeName
@@ -211,7 +213,7 @@ class Verdict(_Record):
     reason: str
 
 
-class Contender(_Record):
+class Contender(Record):
     """One formulation with its weights and penalty; `answer` is null if it refused."""
 
     label: str
@@ -229,7 +231,7 @@ class Contender(_Record):
     answer: Answer | None
 
 
-class Difference(_Record):
+class Difference(Record):
     """Of two pressures."""
 
     one: str
@@ -242,7 +244,7 @@ class Difference(_Record):
     """As `largest`, of what the first's solver found before its polish, from the polished other."""
 
 
-class Weighted(_Record):
+class Weighted(Record):
     """J M with one J, scaled; eigenvalues of its symmetric part on the equilibrium space."""
 
     weights: Weights
@@ -254,14 +256,14 @@ class Weighted(_Record):
     convex: bool
 
 
-class Matrices(_Record):
+class Matrices(Record):
     """Numbers of the condensed matrices."""
 
     condition: float
     weighted: list[Weighted]
 
 
-class Comparison(_Record):
+class Comparison(Record):
     """Formulations side by side on one mesh."""
 
     name: str
@@ -280,7 +282,7 @@ class Comparison(_Record):
     matrices: Matrices
 
 
-class Expected(_Record):
+class Expected(Record):
     """What a reference says; null where it says nothing."""
 
     name: str
@@ -305,7 +307,7 @@ class Expected(_Record):
     remark: str
 
 
-class Score(_Record):
+class Score(Record):
     """One quantity as found and as a reference expects it; the difference is relative."""
 
     reference: str
@@ -318,14 +320,14 @@ class Score(_Record):
     holds: bool
 
 
-class FitPass(_Record):
+class FitPass(Record):
     """A mesh on the way to one fitted to the ends of contact; how far these would move an element end."""
 
     movement: float | None
     intervals: list[Interval]
 
 
-class MeshFit(_Record):
+class MeshFit(Record):
     """How the mesh was fitted to the ends of contact: the mesh as stated, then each fitted one."""
 
     settled: bool
@@ -333,7 +335,7 @@ class MeshFit(_Record):
     passes: list[FitPass]
 
 
-class Level(_Record):
+class Level(Record):
     """The comparison on one mesh, each stated element cut into `refine` parts."""
 
     refine: int
@@ -348,7 +350,7 @@ class Level(_Record):
     scores: list[Score]
 
 
-class Quantity(_Record):
+class Quantity(Record):
     """A number on one mesh after the other, with the orders observed between them and the limit they lead to."""
 
     name: str
@@ -358,7 +360,7 @@ class Quantity(_Record):
     limit: float | None
 
 
-class Convergence(_Record):
+class Convergence(Record):
     """What changes with the mesh."""
 
     refine: list[int]
@@ -366,7 +368,7 @@ class Convergence(_Record):
     remark: str
 
 
-class Report(_Record):
+class Report(Record):
     """A problem compared on one mesh or several, the coarsest first."""
 
     name: str

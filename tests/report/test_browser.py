@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from chromium import Browser, browser, executable
+from reproductions import on_base_meshes
 from studies import of_many_settings, on_three_meshes
 
 from bemcontact.report import folder
@@ -12,6 +13,8 @@ from bemcontact.report import folder
 pytestmark = pytest.mark.skipif(executable() is None, reason="there is no Chromium on this machine")
 
 STUDIES = {"meshes": on_three_meshes, "settings": of_many_settings}
+PAPER = "paper"
+"""The page of the paper's problems, beside those of studies."""
 
 PICTURES = """
 Promise.all([...document.images].map(image => image.decode().then(() => image.naturalWidth * image.width)))
@@ -79,9 +82,12 @@ def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
         yield page
 
 
-@pytest.fixture(scope="module", params=STUDIES)
+@pytest.fixture(scope="module", params=[*STUDIES, PAPER])
 def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("reports") / request.param
+    if request.param == PAPER:
+        folder.save_reproduction(on_base_meshes(), place)
+        return place / "page.html"
     folder.save(STUDIES[request.param](), place, "name: x  # " + "long " * 60)
     return place / "report.html"
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from reproductions import on_base_meshes
 from studies import block, on_one_mesh, on_three_meshes, without_a_body
 
 from bemcontact.contact import CondensedContact
@@ -74,6 +75,29 @@ def test_a_folder_with_somebody_elses_report_is_refused(tmp_path: Path, content:
     (tmp_path / "report.json").rename(tmp_path / "report.html")
     with pytest.raises(FileExistsError, match=r"has no report\.json of ours"):
         folder.ensure_folder_writable(tmp_path)
+
+
+def test_a_reproduction_is_replaced_as_a_whole(tmp_path: Path):
+    place, paper = tmp_path / "paper", on_base_meshes()
+    for _ in range(2):
+        folder.save_reproduction(paper, place)
+    models = [item.paper.model.replace("_", "-") for item in paper.problems]
+    pictures = {f"figures/{model}-{what}.svg" for model in models for what in ("problem", "pressure")}
+    assert files(place) == {"page.html", "numbers.json", *pictures}
+    assert json.loads((place / "numbers.json").read_text(encoding="utf-8")) == json.loads(paper.to_json())
+    assert [*tmp_path.iterdir()] == [place]
+
+
+def test_folders_of_two_kinds_do_not_replace_each_other(tmp_path: Path):
+    folder.save_reproduction(on_base_meshes(), tmp_path / "paper")
+    folder.save(on_one_mesh(), tmp_path / "report")
+    with pytest.raises(FileExistsError, match=r"which no reproduction of ours has; name a new folder"):
+        folder.save_reproduction(on_base_meshes(), tmp_path / "report")
+    with pytest.raises(FileExistsError, match=r"which no report of ours has; name a new folder"):
+        folder.save(on_one_mesh(), tmp_path / "paper")
+    (tmp_path / "paper" / "numbers.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(FileExistsError, match=r"no numbers\.json of ours.*with an earlier reproduction"):
+        folder.save_reproduction(on_base_meshes(), tmp_path / "paper")
 
 
 def test_a_file_in_the_way_is_refused(tmp_path: Path):

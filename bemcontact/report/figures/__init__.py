@@ -7,12 +7,14 @@ from bemcontact.report.figures.comparison import draw_differences, draw_gaps, dr
 from bemcontact.report.figures.course import draw_convergence, draw_history
 from bemcontact.report.figures.page import FORMATS, ensure_known_format, save
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
+from bemcontact.report.figures.reproduction import draw_against, figures_of_reproduction
 from bemcontact.report.figures.result import draw_deformed, draw_gap, draw_pressure, figure_of_result
 from bemcontact.report.figures.study import figures_of
 from bemcontact.report.figures.vector_graphic import vector_graphic
 
 __all__ = [
     "FORMATS",
+    "draw_against",
     "draw_convergence",
     "draw_deformed",
     "draw_differences",
@@ -26,6 +28,7 @@ __all__ = [
     "figure_of_problem",
     "figure_of_result",
     "figures_of",
+    "figures_of_reproduction",
     "save",
     "vector_graphic",
 ]

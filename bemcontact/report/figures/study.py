@@ -39,7 +39,7 @@ def figures_of(study: Study) -> dict[str, Figure]:
     """
     level, figures = study.finest, dict[str, Figure]()
     if study.problem is not None:
-        figures["problem"] = _figure_of_problem(study.problem)
+        figures["problem"] = plan_of(study.problem)
     for name, draw in (("pressure", draw_pressures), ("gap", draw_gaps)):
         figures[name], axes = _page(3.9)
         draw(axes, level)
@@ -77,8 +77,8 @@ def _page(height: float) -> tuple[Figure, Axes]:
     return figure, figure.add_subplot()
 
 
-def _figure_of_problem(problem: Problem) -> Figure:
-    """Geometry, mesh and conditions, with the explanation of the colours below; slender bodies get more room."""
+def plan_of(problem: Problem) -> Figure:
+    """Draw geometry, mesh and conditions, with the explanation of the colours below; slender bodies get more room."""
     built = mesh.build(problem)
     width, height = np.ptp(built.nodes, axis=0)
     figure = new_page(WIDE if width > SLENDER * height else 6.2, 1.6 + float(np.clip(4.8 * height / width, 3.2, 7.0)))

@@ -1,0 +1,127 @@
+"""The page and the table of the paper's problems: their numbers are those of numbers.json, and nothing else."""
+
+import copy
+import json
+import re
+from html import unescape
+from io import StringIO
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator, ValidationError, validate
+from page_reader import ensure_self_contained, read
+from reproductions import on_base_meshes, with_coarse_mesh_judged
+from rich.console import Console
+
+from bemcontact.report.figures import figures_of_reproduction
+from bemcontact.report.reproduction_page import render
+from bemcontact.report.reproduction_schema import Reproduction, reproduction_schema
+from bemcontact.report.reproduction_text import reproduction_summary
+
+SVG = b'<svg xmlns="http://www.w3.org/2000/svg"/>'
+
+
+def record() -> dict[str, Any]:
+    """As another program reads it from the file."""
+    return json.loads(on_base_meshes().to_json())
+
+
+def table(record: dict[str, Any]) -> str:
+    console = Console(width=100, file=StringIO())
+    with console.capture() as captured:
+        console.print(reproduction_summary(record))
+    return captured.get()
+
+
+def test_the_page_is_whole_and_needs_nothing_else():
+    names = [
+        f"{item['model'].replace('_', '-')}-{what}" for item in record()["problems"] for what in ("problem", "pressure")
+    ]
+    page = render(record(), dict.fromkeys(names, SVG))
+    reader = read(page)
+    ensure_self_contained(page, reader)
+    pictures = [attrs for tag, attrs in reader.tags if tag == "img"]
+    assert len(pictures) == 10
+    assert all(picture["alt"] for picture in pictures)
+    assert "The paper's five problems" in reader.text
+    assert "Certified, and every reference is met." in reader.text
+
+
+def test_each_problem_stands_there_with_what_the_paper_says():
+    text = read(render(record(), {})).text
+    for item in record()["problems"]:
+        for told in (item["name"][1:], *(row["said"] for row in item["statements"]), *item["differs"]):
+            assert told in text
+        for run in item["runs"]:
+            assert run["description"] in text
+
+
+def test_numbers_come_from_the_record_alone():
+    """Another finding, expectation and count in the record are others on the page and in the table."""
+    changed = copy.deepcopy(record())
+    curved = changed["problems"][0]
+    curved["statements"][0]["found"][0] = [12.125]
+    curved["scores"][0]["found"][0] = 0.4375
+    curved["iterations"]["qp1"] = 6543
+    curved["runs"][0]["solvers"][1]["iterations"] = 7654
+    for write, told in (
+        (lambda item: read(render(item, {})).text, ("12.125", "0.4375", "6543", "7654")),
+        (table, ("12.125", "6543", "7654")),
+    ):
+        before, after = write(record()), write(changed)
+        for number in told:
+            assert number not in before
+            assert number in after
+
+
+def test_the_iterations_of_qpsol_stand_above_ours():
+    marked_up = render(record(), {}).split('<section id="iterations">')[1]
+    section = " ".join(unescape(re.sub(r"<[^>]+>", " ", marked_up)).split())
+    assert "QPSOL, the paper – 63 47 70 –" in section
+    for item in record()["problems"]:
+        for run in item["runs"]:
+            own = {solver["formulation"]: solver["iterations"] for solver in run["solvers"]}
+            cells = (run["contact_nodes"], *(own[name] for name in ("qp1", "qp2", "qp3", "complementarity")))
+            assert " ".join(map(str, (run["label"], *cells))) in section
+
+
+def test_what_fails_is_named():
+    failed = json.loads(with_coarse_mesh_judged().to_json())
+    text = read(render(failed, {})).text
+    assert "The paper's two problems" in text
+    assert "Not all of it holds." in text
+    assert "See Fig. 5." in text
+    assert "does not hold" in text
+    assert "NOT reproduced" in table(failed)
+
+
+def test_the_table_fits_a_terminal():
+    told = table(record())
+    assert max(map(len, told.splitlines())) <= 100
+    for words in ("Fig. 6", "no contact", "printed E", "QPSOL, the paper", "reproduced."):
+        assert words in told
+
+
+def test_the_schema_is_what_the_record_holds():
+    Draft202012Validator.check_schema(reproduction_schema())
+    for written in (record(), json.loads(with_coarse_mesh_judged().to_json())):
+        validate(written, reproduction_schema(), Draft202012Validator)
+        assert json.loads(Reproduction.model_validate(written).model_dump_json()) == written
+    with pytest.raises(ValidationError):
+        validate({**record(), "extra": 1}, reproduction_schema(), Draft202012Validator)
+
+
+def test_figures_show_curves_and_references():
+    """Of the flat surface the run without contact is left out; Fig. 2 has a second frame, the paper's."""
+    figures = figures_of_reproduction(on_base_meshes())
+    assert len(figures) == 10
+    (axes,) = figures["cantilever-flat-surface-pressure"].axes
+    labels = [str(line.get_label()) for line in axes.lines]
+    assert "printed E" not in labels
+    assert {"paper's mesh", "base mesh", "[SS92], Fig. 6: start 42.5", "finite elements: peak 11.57"} <= {*labels}
+    _, narrow = figures["cantilever-curved-surface-pressure"].axes
+    assert narrow.get_ylim() == (49.99, 50.01)
+    (axes,) = figures["cylinder-on-plane-pressure"].axes
+    assert "Hertz, out of its range" in [line.get_label() for line in axes.lines]
+    (axes,) = figures["bolt-in-plate-pressure"].axes
+    assert axes.get_xlabel() == "θ [°]"

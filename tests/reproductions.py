@@ -1,0 +1,25 @@
+"""The problems of the paper on their base meshes, carried out once for all tests, and one that fails."""
+
+from dataclasses import replace
+from functools import cache
+
+from bemcontact.reproduction.carrying_out import reproduce
+from bemcontact.reproduction.reproduced import Reproduced, Reproduction
+
+
+@cache
+def on_base_meshes() -> Reproduction:
+    return reproduce((1,))
+
+
+def problem(model: str) -> Reproduced:
+    """One of them, by the name of its file."""
+    return next(item for item in on_base_meshes().problems if item.paper.model == model)
+
+
+def with_coarse_mesh_judged() -> Reproduction:
+    """The paper's own mesh of the bolt, which misses the references, as if it were the base mesh."""
+    bolt = problem("bolt_in_plate")
+    mesh = replace(bolt.variants[0], variant=None, label="base mesh", description="")
+    coarse = replace(bolt, meshes=(mesh,))
+    return replace(on_base_meshes(), problems=(problem("cylinder_on_plane"), coarse))
