@@ -99,7 +99,8 @@ def test_load_does_not_move_the_end_of_receding_contact(formulation: str):
     """Ten times and a tenth of the load: the same interval, and a pressure that is ten times and a tenth as large."""
     once = result("receding_contact", formulation)
     for factor in (10, 0.1):
-        other = analysis.solve(problem("receding_contact").with_value("conditions.loaded.pressure", 100 * factor))
+        loaded = problem("receding_contact").with_value("conditions.loaded.pressure", 100 * factor)
+        other = analysis.solve(loaded, formulation)
         assert other.certified
         assert other.footprint.intervals[0].end == pytest.approx(once.footprint.intervals[0].end, rel=1e-9, abs=1e-9)
         assert other.solution.pressure == pytest.approx(factor * once.solution.pressure, abs=1e-9 * 79 * factor)
