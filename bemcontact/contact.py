@@ -82,6 +82,9 @@ class CondensedContact:
     weights : (n,) tributary weights [L]: Σ w p n is the force of the rigid surface
     consistent_weights : (n, n) ∫ h hᵀ ds [L], or None where no mesh stands behind the problem
     element_length_weights : (n,) [L], or None likewise
+    held_arc : (number of runs, 2) arc position of a run's ends that a condition holds on the rigid surface, up to which
+        there is contact although there is no contact point; not a number for other ends; None if there are none [L]
+    held_points : (number of runs, 2, 2) these ends [L], or None likewise
     motion_names : k descriptions of the free motions, for people
     notes : what was decided on the way and should be known
     name, zone_names, units : labels
@@ -106,6 +109,8 @@ class CondensedContact:
     weights: Array
     consistent_weights: Array | None = None
     element_length_weights: Array | None = None
+    held_arc: Array | None = None
+    held_points: Array | None = None
 
     def __post_init__(self) -> None:
         """Check shapes, refuse numbers that are not finite, make arrays read-only."""

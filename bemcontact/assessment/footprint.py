@@ -96,7 +96,8 @@ def footprint(condensed: CondensedContact, solution: ContactSolution) -> Footpri
     A point touches if p/T > δ/U. The end of an interval is read off the gap, which grows like s^(3/2) beyond it: the
     zero of the line through δ^(2/3) at the first three open points, as long as the gap grows, kept between the last
     point in contact and the first open one. With two open points the line goes through both; with one the end is put
-    half-way. Contact up to the end of a run ends at its last point.
+    half-way. Contact up to the end of a run ends at its last point, or at the node beyond it that a condition holds on
+    the rigid surface.
 
     Parameters
     ----------
@@ -136,6 +137,8 @@ class _Path:
     last: int
     run: int
     perimeter: float
+    held_arc: Array
+    held_points: Array
 
 
 def _path(condensed: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
@@ -155,6 +158,8 @@ def _path(condensed: CondensedContact, zone: int, run: int, gap: Array, touching
         last=m * (len(turns) // 2 + 1),
         run=run,
         perimeter=float(perimeter),
+        held_arc=np.full(2, np.nan) if condensed.held_arc is None else condensed.held_arc[run],
+        held_points=np.zeros((2, 2)) if condensed.held_points is None else condensed.held_points[run],
     )
 
 
@@ -192,7 +197,9 @@ def _end(path: _Path, last: int, step: int) -> float:
             break
         opened.append(i)
     if not opened:
-        return path.arc[last]
+        beyond = last + step in (-1, len(path.arc))
+        held = path.held_arc[0 if step < 0 else 1]
+        return held if beyond and np.isfinite(held) else path.arc[last]
     nearest = path.arc[opened[0]]
     if len(opened) == 1:
         return (path.arc[last] + nearest) / 2
@@ -201,7 +208,10 @@ def _end(path: _Path, last: int, step: int) -> float:
 
 
 def _at(path: _Path, position: float) -> Point:
-    """The point at an arc position, by the parabola through the three nearest points in order."""
+    """The point at an arc position: a held end, or by the parabola through the three nearest points in order."""
+    if position in path.held_arc:
+        x, y = path.held_points[int(np.flatnonzero(path.held_arc == position)[0])]
+        return float(x), float(y)
     count = min(3, len(path.arc))
     start = np.clip(np.argmin(np.abs(path.arc - position)) - 1, 0, len(path.arc) - count)
     arc, points = path.arc[start : start + count], path.points[start : start + count]

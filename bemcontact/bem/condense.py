@@ -247,6 +247,8 @@ def condense(body: Body) -> Condensation:
         weights=points.tributary,
         consistent_weights=points.consistent,
         element_length_weights=points.element_length,
+        held_arc=points.held_arc,
+        held_points=points.held_points,
     )
     return Condensation(body=body, system=system, response=response, contact=contact, gauge=gauge)
 

@@ -47,6 +47,9 @@ class ContactPoints:
     normals : (n, 2) of the rigid surface, into the body
     gap : (n,) ε [L]
     element, local, point : (q,) the (element, local node) pairs that carry the pressure of each point
+    held_arc : (runs, 2) arc position of the first and the last node of a piece if a condition holds it on the rigid
+        surface, else not a number [L]
+    held_points : (runs, 2, 2) these nodes [L]
     """
 
     mesh: Mesh
@@ -60,6 +63,8 @@ class ContactPoints:
     element: IntArray
     local: IntArray
     point: IntArray
+    held_arc: Array
+    held_points: Array
 
     @classmethod
     def none(cls, mesh: Mesh) -> Self:
@@ -68,6 +73,7 @@ class ContactPoints:
         return cls(
             mesh=mesh, node=numbers, zone=numbers, run=numbers, arc_position=none, run_length=none,
             normals=np.zeros((0, 2)), gap=none, element=numbers, local=numbers, point=numbers,
+            held_arc=np.zeros((0, 2)), held_points=np.zeros((0, 2, 2)),
         )  # fmt: skip
 
     def __len__(self) -> int:
@@ -139,7 +145,14 @@ def contact_points(
             free = ~_held_along(normals, values.displacement_given[nodes])
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
             goes_on = (False, False) if closed else _goes_on(mesh, values, elements, normals, gap)
-            pieces.append(_Piece(number, elements, length, goes_on, nodes[free], arc[free], normals[free], gap[free]))
+            on_surface = abs(gap + np.sum(normals * values.displacement[nodes], axis=1)) <= ALIKE * mesh.size
+            held = np.where(~free & on_surface & (not closed), arc, np.nan)[[0, -1]]
+            pieces.append(
+                _Piece(
+                    number, elements, length, goes_on, nodes[free], arc[free], normals[free], gap[free],
+                    held, mesh.nodes[nodes[[0, -1]]],
+                )
+            )  # fmt: skip
     return _joined(mesh, pieces)
 
 
@@ -162,7 +175,7 @@ def _goes_on(mesh: Mesh, values: BoundaryValues, elements: IntArray, normals: Ar
 
 
 class _Piece(NamedTuple):
-    """One run: its zone, elements and length, whether contact goes on beyond its ends, and its points."""
+    """One run: its zone, elements and length, whether contact goes on beyond its ends, its points, its held ends."""
 
     zone: int
     elements: IntArray
@@ -172,6 +185,8 @@ class _Piece(NamedTuple):
     arc: Array
     normals: Array
     gap: Array
+    held_arc: Array
+    held_points: Array
 
 
 def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
@@ -207,6 +222,8 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
         element=np.concatenate(elements)[used],
         local=np.tile(np.arange(3), len(point) // 3)[used],
         point=point[used],
+        held_arc=np.array([piece.held_arc for piece in pieces]),
+        held_points=np.array([piece.held_points for piece in pieces]),
     )
 
 
