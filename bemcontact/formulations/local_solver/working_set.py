@@ -123,6 +123,14 @@ class WorkingSet:
             of_rows = self._refined(of_rows, gradient)
         return np.concatenate([gradient - of_rows.dot(self.W), of_rows])
 
+    def of_all(self, multipliers: Array) -> Array:
+        """Those of all constraints (n + m,) from those of the working set, as `multipliers` has them."""
+        n, real = self.free.size, self.ids >= 0
+        found = np.zeros(self.held.size)
+        found[:n] = multipliers[:n] * self.held[:n]
+        found[self.ids[real]] = multipliers[n:][real]
+        return found
+
     def _refined(self, of_rows: Array, gradient: Array) -> Array:
         """Multipliers of the rows after a refinement; from a new N if there was too much to mend."""
         correction = (gradient - of_rows.dot(self.W)).dot(self.N)
