@@ -212,7 +212,7 @@ class Descent:
                 self.broken = True
             else:
                 hessian.leave(normal)
-                if added < normal.size:
+                if hessian.size and added < normal.size:
                     hessian.clear(added)
         self.value += change
         progress.write(2, self.value / progress.unit, step, added, self.dropped, working.number, nonpositive)

@@ -75,13 +75,15 @@ class ReducedHessian:
         d, H, Z = direction, self.statement.H, self.Z
         product = H.dot(d)
         curvature = float(d.dot(product))
+        length = 1.0
         for _ in range(2 if self.size else 0):
             d = d - Z.dot(product.dot(Z))
             product = H.dot(d)
             before, curvature = curvature, float(d.dot(product))
             if abs(curvature) > 0.01 * abs(before):
                 break  # no digits were lost that a second turn would bring back
-        length = float(d.dot(d))
+        if self.size:
+            length = float(d.dot(d))
         clear = curvature == 0.0 or abs(curvature) > 1e-8 * self._top * length
         rounding = 0.0 if clear else self.statement.rounding(d)
         if curvature > rounding:

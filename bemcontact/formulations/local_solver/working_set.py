@@ -88,9 +88,10 @@ class WorkingSet:
         r = kept.size
         self.number = n - free.size + r
         self.temporary, self.sharp = 0, True
-        signs = self.sides * (self.sides != EQUALITY)
+        signs = np.where(self.sides == EQUALITY, 0, self.sides)
         self._signs[:n] = signs[:n]
-        self._ids[:r], self._W[:r], self._signs[n : n + r] = n + kept, A[kept], signs[n + kept]
+        if r:
+            self._ids[:r], self._W[:r], self._signs[n : n + r] = n + kept, A[kept], signs[n + kept]
         self._resize(r)
 
     def _resize(self, rows: int) -> None:
@@ -186,11 +187,11 @@ class WorkingSet:
     def _hold(self, normal: Array, along: Array) -> Array | None:
         """N loses what it has along the normal; the new column, or None if the normal is in the span."""
         outside = (normal - along.dot(self.W)) * self.free
-        again = outside.dot(self.N)
-        if again.dot(again) > SHARP**2 * outside.dot(outside):
+        again, size = outside.dot(self.N), float(outside.dot(normal))
+        if again.dot(again) > SHARP**2 * size:
             self.sharp = False
             outside -= again.dot(self.W) * self.free
-        size = outside.dot(normal)
+            size = float(outside.dot(normal))
         if size <= ALIKE**2:
             return None
         inverse = outside / size
