@@ -117,6 +117,7 @@ def _result(stated: Statement, scales: Scales, progress: Progress, finding: Find
     n = stated.c.size
     x = np.minimum(np.maximum(scales.variables * progress.x, stated.lower[:n]), stated.upper[:n])
     multipliers = scales.multipliers(finding.multipliers) / scales.objective
+    first = [line.phase for line in progress.lines].count(1)
     return QPResult(
         x=x,
         status=finding.status,
@@ -124,8 +125,8 @@ def _result(stated: Statement, scales: Scales, progress: Progress, finding: Find
         bound_multipliers=multipliers[:n],
         constraint_multipliers=multipliers[n:],
         working_set=finding.sides,
-        phase_one_iterations=progress.iterations[0],
-        phase_two_iterations=progress.iterations[1],
+        phase_one_iterations=first,
+        phase_two_iterations=len(progress.lines) - first,
         working_set_changes=progress.changes,
         hessian=stated.H,
         reduced_inertia_start=start,

@@ -90,7 +90,7 @@ class ReducedHessian:
             self._columns[:, self.size] = d / sqrt(curvature)
             self._resize(self.size + 1)
         else:
-            self.pending = d / sqrt(length)
+            self.pending = d if length == 1.0 else d / sqrt(length)
             self.curvature = curvature / length if curvature < -rounding else 0.0
 
     def leave(self, normal: Array) -> None:

@@ -84,7 +84,13 @@ class Statement:
 
     def values(self, x: Array) -> Array:
         """[x; A x]."""
-        return np.concatenate([x, self.A.dot(x)]) if self.A.shape[0] else x
+        m, n = self.A.shape
+        if m == 0:
+            return x
+        values = np.empty(n + m)
+        values[:n] = x
+        self.A.dot(x, values[n:])
+        return values
 
     def transposed(self, y: Array) -> Array:
         """[I; A]ᵀ y."""
