@@ -71,8 +71,7 @@ def minimize_qp(
     sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # ratio tests divide by what does not move
-        finding, reduced_start = walk(progress, sides)
+    finding, reduced_start = walk(progress, sides)
     return _result(stated, scales, progress, finding, reduced_start)
 
 

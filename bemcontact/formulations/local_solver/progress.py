@@ -92,7 +92,7 @@ class Progress:
         size = np.maximum(np.abs(self.x), 1.0)
         self._travelled = np.minimum(self.travelled, size)
         self.far = min(self.far, sqrt(size.dot(size)))
-        self._weigh()
+        self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
     @property
     def objective(self) -> float:
@@ -172,10 +172,6 @@ class Progress:
         product = statement.H.dot(x)
         self.gradient = product + statement.c
         self._terms = max(sqrt(product.dot(product) * self._part), self._least)
-        self._weigh()
-
-    def _weigh(self) -> None:
-        """What counts as a zero gradient here."""
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
     def write(

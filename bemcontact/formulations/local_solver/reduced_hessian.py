@@ -98,6 +98,9 @@ class ReducedHessian:
         pending, self.pending = self.pending, None
         if self.size == 0:
             return
+        if self.size == 1 and pending is None:
+            self._resize(0)
+            return
         along = normal.dot(self.Z)
         length = sqrt(along.dot(along))
         if length == 0.0:

@@ -74,7 +74,7 @@ def first_order(progress: Progress, multipliers: Array, zero: Array) -> FirstOrd
     held = sides != 0
     wrong = np.where(held, sides * multipliers, size)
     wrong[statement.equality] = 0.0
-    held[n:] &= statement.A.any(axis=1)  # a row of zeros holds nothing
+    held[n:] &= np.logical_or.reduce(statement.A, axis=1)  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
     return FirstOrder(
         holds=feasible and stationary and np.count_nonzero(wrong <= 2.0 * zeros) == zeros.size,

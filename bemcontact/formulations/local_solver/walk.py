@@ -61,6 +61,7 @@ class Restart:
     failed: bool
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # ratio tests divide by what does not move
 def walk(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
     """Rounds of both phases until a claim survives its check, or the iterations or attempts are used up.
 
@@ -153,7 +154,7 @@ def _strict(descent: Descent, conditions: FirstOrder) -> bool:
     if working.temporary or np.count_nonzero(conditions.weak) or np.count_nonzero(working.held != conditions.strong):
         return False
     W, N, Z, H = working.W, working.N, hessian.Z, descent.progress.statement.H
-    inverse = working.size == 0 or largest(W @ N - np.eye(working.size)) < 1e-6
+    inverse = working.size == 0 or largest(W.dot(N) - np.eye(working.size)) < 1e-6
     complete = hessian.size + working.number == working.free.size
     if hessian.size == 0:
         return inverse and complete

@@ -122,7 +122,11 @@ class WorkingSet:
         of_rows = gradient.dot(self.N)
         if refined or not self.sharp:
             of_rows = self._refined(of_rows, gradient)
-        return np.concatenate([gradient - of_rows.dot(self.W), of_rows])
+        n = gradient.size
+        found = np.empty(n + self.size)
+        np.subtract(gradient, of_rows.dot(self.W), found[:n])
+        found[n:] = of_rows
+        return found
 
     def of_all(self, multipliers: Array) -> Array:
         """Those of all constraints (n + m,) from those of the working set, as `multipliers` has them."""
