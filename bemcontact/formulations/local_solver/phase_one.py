@@ -98,9 +98,9 @@ def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array
 def _step(
     progress: Progress, working: WorkingSet, signs: Array, outside: Array, direction: Array, dropped: int | None
 ) -> Array | None:
-    """Move along the direction to the constraint that ends the step and hold that; the violations then, if there is one.
+    """Move along the direction to the constraint that ends the step and hold that, if there is one.
 
-    `outside` are the violations before it.
+    `outside` is how far each constraint is violated before; it returns the same after the step.
     """
     length = sqrt(direction.dot(direction))
     along = progress.statement.values(direction)

@@ -157,7 +157,7 @@ class Progress:
         self.stalled = 0 if step * length > 1e-11 else self.stalled + 1
         if step > 0.0:
             self.far += step * length
-            self.values = self.values + step * along
+            self.values = self.values + (along if step == 1.0 else step * along)
             self.x = self.values[: self.x.size]
 
     def look(self) -> None:
@@ -171,7 +171,7 @@ class Progress:
             self._take_in()
         product = statement.H.dot(x)
         self.gradient = product + statement.c
-        self._terms = max(sqrt(product.dot(product) * self._part), self._least)
+        self._terms = max(sqrt(float(product.dot(product)) * self._part), self._least)
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
     def write(

@@ -71,7 +71,7 @@ class ReducedHessian:
         return float(slopes.dot(slopes)) * self._top * gradient.size <= zero**2
 
     def enter(self, direction: Array) -> None:
-        """A direction joins the null space: Z gains it, or it is pending: O(n²)."""
+        """A direction of length one joins the null space: Z gains it, or it is pending: O(n²)."""
         d, H, Z = direction, self.statement.H, self.Z
         product = H.dot(d)
         curvature = float(d.dot(product))
@@ -107,7 +107,8 @@ class ReducedHessian:
             return
         last = self._reflect(along, length)
         if pending is not None:
-            self.enter(length * pending - float(normal.dot(pending)) * last)
+            rest = length * pending - float(normal.dot(pending)) * last
+            self.enter(rest / sqrt(rest.dot(rest)))
 
     def _reflect(self, along: Array, length: float) -> Array:
         """Turn Z so that the normal meets its last column alone, and take that out; normalᵀ column = length."""

@@ -262,8 +262,8 @@ def _floats(name: str, given: Any) -> Array:
     try:
         if getattr(given, "dtype", None) != np.float64 and np.iscomplexobj(given):
             raise TypeError("it is complex")
-        dense = isinstance(given, np.ndarray) or not sparse.issparse(given)
-        return np.array(given if dense else given.toarray(), dtype=float)
+        dense = given if isinstance(given, np.ndarray) or not sparse.issparse(given) else given.toarray()
+        return np.array(dense, dtype=float)
     except (TypeError, ValueError) as error:
         raise ProblemError(f"{name} is no array of real numbers ({error}): give rows of equal length") from None
 

@@ -74,21 +74,20 @@ class WorkingSet:
         self._N, self._W = np.zeros((n, n), order="F"), np.zeros((n, n))
         self._ids, self._signs = np.zeros(n, dtype=np.intp), np.zeros(2 * n)
         free, rows = self.free.nonzero()[0], sides[n:].nonzero()[0]
-        kept, null_space = rows[:0], np.eye(free.size)
+        kept, self.null_space = rows[:0], np.eye(n)[:, free]
         if rows.size and free.size:
             normals, length = unit_rows(A[rows][:, free])
             Y, null_space, T, independent = orthogonal(normals, DEPENDENT)
-            kept = rows[independent]
+            kept, self.null_space = rows[independent], np.zeros((n, null_space.shape[1]))
+            self.null_space[free] = null_space
             self._N[free, : kept.size] = Y @ inverse_triangle(T).T / length[independent]
-        self.null_space = np.zeros((n, null_space.shape[1]))
-        self.null_space[free] = null_space
         if kept.size < rows.size:
             self.sides[n + rows], self.held[n + rows] = 0, False
             self.sides[n + kept], self.held[n + kept] = sides[n + kept], True
         r = kept.size
         self.number = n - free.size + r
         self.temporary, self.sharp = 0, True
-        signs = np.where(self.sides == EQUALITY, 0, self.sides)
+        signs = self.sides * (self.sides != EQUALITY)
         self._signs[:n] = signs[:n]
         if r:
             self._ids[:r], self._W[:r], self._signs[n : n + r] = n + kept, A[kept], signs[n + kept]
