@@ -39,7 +39,6 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
         return _with_equalities(statement, sides), None
     working = WorkingSet(statement, sides)
     progress.correct(working.onto(progress.x))
-    outside = statement.violation(progress.values)
     while violated := (signs := _signs_of_others(progress, working)).dot(signs):
         gradient = statement.transposed(signs)
         zero = fineness * progress.options.optimality_tolerance * sqrt(violated)
@@ -57,8 +56,7 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
             return working, None
         else:
             dropped, direction = None, working.within(-reduced)
-        outside = _step(progress, working, signs, outside, direction, dropped)
-        if outside is None:
+        if not _step(progress, working, signs, direction, dropped):
             return working, _certificate(working, signs, working.multipliers(gradient))
     if working.number == n and working.sharp and not np.count_nonzero(statement.equality > working.held):
         working.null_space = np.zeros((n, 0))  # a vertex: there is nothing to be made afresh
@@ -95,35 +93,28 @@ def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array
     return certificate
 
 
-def _step(
-    progress: Progress, working: WorkingSet, signs: Array, outside: Array, direction: Array, dropped: int | None
-) -> Array | None:
-    """Move along the direction to the constraint that ends the step and hold that, if there is one.
-
-    `outside` is how far each constraint is violated before; it returns the same after the step.
-    """
+def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Array, dropped: int | None) -> bool:
+    """Move along the direction to the constraint that ends the step and hold that; whether there is one."""
     length = sqrt(direction.dot(direction))
     along = progress.statement.values(direction)
     wall = nearest(progress, along, length, working.held | signs.astype(bool), working)
-    inner = _breakpoint(progress, signs, outside, along, length, INFINITY if wall is None else wall.step)
+    inner = _breakpoint(progress, signs, along, length, INFINITY if wall is None else wall.step)
     block = inner or wall
     if block is None:
-        return None
+        return False
     progress.move(along, block.step, length)
     if working.add(block.constraint, block.side) is None:
-        return None
-    outside = progress.statement.violation(progress.values)
-    progress.write(1, float(outside.sum()), block.step, block.constraint, dropped, working.number, 0)
-    return outside
+        return False
+    value = float(progress.statement.violation(progress.values).sum())
+    progress.write(1, value, block.step, block.constraint, dropped, working.number, 0)
+    return True
 
 
-def _breakpoint(
-    progress: Progress, signs: Array, outside: Array, along: Array, length: float, furthest: float
-) -> Block | None:
+def _breakpoint(progress: Progress, signs: Array, along: Array, length: float, furthest: float) -> Block | None:
     """Where the sum of infeasibilities stops falling, no further than that: the violated constraint that turns it."""
     statement, falling = progress.statement, -signs * along
     towards = (falling > 1e-10 * length).nonzero()[0]
-    near, speed = outside[towards], falling[towards]
+    near, speed = statement.violation(progress.values)[towards], falling[towards]
     entering = near / speed
     if entering.size == 0 or entering.item(entering.argmin()) > furthest:
         return None

@@ -81,10 +81,7 @@ class Descent:
         """Walk until no constraint can be dropped with profit, or for ever."""
         progress, working, hessian = self.progress, self.working, self.hessian
         while not self.broken:
-            # is there no Newton step to take, as far as that can be seen without multipliers?
-            if hessian.pending is None and (
-                not self.changed or hessian.is_stationary(progress.gradient, 0.1 * progress.zero)
-            ):
+            if hessian.pending is None and self._settled():
                 newton, place = self._next(working.multipliers(progress.gradient))
                 if not newton:
                     if place is None:
@@ -99,6 +96,10 @@ class Descent:
             elif (outcome := self._follow_curvature(hessian.pending)) is not None:
                 return outcome
         return Outcome(ending=Ending.INACCURATE)
+
+    def _settled(self) -> bool:
+        """Whether there is no Newton step to take, as far as that can be seen without multipliers."""
+        return not self.changed or self.hessian.is_stationary(self.progress.gradient, 0.1 * self.progress.zero)
 
     def _release(self, place: int) -> None:
         """Drop a constraint; its direction joins the null space."""
