@@ -71,8 +71,7 @@ def minimize_qp(
     sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # ratio tests divide by what does not move
-        finding, reduced_start = walk(progress, sides)
+    finding, reduced_start = walk(progress, sides)
     return _result(stated, scales, progress, finding, reduced_start)
 
 
@@ -117,6 +116,7 @@ def _result(stated: Statement, scales: Scales, progress: Progress, finding: Find
     n = stated.c.size
     x = np.minimum(np.maximum(scales.variables * progress.x, stated.lower[:n]), stated.upper[:n])
     multipliers = scales.multipliers(finding.multipliers) / scales.objective
+    first = [line.phase for line in progress.lines].count(1)
     return QPResult(
         x=x,
         status=finding.status,
@@ -124,8 +124,8 @@ def _result(stated: Statement, scales: Scales, progress: Progress, finding: Find
         bound_multipliers=multipliers[:n],
         constraint_multipliers=multipliers[n:],
         working_set=finding.sides,
-        phase_one_iterations=progress.iterations[0],
-        phase_two_iterations=progress.iterations[1],
+        phase_one_iterations=first,
+        phase_two_iterations=len(progress.lines) - first,
         working_set_changes=progress.changes,
         hessian=stated.H,
         reduced_inertia_start=start,

@@ -97,7 +97,7 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
     """Move along the direction to the constraint that ends the step and hold that; whether there is one."""
     length = sqrt(direction.dot(direction))
     along = progress.statement.values(direction)
-    wall = nearest(progress, along, length, working.held | (signs != 0.0), working)
+    wall = nearest(progress, along, length, working.held | signs.astype(bool), working)
     inner = _breakpoint(progress, signs, along, length, INFINITY if wall is None else wall.step)
     block = inner or wall
     if block is None:
@@ -114,13 +114,12 @@ def _breakpoint(progress: Progress, signs: Array, along: Array, length: float, f
     """Where the sum of infeasibilities stops falling, no further than that: the violated constraint that turns it."""
     statement, falling = progress.statement, -signs * along
     towards = (falling > 1e-10 * length).nonzero()[0]
-    lower, upper = statement.lower[towards], statement.upper[towards]
-    values, speed = progress.values[towards], falling[towards]
-    near = np.maximum(values - upper, lower - values)
+    near, speed = statement.violation(progress.values)[towards], falling[towards]
     entering = near / speed
     if entering.size == 0 or entering.item(entering.argmin()) > furthest:
         return None
-    steps = np.concatenate([entering, (near + (upper - lower)) / speed])
+    width = statement.upper[towards] - statement.lower[towards]
+    steps = np.concatenate([entering, (near + width) / speed])
     speeds = np.concatenate([speed, speed])
     order = steps.argsort(kind="stable")
     slope = float(signs.dot(along))

@@ -58,6 +58,8 @@ class Descent:
         Whether a constraint ended a step that by its normal cannot: the factors have lost too many digits.
     whole, idle : int
         Whole Newton steps in a row; releases since the last step.
+    multipliers, zero : (n + r,) and (n,) arrays
+        At a stationary end: those of the working set, and the size of each component of the gradient that is zero.
     """
 
     def __init__(self, progress: Progress, working: WorkingSet) -> None:
@@ -66,6 +68,7 @@ class Descent:
         self.changed = self.broken = False
         self.whole = self.idle = 0
         self._refused: set[int] = set()
+        self.multipliers = self.zero = progress.x[:0]
         self.working = working
         self.hessian = ReducedHessian(progress.statement, working.null_space)
         for direction in self.hessian.left_over.T:
@@ -108,8 +111,8 @@ class Descent:
     def _next(self, multipliers: Array) -> tuple[bool, int | None]:
         """Whether to take a Newton step; else the place of a constraint to drop, if there is one.
 
-        First by one tolerance for all, which is quick; where that finds nothing, each component by its own. A whole
-        Newton step ends at a stationary point: what a third one leaves over is rounding.
+        First by one tolerance for all, which is quick; where that finds nothing, each component by its own, at the
+        refined point. A whole Newton step ends at a stationary point: what a third one leaves over is rounding.
         """
         progress, working = self.progress, self.working
         n, least = working.free.size, progress.least_index
@@ -121,12 +124,23 @@ class Descent:
         place = wrong_sign(working, self._allowed(multipliers), progress.zero, least_index=least)
         if place is not None:
             return False, place
-        multipliers = working.multipliers(progress.gradient, refined=True)
-        zero = progress.fine_zero(multipliers[n:], working.W, working.N)
+        self._refine()
+        multipliers, zero = self.multipliers, self.zero
         if loose and (np.abs(multipliers[:n] * working.free) > zero).any():
             return True, None
         zeros = np.concatenate([zero, zero.dot(np.abs(working.N))])
         return False, wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
+
+    def _refine(self) -> None:
+        """Solve the equations of the working set from the data, twice."""
+        progress, working, hessian, x = self.progress, self.working, self.hessian, self.progress.x
+        for _ in range(2 if hessian.size else 1):
+            x = working.onto(x)
+            if hessian.size:
+                x = x + hessian.newton(progress.statement.H.dot(x) + progress.statement.c)
+        progress.correct(x)
+        self.multipliers = working.multipliers(progress.gradient, refined=True)
+        self.zero = progress.fine_zero(self.multipliers[x.size :], working.W, working.N)
 
     def _allowed(self, multipliers: Array) -> Array:
         """Without those of refused constraints."""
@@ -198,7 +212,7 @@ class Descent:
                 self.broken = True
             else:
                 hessian.leave(normal)
-                if added < normal.size:
+                if hessian.size and added < normal.size:
                     hessian.clear(added)
         self.value += change
         progress.write(2, self.value / progress.unit, step, added, self.dropped, working.number, nonpositive)

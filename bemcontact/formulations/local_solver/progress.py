@@ -33,8 +33,6 @@ class Progress:
         Tolerances, limit and log.
     unit : float
         The scaled objective over that of the data.
-    count : int
-        Iterations of both phases.
     long : float
         Length of a step on which the products that count as none may violate a constraint.
     x, values, gradient : arrays
@@ -62,8 +60,6 @@ class Progress:
     highest: Array = field(init=False)
     limit: int = field(init=False)
     long: float = field(init=False)
-    iterations: list[int] = field(default_factory=lambda: [0, 0])
-    count: int = 0
     changes: int = 0
     stalled: int = 0
     lines: list[LogLine] = field(default_factory=list)
@@ -88,7 +84,7 @@ class Progress:
 
     def _take_in(self) -> None:
         """The points passed since the last time."""
-        self._travelled = np.maximum(self._travelled, np.maximum.reduce(np.abs(self._passed)))
+        self._travelled = np.maximum.reduce(np.abs([self._travelled, *self._passed]))
         self._passed.clear()
 
     def forget(self) -> None:
@@ -96,7 +92,7 @@ class Progress:
         size = np.maximum(np.abs(self.x), 1.0)
         self._travelled = np.minimum(self.travelled, size)
         self.far = min(self.far, sqrt(size.dot(size)))
-        self._weigh()
+        self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
     @property
     def objective(self) -> float:
@@ -132,7 +128,7 @@ class Progress:
     @property
     def exhausted(self) -> bool:
         """Whether no iteration is left."""
-        return self.count >= self.limit
+        return len(self.lines) >= self.limit
 
     @property
     def least_index(self) -> bool:
@@ -161,7 +157,7 @@ class Progress:
         self.stalled = 0 if step * length > 1e-11 else self.stalled + 1
         if step > 0.0:
             self.far += step * length
-            self.values = self.values + step * along
+            self.values = self.values + (along if step == 1.0 else step * along)
             self.x = self.values[: self.x.size]
 
     def look(self) -> None:
@@ -176,10 +172,6 @@ class Progress:
         product = statement.H.dot(x)
         self.gradient = product + statement.c
         self._terms = max(sqrt(float(product.dot(product)) * self._part), self._least)
-        self._weigh()
-
-    def _weigh(self) -> None:
-        """What counts as a zero gradient here."""
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
     def write(
@@ -193,11 +185,9 @@ class Progress:
         nonpositive: int,
     ) -> None:
         """Count the iteration and log it, as a `LogLine`."""
-        self.iterations[phase - 1] += 1
-        self.count += 1
         self.changes += (added is not None) + (dropped is not None)
         real = None if dropped is None or dropped < 0 else dropped
-        line = LogLine(phase, self.count, value, step, added, real, working, nonpositive)
+        line = LogLine(phase, len(self.lines) + 1, value, step, added, real, working, nonpositive)
         self.lines.append(line)
         if self.options.log is not None:
             self.options.log(line)

@@ -55,7 +55,8 @@ def _first(progress: Progress, along: Array, speed: Array, away: NDArray[np.bool
     if not furthest < INFINITY:  # nor is there one where the values have overflowed
         return None
     if progress.stalled <= STALLED:
-        constraint = int((speed * (steps <= furthest)).argmax())
+        met = (steps <= furthest).nonzero()[0]
+        constraint = met.item(speed[met].argmax())
     else:
         least = steps.item(steps.argmin())
         constraint = int((steps <= least + 1e-13 * max(1.0, least)).argmax())

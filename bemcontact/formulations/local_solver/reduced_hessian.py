@@ -71,24 +71,26 @@ class ReducedHessian:
         return float(slopes.dot(slopes)) * self._top * gradient.size <= zero**2
 
     def enter(self, direction: Array) -> None:
-        """A direction joins the null space: Z gains it, or it is pending: O(n²)."""
+        """A direction of length one joins the null space: Z gains it, or it is pending: O(n²)."""
         d, H, Z = direction, self.statement.H, self.Z
         product = H.dot(d)
         curvature = float(d.dot(product))
+        length = 1.0
         for _ in range(2 if self.size else 0):
             d = d - Z.dot(product.dot(Z))
             product = H.dot(d)
             before, curvature = curvature, float(d.dot(product))
             if abs(curvature) > 0.01 * abs(before):
                 break  # no digits were lost that a second turn would bring back
-        length = float(d.dot(d))
+        if self.size:
+            length = float(d.dot(d))
         clear = curvature == 0.0 or abs(curvature) > 1e-8 * self._top * length
         rounding = 0.0 if clear else self.statement.rounding(d)
         if curvature > rounding:
             self._columns[:, self.size] = d / sqrt(curvature)
             self._resize(self.size + 1)
         else:
-            self.pending = d / sqrt(length)
+            self.pending = d if length == 1.0 else d / sqrt(length)
             self.curvature = curvature / length if curvature < -rounding else 0.0
 
     def leave(self, normal: Array) -> None:
@@ -96,13 +98,17 @@ class ReducedHessian:
         pending, self.pending = self.pending, None
         if self.size == 0:
             return
+        if self.size == 1 and pending is None:
+            self._resize(0)
+            return
         along = normal.dot(self.Z)
         length = sqrt(along.dot(along))
         if length == 0.0:
             return
         last = self._reflect(along, length)
         if pending is not None:
-            self.enter(length * pending - float(normal.dot(pending)) * last)
+            rest = length * pending - float(normal.dot(pending)) * last
+            self.enter(rest / sqrt(rest.dot(rest)))
 
     def _reflect(self, along: Array, length: float) -> Array:
         """Turn Z so that the normal meets its last column alone, and take that out; normalᵀ column = length."""

@@ -80,11 +80,17 @@ class Statement:
 
     def objective(self, x: Array) -> float:
         """cᵀx + xᵀHx/2."""
-        return float(x @ (self.c + 0.5 * (self.H @ x)))
+        return float(x.dot(self.c + 0.5 * self.H.dot(x)))
 
     def values(self, x: Array) -> Array:
         """[x; A x]."""
-        return np.concatenate([x, self.A.dot(x)]) if self.A.shape[0] else x
+        m, n = self.A.shape
+        if m == 0:
+            return x
+        values = np.empty(n + m)
+        values[:n] = x
+        self.A.dot(x, values[n:])
+        return values
 
     def transposed(self, y: Array) -> Array:
         """[I; A]ᵀ y."""
@@ -165,19 +171,20 @@ def _ruiz(H: Array, A: Array) -> Array:
     m, n = A.shape
     factors, linear = np.ones(n + m), A
     D, E = factors[:n], factors[n:]
-    outside = np.maximum.reduce(A, axis=0, initial=0.0) == 0.0
+    columns = np.maximum.reduce(A, axis=0, initial=0.0)
+    outside = columns == 0.0
     mixed = np.count_nonzero(outside) > 0
     for _ in range(RUIZ_SWEEPS):
-        columns, rows = np.maximum.reduce(linear, axis=0, initial=0.0), np.maximum.reduce(linear, axis=1)
         if mixed:
             sizes = D * np.maximum.reduce(H * D, axis=1)
             columns = np.where(outside, sizes / (largest(sizes) or 1.0), columns)
-        sizes = np.concatenate([columns, rows])
+        sizes = np.concatenate([columns, np.maximum.reduce(linear, axis=1)])
         sizes[sizes == 0.0] = 1.0
         factors /= np.sqrt(sizes)
         if sizes[sizes.argmax()] < 2.0 and sizes[sizes.argmin()] > 0.5:  # another sweep would change little
             break
         linear = E[:, None] * A * D
+        columns = np.maximum.reduce(linear, axis=0, initial=0.0)
     return factors
 
 
@@ -255,7 +262,8 @@ def _floats(name: str, given: Any) -> Array:
     try:
         if getattr(given, "dtype", None) != np.float64 and np.iscomplexobj(given):
             raise TypeError("it is complex")
-        return np.array(given.toarray() if sparse.issparse(given) else given, dtype=float)
+        dense = given if isinstance(given, np.ndarray) or not sparse.issparse(given) else given.toarray()
+        return np.array(dense, dtype=float)
     except (TypeError, ValueError) as error:
         raise ProblemError(f"{name} is no array of real numbers ({error}): give rows of equal length") from None
 

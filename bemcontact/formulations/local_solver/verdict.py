@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from bemcontact.formulations.local_solver.dead_point import CriticalCone
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.statement import EPS, Array, Statement, largest
-from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 WEAK = 10.0
 """Multipliers below this many optimality tolerances are treated as zero in the critical cone."""
@@ -60,23 +59,22 @@ class FirstOrder:
         return replace(self, strong=self.strong | leaving, weak=weak, sides=sides)
 
 
-def first_order(progress: Progress, working: WorkingSet, multipliers: Array) -> FirstOrder:
-    """Recompute the first-order conditions at the point from the data, each component against its own terms."""
+def first_order(progress: Progress, multipliers: Array, zero: Array) -> FirstOrder:
+    """Recompute the first-order conditions at the point from the data, each component against its own `zero` (n,)."""
     statement, x = progress.statement, progress.x
     n = x.size
     values = statement.values(x)
     slack = 2.0 * progress.slack
     feasible = np.count_nonzero(statement.violation(values) <= slack) == slack.size
     stationary = largest(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero
-    ids, W, N = working.constraints()
     zeros = np.full(values.size, progress.zero)
-    zeros[:n] = progress.fine_zero(multipliers[ids], W, N)
+    zeros[:n] = zero
     size = np.abs(multipliers)
     sides = statement.sides_reached(values, slack)
     held = sides != 0
     wrong = np.where(held, sides * multipliers, size)
     wrong[statement.equality] = 0.0
-    held[n:] &= statement.A.any(axis=1)  # a row of zeros holds nothing
+    held[n:] &= np.logical_or.reduce(statement.A, axis=1)  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
     return FirstOrder(
         holds=feasible and stationary and np.count_nonzero(wrong <= 2.0 * zeros) == zeros.size,

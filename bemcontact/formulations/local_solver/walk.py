@@ -61,6 +61,7 @@ class Restart:
     failed: bool
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # ratio tests divide by what does not move
 def walk(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
     """Rounds of both phases until a claim survives its check, or the iterations or attempts are used up.
 
@@ -106,9 +107,11 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
         if ray is None:
             return Restart(sides=descent.working.sides, failed=True)
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
-    multipliers = _refined(progress, descent)
-    conditions = first_order(progress, descent.working, multipliers)
-    if outcome.ending is Ending.INACCURATE or not conditions.holds:
+    if outcome.ending is Ending.INACCURATE:
+        return Restart(sides=descent.working.sides, failed=True)
+    multipliers = descent.working.of_all(descent.multipliers)
+    conditions = first_order(progress, multipliers, descent.zero)
+    if not conditions.holds:
         return Restart(sides=descent.working.sides, failed=True)
     return _second_order(progress, descent, conditions, multipliers)
 
@@ -151,7 +154,7 @@ def _strict(descent: Descent, conditions: FirstOrder) -> bool:
     if working.temporary or np.count_nonzero(conditions.weak) or np.count_nonzero(working.held != conditions.strong):
         return False
     W, N, Z, H = working.W, working.N, hessian.Z, descent.progress.statement.H
-    inverse = working.size == 0 or largest(W @ N - np.eye(working.size)) < 1e-6
+    inverse = working.size == 0 or largest(W.dot(N) - np.eye(working.size)) < 1e-6
     complete = hessian.size + working.number == working.free.size
     if hessian.size == 0:
         return inverse and complete
@@ -184,22 +187,6 @@ def _finding(
         ray=ray,
         certificate=certificate,
     )
-
-
-def _refined(progress: Progress, descent: Descent) -> Array:
-    """Refine the equations of the working set from the data, twice; multipliers of all constraints."""
-    working, hessian, statement, x = descent.working, descent.hessian, progress.statement, progress.x
-    for _ in range(2 if hessian.size else 1):
-        x = working.onto(x)
-        if hessian.size:
-            x = x + hessian.newton(statement.H.dot(x) + statement.c)
-    progress.correct(x)
-    n, found = working.free.size, working.multipliers(progress.gradient, refined=True)
-    real = working.ids >= 0
-    multipliers = np.zeros(progress.values.size)
-    multipliers[:n] = found[:n] * (1.0 - working.free)
-    multipliers[working.ids[real]] = found[n:][real]
-    return multipliers
 
 
 def reduced_inertia(descent: Descent) -> Inertia:

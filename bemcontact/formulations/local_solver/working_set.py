@@ -74,14 +74,13 @@ class WorkingSet:
         self._N, self._W = np.zeros((n, n), order="F"), np.zeros((n, n))
         self._ids, self._signs = np.zeros(n, dtype=np.intp), np.zeros(2 * n)
         free, rows = self.free.nonzero()[0], sides[n:].nonzero()[0]
-        kept, null_space = rows[:0], np.eye(free.size)
+        kept, self.null_space = rows[:0], np.eye(n)[:, free]
         if rows.size and free.size:
             normals, length = unit_rows(A[rows][:, free])
             Y, null_space, T, independent = orthogonal(normals, DEPENDENT)
-            kept = rows[independent]
+            kept, self.null_space = rows[independent], np.zeros((n, null_space.shape[1]))
+            self.null_space[free] = null_space
             self._N[free, : kept.size] = Y @ inverse_triangle(T).T / length[independent]
-        self.null_space = np.zeros((n, null_space.shape[1]))
-        self.null_space[free] = null_space
         if kept.size < rows.size:
             self.sides[n + rows], self.held[n + rows] = 0, False
             self.sides[n + kept], self.held[n + kept] = sides[n + kept], True
@@ -90,7 +89,8 @@ class WorkingSet:
         self.temporary, self.sharp = 0, True
         signs = self.sides * (self.sides != EQUALITY)
         self._signs[:n] = signs[:n]
-        self._ids[:r], self._W[:r], self._signs[n : n + r] = n + kept, A[kept], signs[n + kept]
+        if r:
+            self._ids[:r], self._W[:r], self._signs[n : n + r] = n + kept, A[kept], signs[n + kept]
         self._resize(r)
 
     def _resize(self, rows: int) -> None:
@@ -121,7 +121,19 @@ class WorkingSet:
         of_rows = gradient.dot(self.N)
         if refined or not self.sharp:
             of_rows = self._refined(of_rows, gradient)
-        return np.concatenate([gradient - of_rows.dot(self.W), of_rows])
+        n = gradient.size
+        found = np.empty(n + self.size)
+        np.subtract(gradient, of_rows.dot(self.W), found[:n])
+        found[n:] = of_rows
+        return found
+
+    def of_all(self, multipliers: Array) -> Array:
+        """Those of all constraints (n + m,) from those of the working set, as `multipliers` has them."""
+        n, real = self.free.size, self.ids >= 0
+        found = np.zeros(self.held.size)
+        found[:n] = multipliers[:n] * self.held[:n]
+        found[self.ids[real]] = multipliers[n:][real]
+        return found
 
     def _refined(self, of_rows: Array, gradient: Array) -> Array:
         """Multipliers of the rows after a refinement; from a new N if there was too much to mend."""
@@ -178,11 +190,11 @@ class WorkingSet:
     def _hold(self, normal: Array, along: Array) -> Array | None:
         """N loses what it has along the normal; the new column, or None if the normal is in the span."""
         outside = (normal - along.dot(self.W)) * self.free
-        again = outside.dot(self.N)
-        if again.dot(again) > SHARP**2 * outside.dot(outside):
+        again, size = outside.dot(self.N), float(outside.dot(normal))
+        if again.dot(again) > SHARP**2 * size:
             self.sharp = False
             outside -= again.dot(self.W) * self.free
-        size = outside.dot(normal)
+            size = float(outside.dot(normal))
         if size <= ALIKE**2:
             return None
         inverse = outside / size
