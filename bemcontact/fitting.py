@@ -26,6 +26,10 @@ ElementEnds = Mapping[str, tuple[float, ...]]
 """By the name of an edge, where its elements end, as `Problem.with_element_ends` takes them."""
 
 
+PEAK = 0.01
+"""Change of the peak pressure with the fitted mesh above which it says that the mesh does not settle it."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Trial:
     """A problem with some element ends placed, and where its ends of contact ask for them, if that is known."""
@@ -36,6 +40,7 @@ class _Trial:
     asked: ElementEnds | None
     movement: float | None
     notes: tuple[str, ...]
+    peak: float = 0.0
 
     @property
     def settled(self) -> bool:
@@ -135,7 +140,13 @@ def _trial(stated: Problem, placed: ElementEnds) -> _Trial:
         movements.append(_movement(run, asked))
     movement = None if None in movements else max(filter(None, movements), default=0.0)
     return _Trial(
-        problem=problem, placed=placed, intervals=intervals, asked=asked, movement=movement, notes=tuple(notes)
+        problem=problem,
+        placed=placed,
+        intervals=intervals,
+        asked=asked,
+        movement=movement,
+        notes=tuple(notes),
+        peak=contact.peak(solution.pressure),
     )
 
 
@@ -199,7 +210,13 @@ def _told(trials: Sequence[_Trial], kept: int) -> Iterator[str]:
     first, last = trials[0], trials[kept]
     if kept:
         moved = [*_moved(first.intervals, last.intervals)]
-        yield "; ".join([f"mesh fitted to the ends of contact in {kept} pass{'es' * (kept > 1)}", *moved])
+        finer = ", before it was refined" if last.problem.mesh.refine > 1 else ""
+        yield "; ".join([f"mesh fitted to the ends of contact in {kept} pass{'es' * (kept > 1)}{finer}", *moved])
+        if abs(last.peak - first.peak) > PEAK * first.peak:
+            yield (
+                f"the peak pressure went from {first.peak:.5g} to {last.peak:.5g} as the mesh was fitted: elements are "
+                "too few or badly placed elsewhere in the zone or beside it; compare with finer meshes"
+            )
         if not last.settled:
             still = f"the ends of contact still move by {last.movement:.1g} of an element from pass to pass"
             yield f"{still}; more elements in the zone settle them"
@@ -207,7 +224,10 @@ def _told(trials: Sequence[_Trial], kept: int) -> Iterator[str]:
         settled = "the mesh fits the ends of contact already"
         yield settled if first.settled else "the mesh was left as stated, for no fitted one came to rest"
     elif first.asked is not None and not first.notes:
-        yield "the mesh is as stated: contact ends nowhere inside a zone, so there was nothing to fit it to"
+        yield (
+            "the mesh is as stated: contact ends at no place inside a zone that an element could be graded towards, as "
+            "where it reaches the ends of its zone or is narrower than an element"
+        )
     for number, (before, after) in enumerate(pairwise(trials), 1):
         if len(before.intervals) != len(after.intervals):
             counts = f"from {len(before.intervals)} to {len(after.intervals)}"

@@ -15,6 +15,10 @@ from bemcontact.problem.stated import Name, Point, Positive, Stated, complain
 Array = NDArray[np.float64]
 
 
+ON_CORNER = 1e-9
+"""Distance from a corner, over the extent of line and points, below which a point is on it."""
+
+
 class Closest(NamedTuple):
     """Gap (k,) [L] along the unit normals (k, 2), which point from the surface into the body; negative inside it.
 
@@ -94,7 +98,10 @@ class Polyline(Stated):
         return self
 
     def closest(self, points: Array) -> Closest:
-        """Gap and normal at points (k, 2) [L], of the nearest piece; beyond a corner the normal is radial from it."""
+        """Gap and normal at points (k, 2) [L], of the nearest piece; beyond a corner the normal is radial from it.
+
+        On a corner, up to round-off, it is the bisector of the normals before and after.
+        """
         points, corners = np.asarray(points, float), np.array(self.points)
         sides = np.diff(corners, axis=0)
         lengths = np.hypot(*sides.T)
@@ -114,6 +121,11 @@ class Polyline(Stated):
         side = np.where(np.einsum("ki,ki->k", offset, before + after) < 0, -1.0, 1.0)
         radial = _unit(side[:, None] * offset, before + after)
         normals = np.where(at_corner[:, None], radial, lefts[nearest])
+        inner = corners[1:-1]
+        distances = np.hypot(*np.moveaxis(points[:, None] - inner, 2, 0))
+        size = np.ptp(np.concatenate([points, corners]), axis=0).max(initial=0.0)
+        on, which = np.nonzero(distances <= ON_CORNER * size)
+        normals[on] = _unit(lefts[which] + lefts[which + 1], lefts[which])
         return Closest(np.einsum("ki,ki->k", offset, normals), normals)
 
 

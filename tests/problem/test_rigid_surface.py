@@ -162,3 +162,14 @@ def test_gap_of_a_contour_is_the_way_of_the_same_material_point():
 def test_contours_that_are_none(parts, words):
     with pytest.raises(ProblemError, match=words):
         DeflectedContour(**parts)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("shift", [(0.0, 0.0), (1e-15, 0.0), (0.0, -1e-15), (-1e-15, 1e-15)])
+def test_on_a_corner_the_normal_is_the_bisector_whatever_round_off_says(size: float, shift: tuple[float, float]):
+    """Left of (1, 1) is (-1, 1), left of (5, -1) is (1, 5): each of length one, their sum halves the angle."""
+    line = Polyline(points=tuple((size * x, size * y) for x, y in ((-30, -40), (10, 0), (60, -10))))
+    gap, normals = line.closest(size * (np.array([[10.0, 0.0]]) + shift))
+    bisector = np.array([-1.0, 1.0]) / np.sqrt(2) + np.array([1.0, 5.0]) / np.sqrt(26)
+    assert normals == pytest.approx(bisector[None] / np.hypot(*bisector), abs=1e-12)
+    assert abs(gap[0]) <= 1e-13 * size
