@@ -6,25 +6,22 @@ other. Lengths and stresses are in the user's units throughout.
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from operator import attrgetter
 from pathlib import Path
-from typing import Any, NamedTuple, Self
-from zipfile import BadZipFile
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linprog
 
-from bemcontact import output
+from bemcontact import archive
+from bemcontact.actions import Change, LoadCases, Tools
+from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.choices import Weights
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.gauge import fix_gauge
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
-FILE_FORMAT = "bemcontact.condensed.1"
 
 INTERFERENCE = 1e-6
 """Part of the widest gap that counts as interference; a linear program knows no less."""
@@ -47,15 +44,6 @@ class StiffnessRows(NamedTuple):
     K: Array
     B: Array
     r: Array
-
-
-def freeze_arrays(of: Any) -> None:
-    """Make the arrays of a frozen dataclass its own and read-only."""
-    for item in fields(of):
-        if isinstance(array := getattr(of, item.name), np.ndarray):
-            frozen = array.copy()
-            frozen.setflags(write=False)
-            object.__setattr__(of, item.name, frozen)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -85,7 +73,9 @@ class CondensedContact:
     held_arc : (number of runs, 2) arc position of a run's ends that a condition holds on the rigid surface, up to which
         there is contact although there is no contact point; not a number for other ends; None if there are none [L]
     held_points : (number of runs, 2, 2) these ends [L], or None likewise
-    motion_names : k descriptions of the free motions, for people
+    motion_names : k descriptions of the free motions, for people: those of the body, then those of tools
+    tools : rigid surfaces that move; where they are displaced to is part of ε, and what they are loaded by of the load
+    cases : load cases; those in effect are part of Δ1, the load and ε
     notes : what was decided on the way and should be known
     name, zone_names, units : labels
     """
@@ -111,6 +101,8 @@ class CondensedContact:
     element_length_weights: Array | None = None
     held_arc: Array | None = None
     held_points: Array | None = None
+    tools: Tools = field(default_factory=lambda: Tools.none(0, 0))
+    cases: LoadCases = field(default_factory=lambda: LoadCases.none(0, 0, 0))
 
     def __post_init__(self) -> None:
         """Check shapes, refuse numbers that are not finite, make arrays read-only."""
@@ -131,6 +123,24 @@ class CondensedContact:
         if not (self.weights > 0).all():
             raise ProblemError(f"weights must be positive; the smallest is {self.weights.min():.3g}")
         freeze_arrays(self)
+        self._ensure_actions_fit()
+
+    def _ensure_actions_fit(self) -> None:
+        """Give no tools and no load cases their shapes, and refuse those of another body."""
+        n, k = self.rigid_motions.shape
+        if not len(self.tools):
+            object.__setattr__(self, "tools", Tools.none(n, k))
+        if not len(self.cases):
+            object.__setattr__(self, "cases", LoadCases.none(n, k, len(self.tools)))
+        c, t = len(self.cases), 3 * len(self.tools)
+        shapes = {
+            "cases.displacement": (n, c), "cases.motion_load": (k, c), "cases.position": (t, c), "cases.force": (t, c),
+            "cases.factors": (c,), "tools.motions": (n, t), "tools.amplitudes": (t, k), "tools.position": (t,),
+            "tools.free": (t,), "tools.force": (t,), "tools.point": (t // 3, 2),
+        }  # fmt: skip
+        for key, shape in shapes.items():
+            if (found := attrgetter(key)(self).shape) != shape:
+                raise ProblemError(f"{key} has shape {found} where {shape} is needed; n = {n}, k = {k}")
 
     @classmethod
     def from_compliance(
@@ -251,6 +261,83 @@ class CondensedContact:
         found = linprog(cost, A_ub=-columns, b_ub=self.offset / widest, bounds=bounds)
         return widest * found.fun if found.success and found.fun > INTERFERENCE else 0.0
 
+    def with_factors(self, factors: Mapping[str, float]) -> Self:
+        """Let load cases act, each by its factor, and those that are not named not at all; nothing is condensed anew.
+
+        Parameters
+        ----------
+        factors : by name of a case
+
+        Returns
+        -------
+        CondensedContact
+
+        Raises
+        ------
+        ProblemError
+            If there is no such case, or a factor is no finite number.
+        """
+        if unknown := [name for name in factors if name not in self.cases.names]:
+            known = ", ".join(self.cases.names) or "none"
+            raise ProblemError(f"there is no load case '{unknown[0]}'; there are: {known}")
+        found = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
+        step = found - self.cases.factors
+        moved = self._moved(self.cases.position @ step, self.cases.force @ step)
+        return replace(
+            moved,
+            free_displacement=self.free_displacement + self.cases.displacement @ step,
+            motion_load=moved.motion_load + self.cases.motion_load @ step,
+            cases=replace(self.cases, factors=found),
+        )
+
+    def with_tools(self, position: ArrayLike | None = None, force: ArrayLike | None = None) -> Self:
+        """Displace and load the tools otherwise; nothing is condensed anew.
+
+        Parameters
+        ----------
+        position : (t, 3) displacements x, y [L] and rotation [rad], as now if None; those of free components are unused
+        force : (t, 3) x, y [p L] and moment [p L²], as now if None; those on components that are given are unused
+
+        Returns
+        -------
+        CondensedContact
+
+        Raises
+        ------
+        ProblemError
+            If the shapes do not fit.
+        """
+        tools, steps = self.tools, []
+        for new, now, used in ((position, tools.position, ~tools.free), (force, tools.force, tools.free)):
+            given = now if new is None else np.array(new, float)
+            if given.size != now.size:
+                raise ProblemError(f"tools have {len(tools)} x 3 components; found an array of shape {given.shape}")
+            steps.append(np.where(used, given.ravel() - now, 0.0))
+        return self._moved(*steps)
+
+    def _moved(self, position: Array, force: Array) -> Self:
+        """Move the tools by some more (3 t,), and add to their forces (3 t,)."""
+        tools = self.tools
+        return replace(
+            self,
+            initial_gap=self.initial_gap + tools.motions @ position,
+            motion_load=self.motion_load + tools.amplitudes.T @ force,
+            tools=replace(tools, position=tools.position + position, force=tools.force + force),
+        )
+
+    @property
+    def changes(self) -> dict[str, Change]:
+        """What may change without condensing anew, by key path, each per unit: factors of load cases, tools."""
+        cases, tools = self.cases, self.tools
+        offsets = cases.displacement + tools.motions @ cases.position
+        loads = cases.motion_load + tools.amplitudes.T @ cases.force
+        found = {
+            f"load_cases.{name}": Change(offset, load)
+            for name, offset, load in zip(cases.names, offsets.T, loads.T, strict=True)
+        }
+        moves = zip(tools.keys, np.where(tools.free, 0.0, tools.motions).T, tools.amplitudes, strict=True)
+        return found | {key: Change(offset, load) for key, offset, load in moves if offset.any() or load.any()}
+
     @cached_property
     def stiffness_rows(self) -> StiffnessRows:
         """K u_n = B p + r, (12), with K = S, B = I, r = S Δ1 + V load; [S, V] the top of [[M, R], [ℓᵀ, 0]]⁻¹.
@@ -301,26 +388,9 @@ class CondensedContact:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write all of it as one ``.npz`` file, whole or not at all; `OSError` where that cannot be."""
-        arrays: dict[str, Any] = {"format": np.array(FILE_FORMAT)}
-        for item in fields(self):
-            value = getattr(self, item.name)
-            if value is not None:
-                arrays[item.name] = np.array(sorted(value.items())) if isinstance(value, Mapping) else np.array(value)
-        with output.whole_file(Path(path)) as temporary, open(temporary, "xb") as stream:
-            np.savez_compressed(stream, **arrays)
+        archive.write(Path(path), self)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read what `save` wrote; `ProblemError` if the file is something else."""
-        try:
-            with np.load(path, allow_pickle=False) as data:
-                stored = {key: data[key] for key in data.files}
-        except OSError as error:
-            raise ProblemError(f"{path}: cannot be read ({error.strerror or 'not an .npz file'})") from error
-        except (ValueError, EOFError, BadZipFile) as error:
-            raise ProblemError(f"{path}: not an .npz file; CondensedContact.save writes one") from error
-        if str(stored.pop("format", "")) != FILE_FORMAT:
-            raise ProblemError(f"{path}: not a condensed contact problem of format {FILE_FORMAT}; write it again")
-        texts = {key: tuple(map(str, stored.pop(key))) for key in ("zone_names", "notes", "motion_names")}
-        units = {str(key): str(label) for key, label in stored.pop("units").reshape(-1, 2)}
-        return cls(name=str(stored.pop("name")), units=units, **texts, **stored)
+        return archive.read(Path(path), cls)

@@ -6,11 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from bemcontact.arrays import Array
 from bemcontact.assessment.footprint import ContactInterval, footprint
 from bemcontact.bem.condense import body_of, condense
 from bemcontact.bem.fitted_ends import Touched, fitted_ends, resolved
 from bemcontact.bem.zone_runs import SAME, ZoneRun, zone_runs
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
 from bemcontact.mesh_fit import FitPass, MeshFit

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from bemcontact.contact import Array, freeze_arrays
+from bemcontact.arrays import Array, freeze_arrays
 
 
 class Status(Enum):

@@ -32,15 +32,21 @@ ONLY = {
     "bemcontact.choices": (),
     "bemcontact.output": (),
     "bemcontact.gauge": (),
-    "bemcontact.contact": ("bemcontact.choices", "bemcontact.errors", "bemcontact.gauge", "bemcontact.output"),
-    "bemcontact.solution": ("bemcontact.contact",),
+    "bemcontact.arrays": (),
+    "bemcontact.actions": ("bemcontact.arrays",),
+    "bemcontact.archive": ("bemcontact.errors", "bemcontact.output"),
+    "bemcontact.contact": (
+        "bemcontact.actions", "bemcontact.archive", "bemcontact.arrays", "bemcontact.choices", "bemcontact.errors",
+        "bemcontact.gauge",
+    ),
+    "bemcontact.solution": ("bemcontact.arrays",),
     "bemcontact.ends": ("bemcontact.solution",),
     "bemcontact.mesh_fit": ("bemcontact.assessment.footprint",),
     "bemcontact.formulations.local_solver": ("bemcontact.errors", "bemcontact.formulations.local_solver"),
     "bemcontact.problem": ("bemcontact.errors", "bemcontact.problem"),
     "bemcontact.reference": (
-        "bemcontact.errors", "bemcontact.contact", "bemcontact.problem", "bemcontact.assessment.footprint",
-        "bemcontact.reference",
+        "bemcontact.arrays", "bemcontact.errors", "bemcontact.contact", "bemcontact.problem",
+        "bemcontact.assessment.footprint", "bemcontact.reference",
     ),
 }  # fmt: skip
 """Room -> the only modules of ours that it imports."""

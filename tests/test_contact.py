@@ -1,6 +1,6 @@
 """The condensed problem: its file, its gauge, its stiffness rows, and what it refuses."""
 
-from dataclasses import fields, replace
+from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
 import pytest
@@ -23,17 +23,20 @@ def beam(n: int) -> CondensedContact:
 
 
 def test_file_gives_back_every_field(tmp_path):
-    problem = random_contact(0, 12, 2)
-    problem.save(tmp_path / "problem.npz")
-    again = CondensedContact.load(tmp_path / "problem.npz")
-    for item in fields(problem):
-        before, after = getattr(problem, item.name), getattr(again, item.name)
+    def compare(before, after):
         assert type(after) is type(before)
         if isinstance(before, np.ndarray):
             assert before.dtype == after.dtype
             np.testing.assert_array_equal(after, before)
+        elif is_dataclass(before):
+            for item in fields(before):
+                compare(getattr(before, item.name), getattr(after, item.name))
         else:
             assert after == before
+
+    problem = random_contact(0, 12, 2)
+    problem.save(tmp_path / "problem.npz")
+    compare(problem, CondensedContact.load(tmp_path / "problem.npz"))
 
 
 def test_failed_save_leaves_no_file(tmp_path, monkeypatch):

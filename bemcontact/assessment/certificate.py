@@ -25,9 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigvalsh
 
+from bemcontact.arrays import Array
 from bemcontact.assessment.advice import advice
 from bemcontact.assessment.residual import Residuals
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.solution import ContactSolution
 
 TOLERANCE = 1e-10

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.arrays import Array
+from bemcontact.contact import CondensedContact
 from bemcontact.solution import ContactSolution
 
 Point = tuple[float, float]

@@ -4,7 +4,8 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.arrays import Array
+from bemcontact.contact import CondensedContact
 from bemcontact.solution import ContactSolution
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
-from bemcontact.contact import Array
+from bemcontact.arrays import Array
 from bemcontact.formulations.scaling import ScaledContact
 
 BoolArray = NDArray[np.bool_]

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 from scipy.linalg import qr
 from scipy.optimize import nnls
 
+from bemcontact.arrays import Array, IntArray
 from bemcontact.choices import FormulationName
-from bemcontact.contact import Array, CondensedContact, IntArray
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, BoolArray, first_active_set, primal_dual
 from bemcontact.formulations.formulation import FormulationOptions

@@ -6,8 +6,9 @@ from typing import Protocol
 
 import numpy as np
 
+from bemcontact.arrays import Array
 from bemcontact.choices import Equilibrium, Rows, Weights
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import OptionError
 from bemcontact.solution import ContactSolution
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.contact import Array
+from bemcontact.arrays import Array
 from bemcontact.solution import Status
 
 PIVOT = 1e-11

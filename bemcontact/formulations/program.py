@@ -10,8 +10,9 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import block_diag
 
+from bemcontact.arrays import Array
 from bemcontact.choices import Rows
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.formulations.formulation import Start
 from bemcontact.formulations.local_solver import QPOptions, QPResult, inertia, minimize_qp
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point

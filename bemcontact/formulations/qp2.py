@@ -25,8 +25,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import eigvalsh
 
+from bemcontact.arrays import Array
 from bemcontact.choices import Equilibrium, FormulationName, Rows, Weights
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import OptionError
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.program import (

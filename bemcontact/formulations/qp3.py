@@ -16,8 +16,9 @@ from clarabel import DefaultSettings, DefaultSolver, NonnegativeConeT, ZeroConeT
 from scipy.linalg import eigvalsh
 from scipy.sparse import triu
 
+from bemcontact.arrays import Array
 from bemcontact.choices import FormulationName, Weights
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.formulation import FormulationOptions

@@ -10,8 +10,9 @@ from functools import cached_property
 
 import numpy as np
 
+from bemcontact.arrays import Array
 from bemcontact.choices import Weights
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

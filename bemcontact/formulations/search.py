@@ -5,8 +5,9 @@ from itertools import groupby
 
 import numpy as np
 
+from bemcontact.arrays import Array
 from bemcontact.choices import Weights
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.local_solver import QPResult, QPStatus

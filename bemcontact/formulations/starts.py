@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from bemcontact.arrays import Array
 from bemcontact.choices import StartName
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.ends import End, RandomStarts
 from bemcontact.errors import OptionError, SpecError
 from bemcontact.formulations.formulation import Formulation, FormulationOptions, Start, ensure_whole

@@ -5,7 +5,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from bemcontact.contact import Array
+from bemcontact.arrays import Array
 from bemcontact.problem.material import Material
 
 

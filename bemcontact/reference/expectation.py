@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.contact import Array
+from bemcontact.arrays import Array
 from bemcontact.problem import Table, Values
 
 Point = tuple[float, float]

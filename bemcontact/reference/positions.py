@@ -5,7 +5,8 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.arrays import Array
+from bemcontact.contact import CondensedContact
 from bemcontact.problem import Problem, Table, Values
 
 Point = tuple[float, float]

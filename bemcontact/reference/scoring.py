@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from bemcontact.arrays import Array
 from bemcontact.assessment.footprint import ContactInterval, Footprint
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.problem import Table, Values
 from bemcontact.reference.expectation import Expected
 from bemcontact.reference.positions import LEVEL, BoolArray, Frame, coordinates, in_zone

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from bemcontact.contact import Array
+from bemcontact.arrays import Array
 from bemcontact.problem import Problem, Table, Units, Values
 from bemcontact.reference.positions import coordinates
 from bemcontact.reproduction.paper import Quantity, Statement

@@ -24,7 +24,7 @@ from bemcontact import (
     minimize_qp,
     random_starts,
 )
-from bemcontact.contact import Array
+from bemcontact.arrays import Array
 from bemcontact.ends import End
 from bemcontact.formulations import qp1, qp2, qp3
 from bemcontact.formulations.formulation import FormulationOptions

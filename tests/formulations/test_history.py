@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from contact_problems import random_contact
 
+from bemcontact.arrays import Array
 from bemcontact.choices import FormulationName
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.formulations import FORMULATIONS, complementarity, qp1, qp2, qp3
 from bemcontact.formulations.complementarity import ACCEPTED
 from bemcontact.formulations.formulation import FormulationOptions

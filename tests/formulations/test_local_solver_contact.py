@@ -14,7 +14,7 @@ import pytest
 
 import bemcontact
 from bemcontact import CondensedContact, QPResult, QPStatus, Status, minimize_qp
-from bemcontact.contact import Array
+from bemcontact.arrays import Array
 from bemcontact.formulations import FORMULATIONS, complementarity, qp3
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled

@@ -8,9 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from bemcontact.arrays import Array
 from bemcontact.assessment.comparison import SAME, Contender
 from bemcontact.choices import FormulationName
-from bemcontact.contact import Array, CondensedContact
+from bemcontact.contact import CondensedContact
 from bemcontact.report.figures.course import COLOURS, legend_below, show_decades
 from bemcontact.report.figures.page import BLACK, GREY, PURPLE, labelled, plain, shortened
 from bemcontact.report.figures.result import Piece, pieces_of
