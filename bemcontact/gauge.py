@@ -11,6 +11,8 @@ Array = NDArray[np.float64]
 class Gauge(NamedTuple):
     """Compliance and free displacement in the fixed gauge, and the shift (k,), (k, n) of the amplitudes it implies.
 
+    Of s loadings at once, free displacement is (n, s), and the shift by the load (k, s).
+
     u_n = Δ1 + M p + R a holds before and after for every p in equilibrium, with
     ``a_before = a_after - shift_load - shift_pressure @ p``.
     """
@@ -31,10 +33,10 @@ def fix_gauge(
     Parameters
     ----------
     compliance : (n, n) M [L/p]
-    free_displacement : (n,) Δ1 [L]
+    free_displacement : (n,) Δ1 [L], or (n, s) of s loadings
     rigid_motions : (n, k) R of full column rank
     weights : (n,) tributary J [L]
-    motion_load : (k,) work of the applied loads in the free motions
+    motion_load : (k,) work of the applied loads in the free motions, or (k, s)
 
     Returns
     -------

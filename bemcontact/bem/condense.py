@@ -4,21 +4,22 @@ Generalised to bodies that contact alone holds: the singular system is bordered 
 equilibrium itself is taken exactly, ℓ = J R, load = work of the applied loads in the free motions.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
+from scipy.optimize import linprog, nnls
 
-from bemcontact.bem.boundary_values import BoundaryValues, applied_traction, boundary_values
+from bemcontact.actions import LoadCases, Tools
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.deflection import deflections
 from bemcontact.bem.factorisation import solve
-from bemcontact.bem.mesh import Mesh, along_curve, build
+from bemcontact.bem.free_motions import UNSEEN, FreeMotions, PlacedTools, free_motions, placed_tools
+from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
+from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.system import System
-from bemcontact.bem.volume_loads import ParticularSolution, particular_solution, true_resultant
 from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.gauge import Gauge, fix_gauge
@@ -26,69 +27,106 @@ from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-UNSEEN = 1e-9
-"""Largest normal displacement, relative to the motion's own, of a rigid motion that no contact point sees."""
 BALANCED = 1e-9
 """Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as none."""
+IDLE = 1e-7
+"""Normal displacement in a motion that opens gaps, over that of the motion, from which it is one."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
-    """A problem on its mesh, before it is condensed: what is known, where contact may be, how it may move rigidly.
+    """A problem on its mesh, before it is condensed: what is known, where contact may be, what may move rigidly.
 
     Parameters
     ----------
-    problem, mesh, values, points, particular : the stages up to here
-    motions : all rigid motions that the conditions leave free
-    seen : those of them, or combinations, that move contact points along the rigid normals
+    problem, mesh, points : the stages up to here
+    loadings : 1 + c, what is permanent and what each load case adds
+    tools : rigid surfaces that move
+    motions : all rigid motions of the body that the conditions leave free
+    seen : those of them, and those of tools, or combinations, that move contact points along the rigid normals
     unseen : the others, that no contact point sees
     """
 
     problem: Problem
     mesh: Mesh
-    values: BoundaryValues
     points: ContactPoints
-    particular: ParticularSolution
+    loadings: tuple[Loading, ...]
+    tools: PlacedTools
     motions: RigidMotions
-    seen: RigidMotions
-    unseen: RigidMotions
+    seen: FreeMotions
+    unseen: FreeMotions
 
     @cached_property
-    def forces(self) -> Array:
-        """What the prescribed tractions do at each (element, local node), (m, 3, 2) [p L]."""
-        return self.mesh.tributary[..., None] * self.values.traction
+    def factors(self) -> Array:
+        """By how much each loading (1 + c,) acts."""
+        named = self.problem.factors()
+        return np.array([1.0, *(named.get(case, 0.0) for case in self.problem.load_cases)])
 
-    def motion_load(self, motions: RigidMotions) -> Array:
-        """Work (k,) of the applied loads in rigid motions [p L], with tributary weights as in all of equilibrium."""
-        work = motions.work(self.mesh.nodes[self.mesh.elements], self.forces)
-        return work + motions.work_of(self.particular.force, self.particular.moment)
+    @cached_property
+    def acting(self) -> Loading:
+        """What acts on the body."""
+        return combined(self.loadings, self.factors.tolist())
 
-    def true_motion_load(self, motions: RigidMotions) -> Array:
-        """The same (k,) on the curves themselves, to round-off: whether loads balance is no matter of the mesh."""
-        work = motions.work_of(*true_resultant(self.problem))
-        for edge in self.problem.boundary.edges:
-            if edge.name in self.problem.conditions:
-                points, normals, lengths = along_curve(edge)
-                tractions = applied_traction(self.problem.conditions[edge.name], points, normals)
-                work = work + motions.work(points, lengths[:, None] * tractions)
-        return work
+    def motion_load(self, motions: FreeMotions) -> Array:
+        """Work (k, 1 + c) of each loading, forces on tools included, in free motions [p L]."""
+        on_body = np.column_stack([loading.work(self.mesh, motions.body) for loading in self.loadings])
+        return on_body + motions.tools.T @ self.tools.force
+
+    def true_motion_load(self, motions: FreeMotions) -> Array:
+        """Work (k,) of what acts, to round-off: whether loads balance is no matter of the mesh."""
+        on_tools = motions.tools.T @ (self.tools.force @ self.factors)
+        return self.acting.true_work(self.mesh, motions.body) + on_tools
 
     @cached_property
     def load_magnitude(self) -> float:
-        """Sum of the magnitudes of all loads [p L]."""
-        return float(np.hypot(self.forces[..., 0], self.forces[..., 1]).sum() + self.particular.magnitude)
+        """Sum of the magnitudes of all loads that act [p L]."""
+        x, y, moment = (self.tools.force @ self.factors).reshape(-1, 3).T
+        on_tools = np.hypot(x, y) + abs(moment) / self.motions.radius
+        return self.acting.magnitude(self.mesh) + float(on_tools.sum())
 
-    def normal_motion(self, motions: RigidMotions) -> Array:
-        """R (n, k): rigid motions seen along the rigid normals at the contact points."""
-        return _along_normals(self.points, motions)
+    def normal_motion(self, motions: FreeMotions) -> Array:
+        """R (n, k): what free motions add to the gaps."""
+        return self.points.along_normals(motions.body) + self.tools.motions @ motions.tools
+
+    @cached_property
+    def relative_load(self) -> tuple[Array, Array]:
+        """R (n, k) without round-off, and the load (k,) that acts in the seen motions, relative to the largest."""
+        R, load = self.normal_motion(self.seen), self.motion_load(self.seen) @ self.factors
+        largest = abs(load).max(initial=0.0)
+        none = largest <= BALANCED * self.load_magnitude
+        return np.where(abs(R) > UNSEEN, R, 0.0), np.zeros_like(load) if none else load / largest
+
+    @cached_property
+    def idle_motion(self) -> str | None:
+        """A motion that opens gaps and closes none, and in which the loads do no work; None if there is none.
+
+        Contact leaves open how far the body or a tool goes in it: a linear program.
+        """
+        R, load = self.relative_load
+        if not load.size:
+            return None
+        found = linprog(
+            -R.sum(axis=0), A_ub=-R, b_ub=np.zeros(len(R)), A_eq=load[None, :], b_eq=[0.0], bounds=(-1.0, 1.0),
+            options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+        )  # fmt: skip
+        idle = found.success and (R @ found.x).max() > IDLE
+        return self.seen.combined(found.x[:, None]).describe()[0] if idle else None
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What was decided and should be known."""
-        return tuple(
-            f"the {motion} is seen by no contact point and loaded by nothing: the body is pinned against it"
+        pinned = tuple(
+            f"the {motion} is seen by no contact point and loaded by nothing: {_who(motion)} pinned against it"
             for motion in self.unseen.describe()
         )
+        idle = self.idle_motion if self.relative_load[1].any() else None
+        left_open = f"the loads do no work in the {idle}, which only opens gaps: contact leaves open how far it goes"
+        return pinned if idle is None else (*pinned, left_open)
+
+
+def _who(motion: str) -> str:
+    """Tell who is pinned."""
+    return "it is" if " of the tool " in motion else "the body is"
 
 
 def body_of(problem: Problem) -> Body:
@@ -106,32 +144,29 @@ def body_of(problem: Problem) -> Body:
     ------
     ProblemError
         If the loads pull the body off its support, move it in a way that no contact resists, or do not press it on;
-        or if the conditions of a deflected contour do not hold the body.
+        or if the conditions of a deflected contour do not hold the body. Of a problem with load cases of which none
+        acts, it is not asked whether contact can hold the body.
     """
     mesh = build(problem)
-    values = boundary_values(problem, mesh)
-    points = contact_points(problem, mesh, values, deflections(problem, mesh))
-    motions = free_rigid_motions(mesh, values.displacement_given)
-    seen, unseen = _split_by_contact(points, motions)
+    permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
+    added = [loading.values for loading in cases]
+    points = contact_points(problem, mesh, permanent.values, deflections(problem, mesh), added)
+    tools = placed_tools(problem, points)
+    motions = free_rigid_motions(mesh, permanent.values.displacement_given)
+    seen, unseen = free_motions(points, motions, tools)
     body = Body(
-        problem=problem, mesh=mesh, values=values, points=points, motions=motions, seen=seen, unseen=unseen,
-        particular=particular_solution(problem.loads, problem.material, mesh),
+        problem=problem, mesh=mesh, points=points, loadings=(permanent, *cases), tools=tools,
+        motions=motions, seen=seen, unseen=unseen,
     )  # fmt: skip
-    _check_unseen(body)
-    _check_support(body)
+    if problem.case is not None or not problem.load_cases:
+        ensure_held(body)
     return body
 
 
-def _along_normals(points: ContactPoints, motions: RigidMotions) -> Array:
-    return np.einsum("nx,nxk->nk", points.normals, motions.displacement(points.mesh.nodes[points.node]))
-
-
-def _split_by_contact(points: ContactPoints, motions: RigidMotions) -> tuple[RigidMotions, RigidMotions]:
-    """Separate motions that contact points see from those that none sees."""
-    R = _along_normals(points, motions)
-    _, values, vectors = np.linalg.svd(np.vstack([R, np.zeros((len(motions), len(motions)))]))
-    unseen = values <= UNSEEN * np.sqrt(len(points))
-    return motions.combined(vectors[~unseen].T).reduced(), motions.combined(vectors[unseen].T).reduced()
+def ensure_held(body: Body) -> None:
+    """Refuse what acts on a body if contact cannot hold it; `ProblemError` as of `body_of`."""
+    _check_unseen(body)
+    _check_support(body)
 
 
 def _check_unseen(body: Body) -> None:
@@ -139,41 +174,28 @@ def _check_unseen(body: Body) -> None:
     work = body.true_motion_load(body.unseen)
     for motion, done in zip(body.unseen.describe(), work, strict=True):
         if abs(done) > BALANCED * body.load_magnitude:
+            what = "the tool" if " of the tool " in motion else "the body"
             raise ProblemError(
-                f"nothing holds the body against the {motion}, and the loads act along it (resultant {done:.6g}); "
+                f"nothing holds {what} against the {motion}, and the loads act along it (resultant {done:.6g}); "
                 "prescribe a displacement that holds it, or balance the loads"
             )
 
 
 def _check_support(body: Body) -> None:
-    """Refuse loads that no pressure p >= 0 can balance, and bodies that nothing presses on."""
-    if len(body.seen) == 0:
-        return
-    R, load = body.normal_motion(body.seen), body.motion_load(body.seen)
-    R = np.where(abs(R) > UNSEEN, R, 0.0)
-    if abs(load).max() <= BALANCED * body.load_magnitude:
-        if not _can_clamp(R):
-            words = " and the ".join(body.seen.describe())
-            raise ProblemError(
-                f"only contact holds the body against the {words}, but no load presses it onto its support, "
-                "so that its position is not determined; apply a load, or prescribe a displacement"
-            )
-        return
-    forces, residual = nnls(R.T, -load / abs(load).max())
+    """Refuse loads that no pressure p >= 0 can balance, and what nothing presses on."""
+    R, load = body.relative_load
+    forces, residual = nnls(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
     if residual > BALANCED:
-        pull = body.seen.combined((R.T @ forces + load / abs(load).max())[:, None])
+        pull = body.seen.combined((R.T @ forces + load)[:, None])
         raise ProblemError(
             f"the load pulls the body off its support: it drives the {pull.describe()[0]}, which no contact resists; "
             "turn the load around, or prescribe a displacement that holds the body"
         )
-
-
-def _can_clamp(R: Array) -> bool:
-    """Whether some forces f >= 0 at points that see a motion balance each other, as in a body between two walls."""
-    sees = R.any(axis=1)
-    columns = np.vstack([R[sees].T, np.ones(np.count_nonzero(sees))])
-    _, residual = nnls(columns, np.append(np.zeros(R.shape[1]), 1.0))
-    return residual <= BALANCED
+    if not load.any() and body.idle_motion is not None:
+        raise ProblemError(
+            f"only contact holds the body against the {' and the '.join(body.seen.describe())}, but no load presses it "
+            "onto its support, so that its position is not determined; apply a load, or prescribe a displacement"
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -184,7 +206,7 @@ class Condensation:
     ----------
     body : Body
     system : System
-    response : (unknowns + border, 1 + n) solution for the loads alone and for unit pressures, dimensionless
+    response : (unknowns + border, 1 + c + n) solution for each loading alone and for unit pressures, dimensionless
     contact : CondensedContact
     gauge : Gauge
     """
@@ -194,6 +216,21 @@ class Condensation:
     response: Array
     contact: CondensedContact
     gauge: Gauge
+
+    def acting(self, case: str | None = None) -> "Condensation":
+        """The same body with the load case or combination that acts, or another; `ProblemError` as of `body_of`."""
+        problem = self.body.problem if case is None else self.body.problem.with_case(case)
+        if problem.case is None:
+            return self
+        body = replace(self.body, problem=problem)
+        ensure_held(body)
+        contact = self.contact.with_factors(problem.factors())
+        return replace(self, body=body, contact=replace(contact, name=f"{problem.name}, {problem.case}"))
+
+    @property
+    def factors(self) -> Array:
+        """By how much each loading (1 + c,) acts."""
+        return np.append(1.0, self.contact.cases.factors)
 
 
 def condense(body: Body) -> Condensation:
@@ -213,20 +250,23 @@ def condense(body: Body) -> Condensation:
         If the equations of the body have no unique solution in floating-point arithmetic.
     """
     system = System(
-        mesh=body.mesh, material=body.problem.material, values=body.values, points=body.points,
-        particular=body.particular, motions=body.motions,
+        mesh=body.mesh, material=body.problem.material, points=body.points, motions=body.motions,
+        loadings=body.loadings,
     )  # fmt: skip
     response = solve(system)
-    points = body.points
+    points, tools, s = body.points, body.tools, len(body.loadings)
     observed = _observe(system, response)
-    prescribed = np.sum(points.normals * body.values.displacement[points.node], axis=1)
+    prescribed = [np.sum(points.normals * item.values.displacement[points.node], axis=1) for item in body.loadings]
+    R, load = body.normal_motion(body.seen), body.motion_load(body.seen)
+    own = np.any(body.seen.body.coefficients, axis=1)
     gauge = fix_gauge(
-        compliance=observed[:, 1:] * (system.length / system.stress),
-        free_displacement=observed[:, 0] * system.length + prescribed,
-        rigid_motions=body.normal_motion(body.seen),
+        compliance=observed[:, s:] * (system.length / system.stress),
+        free_displacement=observed[:, :s] * system.length + np.column_stack(prescribed),
+        rigid_motions=R[:, own],
         weights=points.tributary,
-        motion_load=body.motion_load(body.seen),
+        motion_load=load[own],
     )
+    on_body = np.where(own[:, None], load, 0.0)
     contact = CondensedContact(
         name=body.problem.name,
         zone_names=tuple(body.problem.contact_zones),
@@ -240,21 +280,38 @@ def condense(body: Body) -> Condensation:
         arc_position=points.arc_position,
         run_length=points.run_length,
         compliance=gauge.compliance,
-        free_displacement=gauge.free_displacement,
-        rigid_motions=body.normal_motion(body.seen),
-        motion_load=body.motion_load(body.seen),
-        initial_gap=points.gap,
+        free_displacement=gauge.free_displacement[:, 0],
+        rigid_motions=R,
+        motion_load=load[:, 0],
+        initial_gap=points.gap + tools.motions @ tools.position[:, 0],
         weights=points.tributary,
         consistent_weights=points.consistent,
         element_length_weights=points.element_length,
         held_arc=points.held_arc,
         held_points=points.held_points,
+        tools=Tools(
+            names=tools.names,
+            point=tools.point,
+            motions=tools.motions,
+            amplitudes=body.seen.tools,
+            free=tools.free,
+            position=tools.position[:, 0],
+            force=tools.force[:, 0],
+        ),
+        cases=LoadCases(
+            names=tuple(body.problem.load_cases),
+            displacement=gauge.free_displacement[:, 1:],
+            motion_load=on_body[:, 1:],
+            position=tools.position[:, 1:],
+            force=tools.force[:, 1:],
+            factors=np.zeros(s - 1),
+        ),
     )
-    return Condensation(body=body, system=system, response=response, contact=contact, gauge=gauge)
+    return Condensation(body=body, system=system, response=response, contact=contact, gauge=gauge).acting()
 
 
 def _observe(system: System, response: Array) -> Array:
-    """Normal displacement (n, 1 + n) at the contact points due to the unknowns, over L0."""
+    """Normal displacement (n, s + n) at the contact points due to the unknowns, over L0."""
     points = system.points
     result = np.zeros((len(points), response.shape[1]))
     for normal, column in zip(points.normals.T, system.unknowns.displacement[points.node].T, strict=True):

@@ -1,6 +1,6 @@
 """The contact points of a mesh: pairs (zone, node) with gap, normal, and the weights that belong to them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from bemcontact.bem import quadrature, shape_functions
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Closest, DeflectedContour, RigidSurface
 
@@ -80,6 +81,10 @@ class ContactPoints:
         """Return the number of points."""
         return len(self.node)
 
+    def along_normals(self, motions: RigidMotions) -> Array:
+        """R (n, k): rigid motions seen along the rigid normals."""
+        return np.einsum("nx,nxk->nk", self.normals, motions.displacement(self.mesh.nodes[self.node]))
+
     @cached_property
     def tributary(self) -> Array:
         """(n,) [L]: Σ over elements of (1/3, 4/3, 1/3) |dx/dξ|."""
@@ -122,7 +127,11 @@ def _half_lengths(mesh: Mesh) -> Array:
 
 
 def contact_points(
-    problem: Problem, mesh: Mesh, values: BoundaryValues, deflections: Mapping[str, Array]
+    problem: Problem,
+    mesh: Mesh,
+    values: BoundaryValues,
+    deflections: Mapping[str, Array],
+    cases: Sequence[BoundaryValues] = (),
 ) -> ContactPoints:
     """List the contact points of all zones; the middle node of an element is always one.
 
@@ -130,12 +139,14 @@ def contact_points(
     ----------
     problem, mesh, values : the stages up to here
     deflections : by zone, for those on a deflected contour: displacement (N, 2) [L] of the nodes that shapes it
+    cases : what load cases prescribe in addition
 
     Returns
     -------
     ContactPoints
     """
     halves = _half_lengths(mesh)
+    moving = {zone for tool in problem.tools.values() for zone in tool.zones}
     pieces: list[_Piece] = []
     for number, (name, zone) in enumerate(problem.contact_zones.items()):
         in_zone = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in zone.edges])
@@ -144,9 +155,10 @@ def contact_points(
             gap, normals = _closest(zone.surface, mesh, nodes, deflections.get(name))
             free = ~_held_along(normals, values.displacement_given[nodes])
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
-            goes_on = (False, False) if closed else _goes_on(mesh, values, elements, normals, gap)
-            on_surface = abs(gap + np.sum(normals * values.displacement[nodes], axis=1)) <= ALIKE * mesh.size
-            held = np.where(~free & on_surface & (not closed), arc, np.nan)[[0, -1]]
+            fixed = not closed and name not in moving
+            on_surface = _on_surface(mesh, (values, *cases), nodes, normals, gap)
+            goes_on = _goes_on(mesh, values, elements, normals, on_surface) if fixed else (False, False)
+            held = np.where(~free & on_surface & fixed, arc, np.nan)[[0, -1]]
             pieces.append(
                 _Piece(
                     number, elements, length, goes_on, nodes[free], arc[free], normals[free], gap[free],
@@ -164,13 +176,22 @@ def _closest(surface: RigidSurface, mesh: Mesh, nodes: IntArray, deflection: Arr
     return surface.closest(mesh.nodes[nodes])
 
 
-def _goes_on(mesh: Mesh, values: BoundaryValues, elements: IntArray, normals: Array, gap: Array) -> tuple[bool, bool]:
+def _on_surface(
+    mesh: Mesh, values: Sequence[BoundaryValues], nodes: IntArray, normals: Array, gap: Array
+) -> NDArray[np.bool_]:
+    """Whether prescribed displacements put nodes on the rigid surface, and no load case moves them off it."""
+    moved = [np.sum(normals * item.displacement[nodes], axis=1) for item in values]
+    return np.all(np.abs([gap + moved[0], *moved[1:]]) <= ALIKE * mesh.size, axis=0)
+
+
+def _goes_on(
+    mesh: Mesh, values: BoundaryValues, elements: IntArray, normals: Array, on_surface: NDArray[np.bool_]
+) -> tuple[bool, bool]:
     """Whether contact goes on beyond the first and the last node of a run, over an element that a condition holds."""
     first, after = elements[0], mesh.elements[elements[-1], 2]  # an element has the number of its start node
     here, beyond = np.array([first, after]), np.array([mesh.before[first], after])
-    normals, gap = normals[[0, -1]], gap[[0, -1]] + np.sum(normals[[0, -1]] * values.displacement[here], axis=1)
-    smooth, closed = abs(mesh.turns[here]) < SMOOTH, abs(gap) <= ALIKE * mesh.size
-    start, end = smooth & closed & _held_along(normals, values.traction_unknown[beyond])
+    smooth = abs(mesh.turns[here]) < SMOOTH
+    start, end = smooth & on_surface[[0, -1]] & _held_along(normals[[0, -1]], values.traction_unknown[beyond])
     return bool(start), bool(end)
 
 

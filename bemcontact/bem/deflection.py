@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.factorisation import solve
+from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import free_rigid_motions
 from bemcontact.bem.system import System
@@ -57,11 +58,11 @@ def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: P
             "there is no contact where the contour is found; prescribe displacements that hold it"
         )
         raise ProblemError(Complaint(path=(*path, "conditions"), message=message))
+    loading = Loading(values=values, particular=particular_solution(surface.loads, problem.material, mesh))
     system = System(
-        mesh=mesh, material=problem.material, values=values, points=ContactPoints.none(mesh), motions=motions,
-        particular=particular_solution(surface.loads, problem.material, mesh),
+        mesh=mesh, material=problem.material, points=ContactPoints.none(mesh), motions=motions, loadings=(loading,),
     )  # fmt: skip
-    displacement, _ = system.fields(solve(system)[:, 0])
+    displacement, _ = system.fields(solve(system)[:, 0], loading)
     return displacement
 
 

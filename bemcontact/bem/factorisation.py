@@ -24,12 +24,12 @@ def assemble(system: System) -> tuple[Array, Array]:
     Returns
     -------
     matrix : (size, size)
-    right : (size, 1 + n)
+    right : (size, s + n)
     """
     unknowns = system.unknowns.size
     matrix = np.zeros((system.size, system.size), order="F")
     transposed = matrix.T
-    right = np.zeros((system.size, 1 + len(system.points)), order="F")
+    right = np.zeros((system.size, len(system.loadings) + len(system.points)), order="F")
 
     def place(block: Block) -> None:
         for rows in system.rows(block):
@@ -54,7 +54,7 @@ def solve(system: System) -> Array:
 
     Returns
     -------
-    (size, 1 + n)
+    (size, s + n)
 
     Raises
     ------
@@ -76,7 +76,7 @@ def solve(system: System) -> Array:
 
 
 def residual(system: System, response: Array) -> Array:
-    """Right sides less matrix times response, (size, 1 + n), from rows computed anew: no second matrix is kept."""
+    """Right sides less matrix times response, (size, s + n), from rows computed anew: no second matrix is kept."""
     unknowns = system.unknowns.size
     z, s = response[:unknowns], response[unknowns:]
     result = np.zeros_like(response, order="F")

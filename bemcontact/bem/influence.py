@@ -13,7 +13,7 @@ import os
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -83,7 +83,7 @@ class Block:
     F : (4, N, R) by components in the order of `kernels.T_ORDER`; multiplies displacement at the nodes
     G : (3, 3, e, R) by components in the order of `kernels.U_ORDER`; multiplies traction times Jacobian at the three
         local nodes of the elements that `Influence` was asked for
-    known : (2, R) what the tractions do that `Influence` was told, along x and y
+    known : (s, 2, R) what each of the tractions does that `Influence` was told, along x and y
     """
 
     rows: slice
@@ -108,14 +108,14 @@ class Influence:
     mesh : Mesh
     poisson_ratio : effective one, of plane strain
     traction_elements : (e,) elements whose columns of G are wanted, ascending
-    known : (m, 3, 2) tractions times Jacobian of which only the sum G t is wanted, or None
+    known : (s, m, 3, 2) tractions times Jacobian of each of which only the sum G t is wanted
     by_numba : whether to sum the far part by machine code where numba is installed; None: if the mesh is large enough
     """
 
     mesh: Mesh
     poisson_ratio: float
     traction_elements: IntArray
-    known: Array | None = None
+    known: Array = field(default_factory=lambda: np.zeros((0, 0, 3, 2)))
     by_numba: bool | None = None
 
     @cached_property
@@ -131,13 +131,13 @@ class Influence:
 
     @cached_property
     def _known(self) -> Array:
-        """The same (2, 3, m), zeros if there are none."""
-        return np.zeros((2, 3, len(self.mesh.elements))) if self.known is None else self.known.transpose(2, 1, 0)
+        """The same (s, 2, 3, m)."""
+        return self.known.transpose(0, 3, 2, 1) if len(self.known) else np.zeros((0, 2, 3, len(self.mesh.elements)))
 
     @cached_property
     def _loaded(self) -> IntArray:
         """Elements whose U is needed, for a column or for the sum, ascending."""
-        loaded: NDArray[np.bool_] = np.any(self._known, axis=(0, 1))
+        loaded: NDArray[np.bool_] = np.any(self._known, axis=(0, 1, 2))
         loaded[self.traction_elements] = True
         return np.flatnonzero(loaded)
 
@@ -264,7 +264,7 @@ class Influence:
     def _zero(self, rows: slice, points: int, columns: int) -> Block:
         """A block for so many points, with G for so many elements."""
         F, G = np.zeros((4, len(self.nodes), points)), np.zeros((3, 3, columns, points))
-        return Block(rows=rows, F=F, G=G, known=np.zeros((2, points)))
+        return Block(rows=rows, F=F, G=G, known=np.zeros((len(self.known), 2, points)))
 
     def _far_by_loops(self, block: Block, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice) -> None:
         """Every point with every element of a run, by one Gauss rule, in machine code."""
@@ -363,10 +363,10 @@ def _places(of: IntArray, count: int) -> IntArray:
 
 
 def _sums(traction: Array, U: Array) -> Array:
-    """G t (2, R) of tractions times Jacobian (2, 3, e), with U (3, 3, e, R)."""
-    x, y = traction.reshape(2, -1)
-    xx, yy, xy = U.reshape(3, len(x), U.shape[-1])
-    return np.stack([x @ xx + y @ xy, x @ xy + y @ yy])
+    """G t (s, 2, R) of tractions times Jacobian (s, 2, 3, e), with U (3, 3, e, R)."""
+    x, y = np.moveaxis(traction.reshape(len(traction), 2, 3 * traction.shape[-1]), 1, 0)
+    xx, yy, xy = U.reshape(3, x.shape[-1], U.shape[-1])
+    return np.stack([x @ xx + y @ xy, x @ xy + y @ yy], axis=1)
 
 
 def _within(index: IntArray, rows: slice) -> NDArray[np.bool_]:

@@ -52,12 +52,13 @@ def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes
     """
     body, system = condensation.body, condensation.system
     mesh, gauge = body.mesh, condensation.gauge
-    scaled = np.append(1.0, pressure / system.stress)
+    scaled = np.append(condensation.factors, pressure / system.stress)
     z = condensation.response @ scaled
-    amplitudes = rigid_amplitudes - gauge.shift_load - gauge.shift_pressure @ pressure
+    amplitudes = rigid_amplitudes.copy()
+    amplitudes[: len(gauge.shift_load)] -= gauge.shift_load @ condensation.factors + gauge.shift_pressure @ pressure
 
-    displacement, traction = system.fields(z)
-    displacement += body.seen.displacement(mesh.nodes) @ amplitudes
+    displacement, traction = system.fields(z, body.acting)
+    displacement += body.seen.body.displacement(mesh.nodes) @ amplitudes
     points = body.points
     traction[points.element, points.local] += pressure[points.point, None] * points.normals[points.point]
     return BoundaryState(
@@ -76,7 +77,7 @@ def _force_balance(condensation: Condensation, traction: Array) -> float:
     body = condensation.body
     mesh, every = body.mesh, all_rigid_motions(body.mesh)
     forces = mesh.tributary[..., None] * traction
-    volume = body.particular
+    volume = body.acting.particular
     resultant = every.work(mesh.nodes[mesh.elements], forces) + every.work_of(volume.force, volume.moment)
     magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + volume.magnitude
     return float(abs(resultant).max() / magnitude) if magnitude > 0 else 0.0

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from bemcontact.bem.mesh import Mesh
 
@@ -42,18 +42,11 @@ class RigidMotions:
         """Work (k,) of forces (..., 2) at points (..., 2) in each motion."""
         return np.tensordot(forces, self.displacement(points), axes=forces.ndim)
 
-    def work_of(self, force: Array, moment: float) -> Array:
-        """Work (k,) of a force (2,) and a moment about the origin in each motion."""
-        about_center = moment - (self.center[0] * force[1] - self.center[1] * force[0])
+    def work_of(self, force: Array, moment: float, about: ArrayLike = (0.0, 0.0)) -> Array:
+        """Work (k,) of a force (2,) and a moment about a point (2,), the origin if none is given, in each motion."""
+        x, y = self.center - np.asarray(about)
+        about_center = moment - (x * force[1] - y * force[0])
         return self.coefficients @ np.append(force, about_center / self.radius)
-
-    def combined(self, factors: Array) -> "RigidMotions":
-        """Combinations of these motions by the columns of factors (k, j)."""
-        return RigidMotions(coefficients=factors.T @ self.coefficients, center=self.center, radius=self.radius)
-
-    def reduced(self) -> "RigidMotions":
-        """The same motions in echelon form: translations along the axes first where there are any."""
-        return RigidMotions(coefficients=_reduced(self.coefficients), center=self.center, radius=self.radius)
 
     def describe(self) -> tuple[str, ...]:
         """Say each motion in words: its direction, or the point about which it turns."""
@@ -92,14 +85,14 @@ def free_rigid_motions(mesh: Mesh, prescribed: NDArray[np.bool_]) -> RigidMotion
     rows = every.displacement(mesh.nodes)[prescribed]
     _, values, vectors = np.linalg.svd(np.vstack([rows, np.zeros((3, 3))]))
     free = values <= HELD * max(1.0, values[0])
-    return RigidMotions(coefficients=_reduced(vectors[free]), center=every.center, radius=every.radius)
+    return RigidMotions(coefficients=echelon(vectors[free]), center=every.center, radius=every.radius)
 
 
-def _reduced(basis: Array) -> Array:
-    """Row echelon form of a basis (k, 3), each row of unit length."""
+def echelon(basis: Array) -> Array:
+    """Row echelon form of a basis (k, components), each row of unit length: translations along the axes come first."""
     rows = basis.copy()
     row = 0
-    for column in range(3):
+    for column in range(basis.shape[1]):
         if row == len(rows):
             break
         pivot = row + int(abs(rows[row:, column]).argmax())

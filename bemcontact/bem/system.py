@@ -20,9 +20,9 @@ from bemcontact.bem import kernels, shape_functions
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.influence import Block, Collocation, Influence
+from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
-from bemcontact.bem.volume_loads import ParticularSolution
 from bemcontact.problem.material import Material
 
 Array = NDArray[np.float64]
@@ -152,7 +152,7 @@ class _Carried(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """Some rows of the system, transposed: pieces (…, q) of A one below the other, and b and the b_i (1 + n, q)."""
+    """Some rows of the system, transposed: pieces (…, q) of A one below the other, and the b and b_i (s + n, q)."""
 
     at: slice
     left: list[Array]
@@ -169,15 +169,20 @@ class System:
 
     Parameters
     ----------
-    mesh, material, values, points, particular, motions : what the body is and what is known of it
+    mesh, material, points, motions : what the body is
+    loadings : s things that act on it, each with right sides of its own; they share what is prescribed
     """
 
     mesh: Mesh
     material: Material
-    values: BoundaryValues
     points: ContactPoints
-    particular: ParticularSolution
     motions: RigidMotions
+    loadings: Sequence[Loading]
+
+    @property
+    def values(self) -> BoundaryValues:
+        """What is prescribed on the boundary."""
+        return self.loadings[0].values
 
     @cached_property
     def influence(self) -> Influence:
@@ -219,13 +224,14 @@ class System:
 
     @cached_property
     def _known_traction(self) -> Array:
-        """What G multiplies on the right (m, 3, 2): prescribed traction less that of the particular solution."""
-        return (self.values.traction - self.particular.traction) / self.stress
+        """What G multiplies on the right (s, m, 3, 2): prescribed traction less that of the particular solution."""
+        return np.stack([item.values.traction - item.particular.traction for item in self.loadings]) / self.stress
 
     @cached_property
     def _known_displacement(self) -> Array:
-        """What F multiplies on the right (N, 2), with the sign it has on the left."""
-        return (self.values.displacement - self.particular.displacement) / self.length
+        """What F multiplies on the right (s, N, 2), with the sign it has on the left."""
+        given = [item.values.displacement - item.particular.displacement for item in self.loadings]
+        return np.stack(given) / self.length
 
     @cached_property
     def _jacobians(self) -> Array:
@@ -272,7 +278,9 @@ class System:
                 f, g = ([part[:, used] for part in parts] for parts in (f, g))
             first = int(index[used][0])
             yield Rows(
-                slice(first, first + int(used.sum())), [*self._left(f, g)], self._right(f, g, block.known[axis, used])
+                slice(first, first + int(used.sum())),
+                [*self._left(f, g)],
+                self._right(f, g, block.known[:, axis, used]),
             )
 
     def _left(self, F: Sequence[Array], G: Sequence[Array]) -> Iterator[Array]:
@@ -285,9 +293,9 @@ class System:
             yield -(x.times(G[0]) + y.times(G[1]))
 
     def _right(self, F: Sequence[Array], G: Sequence[Array], known: Array) -> Array:
-        """The right sides b, b_i (1 + n, q); known tractions do `known` (q,)."""
-        u = self._known_displacement.T
-        b = known - (u[0] @ F[0] + u[1] @ F[1]) if u.any() else known
+        """The right sides b of each loading, and b_i (s + n, q); known tractions do `known` (s, q)."""
+        u = self._known_displacement
+        b = known - (u[..., 0] @ F[0] + u[..., 1] @ F[1]) if u.any() else known
         x, y = self._unit_pressures
         return np.vstack([b, x.times(G[0]) + y.times(G[1])])
 
@@ -309,9 +317,9 @@ class System:
         W[self.equations.row[used]] = self.motions.displacement(at)[used]
         return W
 
-    def fields(self, z: Array) -> tuple[Array, Array]:
+    def fields(self, z: Array, loading: Loading) -> tuple[Array, Array]:
         """Displacement (N, 2) [L] and traction (m, 3, 2) [p] of unknowns z and all prescribed ones, less pressures."""
-        displacement, traction = self.values.displacement.copy(), self.values.traction.copy()
+        displacement, traction = loading.values.displacement.copy(), loading.values.traction.copy()
         sought = self.unknowns.displacement >= 0
         displacement[sought] = z[self.unknowns.displacement[sought]] * self.length
         sought = self.unknowns.traction >= 0

@@ -1,6 +1,6 @@
 """Names of edges: those that there are, and the conditions and contact zones that refer to them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from bemcontact.errors import Complaint
 from bemcontact.problem.boundary import Boundary
@@ -11,18 +11,20 @@ from bemcontact.problem.stated import KeyComplaint, unknown_word
 from bemcontact.problem.written import Written
 
 
-def name_complaints(boundary: Written, conditions: Written, zones: Written) -> list[Complaint]:
+def name_complaints(boundary: Written, conditions: Iterable[Written], zones: Written) -> list[Complaint]:
     """Check that conditions and contact zones refer to edges that there are, and share none.
 
     Where a contour is deflected nothing touches, so that the edges of a zone may have conditions there.
 
     Parameters
     ----------
-    boundary, conditions, zones : these parts of a problem, right or wrong; what is unreadable in them is passed over
+    boundary, zones : these parts of a problem, right or wrong; what is unreadable in them is passed over
+    conditions : those of the problem and of its load cases, likewise
     """
     names = _names(boundary)
+    stated = [condition for some in conditions for condition in some.each()]
     complaints: list[Complaint] = []
-    for condition in (*conditions.each(), *_conditions_of_contours(zones)):
+    for condition in (*stated, *_conditions_of_contours(zones)):
         if names is not None and (name := str(condition.path[-1])) not in names:
             complaints.append(KeyComplaint(path=condition.path, message=unknown_word("edge", name, names)))
     zone_of: dict[str, str] = {}
@@ -33,7 +35,7 @@ def name_complaints(boundary: Written, conditions: Written, zones: Written) -> l
         elif name in zone_of:
             complaints.append(Complaint(path=member.path, message=_twice(name, zone_of[name], zone)))
         zone_of.setdefault(name, zone)
-    for condition in conditions.each():
+    for condition in stated:
         if (name := str(condition.path[-1])) in zone_of:
             message = f"edge '{name}' is in the contact zone '{zone_of[name]}' and can carry no condition; remove one"
             complaints.append(KeyComplaint(path=condition.path, message=message))

@@ -21,9 +21,11 @@ from bemcontact.problem.curves import Edge
 from bemcontact.problem.edge_names import name_complaints
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.key_path import existing_path, parsed_path, with_entry
+from bemcontact.problem.load_case import Combination, LoadCase, case_complaints, tool_complaints
 from bemcontact.problem.loads import Loads
 from bemcontact.problem.material import Material
 from bemcontact.problem.reference import StatedReference, Words, reference_complaints
+from bemcontact.problem.rigid_tool import RigidTool
 from bemcontact.problem.stated import Count, Flag, Name, Stated, Text, complain, complaints_of, unknown_word
 from bemcontact.problem.variant import Variant, blamed
 from bemcontact.problem.written import Written
@@ -87,6 +89,14 @@ class Problem(Stated):
         dict[Name, ContactZone], AfterValidator(_not_empty), Field(json_schema_extra={"minProperties": 1})
     ]
     """The contact zones by name, each with edges and the rigid surface that they may touch."""
+    tools: dict[Name, RigidTool] = Field(default_factory=dict)
+    """Rigid surfaces that are displaced, or loaded and free to move, by the name of the tool; others are fixed."""
+    load_cases: dict[Name, LoadCase] = Field(default_factory=dict)
+    """What acts in addition to conditions, loads and tools, which are permanent, by the name of the load case."""
+    combinations: dict[Name, Combination] = Field(default_factory=dict)
+    """Sums of load cases, each with its factor, by the name of the combination."""
+    case: Name | None = None
+    """The load case or combination that acts; if left out, all of them are solved one after the other."""
     mesh: MeshDensity = MeshDensity()
     """Refinement of the mesh."""
     reference: dict[Words, StatedReference] = Field(default_factory=dict)
@@ -114,8 +124,10 @@ class Problem(Stated):
     def _mismatches(cls, written: Written) -> list[Complaint]:
         """Find parts that do not fit each other: names first, then the geometry of what is right by itself."""
         boundary, conditions, zones = (written.below(cls, key) for key in ("boundary", "conditions", "contact_zones"))
-        complaints = name_complaints(boundary, conditions, zones)
+        cases = [case.below(LoadCase, "conditions") for case in written.below(cls, "load_cases").each()]
+        complaints = name_complaints(boundary, [conditions, *cases], zones)
         references = reference_complaints(written.below(cls, "reference"), zones)
+        references += cls._wrong_actions(written, zones)
         body = boundary.read(Boundary)
         if body is None:
             return [*complaints, *references]
@@ -124,6 +136,36 @@ class Problem(Stated):
             complaints += facing_complaints(body, surfaces)
         density = written.below(cls, "mesh").read(MeshDensity) or MeshDensity()
         return [*complaints, *references, *mesh_complaints(body, boundary.path, density.refine)]
+
+    @classmethod
+    def _wrong_actions(cls, written: Written, zones: Written) -> list[Complaint]:
+        """Find tools and load cases that do not fit the rest."""
+        parts = {key: written.below(cls, key) for key in ("conditions", "tools", "load_cases", "combinations", "case")}
+        cases, combinations, case = parts["load_cases"], parts["combinations"], parts["case"]
+        complaints = [*tool_complaints(parts["tools"], zones), *case_complaints(cases, combinations, parts)]
+        names = [str(item.path[-1]) for part in (cases, combinations) for item in part.each()]
+        if isinstance(case.value, str) and case.value not in names:
+            complaints.append(Complaint(path=case.path, message=unknown_word("load case", case.value, names)))
+        return complaints
+
+    @property
+    def case_names(self) -> tuple[str, ...]:
+        """Names of the load cases, then of the combinations."""
+        return (*self.load_cases, *self.combinations)
+
+    def factors(self, case: str | None = None) -> dict[str, float]:
+        """Factors by load case of a case or combination, of the one that acts if None; none of them acts by itself."""
+        name = self.case if case is None else case
+        if name is None or name in self.load_cases:
+            return {} if name is None else {name: 1.0}
+        if name in self.combinations:
+            return dict(self.combinations[name])
+        raise ProblemError(Complaint(path=("case",), message=unknown_word("load case", name, self.case_names)))
+
+    def with_case(self, name: str) -> Self:
+        """Let a load case or a combination act, and no other; `ProblemError` if there is none of that name."""
+        self.factors(name)
+        return self.model_copy(update={"case": name})
 
     def edge(self, name: str) -> Edge:
         """Find an edge by its name; `ProblemError` if there is none."""

@@ -314,7 +314,7 @@ def _zone_table(body: Body) -> Table:
 
 def _total_load(body: Body) -> str:
     """Write the resultant of the prescribed tractions and of the body forces."""
-    x, y = body.forces.sum(axis=(0, 1)) + body.particular.force
+    x, y = body.acting.resultant(body.mesh)
     return vector((float(x), float(y)), per_thickness(body.problem.units), scale=body.load_magnitude)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.factorisation import solve
+from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
 from bemcontact.bem.system import System
@@ -87,8 +88,8 @@ def system_of(
     mesh: Mesh, material: Material, values: BoundaryValues, motions: RigidMotions, loads: Loads | None = None
 ) -> System:
     return System(
-        mesh=mesh, material=material, values=values, points=ContactPoints.none(mesh), motions=motions,
-        particular=particular_solution(loads or Loads(), material, mesh),
+        mesh=mesh, material=material, points=ContactPoints.none(mesh), motions=motions,
+        loadings=(Loading(values=values, particular=particular_solution(loads or Loads(), material, mesh)),),
     )  # fmt: skip
 
 
@@ -98,7 +99,7 @@ def solved(
     """Displacement (N, 2) and traction (m, 3, 2) of a body without contact, and its system."""
     motions = free_rigid_motions(mesh, values.displacement_given)
     system = system_of(mesh, material, values, motions, loads)
-    displacement, traction = system.fields(solve(system)[:, 0])
+    displacement, traction = system.fields(solve(system)[:, 0], system.loadings[0])
     return displacement, traction, system
 
 

@@ -106,15 +106,17 @@ def test_short_elements_keep_their_digits(ratio, by_numba):
 def test_the_sum_over_known_tractions_is_that_of_their_columns(by_numba):
     """Linearity, for far and near elements and tractions on some of them, on others with columns, and on both."""
     mesh = mesh_of([("c", arc((0, 0), 1, 0, 360), even(300))])
-    known = np.random.default_rng(1).standard_normal((300, 3, 2))
-    known[50:150] = 0
+    known = np.random.default_rng(1).standard_normal((2, 300, 3, 2))
+    known[:, 50:150] = 0
     columns = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(300), by_numba=by_numba)
     told = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(20, 80), known=known, by_numba=by_numba)
     values = values_of(mesh, {}, lambda at: 0 * at, lambda at, normals: 0 * normals)
     collocation = place_equations(mesh, number_unknowns(mesh, values), columns.nodes).collocation
     all_of_them, block = (one.block(collocation, slice(40, 200)) for one in (columns, told))
     xx, yy, xy = all_of_them.G
-    x, y = known.transpose(2, 1, 0)
-    expected = np.stack([np.tensordot(x, xx) + np.tensordot(y, xy), np.tensordot(x, xy) + np.tensordot(y, yy)])
+    pairs = known.transpose(0, 3, 2, 1)
+    expected = np.array(
+        [(np.tensordot(x, xx) + np.tensordot(y, xy), np.tensordot(x, xy) + np.tensordot(y, yy)) for x, y in pairs]
+    )
     assert abs(block.G - all_of_them.G[:, :, 20:80]).max() <= 1e-14
     assert abs(block.known - expected).max() <= 1e-13 * abs(expected).max()

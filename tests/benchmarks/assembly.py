@@ -75,8 +75,8 @@ def best_of(action: Callable[[], object]) -> float:
 def system_of(problem: Problem) -> System:
     body = body_of(problem)
     return System(
-        mesh=body.mesh, material=body.problem.material, values=body.values, points=body.points,
-        particular=body.particular, motions=body.motions,
+        mesh=body.mesh, material=body.problem.material, points=body.points, motions=body.motions,
+        loadings=body.loadings,
     )  # fmt: skip
 
 

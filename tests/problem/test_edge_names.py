@@ -9,8 +9,9 @@ EDGES = {"outer": [{"name": "top"}, {"name": "side"}]}
 
 
 def complaints(boundary, conditions=None, zones=None):
-    parts = (("boundary", boundary), ("conditions", conditions), ("contact_zones", zones))
-    return [str(complaint) for complaint in name_complaints(*(Written((key,), part) for key, part in parts))]
+    stated = [Written(("conditions",), conditions)]
+    found = name_complaints(Written(("boundary",), boundary), stated, Written(("contact_zones",), zones))
+    return [str(complaint) for complaint in found]
 
 
 @pytest.mark.parametrize("boundary", [EDGES, {"outter": [{"nam": "top"}, {"name": "side", "elements": "many"}]}])

@@ -1,0 +1,171 @@
+"""Motions of the body and of tools that no condition prevents: which of them contact sees, and what they are called."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.rigid_motions import RigidMotions, echelon
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.rigid_tool import RigidTool, ToolAction
+
+Array = NDArray[np.float64]
+
+UNSEEN = 1e-9
+"""Largest normal displacement, relative to the motion's own, of a rigid motion that no contact point sees."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlacedTools:
+    """t tools beside the contact points of a body; components are x, y and rotation, tool by tool.
+
+    Parameters
+    ----------
+    names : of the tools
+    point : (t, 2) about which each turns [L]
+    motions : (n, 3 t) what a unit displacement along x and y [1] and a unit rotation [L] add to the gaps, -n·w
+    free : (3 t,) whether the tool is free to move so
+    position : (3 t, 1 + c) x, y [L] and rotation [rad] that are given: permanent, then by load case
+    force : (3 t, 1 + c) x, y [p L] and moment [p L²] likewise
+    """
+
+    names: tuple[str, ...]
+    point: Array
+    motions: Array
+    free: NDArray[np.bool_]
+    position: Array
+    force: Array
+
+
+def placed_tools(problem: Problem, points: ContactPoints) -> PlacedTools:
+    """Find how the tools of a problem move its contact points."""
+    tools, cases = problem.tools, problem.load_cases
+    names = tuple(problem.contact_zones)
+    columns, places = [np.zeros((len(points), 0))], []
+    for tool in tools.values():
+        place = np.array(tool.point or (0.0, 0.0))
+        moved = np.isin(points.zone, [names.index(zone) for zone in tool.zones])
+        turn = RigidMotions(coefficients=np.eye(3), center=place, radius=1.0)
+        columns.append(np.where(moved[:, None], -points.along_normals(turn), 0.0))
+        places.append(place)
+    actions: list[Mapping[str, ToolAction]] = [tools, *(case.tools for case in cases.values())]
+    return PlacedTools(
+        names=tuple(tools),
+        point=np.array(places).reshape(-1, 2),
+        motions=np.hstack(columns),
+        free=np.array([tool.free for tool in tools.values()], bool).ravel(),
+        position=np.column_stack([_components(tools, action, "position") for action in actions]),
+        force=np.column_stack([_components(tools, action, "load") for action in actions]),
+    )
+
+
+def _components(tools: Mapping[str, RigidTool], actions: Mapping[str, ToolAction], key: str) -> Array:
+    """One component (3 t,) of an action on each tool, zero where there is none."""
+    rows = [getattr(actions[name], key) if name in actions else (0.0, 0.0, 0.0) for name in tools]
+    return np.array(rows, float).ravel()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FreeMotions:
+    """k motions in each of which the body and the tools move rigidly, all at once.
+
+    Parameters
+    ----------
+    coefficients : (k, 3 + 3 t) x, y and rotation times radius of the body about its center, then of each tool about its
+        own point
+    names : of the tools
+    centers : (1 + t, 2) center and points [L]
+    radius : [L]
+    """
+
+    coefficients: Array
+    names: tuple[str, ...]
+    centers: Array
+    radius: float
+
+    def __len__(self) -> int:
+        """Return the number of motions."""
+        return len(self.coefficients)
+
+    @property
+    def body(self) -> RigidMotions:
+        """What the body does in each of them."""
+        return self._part(0)
+
+    @property
+    def tools(self) -> Array:
+        """What the tools do, (3 t, k): x, y and rotation [rad/L], tool by tool."""
+        unit = np.tile([1.0, 1.0, 1 / self.radius], len(self.names))
+        return unit[:, None] * self.coefficients[:, 3:].T
+
+    def combined(self, factors: Array) -> "FreeMotions":
+        """Combinations of these motions by the columns of factors (k, j)."""
+        return replace(self, coefficients=factors.T @ self.coefficients)
+
+    def describe(self) -> tuple[str, ...]:
+        """Say each motion in words."""
+        return tuple(" with the ".join(self._parts(j)) for j in range(len(self)))
+
+    def _part(self, number: int) -> RigidMotions:
+        """What the body (0) or a tool does in each of them."""
+        its = self.coefficients[:, 3 * number : 3 * number + 3]
+        return RigidMotions(coefficients=its, center=self.centers[number], radius=self.radius)
+
+    def _parts(self, motion: int) -> list[str]:
+        """Say of the body and of each tool that moves what it does."""
+        size = abs(self.coefficients[motion]).max()
+        parts = []
+        for number, name in enumerate(("", *self.names)):
+            its = self._part(number)
+            if abs(its.coefficients[motion]).max() > UNSEEN * size:
+                parts.append(its.describe()[motion] + (f" of the tool '{name}'" if name else ""))
+        return parts
+
+
+def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTools) -> tuple[FreeMotions, FreeMotions]:
+    """Separate the free motions of the body and of tools that contact sees from those that no contact point sees.
+
+    Parameters
+    ----------
+    points : of contact
+    of_body : that the conditions leave free
+    tools : of the problem
+
+    Returns
+    -------
+    seen : those of the body first, then those of tools, each with independent columns of R
+    unseen : those in which nothing changes its gap, or body and tools go together
+    """
+    t = len(tools.names)
+    unit = np.tile([1.0, 1.0, 1 / of_body.radius], t)
+    basis = np.hstack([points.along_normals(replace(of_body, coefficients=np.eye(3))), tools.motions * unit])
+    every = FreeMotions(
+        coefficients=np.zeros((0, 3 + 3 * t)),
+        names=tools.names,
+        centers=np.vstack([of_body.center, tools.point]),
+        radius=of_body.radius,
+    )
+    held = np.pad(of_body.coefficients, ((0, 0), (0, 3 * t)))
+    guided = np.eye(3 + 3 * t)[3:][tools.free]
+    (body, lost), (loaded, idle) = _split(basis, held), _split(basis, guided)
+    both = np.vstack([body, loaded])
+    together = _null_vectors(basis @ both.T)
+    apart = _null_vectors(together[: len(body)].T)
+    seen, unseen = np.vstack([echelon(apart.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
+    return replace(every, coefficients=seen), replace(every, coefficients=unseen)
+
+
+def _split(basis: Array, motions: Array) -> tuple[Array, Array]:
+    """Separate motions (k, components) that move contact points from those that move none."""
+    _, values, vectors = np.linalg.svd(np.vstack([basis @ motions.T, np.zeros((len(motions), len(motions)))]))
+    unseen = values <= UNSEEN * np.sqrt(len(basis))
+    return echelon(vectors[~unseen] @ motions), echelon(vectors[unseen] @ motions)
+
+
+def _null_vectors(matrix: Array) -> Array:
+    """Orthonormal null vectors (k, j) of a matrix (n, k)."""
+    k = matrix.shape[1]
+    _, values, vectors = np.linalg.svd(np.vstack([matrix, np.zeros((k, k))]))
+    return vectors[values <= UNSEEN * np.sqrt(max(len(matrix), 1))].T
