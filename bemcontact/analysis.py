@@ -13,7 +13,7 @@ from bemcontact.bem.recovery import boundary_state
 from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, Weights
 from bemcontact.contact import CondensedContact
 from bemcontact.ends import RandomStarts
-from bemcontact.errors import ProblemError
+from bemcontact.errors import Complaint, ProblemError
 from bemcontact.fitting import fitted
 from bemcontact.formulations import FORMULATIONS, Start
 from bemcontact.formulations.formulation import ensure_whole
@@ -36,7 +36,8 @@ def condense(problem: Problem) -> CondensedContact:
     Returns
     -------
     CondensedContact
-        On the fitted mesh if the problem asks for one; its notes tell.
+        On the fitted mesh if the problem asks for one; its notes tell. Of a problem with load cases of which none acts,
+        what is permanent, with the load cases at factor zero.
 
     Raises
     ------
@@ -137,12 +138,22 @@ def carry_out(
 def fitted_to_contact(
     problem: Problem | CondensedContact, watch: Stopwatch
 ) -> tuple[Problem | CondensedContact, MeshFit | None]:
-    """Fit the mesh to the ends of contact where the problem asks for it, as `fitting.fitted` does."""
+    """Fit the mesh to the ends of contact where the problem asks for it, as `fitting.fitted` does.
+
+    Refuses a problem with load cases of which none acts, with a `ProblemError`.
+    """
     ensure_kind(problem)
+    if isinstance(problem, Problem) and problem.load_cases and problem.case is None:
+        raise ProblemError(Complaint(path=("load_cases",), message=_which_case(problem)))
     if isinstance(problem, CondensedContact) or not problem.mesh.fit_contact_edges:
         return problem, None
     with watch.stage("mesh fit") as say:
         return fitted(problem, say)
+
+
+def _which_case(problem: Problem) -> str:
+    """Ask which load case is meant."""
+    return f"say which one acts, case: {' or '.join(problem.case_names)}, or solve all of them"
 
 
 def condensed(problem: Problem | CondensedContact, watch: Stopwatch) -> tuple[CondensedContact, Condensation | None]:

@@ -30,6 +30,7 @@ def contact_record(contact: CondensedContact) -> dict[str, Any]:
         "arc_position": contact.arc_position.tolist(),
         "tributary_lengths": contact.weights.tolist(),
         "initial_gap": contact.initial_gap.tolist(),
+        "load_factors": dict(zip(contact.cases.names, contact.cases.factors.tolist(), strict=True)),
         "scales": contact.scales._asdict(),
     }
 
@@ -61,4 +62,29 @@ def solution_record(contact: CondensedContact, solution: ContactSolution) -> dic
             for trace in solution.history
         ],
         "convexity": solution.smallest_eigenvalue,
+        "tools": _tools_record(contact, solution),
     }
+
+
+def _tools_record(contact: CondensedContact, solution: ContactSolution) -> list[dict[str, Any]]:
+    """Give where the tools are in a solution, and what the body presses on them with."""
+    tools = contact.tools
+    return [
+        {
+            "name": name,
+            "point": point.tolist(),
+            "displacement": displacement[:2].tolist(),
+            "rotation": float(displacement[2]),
+            "force_of_body": force[:2].tolist(),
+            "moment_of_body": float(force[2]),
+            "free": free.tolist(),
+        }
+        for name, point, displacement, force, free in zip(
+            tools.names,
+            tools.point,
+            tools.displacement(solution.rigid_amplitudes),
+            tools.reaction(contact.weights * solution.pressure),
+            tools.free.reshape(-1, 3),
+            strict=True,
+        )
+    ]

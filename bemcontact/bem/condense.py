@@ -4,6 +4,7 @@ Generalised to bodies that contact alone holds: the singular system is bordered 
 equilibrium itself is taken exactly, ℓ = J R, load = work of the applied loads in the free motions.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -21,7 +22,7 @@ from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.system import System
 from bemcontact.contact import CondensedContact
-from bemcontact.errors import ProblemError
+from bemcontact.errors import Complaint, ProblemError
 from bemcontact.gauge import Gauge, fix_gauge
 from bemcontact.problem.problem import Problem
 
@@ -163,10 +164,23 @@ def body_of(problem: Problem) -> Body:
     return body
 
 
+def each_case(body: Body) -> Iterator[Body]:
+    """The body under each load case and combination where none of them acts yet; else nothing."""
+    if body.problem.case is None:
+        yield from (replace(body, problem=body.problem.with_case(name)) for name in body.problem.case_names)
+
+
 def ensure_held(body: Body) -> None:
     """Refuse what acts on a body if contact cannot hold it; `ProblemError` as of `body_of`."""
-    _check_unseen(body)
-    _check_support(body)
+    try:
+        _check_unseen(body)
+        _check_support(body)
+    except ProblemError as error:
+        case = body.problem.case
+        if case is None:
+            raise
+        path = ("load_cases" if case in body.problem.load_cases else "combinations", case)
+        raise ProblemError(Complaint(path=path, message=str(error))) from None
 
 
 def _check_unseen(body: Body) -> None:

@@ -1,7 +1,15 @@
 """The command check: what is seen in a spec."""
 
 from bemcontact.cli.failures import claim, told
-from bemcontact.cli.options import FigureOption, RefineOption, SetOption, SpecArgument, VariantOption
+from bemcontact.cli.options import (
+    CaseOption,
+    FigureOption,
+    RefineOption,
+    SetOption,
+    SpecArgument,
+    VariantOption,
+    with_case,
+)
 from bemcontact.terminal import busy, show
 
 
@@ -11,23 +19,28 @@ def check(
     refine: RefineOption = 1,
     overrides: SetOption = None,
     variant: VariantOption = None,
+    case: CaseOption = None,
 ) -> None:
     """Validate a spec and say what is seen in it: edges, contact zones, mesh, loads, and what holds the body.
 
-    No contact is solved, but a body that nothing holds, or that its load pulls off its support, is found out.
+    No contact is solved, but a body that nothing holds, or that its load pulls off its support, is found out; in
+    each of its load cases.
 
     [bold]Examples[/bold]
       bemcontact check models/cylinder_on_plane.yaml
       bemcontact check models/cylinder_on_plane.yaml --figure problem.svg
       bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
     """
+    overrides = with_case(overrides, case)
     with told(spec, overrides, variant), busy("checking"):
         claim(spec, {"--figure": figure})
         from bemcontact import spec as spec_file
-        from bemcontact.bem.condense import body_of
+        from bemcontact.bem.condense import body_of, each_case, ensure_held
         from bemcontact.report import text
 
         body = body_of(spec_file.load(spec, overrides or (), variant).refined(refine))
+        for acting in each_case(body):
+            ensure_held(acting)
         if figure:
             from bemcontact.report import figures
 

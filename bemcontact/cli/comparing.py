@@ -9,6 +9,7 @@ from bemcontact.choices import FormulationName, Weights
 from bemcontact.cli.failures import UNCERTIFIED, claim, claim_folder, told, write_json
 from bemcontact.cli.options import (
     STANDARD_OUTPUT,
+    CaseOption,
     FitOption,
     JsonOption,
     SetOption,
@@ -16,6 +17,7 @@ from bemcontact.cli.options import (
     VariantOption,
     names,
     several,
+    with_case,
 )
 from bemcontact.output import whole_file
 from bemcontact.terminal import show, stages, tell
@@ -51,6 +53,7 @@ def compare(
     ] = "1",
     fit_edges: FitOption = False,
     variant: VariantOption = None,
+    case: CaseOption = None,
     overrides: SetOption = None,
     out: Annotated[
         Path | None,
@@ -74,6 +77,7 @@ def compare(
       bemcontact compare models/cylinder_on_plane.yaml --formulations qp2 --penalty 1e-6,1e-3,1,1e3
       bemcontact compare models/cylinder_on_plane.yaml --starts 100
     """
+    overrides = with_case(overrides, case)
     with told(spec, overrides, variant), stages() as say:
         json_claim = None if json_file == STANDARD_OUTPUT else json_file
         claim(spec, {"--json": json_claim})

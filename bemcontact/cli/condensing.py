@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.failures import claim, told
-from bemcontact.cli.options import RefineOption, SetOption, SpecArgument, VariantOption
+from bemcontact.cli.options import CaseOption, RefineOption, SetOption, SpecArgument, VariantOption, with_case
 from bemcontact.terminal import busy, show
 
 
@@ -16,6 +16,7 @@ def condense(
     refine: RefineOption = 1,
     overrides: SetOption = None,
     variant: VariantOption = None,
+    case: CaseOption = None,
 ) -> None:
     """Reduce a body to its contact points and save compliance, gaps and weights as one .npz file.
 
@@ -25,6 +26,7 @@ def condense(
       bemcontact condense models/cylinder_on_plane.yaml --out cylinder.npz
       bemcontact condense models/cylinder_on_plane.yaml --refine 2 --out fine.npz
     """
+    overrides = with_case(overrides, case)
     with told(spec, overrides, variant), busy("condensing"):
         claim(spec, {"--out": out})
         from bemcontact import analysis

@@ -1,5 +1,6 @@
 """Arguments and options that several commands take."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, TypeVar
@@ -30,6 +31,15 @@ VariantOption = Annotated[
         show_default=False,
     ),
 ]
+CaseOption = Annotated[
+    str | None,
+    typer.Option(
+        "--case",
+        metavar="NAME",
+        help="Let one load case or combination of the spec act; check lists them.",
+        show_default=False,
+    ),
+]
 FitOption = Annotated[
     bool, typer.Option("--fit-edges", help="Grade the contact zones towards the ends of contact, once they are found.")
 ]
@@ -43,6 +53,11 @@ JsonOption = Annotated[
 ]
 STANDARD_OUTPUT = Path("-")
 """The file name that means standard output."""
+
+
+def with_case(overrides: list[str] | None, case: str | None) -> list[str]:
+    """Changes of a spec with the load case that --case names among them."""
+    return [*(overrides or ()), *([] if case is None else [f"case={json.dumps(case)}"])]
 
 
 def names(text: str) -> list[str]:

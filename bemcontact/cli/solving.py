@@ -10,6 +10,7 @@ from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, We
 from bemcontact.cli.failures import UNCERTIFIED, claim, told, write_json
 from bemcontact.cli.options import (
     STANDARD_OUTPUT,
+    CaseOption,
     FigureOption,
     FitOption,
     JsonOption,
@@ -17,7 +18,9 @@ from bemcontact.cli.options import (
     SetOption,
     SpecArgument,
     VariantOption,
+    with_case,
 )
+from bemcontact.errors import OptionError
 from bemcontact.terminal import busy, show, tell
 
 
@@ -62,6 +65,7 @@ def solve(
     fit_edges: FitOption = False,
     overrides: SetOption = None,
     variant: VariantOption = None,
+    case: CaseOption = None,
     figure: FigureOption = None,
     json_file: JsonOption = None,
     vtk_file: Annotated[
@@ -75,23 +79,27 @@ def solve(
 
     qp3 is convex, complementarity direct; qp1 and qp2 are left to a local solver.
 
+    Of a spec with load cases all are solved, and all combinations, or the one that --case names.
+
     [bold]Examples[/bold]
       bemcontact solve models/cylinder_on_plane.yaml
       bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
       bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
       bemcontact solve models/cylinder_on_plane.yaml --fit-edges
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
+      bemcontact solve models/gallery/punch_and_block.yaml --case eccentric
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp1
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --starts 20
     """
+    overrides = with_case(overrides, case)
     with told(spec, overrides, variant), busy("solving") as say:
         json_claim = None if json_file == STANDARD_OUTPUT else json_file
         claim(spec, {"--figure": figure, "--json": json_claim, "--vtk": vtk_file})
-        from bemcontact import analysis
+        from bemcontact import analysis, load_cases
         from bemcontact import spec as spec_file
         from bemcontact.formulations import plan as plans
         from bemcontact.formulations import starts as starts_of
-        from bemcontact.report import text, words
+        from bemcontact.report import cases_text, text, words
 
         plan = plans.planned(
             formulation,
@@ -107,25 +115,33 @@ def solve(
         problem = spec_file.load(spec, overrides or (), variant).refined(refine)
         if fit_edges:
             problem = problem.with_value("mesh.fit_contact_edges", True)
-        result = analysis.carry_out(
-            plan, problem, lambda done: say(f"solving, start {min(done + 1, starts or 1)} of {starts}")
-        )
+        several = bool(problem.load_cases) and problem.case is None
+        if several and vtk_file:
+            raise OptionError("--vtk writes the boundary of one load case; name it with --case")
+        if several:
+            found = load_cases.carry_out_cases(plan, problem, lambda stage, _: say(f"solving, {stage}"))
+            summary, uncertified = cases_text.cases_summary(found), cases_text.uncertified(found)
+        else:
+            found = analysis.carry_out(
+                plan, problem, lambda done: say(f"solving, start {min(done + 1, starts or 1)} of {starts}")
+            )
+            summary, uncertified = text.result_summary(found), words.verdict(found)
         if figure:
             from bemcontact.report import figures
 
-            figures.save(figures.figure_of_result(result), figure)
-        if vtk_file:
+            figures.save(figures.figure_of(found), figure)
+        if vtk_file and not isinstance(found, load_cases.CaseResults):
             from bemcontact.report import vtk
 
-            vtk.save(result, vtk_file)
+            vtk.save(found, vtk_file)
         if json_file and json_file != STANDARD_OUTPUT:
             with output.whole_file(json_file) as temporary:
-                temporary.write_text(result.to_json(indent=2) + "\n", encoding="utf-8")
+                temporary.write_text(found.to_json(indent=2) + "\n", encoding="utf-8")
     with told(spec):
         if json_file == STANDARD_OUTPUT:
-            write_json(result.to_json(indent=2))
-            if not result.certified:
-                tell("not certified: ", words.verdict(result))
+            write_json(found.to_json(indent=2))
+            if not found.certified:
+                tell("not certified: ", uncertified)
         else:
-            show(text.result_summary(result))
-    raise typer.Exit(0 if result.certified else UNCERTIFIED)
+            show(summary)
+    raise typer.Exit(0 if found.certified else UNCERTIFIED)

@@ -6,11 +6,13 @@ from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import Arc, EllipseArc, Grading, Line
+from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 from bemcontact.problem.problem import MeshDensity, Problem, Units
 from bemcontact.problem.reference import Reference, Table, Values
 from bemcontact.problem.rigid_surface import Circle, Closest, DeflectedContour, Plane, Polyline, RigidSurface, Shape
+from bemcontact.problem.rigid_tool import RigidTool, ToolAction, ToolDisplacement, ToolForce
 from bemcontact.problem.variant import Variant
 
 __all__ = [
@@ -32,6 +34,7 @@ __all__ = [
     "Gravity",
     "Hertz",
     "Line",
+    "LoadCase",
     "Loads",
     "Material",
     "MeshDensity",
@@ -41,10 +44,14 @@ __all__ = [
     "ProppedBeam",
     "Reference",
     "RigidSurface",
+    "RigidTool",
     "Shape",
     "ShrinkFit",
     "Table",
     "Temperature",
+    "ToolAction",
+    "ToolDisplacement",
+    "ToolForce",
     "Uniform",
     "Units",
     "Values",

@@ -15,7 +15,9 @@ from bemcontact.assessment.comparison import Comparison
 from bemcontact.bem.condense import Body
 from bemcontact.contact import CondensedContact
 from bemcontact.problem import DeflectedContour, Problem
+from bemcontact.report.tables import add, list_of_facts, table_of
 from bemcontact.report.words import (
+    case_in_words,
     convexity_in_words,
     deflected_by,
     held_by,
@@ -29,6 +31,7 @@ from bemcontact.report.words import (
     size_of,
     span,
     surface_in_words,
+    tool_in_words,
     units_of,
     vector,
     verdict,
@@ -37,12 +40,6 @@ from bemcontact.report.words import (
 )
 from bemcontact.result import Result
 from bemcontact.study import MeshLevel, Study
-
-RIGHT = {
-    "length", "elements", "points", "objective", "unpolished", "off direct", "iterations", "seconds", "found",
-    "expected", "difference",
-}  # fmt: skip
-"""Columns of numbers."""
 
 
 def problem_summary(body: Body) -> RenderableType:
@@ -60,32 +57,38 @@ def problem_summary(body: Body) -> RenderableType:
     problem, mesh = body.problem, body.mesh
     material, units = problem.material, problem.units
     modulus = with_unit(number(material.young_modulus), units.stress)
-    facts = _facts()
-    _add(
+    facts = list_of_facts()
+    add(
         facts,
         "Material",
         f"E = {modulus}, Poisson's ratio {number(material.poisson_ratio)}, {material.state.replace('_', ' ')}",
     )
-    _add(facts, "Mesh", f"{len(mesh.elements)} elements, {len(mesh.nodes)} nodes, {len(body.points)} contact points")
-    _add(facts, "Degrees of freedom", f"{mesh.degrees_of_freedom}")
+    add(facts, "Mesh", f"{len(mesh.elements)} elements, {len(mesh.nodes)} nodes, {len(body.points)} contact points")
+    add(facts, "Degrees of freedom", f"{mesh.degrees_of_freedom}")
     if problem.mesh.fit_contact_edges:
-        _add(facts, "Mesh fit", "solve and compare grade the contact zones towards the ends of contact")
+        add(facts, "Mesh fit", "solve and compare grade the contact zones towards the ends of contact")
     for load in volume_loads(problem):
-        _add(facts, "Volume load", load)
+        add(facts, "Volume load", load)
     for name, zone in problem.contact_zones.items():
         if isinstance(zone.surface, DeflectedContour):
-            _add(facts, "Contour", f"of {name}, deflected by {deflected_by(zone.surface, problem)}")
-    _add(facts, "Total load", f"{_total_load(body)}, reactions not counted")
-    _add(facts, "Held by conditions", "all rigid motions" if not len(body.motions) else "all but those below")
+            add(facts, "Contour", f"of {name}, deflected by {deflected_by(zone.surface, problem)}")
+    for name, tool in problem.tools.items():
+        add(facts, "Tool", f"{name}: {tool_in_words(tool)}")
+    add(facts, "Total load", f"{_total_load(body)}, reactions not counted")
+    add(facts, "Held by conditions", "all rigid motions" if not len(body.motions) else "all but those below")
     for motion in body.seen.describe():
-        _add(facts, "Held by contact", motion)
+        add(facts, "Held by contact", motion)
+    for name, case in problem.load_cases.items():
+        add(facts, "Load case", f"{name}: {case_in_words(case)}")
+    for name, factors in problem.combinations.items():
+        add(facts, "Combination", f"{name}: {' + '.join(f'{factor:g} {case}' for case, factor in factors.items())}")
     for name, reference in problem.reference.items():
-        _add(facts, "Reference", f"{name}: {reference_in_words(reference)}")
+        add(facts, "Reference", f"{name}: {reference_in_words(reference)}")
     for name, variant in problem.variants.items():
         told = variant.description.strip() or ", ".join(f"{key}={value}" for key, value in variant.set.items())
-        _add(facts, "Variant", f"{name}: {told}")
+        add(facts, "Variant", f"{name}: {told}")
     for note in body.notes:
-        _add(facts, "Note", note)
+        add(facts, "Note", note)
     return Group(Text(problem.name, "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)
 
 
@@ -97,15 +100,16 @@ def result_summary(result: Result) -> RenderableType:
     RenderableType
         For `rich`; no wider than 100 columns where the names are not.
     """
-    facts = _facts()
+    facts = list_of_facts()
     _add_footprint(facts, result)
-    _add(facts, "Residuals", _residuals(result))
+    _add_tools(facts, result)
+    add(facts, "Residuals", _residuals(result))
     if result.solution.search is not None:
-        _add(facts, "Search", search_in_words(result.solution.search, result.contact))
+        add(facts, "Search", search_in_words(result.solution.search, result.contact))
     if result.starts is not None:
-        _add(facts, "Starts", str(result.starts))
+        add(facts, "Starts", str(result.starts))
     for note in result.notes:
-        _add(facts, "Note", note)
+        add(facts, "Note", note)
     style = "bold green" if result.certified else "bold red"
     word = "certified" if result.certified else "NOT certified"
     facts.add_row(Text("Verdict", "bold"), Text.assemble((word, style), ". ", verdict(result)))
@@ -114,12 +118,12 @@ def result_summary(result: Result) -> RenderableType:
 
 def condensed_summary(condensed: CondensedContact, path: Path) -> RenderableType:
     """Tell what was condensed, and where it was written."""
-    facts = _facts()
-    _add(facts, "Contact points", f"{condensed.size} in {', '.join(condensed.zone_names)}")
-    _add(facts, "Rigid motions", held_by(condensed))
-    _add(facts, "Written", str(path))
+    facts = list_of_facts()
+    add(facts, "Contact points", f"{condensed.size} in {', '.join(condensed.zone_names)}")
+    add(facts, "Rigid motions", held_by(condensed))
+    add(facts, "Written", str(path))
     for note in condensed.notes:
-        _add(facts, "Note", note)
+        add(facts, "Note", note)
     return Group(Text(condensed.name, "bold"), "", facts)
 
 
@@ -137,21 +141,21 @@ def study_summary(study: Study) -> RenderableType:
     """
     level = study.finest
     compared, answer = level.comparison, level.answer
-    facts = _facts()
+    facts = list_of_facts()
     _add_footprint(facts, answer)
-    _add(facts, "Residuals", _residuals(answer))
+    add(facts, "Residuals", _residuals(answer))
     for name, remark in {item.name: item.remark for item in level.expected if item.remark}.items():
-        _add(facts, name, remark)
+        add(facts, name, remark)
     for contender in compared.everyone:
         if not contender.certified:
-            _add(facts, contender.label, contender.verdict.words)
+            add(facts, contender.label, contender.verdict.words)
     reasons = (item.verdict.reason for item in compared.contenders if item.verdict.reason)
     for reason in dict.fromkeys(reasons):
-        _add(facts, "Reason", reason)
+        add(facts, "Reason", reason)
     if study.convergence is not None and study.convergence.remark:
-        _add(facts, "Meshes", study.convergence.remark)
+        add(facts, "Meshes", study.convergence.remark)
     for note in answer.notes:
-        _add(facts, "Note", note)
+        add(facts, "Note", note)
     style = "bold green" if study.certified else "bold red"
     word = "certified" if study.certified else compared.heading
     words = [sentence_case(compared.verdict), *_uncertified_meshes(study)]
@@ -171,7 +175,7 @@ def _uncertified_meshes(study: Study) -> Iterator[str]:
 def _contender_table(compared: Comparison) -> Table:
     """List the formulations, the direct solution last."""
     searched = any(item.found.starts for item in compared.contenders)
-    table = _table(
+    table = table_of(
         "", "verdict", "objective", "unpolished", "off direct", "iterations", "seconds", *["starts"] * searched
     )
     for item in compared.everyone:
@@ -194,7 +198,7 @@ def _contender_table(compared: Comparison) -> Table:
 
 def _curvature_table(compared: Comparison) -> Table:
     """List how many eigenvalues are positive, zero and negative where a local solver searched."""
-    table = _table("eigenvalues + 0 -", "whole Hessian", "free at start", "free at end", "convex in equilibrium")
+    table = table_of("eigenvalues + 0 -", "whole Hessian", "free at start", "free at end", "convex in equilibrium")
     for item in compared.contenders:
         search = item.judged.solution.search if item.judged else None
         if search is None:
@@ -207,7 +211,7 @@ def _curvature_table(compared: Comparison) -> Table:
 
 def _score_table(level: MeshLevel) -> Table:
     """List what is known of the answer, and how far it is off."""
-    table = _table("reference", "quantity", "found", "expected", "difference", "")
+    table = table_of("reference", "quantity", "found", "expected", "difference", "")
     for item in level.scores:
         allowed = f"{100 * item.tolerance:.2g}%"
         holds = f"within {allowed}" if item.holds else f"MORE THAN {allowed}"
@@ -227,8 +231,8 @@ def _mesh_table(study: Study) -> Table:
     """List how the answer changes from mesh to mesh, with the last observed order and what it leads to."""
     found = study.convergence
     if found is None:
-        return _table("")
-    table = _table("mesh", *(f"refine {parts}" for parts in found.refine), "order", "limit")
+        return table_of("")
+    table = table_of("mesh", *(f"refine {parts}" for parts in found.refine), "order", "limit")
     units = units_of(study.finest.answer.contact)
     labels = {"p": units.stress, "L": units.length, "1": ""}
     for item in found.quantities:
@@ -250,45 +254,37 @@ def _compared_how(study: Study) -> str:
     return f"compared with the direct solution; {freedom}{level.answer.contact.size} contact points, {took}"
 
 
-def _facts() -> Table:
-    """Make a list of facts: what, and how much."""
-    facts = Table.grid(padding=(0, 2))
-    facts.add_column(no_wrap=True)
-    facts.add_column(overflow="fold", max_width=76)
-    return facts
-
-
-def _add(facts: Table, what: str, how_much: str) -> None:
-    facts.add_row(Text(what, "cyan"), Text(how_much))
-
-
 def _add_footprint(facts: Table, result: Result) -> None:
     """Add where the body touches, and how hard."""
     contact, found, units = result.contact, result.footprint, units_of(result.contact)
     if not found.intervals:
-        _add(facts, "Contact", "nowhere")
+        add(facts, "Contact", "nowhere")
     for interval in found.intervals:
-        _add(facts, "Contact", f"{interval.zone}: {span(contact, interval)}")
+        add(facts, "Contact", f"{interval.zone}: {span(contact, interval)}")
     if found.peak:
         pressure = with_unit(number(found.peak.pressure), units.stress)
         at = vector(found.peak.at, units.length, scale=size_of(contact))
-        _add(facts, "Peak pressure", f"{pressure} at {at}; per UNDEFORMED length")
+        add(facts, "Peak pressure", f"{pressure} at {at}; per UNDEFORMED length")
     pressed = float(contact.weights @ np.abs(result.solution.pressure))
     force = vector(found.resultant.force, per_thickness(units), scale=pressed)
-    _add(facts, "Resultant", f"{force}, of the rigid surfaces on the body")
+    add(facts, "Resultant", f"{force}, of the rigid surfaces on the body")
 
 
-def _table(*columns: str) -> Table:
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="cyan", pad_edge=False)
-    for column in columns:
-        numbers = column in RIGHT
-        table.add_column(column, justify="right" if numbers else "left", no_wrap=numbers, overflow="fold")
-    return table
+def _add_tools(facts: Table, result: Result) -> None:
+    """Add where the tools are, and what the body presses on them with."""
+    contact, units = result.contact, units_of(result.contact)
+    pressed = float(contact.weights @ np.abs(result.solution.pressure))
+    places = contact.tools.displacement(result.solution.rigid_amplitudes)
+    forces = contact.tools.reaction(contact.weights * result.solution.pressure)
+    for name, (x, y, turn), (fx, fy, moment) in zip(contact.tools.names, places, forces, strict=True):
+        moved = f"moves by {vector((x, y), units.length, scale=contact.scales.displacement)}, turns by {turn:.6g}"
+        force = vector((fx, fy), per_thickness(units), scale=pressed)
+        add(facts, "Tool", f"{name}: {moved}; the body presses on it with {force}, moment {moment:.6g}")
 
 
 def _edge_table(problem: Problem) -> Table:
     """List the edges, loop by loop."""
-    table = _table("edge", "kind", "length", "elements", "condition")
+    table = table_of("edge", "kind", "length", "elements", "condition")
     boundary = problem.boundary
     for number_of_loop, (stated, loop) in enumerate(zip(boundary.stated_loops, boundary.loops, strict=True)):
         if number_of_loop:
@@ -303,7 +299,7 @@ def _edge_table(problem: Problem) -> Table:
 
 def _zone_table(body: Body) -> Table:
     """List the contact zones."""
-    table = _table("contact zone", "edges", "points", "smallest gap", "rigid surface")
+    table = table_of("contact zone", "edges", "points", "smallest gap", "rigid surface")
     for index, (name, zone) in enumerate(body.problem.contact_zones.items()):
         gap = body.points.gap[body.points.zone == index]
         smallest = with_unit(number(float(gap.min())), body.problem.units.length)

@@ -14,6 +14,7 @@ from bemcontact.problem import (
     DeflectedContour,
     Edge,
     Field,
+    LoadCase,
     Loads,
     Plane,
     Polyline,
@@ -21,6 +22,7 @@ from bemcontact.problem import (
     Reference,
     RigidSurface,
     Table,
+    ToolAction,
     Units,
     Values,
 )
@@ -103,6 +105,19 @@ def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
     if loads.temperature:
         points = np.concatenate([edge.polyline() for edge in problem.boundary.edges])
         yield f"temperature change {_range(loads.temperature.change.at(points))}"
+
+
+def tool_in_words(tool: ToolAction) -> str:
+    """Say how a tool is displaced, and what it is loaded by: ``displaced by x = 0.1; loaded by y = -10``."""
+    ways = (("displaced by", tool.displacement), ("loaded by", tool.force))
+    told = [(way, [f"{key} = {number(value)}" for key, value in part if value is not None]) for way, part in ways]
+    return "; ".join(f"{way} {', '.join(values)}" for way, values in told if values)
+
+
+def case_in_words(case: LoadCase) -> str:
+    """Say what a load case is: what its author says of it, or else what it acts on."""
+    parts = [*case.conditions, *case.tools, *(key for key, load in case.loads if load is not None)]
+    return case.description.strip() or f"acts on {', '.join(parts)}"
 
 
 def surface_in_words(surface: RigidSurface) -> str:

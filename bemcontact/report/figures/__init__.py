@@ -3,6 +3,7 @@
 Each ``draw_...`` function draws into axes that it is given; each ``figure_of_...`` composes a page of them.
 """
 
+from bemcontact.report.figures.cases import draw_case_pressures, draw_peaks, figure_of, figure_of_cases
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.course import draw_convergence, draw_history
 from bemcontact.report.figures.page import FORMATS, ensure_known_format, save
@@ -15,16 +16,20 @@ from bemcontact.report.figures.vector_graphic import vector_graphic
 __all__ = [
     "FORMATS",
     "draw_against",
+    "draw_case_pressures",
     "draw_convergence",
     "draw_deformed",
     "draw_differences",
     "draw_gap",
     "draw_gaps",
     "draw_history",
+    "draw_peaks",
     "draw_pressure",
     "draw_pressures",
     "draw_problem",
     "ensure_known_format",
+    "figure_of",
+    "figure_of_cases",
     "figure_of_problem",
     "figure_of_result",
     "figures_of",

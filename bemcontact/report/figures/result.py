@@ -177,7 +177,8 @@ def _loops(state: BoundaryState, curves: Array) -> list[Array]:
 def _ground(result: Result, near: float) -> Iterator[tuple[Array, Array]]:
     """Stretches (j, 2) of rigid surface, with normals, so near to the deformed body that they can be shown."""
     contact = result.contact
-    feet = contact.points - contact.initial_gap[:, None] * contact.normals
+    moved = contact.tools.motions @ (contact.tools.amplitudes @ result.solution.rigid_amplitudes)
+    feet = contact.points - (contact.initial_gap + moved)[:, None] * contact.normals
     shown = _gap(result) <= near
     for piece in pieces_of(contact):
         for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
