@@ -21,7 +21,7 @@ def check(
       bemcontact check models/cylinder_on_plane.yaml --figure problem.svg
       bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
     """
-    with told(spec, overrides, variant), busy("checking"):
+    with told(spec, overrides, variant, (figure,)), busy("checking"):
         claim(spec, {"--figure": figure})
         from bemcontact import spec as spec_file
         from bemcontact.bem.condense import body_of
