@@ -134,10 +134,14 @@ def _says_something(value: Any) -> Any:
     """Refuse a condition of the contour that states nothing: here, it may be meant to take a load away."""
     if isinstance(value, Mapping) and all(part == {} for part in value.values()):
         raise complain(
-            "it states nothing; give traction: {x: 0, y: 0} if nothing acts on the edge while the contour is deflected, "
-            "or leave the edge out, which then keeps the condition of the problem"
+            "it states nothing; give traction: {x: 0, y: 0} if nothing acts there while the contour is deflected, or "
+            "leave the edge out, which then keeps the condition of the problem"
         )
     return value
+
+
+OtherCondition = Annotated[Condition, BeforeValidator(_says_something)]
+"""A condition in place of the problem's own."""
 
 
 class DeflectedContour(Stated):
@@ -150,7 +154,7 @@ class DeflectedContour(Stated):
 
     kind: Literal["deflected_contour"] = "deflected_contour"
     """The shape of the surface: plane, circle, polyline, or deflected_contour."""
-    conditions: Annotated[dict[Name, Annotated[Condition, BeforeValidator(_says_something)]], Field(default_factory=dict)]
+    conditions: Annotated[dict[Name, OtherCondition], Field(default_factory=dict)]
     """What is prescribed on edges instead of the problem's own conditions there, by edge name; others are kept."""
     loads: Loads = Loads()
     """Loads on the volume that deflect the contour; none if left out, whatever the problem has."""

@@ -17,6 +17,7 @@ from finite_elements_bodies import (
     upwards,
 )
 from finite_elements_contact import ElasticBody, active_set, graded, mapped, node_at, press
+
 from bemcontact import load as loaded
 
 E, NU = 210.0, 0.3
