@@ -87,6 +87,12 @@ class Mesh:
         """Sine (m,) of the angle by which the boundary turns to the right where each element starts."""
         return np.sum(self.normals[self.before, 2] * self.tangents[:, 0], axis=1) / self.jacobians[:, 0]
 
+    @property
+    def inner_angles(self) -> Array:
+        """Angle (m,) [rad] inside the body where each element starts: π where the boundary is smooth."""
+        straight_on = np.sum(self.tangents[self.before, 2] * self.tangents[:, 0], axis=1)
+        return np.pi + np.arctan2(self.turns * self.jacobians[:, 0] * self.jacobians[self.before, 2], straight_on)
+
     @cached_property
     def tributary(self) -> Array:
         """Length (m, 3) [L] that belongs to each (element, local node): (1/3, 4/3, 1/3) |dx/dξ|."""
