@@ -39,7 +39,7 @@ def at_the_corner(result: Result) -> float:
 
 @pytest.mark.parametrize("angle", [110, 120, 135])
 def test_at_an_obtuse_corner_the_pressure_is_unbounded_as_the_note_says(angle: float):
-    """Williams 1952, wedge of twice the angle α: p ~ r^(λ - 1), sin 2λα + λ sin 2α = 0; p grows by 2^(1 - λ) as h halves.
+    """Williams 1952, wedge of twice the angle α: p ~ r^(λ - 1), sin 2λα + λ sin 2α = 0; h/2 raises p by 2^(1 - λ).
 
     To 1 %, for the second term of the wedge, which is smaller by a power of the shortest element, 0.003 of the block.
     """
