@@ -50,9 +50,7 @@ def test_at_an_obtuse_corner_the_pressure_is_unbounded_as_the_note_says(angle: f
     assert np.log2(twice / once) == pytest.approx(-exponent, rel=0.01)
     for result in results:
         (note,) = result.notes
-        assert note.startswith(
-            f"contact reaches the end of the zone 'foot' at (20, 0), a corner of the body of {angle} d"
-        )
+        assert f"the end of the zone 'foot' at (20, 0), a corner of the body of {angle} degrees" in note
         assert "infinite in theory" in note
         assert "longer" not in note
 
