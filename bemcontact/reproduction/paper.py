@@ -129,7 +129,7 @@ CRACK = PaperProblem(
         Statement(what="largest pressure", said="the two meshes agree closely", quantity=Quantity.PEAK),
     ),
     differs=(
-        "The open nodes at the tip are an effect of the mesh: on the paper's meshes one is open, which moves to the tip "
+        "The open nodes at the tip are an effect of the mesh: on the paper's meshes one is open, moving to the tip "
         "as the elements there become shorter, and none is where they are shorter than half of the tip's radius on "
         "both sides. The crack closes to its tip. Kikuchi and Oden had open nodes too, but the paper's mesh was "
         "graded as theirs.",
