@@ -38,7 +38,7 @@ def of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     in_zone = np.isin(np.arange(len(mesh.elements)), points.element)
     ends = np.flatnonzero(in_zone != in_zone[mesh.before])
     beyond = np.where(in_zone, mesh.before, np.arange(len(in_zone)))
-    free = ~body.values.traction_unknown[beyond].any(axis=1)
+    free = np.all(~body.values.traction_unknown[beyond], axis=1)
     for i in np.flatnonzero(touching & np.isin(points.node, ends)):
         node, zone = points.node[i], list(body.problem.contact_zones)[points.zone[i]]
         x, y = mesh.nodes[node]
