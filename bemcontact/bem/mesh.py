@@ -87,11 +87,11 @@ class Mesh:
         """Sine (m,) of the angle by which the boundary turns to the right where each element starts."""
         return np.sum(self.normals[self.before, 2] * self.tangents[:, 0], axis=1) / self.jacobians[:, 0]
 
-    @property
+    @cached_property
     def inner_angles(self) -> Array:
         """Angle (m,) [rad] inside the body where each element starts: π where the boundary is smooth."""
-        straight_on = np.sum(self.tangents[self.before, 2] * self.tangents[:, 0], axis=1)
-        return np.pi + np.arctan2(self.turns * self.jacobians[:, 0] * self.jacobians[self.before, 2], straight_on)
+        directions = np.angle(self.tangents[..., 0] + 1j * self.tangents[..., 1])
+        return np.mod(directions[self.before, 2] + np.pi - directions[:, 0], 2 * np.pi)
 
     @cached_property
     def tributary(self) -> Array:
