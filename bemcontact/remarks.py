@@ -11,7 +11,9 @@ from bemcontact.bem.condense import Body
 FEW_POINTS = 5
 """Points under pressure below which a contact is not resolved: three make a parabola, two more its ends."""
 SMOOTH = 0.2
-"""Sine of the angle at the end of a zone below which the boundary goes on smoothly."""
+"""Angle in radians by which the boundary may turn at the end of a zone and still go on smoothly."""
+UNBOUNDED = "the pressure there is infinite in theory, and its values at the last nodes depend on the mesh"
+"""What holds at an end of contact where the stresses are singular."""
 LARGE_PRESSURE = 0.5
 """Peak pressure over Young's modulus beyond which nothing is left of small displacements."""
 
@@ -27,17 +29,27 @@ def of_few_points(touching: NDArray[np.bool_]) -> Iterator[str]:
 
 
 def of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Say where contact reaches the end of a zone although the boundary goes on smoothly."""
-    mesh, points = body.mesh, body.points
+    """Say where contact reaches the end of a zone: it should go on, or the pressure has no bound there.
+
+    On a smooth boundary either may be so. At a corner that is free beyond the zone the pressure is bounded up to a
+    right angle: with its mirror image in the rigid surface the body is a wedge, and then no notch (Williams 1952).
+    """
+    mesh, points, angles = body.mesh, body.points, body.mesh.inner_angles
     in_zone = np.isin(np.arange(len(mesh.elements)), points.element)
-    smooth_end = (in_zone != in_zone[mesh.before]) & (abs(mesh.turns) < SMOOTH)
-    for i in np.flatnonzero(touching):
-        if points.node[i] < len(mesh.elements) and smooth_end[points.node[i]]:
-            x, y = mesh.nodes[points.node[i]]
+    ends = np.flatnonzero(in_zone != in_zone[mesh.before])
+    beyond = np.where(in_zone, mesh.before, np.arange(len(in_zone)))
+    free = np.all(~body.acting.values.traction_unknown[beyond], axis=1)
+    for i in np.flatnonzero(touching & np.isin(points.node, ends)):
+        node, zone = points.node[i], list(body.problem.contact_zones)[points.zone[i]]
+        x, y = mesh.nodes[node]
+        reached = f"contact reaches the end of the zone '{zone}' at ({x:.5g}, {y:.5g})"
+        if abs(angles[node] - np.pi) < SMOOTH:
             yield (
-                f"contact reaches the end of the zone '{list(body.problem.contact_zones)[points.zone[i]]}' at "
-                f"({x:.5g}, {y:.5g}), where the boundary goes on smoothly; make the zone longer"
+                f"{reached}, where the boundary goes on smoothly; make the zone longer, unless the rigid surface ends "
+                f"there with an edge: then {UNBOUNDED}"
             )
+        elif free[node] and angles[node] > np.pi / 2 + SMOOTH:
+            yield f"{reached}, a corner of the body of {np.degrees(angles[node]):.0f} degrees; {UNBOUNDED}"
 
 
 def of_size(body: Body, where: Footprint) -> Iterator[str]:

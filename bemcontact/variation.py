@@ -31,7 +31,7 @@ def varied(document: Document, name: str) -> Iterator[Document]:
     """
     stated = {str(item.path[-1]): item for item in Written((), document.data).below(Problem, "variants").each()}
     if name not in stated:
-        raise SpecError(f"--variant {name}: {unknown_word('variant', name, stated)}")
+        raise SpecError(f"--variant {name or repr(name)}: {unknown_word('variant', name, stated)}")
     variant = stated[name].read(Variant)
     if variant is None:
         return

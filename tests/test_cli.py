@@ -255,13 +255,36 @@ def test_a_solver_that_breaks_down_ends_with_status_1(block: Path, monkeypatch: 
     assert (answer.exit_code, answer.stdout, answer.stderr) == (1, "", "failed: the system is singular\n")
 
 
-def test_an_interrupt_ends_quietly(block: Path, monkeypatch: pytest.MonkeyPatch):
-    def interrupted(*_: object, **__: object) -> None:
-        raise KeyboardInterrupt
+def interrupted(*_: object, **__: object) -> None:
+    raise KeyboardInterrupt
 
+
+def test_an_interrupt_says_that_nothing_was_written(block: Path, monkeypatch: pytest.MonkeyPatch):
+    """130 is what shells give to a program that Ctrl-C ended."""
     monkeypatch.setattr(analysis, "carry_out", interrupted)
+    old = block.with_name("old.json")
+    old.write_text("{}")
+    answer = run("solve", block, "--json", old, "--figure", block.with_name("new.svg"))
+    assert (answer.exit_code, answer.stdout) == (130, "")
+    assert answer.stderr == "interrupted; nothing was written\n"
+    assert sorted(path.name for path in block.parent.iterdir()) == sorted([block.name, old.name])
+
+
+def test_an_interrupt_says_what_was_written_already(block: Path, monkeypatch: pytest.MonkeyPatch):
+    """The boundary is written before the JSON, and a file that was there is replaced."""
+    vtu, answer_file = block.with_name("boundary.vtu"), block.with_name("answer.json")
+    vtu.write_text("old")
+    monkeypatch.setattr(bemcontact.Result, "to_json", interrupted)
+    answer = run("solve", block, "--vtk", vtu, "--json", answer_file)
+    assert (answer.exit_code, answer.stderr) == (130, f"interrupted; {vtu} was written\n")
+    assert "VTKFile" in vtu.read_text()
+    assert not answer_file.exists()
+
+
+def test_an_interrupt_while_the_answer_is_shown_says_no_more(block: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("bemcontact.report.text.result_summary", interrupted)
     answer = run("solve", block)
-    assert (answer.exit_code, answer.output) == (130, "")
+    assert (answer.exit_code, answer.output) == (130, "interrupted\n")
 
 
 BROKEN = {

@@ -116,12 +116,28 @@ def test_contact_carries_all_of_the_load(refine: int):
 def test_open_nodes_at_the_tip_of_the_crack_go_with_the_mesh():
     """Whatever is open moves to the tip: each mesh has only its last node open, if any, and a fine one has none."""
     last = []
-    for refine in (1, 2, 4):
-        answer = result("elliptical_crack_closure", "complementarity", None, refine)
+    for refine in (1, 2, 4, 8):
+        answer = result("elliptical_crack_closure", "complementarity", "paper", refine)
         x, pressure = answer.contact.points[:, 0], answer.solution.pressure
         assert set(x[pressure <= 0]) <= {x.max()}
         last.append(np.count_nonzero(pressure <= 0))
     assert last[-1] == 0
+
+
+@pytest.mark.parametrize(("refine", "within"), [(1, 0.01), (2, 0.005), (4, 0.002)])
+def test_crack_closes_to_its_tip(refine: int, within: float):
+    """All nodes touch. Closing the upright face is a strain of -1 there, with σ_x = 0: σ_y = -E/(1 - ν²) = -1099.
+
+    On the ligament this is traction in y, on the first node of its first element, to what goes down with the elements.
+    """
+    for answer in answers("elliptical_crack_closure", refine):
+        assert answer.solution.pressure.min() > 0
+        (interval,) = answer.footprint.intervals
+        assert interval.end == pytest.approx((3, 0), abs=1e-12)
+    boundary = analysis.solve(problem("elliptical_crack_closure", None, refine)).to_dict()["boundary"]
+    first = boundary["edge"].index("ligament")
+    assert boundary["points"][first][0] == pytest.approx((3, 0))
+    assert boundary["traction"][first][0][1] == pytest.approx(1000 / (1 - 0.3**2), rel=within)
 
 
 def test_slit_misses_what_the_ends_of_the_crack_add():

@@ -575,6 +575,7 @@ def test_variant_is_that_of_the_problem(variant, tmp_path):
         ("outer.bottom", "outer.bot", "fine", "block.yaml:32:36: variants.fine.set.boundary.outer.bot.elements: "),
         ("    set:", "    sat:", "fine", "block.yaml:31:5: variants.fine.sat: unknown key 'sat'; did you mean 'set'?"),
         ("", "", "fime", "--variant fime: unknown variant 'fime'; did you mean 'fine'?"),
+        ("", "", "", "--variant '': the name of the variant is empty; there is: fine"),
     ],
 )
 def test_mistakes_in_variants_have_their_place(old, new, variant, line):
@@ -672,6 +673,21 @@ def test_schema_takes_the_models(path):
 
 
 CONTOUR = "{kind: deflected_contour, direction: [0, 1], conditions: {top: {pressure: 2}}}"
+
+
+@pytest.mark.parametrize("nothing", ["{}", "{traction: {}}"])
+def test_a_condition_of_a_contour_that_states_nothing_is_refused_where_it_stands(nothing):
+    """To leave the edge out would keep the problem's own load, so the way to take it away is told too."""
+    contour = CONTOUR.replace("{pressure: 2}", nothing)
+    text = SPEC.replace("{kind: plane, point: [0, 0], normal: [0, 1]}", contour)
+    (line,) = (number for number, found in enumerate(text.splitlines(), 1) if "deflected_contour" in found)
+    column = text.splitlines()[line - 1].index(nothing) + 1
+    with pytest.raises(SpecError) as caught:
+        bemcontact.spec.loads(text, "block.yaml")
+    (found,) = str(caught.value).splitlines()
+    assert found.startswith(f"block.yaml:{line}:{column}: contact_zones.foot.surface.conditions.top: it states nothing")
+    assert "give traction: {x: 0, y: 0}" in found
+    bemcontact.spec.loads(text.replace(nothing, "{traction: {x: 0, y: 0}}"))
 
 
 @pytest.mark.parametrize(

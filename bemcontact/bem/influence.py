@@ -342,17 +342,11 @@ class Influence:
         block.F[:, _successive(end)] += T[:, 2]
 
     def _turn_corners(self, block: Block, collocation: Collocation) -> None:
-        """The free term at nodes between two elements."""
+        """The free term at nodes between two elements: -i times the interior angle."""
         corner = collocation.corner[block.rows]
         row = np.flatnonzero(corner >= 0)
         for diagonal in range(2):
-            block.F[diagonal, corner[row], row] += self._factors.normal * self._corner_angles[corner[row]]
-
-    @cached_property
-    def _corner_angles(self) -> Array:
-        """Minus the interior angle (m,) at the start node of each element."""
-        tangents = self.mesh.tangents[..., 0] + 1j * self.mesh.tangents[..., 1]
-        return kernels.corner_term(tangents[self.mesh.before, 2], tangents[:, 0]).imag
+            block.F[diagonal, corner[row], row] += self._factors.normal * -self.mesh.inner_angles[corner[row]]
 
 
 def _places(of: IntArray, count: int) -> IntArray:

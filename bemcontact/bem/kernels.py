@@ -249,7 +249,7 @@ def singular(nodes: ComplexArray, local: Array) -> Integrals:
     """Pairs whose point lies on the element, at local coordinate ξ0; one-sided limits from outside the body.
 
     At an end of the element A_k of the node there diverges like ln|τ|; that part cancels against the neighbour's and
-    is left out here: with the neighbour's share goes -i times the interior angle (`corner_term`).
+    is left out here: with the neighbour's share goes -i times the interior angle.
 
     Parameters
     ----------
@@ -273,11 +273,6 @@ def singular(nodes: ComplexArray, local: Array) -> Integrals:
     tau[local == 1, 1] = 0
     turn = np.divide(tau, tau.conj(), out=np.zeros_like(tau), where=tau != 0)
     return _with_root_split_off(nodes, root, log_ratio, turn)
-
-
-def corner_term(before: ComplexArray, after: ComplexArray) -> ComplexArray:
-    """-i times the interior angle at a node, from the tangents dζ/dξ before and after it (body on the left)."""
-    return -1j * np.mod(np.angle(-before) - np.angle(after), 2 * np.pi)
 
 
 def _with_root_split_off(nodes: ComplexArray, root: Root, log_ratio: ComplexArray, end_turn: ComplexArray) -> Integrals:

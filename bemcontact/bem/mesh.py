@@ -88,6 +88,12 @@ class Mesh:
         return np.sum(self.normals[self.before, 2] * self.tangents[:, 0], axis=1) / self.jacobians[:, 0]
 
     @cached_property
+    def inner_angles(self) -> Array:
+        """Angle (m,) [rad] inside the body where each element starts: π where the boundary is smooth."""
+        directions = np.angle(self.tangents[..., 0] + 1j * self.tangents[..., 1])
+        return np.mod(directions[self.before, 2] + np.pi - directions[:, 0], 2 * np.pi)
+
+    @cached_property
     def tributary(self) -> Array:
         """Length (m, 3) [L] that belongs to each (element, local node): (1/3, 4/3, 1/3) |dx/dξ|."""
         return shape_functions.INTEGRALS * self.jacobians

@@ -32,7 +32,7 @@ def check(
       bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
     """
     overrides = with_case(overrides, case)
-    with told(spec, overrides, variant), busy("checking"):
+    with told(spec, overrides, variant, (figure,)), busy("checking"):
         claim(spec, {"--figure": figure})
         from bemcontact import spec as spec_file
         from bemcontact.bem.condense import body_of, each_case, ensure_held

@@ -78,8 +78,8 @@ def compare(
       bemcontact compare models/cylinder_on_plane.yaml --starts 100
     """
     overrides = with_case(overrides, case)
-    with told(spec, overrides, variant), stages() as say:
-        json_claim = None if json_file == STANDARD_OUTPUT else json_file
+    json_claim = None if json_file == STANDARD_OUTPUT else json_file
+    with told(spec, overrides, variant, (out, json_claim)), stages() as say:
         claim(spec, {"--json": json_claim})
         claim_folder(spec, "--out", out, json_claim)
         parts = several(refine, "--refine", "whole number", int)

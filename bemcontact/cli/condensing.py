@@ -27,7 +27,7 @@ def condense(
       bemcontact condense models/cylinder_on_plane.yaml --refine 2 --out fine.npz
     """
     overrides = with_case(overrides, case)
-    with told(spec, overrides, variant), busy("condensing"):
+    with told(spec, overrides, variant, (out,)), busy("condensing"):
         claim(spec, {"--out": out})
         from bemcontact import analysis
         from bemcontact import spec as spec_file

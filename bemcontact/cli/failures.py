@@ -75,12 +75,22 @@ def refuse(message: str) -> NoReturn:
 
 @contextmanager
 def told(
-    spec: Path | None = None, overrides: Sequence[str] | None = None, variant: str | None = None
+    spec: Path | None = None,
+    overrides: Sequence[str] | None = None,
+    variant: str | None = None,
+    outputs: Sequence[Path | None] | None = None,
 ) -> Iterator[None]:
-    """Turn all that can go wrong on purpose into one text on standard error, about a spec, and an exit status."""
+    """Turn all that can go wrong on purpose into one text on standard error, about a spec, and an exit status.
+
+    An interrupt is told with what has been written by then of the outputs; with None there is nothing to say of them.
+    """
+    before = {path: _identity(path) for path in outputs or () if path is not None}
     try:
         yield
     except KeyboardInterrupt:
+        written = [str(path) for path, identity in before.items() if _identity(path) != identity]
+        so_far = f"; {', '.join(written) or 'nothing'} was written" if outputs is not None else ""
+        tell("interrupted", so_far)
         raise typer.Exit(INTERRUPTED) from None
     except BrokenPipeError:
         raise
@@ -101,3 +111,11 @@ def told(
     except MemoryError as error:
         tell("failed: ", "not enough memory for so many elements; take a smaller --refine")
         raise typer.Exit(UNCERTIFIED) from error
+
+
+def _identity(path: Path) -> int | None:
+    """Tell a file or folder from one that takes its place: they appear whole, under a number of their own."""
+    try:
+        return path.stat().st_ino
+    except OSError:
+        return None

@@ -31,8 +31,8 @@ def reproduce(
       bemcontact reproduce --out paper
       bemcontact reproduce --refine 1,2,4,8 --json numbers.json
     """
-    with told(), stages() as say:
-        json_claim = None if json_file == STANDARD_OUTPUT else json_file
+    json_claim = None if json_file == STANDARD_OUTPUT else json_file
+    with told(outputs=(out, json_claim)), stages() as say:
         claim(None, {"--json": json_claim})
         claim_folder(None, "--out", out, json_claim, "reproduction")
         parts = several(refine, "--refine", "whole number", int)

@@ -92,8 +92,8 @@ def solve(
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --starts 20
     """
     overrides = with_case(overrides, case)
-    with told(spec, overrides, variant), busy("solving") as say:
-        json_claim = None if json_file == STANDARD_OUTPUT else json_file
+    json_claim = None if json_file == STANDARD_OUTPUT else json_file
+    with told(spec, overrides, variant, (figure, vtk_file, json_claim)), busy("solving") as say:
         claim(spec, {"--figure": figure, "--json": json_claim, "--vtk": vtk_file})
         from bemcontact import analysis, load_cases
         from bemcontact import spec as spec_file

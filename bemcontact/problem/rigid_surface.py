@@ -1,11 +1,12 @@
 """Rigid surfaces: gap and unit normal, from the surface into the body."""
 
+from collections.abc import Mapping
 from itertools import pairwise
-from typing import Annotated, Literal, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.kinds import ByKind
@@ -129,6 +130,20 @@ class Polyline(Stated):
         return Closest(np.einsum("ki,ki->k", offset, normals), normals)
 
 
+def _says_something(value: Any) -> Any:
+    """Refuse a condition of the contour that states nothing: here, it may be meant to take a load away."""
+    if isinstance(value, Mapping) and all(part == {} for part in value.values()):
+        raise complain(
+            "it states nothing; give traction: {x: 0, y: 0} if nothing acts there while the contour is deflected, or "
+            "leave the edge out, which then keeps the condition of the problem"
+        )
+    return value
+
+
+OtherCondition = Annotated[Condition, BeforeValidator(_says_something)]
+"""A condition in place of the problem's own."""
+
+
 class DeflectedContour(Stated):
     """The contour that the body itself is deflected to by other loads, touching nothing.
 
@@ -139,7 +154,7 @@ class DeflectedContour(Stated):
 
     kind: Literal["deflected_contour"] = "deflected_contour"
     """The shape of the surface: plane, circle, polyline, or deflected_contour."""
-    conditions: Annotated[dict[Name, Condition], Field(default_factory=dict)]
+    conditions: Annotated[dict[Name, OtherCondition], Field(default_factory=dict)]
     """What is prescribed on edges instead of the problem's own conditions there, by edge name; others are kept."""
     loads: Loads = Loads()
     """Loads on the volume that deflect the contour; none if left out, whatever the problem has."""

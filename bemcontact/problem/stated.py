@@ -210,8 +210,10 @@ def _translated(cls: type[BaseModel], details: ErrorDetails) -> Complaint:
 
 
 def unknown_word(what: str, word: str, known: Iterable[str]) -> str:
-    """Say that a word is unknown, which one was probably meant, and which there are."""
+    """Say that a word is unknown or empty, which one was probably meant, and which there are."""
     known = tuple(known)
+    if not word.strip():
+        return f"the name of the {what} is empty; there is: {listed(known)}"
     meant = near_by(word, known)
     hint = f"did you mean '{meant}'?" if meant else f"there is: {listed(known)}"
     return f"unknown {what} {_shortened(repr(word))}; {hint}"

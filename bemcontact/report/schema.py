@@ -1,386 +1,202 @@
-"""What report.json holds, stated once: `report_schema` is its JSON Schema, for programs that read it."""
+"""What report.json holds, stated once: `report_schema` is its JSON Schema, for programs that read it.
 
-from typing import Annotated, Any, Literal
+Units as in `answer_schema`.
+"""
 
-from pydantic import BaseModel, ConfigDict, Field
+from typing import Any, Literal
 
-from bemcontact.assessment.certificate import CertificateKind
-from bemcontact.assessment.verdict import Outcome
 from bemcontact.choices import FormulationName, Weights
-from bemcontact.solution import Status
-
-Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
-Inertia = Annotated[list[int], Field(min_length=3, max_length=3)]
-StatusName = Annotated[str, Field(json_schema_extra={"enum": [status.name.lower() for status in Status]})]
-OutcomeName = Annotated[str, Field(json_schema_extra={"enum": [outcome.value for outcome in Outcome]})]
-KindName = Annotated[str, Field(json_schema_extra={"enum": [kind.value for kind in CertificateKind]})]
-
-
-class Record(BaseModel):
-    """What stands between braces: all keys, and no others."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+from bemcontact.report.answer_schema import Interval, Pair, Record
+from bemcontact.report.comparison_schema import Comparison
 
 
 class Units(Record):
-    """Labels of the units; numbers are never converted."""
+    """Labels of the units that all numbers are in; nothing is converted."""
 
     length: str
+    """Unit of length [L]; empty if it is not stated."""
     force: str
+    """Unit of force; pressure [p] is force over length squared."""
 
 
 class Settings(Record):
     """What was compared."""
 
     formulations: list[FormulationName]
+    """Beside the direct solution."""
     weights: list[Weights]
+    """Of the objectives."""
     penalties: list[float]
     """μ of QP2, free of units."""
     starts: int | None
     """Random starts of QP1 and QP2, beside the null start."""
     seed: int
+    """Of the random starts."""
     changes: list[str]
     """Made to the spec with --set."""
-
-
-class Scales(Record):
-    """By which residuals and objectives are divided."""
-
-    displacement: float
-    pressure: float
-
-
-class Contact(Record):
-    """The contact points of the condensed problem; lists go point by point."""
-
-    contact_nodes: int
-    free_rigid_motions: int
-    motion_names: list[str]
-    motion_load: list[float]
-    nodes: list[Pair]
-    normals: list[Pair]
-    zone: list[str]
-    run: list[int]
-    """Number of the unbroken piece of boundary."""
-    arc_position: list[float]
-    """Arc length along that piece."""
-    tributary_lengths: list[float]
-    initial_gap: list[float]
-    scales: Scales
-
-
-class Penalty(Record):
-    """μ of QP2, free of units and raw, and up to which QP2 is convex; null if for every μ."""
-
-    value: float
-    raw: float
-    convexity_limit: float | None
-    convexity_limit_raw: float | None
-    dimension: Literal["p/L²", "1/p"]
-
-
-class Search(Record):
-    """How a local solver came to its end; inertias are numbers of positive, zero and negative eigenvalues."""
-
-    start: str
-    phase_one_iterations: int
-    phase_two_iterations: int
-    working_set_changes: int
-    inertia: Inertia
-    reduced_inertia_start: Inertia
-    reduced_inertia_end: Inertia
-    weakly_active: int
-    objective: float
-    penalty: Penalty | None
-
-
-class Trace(Record):
-    """One quantity, iteration by iteration."""
-
-    quantity: str
-    first: int
-    values: list[float]
-
-
-class AtPenalty(Record):
-    """The objective of QP2 with one penalty."""
-
-    penalty: float
-    value: float
-
-
-class Objectives(Record):
-    """One solution under every statement, scaled; all are zero at the contact state with positive diagonal weights."""
-
-    weights: Weights
-    qp1: float
-    qp2: list[AtPenalty]
-    qp3: float
-
-
-class Residuals(Record):
-    """What is left of the conditions, free of units."""
-
-    penetration: float
-    tension: float
-    complementarity: float
-    work: float
-    equilibrium: float
-    stiffness_rows: float
-    balance: float
-    force_balance: float | None
-
-
-class Certificate(Record):
-    """What has been proved; the error bound is a pressure."""
-
-    kind: KindName
-    smallest_eigenvalue: float | None
-    error_bound: float | None
-    words: str
-
-
-class Interval(Record):
-    """One unbroken stretch of contact."""
-
-    zone: str
-    start: Pair
-    end: Pair
-    arc: Pair
-    """Arc positions of both on the piece of boundary."""
-
-
-class Peak(Record):
-    """The largest pressure, and where."""
-
-    pressure: float
-    at: Pair
-
-
-class Answer(Record):
-    """What a formulation found, and what was recomputed of it."""
-
-    solver: str
-    status: StatusName
-    pressure: list[float]
-    gap: list[float]
-    normal_displacement: list[float]
-    rigid_amplitudes: list[float]
-    iterations: int
-    polished: bool
-    search: Search | None
-    history: list[Trace]
-    convexity: float | None
-    """Smallest eigenvalue of the scaled Hessian of QP3 on the equilibrium space, where the solver looked at it."""
-    notes: list[str]
-    objectives: list[Objectives]
-    residuals: Residuals
-    certificate: Certificate
-    resultant: Pair
-    resultant_moment: float
-    intervals: list[Interval]
-    peak: Peak | None
-
-
-class End(Record):
-    """Where searches from random starts ended."""
-
-    status: StatusName
-    count: int
-    first_start: int
-    objective: float | None
-    residual: float
-    iterations: Annotated[list[int], Field(min_length=2, max_length=2)]
-    pressure: list[float]
-    normal_displacement: list[float]
-
-
-class Starts(Record):
-    """Random starts, and how many ended at the contact state."""
-
-    formulation: FormulationName
-    count: int
-    seed: int
-    solved: int
-    ends: list[End]
-
-
-class Verdict(Record):
-    """What an answer is worth, why, and where the weights are to blame the deeper reason."""
-
-    outcome: OutcomeName
-    words: str
-    reason: str
-
-
-class Contender(Record):
-    """One formulation with its weights and penalty; `answer` is null if it refused."""
-
-    label: str
-    formulation: FormulationName
-    weights: Weights | None
-    penalty: float | None
-    certified: bool
-    verdict: Verdict
-    objective: float | None
-    """Of its own statement, scaled."""
-    convex: bool | None
-    """On what equations and equilibrium leave free."""
-    seconds: float
-    starts: Starts | None
-    answer: Answer | None
-
-
-class Difference(Record):
-    """Of two pressures."""
-
-    one: str
-    other: str
-    largest: float
-    """Over the peak of the direct solution."""
-    mean_square: float
-    """Over that of the direct solution."""
-    unpolished: float
-    """As `largest`, of what the first's solver found before its polish, from the polished other."""
-
-
-class Weighted(Record):
-    """J M with one J, scaled; eigenvalues of its symmetric part on the equilibrium space."""
-
-    weights: Weights
-    negative_weights: int
-    asymmetry: float
-    smallest_eigenvalue: float | None
-    largest_eigenvalue: float | None
-    saddle: bool
-    convex: bool
-
-
-class Matrices(Record):
-    """Numbers of the condensed matrices."""
-
-    condition: float
-    weighted: list[Weighted]
-
-
-class Comparison(Record):
-    """Formulations side by side on one mesh."""
-
-    name: str
-    version: str
-    certified: bool
-    heading: str
-    """What is certified, in a few words."""
-    verdict: str
-    agreement: float | None
-    """Largest difference of those that meet all conditions from the direct solution, over the peak."""
-    contact: Contact
-    contenders: list[Contender]
-    reference: Contender
-    """The direct solution of the complementarity problem."""
-    differences: list[Difference]
-    matrices: Matrices
 
 
 class Expected(Record):
     """What a reference says; null where it says nothing."""
 
     name: str
+    """Of the reference in the spec."""
     source: str
+    """Where it comes from."""
     closed_form: bool
+    """Whether it is a formula, and not a list of values."""
     zone: str | None
+    """The contact zone that it is about; null for all."""
     pressure: list[float | None]
+    """At each contact point, per undeformed length [p]."""
     compared: list[bool]
+    """At each contact point, whether a difference of pressure tells something: not at singular ends."""
     tolerance: float
+    """Relative difference up to which the answer agrees."""
     reason: str
+    """Why that much."""
     peak: float | None
+    """Largest pressure [p]."""
     half_width: float | None
+    """Distance of the farther end of contact from `center`, along the tangent there [L]."""
     center: Pair | None
+    """Middle (x, y) of the contact [L]."""
     contact_length: float | None
+    """Length of the boundary in contact [L]."""
     start: float | None
+    """Smallest coordinate of contact, [L] or degrees."""
     end: float | None
+    """Largest coordinate of contact, [L] or degrees."""
     against: str | None
-    """The coordinate of start and end."""
+    """The coordinate of start and end: x, y, arc, or angle, which is in degrees."""
     ends: list[Pair]
+    """The contact points (x, y) nearest to start and end [L]."""
     resultant: float | None
+    """Magnitude of the force on what is modelled, per thickness [p L]."""
     in_range: bool
+    """Whether the reference is valid for this problem, so that a difference can be held against the answer."""
     remark: str
+    """Why it is not; else empty."""
 
 
 class Score(Record):
-    """One quantity as found and as a reference expects it; the difference is relative."""
+    """One quantity as found and as a reference expects it."""
 
     reference: str
+    """Name of the reference."""
     quantity: str
+    """What is compared."""
     found: float | None
+    """In the unit of the quantity, [p], [L], [p L] or degrees; null where nothing touches."""
     expected: float
+    """In the same unit; 0 where the quantity is itself a difference."""
     difference: float | None
+    """Relative: over the quantity expected, the extent of contact for its ends, the pressure for its differences."""
     tolerance: float
+    """Relative difference that the reference allows."""
     judged: bool
+    """Whether the difference can be held against the answer."""
     holds: bool
+    """Whether it is within the tolerance."""
 
 
 class FitPass(Record):
-    """A mesh on the way to one fitted to the ends of contact; how far these would move an element end."""
+    """A mesh on the way to one fitted to the ends of contact."""
 
     movement: float | None
+    """By how much an element end would still move, over the shorter element beside it; null if others are asked for."""
     intervals: list[Interval]
+    """Contact as found on this mesh."""
 
 
 class MeshFit(Record):
-    """How the mesh was fitted to the ends of contact: the mesh as stated, then each fitted one."""
+    """How the mesh was fitted to the ends of contact."""
 
     settled: bool
+    """Whether the ends of contact are those that the mesh is fitted to."""
     kept: int
+    """Number of the pass whose mesh was kept; 0 is the mesh as stated."""
     passes: list[FitPass]
+    """The mesh as stated, then each fitted one."""
 
 
 class Level(Record):
-    """The comparison on one mesh, each stated element cut into `refine` parts."""
+    """The comparison on one mesh."""
 
     refine: int
+    """Number of parts into which each stated element is cut."""
     dof: int | None
+    """Unknowns of the boundary elements, two for each node; null if no boundary stands behind the contact points."""
     seconds: dict[str, float]
+    """By stage."""
     notes: list[str]
+    """What should be known of the answer and its mesh."""
     force_balance: float | None
+    """Resultant of all forces on the body over their sum, from the recovered tractions; null without a boundary."""
     equilibrium_slack: float | None
+    """How far the discrete equations are from equilibrium, relative to the loads; null without a boundary."""
     mesh_fit: MeshFit | None
+    """How the mesh was fitted, if that was asked for."""
     comparison: Comparison
+    """The formulations side by side."""
     references: list[Expected]
+    """What the references of the spec say at these contact points."""
     scores: list[Score]
+    """How the direct solution stands beside them."""
 
 
 class Quantity(Record):
-    """A number on one mesh after the other, with the orders observed between them and the limit they lead to."""
+    """A number on one mesh after the other."""
 
     name: str
+    """What it is."""
     dimension: Literal["p", "L", "1"]
+    """Its unit: pressure, length, or none."""
     values: list[float]
+    """The coarsest mesh first."""
     orders: list[float | None]
+    """Observed between the meshes; null where the values do not steadily approach a limit."""
     limit: float | None
+    """To which the last order leads; null without an order."""
 
 
 class Convergence(Record):
     """What changes with the mesh."""
 
     refine: list[int]
+    """Number of parts into which each stated element is cut, on each mesh."""
     quantities: list[Quantity]
+    """Peak, ends of contact, and asymmetry of J M."""
     remark: str
+    """What cannot be told; else empty."""
 
 
 class Report(Record):
-    """A problem compared on one mesh or several, the coarsest first."""
+    """A problem compared on one mesh or several.
+
+    [L] is the unit of length and [p] that of pressure, force over length squared; a number without either has no unit.
+    """
 
     name: str
+    """Of the problem."""
     description: str
+    """As the spec has it."""
     certified: bool
+    """Whether all answers on all meshes are proved to be the solution."""
     verdict: str
+    """What the finest mesh says, in sentences."""
     units: Units
+    """Labels of the units."""
     settings: Settings
+    """Formulations, weights, penalties and starts."""
     levels: list[Level]
+    """The coarsest mesh first."""
     convergence: Convergence | None
+    """What changes with the mesh; null on a single one."""
     versions: dict[str, str]
+    """Of bemcontact, Python and the packages used, by name."""
     seconds: float
+    """Of all stages on all meshes."""
 
 
 def report_schema() -> dict[str, Any]:

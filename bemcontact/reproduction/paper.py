@@ -129,9 +129,10 @@ CRACK = PaperProblem(
         Statement(what="largest pressure", said="the two meshes agree closely", quantity=Quantity.PEAK),
     ),
     differs=(
-        "The open nodes at the tip are an effect of the mesh: what is open moves to the tip as the elements there "
-        "become shorter, and on a mesh four times finer nothing is. The crack closes to its tip. Kikuchi and Oden "
-        "had open nodes too, but the paper's mesh was graded as theirs.",
+        "The open nodes at the tip are an effect of the mesh: on the paper's meshes one is open, moving to the tip "
+        "as the elements there become shorter, and none is where they are shorter than half of the tip's radius on "
+        "both sides. The crack closes to its tip. Kikuchi and Oden had open nodes too, but the paper's mesh was "
+        "graded as theirs.",
         "The closed form of an infinite panel lies lower, because this panel is not large beside the crack: it is "
         "shown, not judged.",
     ),

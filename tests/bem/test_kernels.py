@@ -114,13 +114,6 @@ def test_regular_rule_sums_kelvins_kernels():
     assert result[4:] == pytest.approx(np.array([U[ij] for ij in kernels.U_ORDER]), abs=1e-13)
 
 
-def test_corner_term_is_the_interior_angle():
-    """Straight: π. The corner of a square run through anticlockwise: π/2; seen from a square hole: 3π/2."""
-    before, after = np.array([1, 1, 1j, 1 + 1j]), np.array([2, 1j, 1, -1])
-    expected = -1j * np.array([np.pi, np.pi / 2, 3 * np.pi / 2, np.pi / 4])
-    assert kernels.corner_term(before, after) == pytest.approx(expected, abs=1e-15)
-
-
 def test_tiers_are_as_good_as_they_say():
     """Poles 1/(ξ - r)² and ln(ξ - r), times N_1, with r on the ellipse of each rule: errors below 30 tolerances."""
     for order, rho in zip(quadrature.ORDERS, quadrature.SMALLEST_RHO, strict=True):

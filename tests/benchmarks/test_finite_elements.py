@@ -6,9 +6,19 @@ import finite_elements_bodies
 import finite_elements_contact
 import numpy as np
 import pytest
-from finite_elements import extrapolated
-from finite_elements_bodies import along_x, cylinder_on_plane, upwards
+from finite_elements import MODELS, extrapolated
+from finite_elements_bodies import (
+    along_x,
+    bolt_in_plate,
+    cantilever_curved_surface,
+    cantilever_flat_surface,
+    cylinder_on_plane,
+    elliptical_crack_closure,
+    upwards,
+)
 from finite_elements_contact import ElasticBody, active_set, graded, mapped, node_at, press
+
+from bemcontact import load as loaded
 
 E, NU = 210.0, 0.3
 PLANE_STRAIN = E / (1 - NU**2)
@@ -128,6 +138,30 @@ def test_the_cylinder_of_the_benchmark():
     assert touch.force == pytest.approx([0, 405], rel=1e-9)
     assert touch.ends()[1] == pytest.approx(2.7685, rel=2e-4)
     assert touch.pressure_at(np.zeros(1)) == pytest.approx(183.335, rel=5e-4)
+
+
+def stated(name):
+    """What the file of a problem says that these finite elements gave."""
+    return loaded(MODELS / f"{name}.yaml").reference["finite elements"]
+
+
+@pytest.mark.parametrize("press_together", [bolt_in_plate, elliptical_crack_closure])
+def test_tables_in_the_models_are_those_of_the_benchmark(press_together):
+    """On the coarsest mesh, 2e-4 of the peak from the limit in the tables; the finest one would take half a minute."""
+    at, pressure = np.array(stated(press_together.__name__).pressure).T
+    assert press_together(1).pressure_at(at) == pytest.approx(pressure, abs=3e-4 * pressure.max())
+
+
+def test_values_in_the_models_are_those_of_the_benchmark():
+    """On the coarsest mesh: starts within 0.001 of degrees and cm, peaks within 1e-4, and what the files round off."""
+    start = loaded(MODELS / "bolt_in_plate.yaml").reference["finite elements, start"].start
+    assert bolt_in_plate(1).ends()[0] == pytest.approx(start, abs=0.001 + 0.005)
+    known, touch = stated("cantilever_flat_surface"), cantilever_flat_surface(1)
+    assert touch.ends()[0] == pytest.approx(known.start, abs=0.001 + 0.0005)
+    assert touch.pressure_at(np.linspace(43, 46, 301)).max() == pytest.approx(known.peak, abs=0.001 + 0.005)
+    touch = cantilever_curved_surface(1)
+    peak = touch.pressure_at(np.linspace(10, 30, 401)).max()
+    assert peak == pytest.approx(stated("cantilever_curved_surface").peak, abs=0.005)
 
 
 def test_active_set_finds_the_only_state_of_two_springs():

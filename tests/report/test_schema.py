@@ -1,6 +1,7 @@
 """The schema of report.json is what a report holds: neither more nor less."""
 
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from jsonschema import Draft202012Validator, ValidationError, validate
 from bemcontact import comparing
 from bemcontact.contact import CondensedContact
 from bemcontact.formulations.plan import planned_comparison
+from bemcontact.report.reproduction_schema import reproduction_schema
 from bemcontact.report.schema import Report, report_schema
 from bemcontact.spec import load
 
@@ -43,6 +45,30 @@ def written(request: pytest.FixtureRequest) -> dict[str, dict]:
 
 def test_it_is_a_schema():
     Draft202012Validator.check_schema(report_schema())
+
+
+@pytest.mark.parametrize("stated", [report_schema(), reproduction_schema()])
+def test_it_tells_of_each_field_what_it_means(stated: dict[str, Any]):
+    """Every object and every key has a description, which is a sentence."""
+    objects = {"the whole": stated, **{name: item for name, item in stated["$defs"].items() if "properties" in item}}
+    assert len(objects) > 10
+    for name, part in objects.items():
+        for key, item in ({"itself": part} | part["properties"]).items():
+            assert item.get("description", "").endswith("."), f"{name}: {key}"
+
+
+def test_lengths_pressures_and_forces_have_their_units():
+    """Of what report.json has in units, by the tables of the README: each of them named [L], [p], [p L] or [p L²]."""
+    units = {
+        ("Answer", "pressure"): "[p]", ("Answer", "gap"): "[L]", ("Answer", "normal_displacement"): "[L]",
+        ("Answer", "resultant"): "[p L]", ("Answer", "resultant_moment"): "[p L²]", ("Peak", "pressure"): "[p]",
+        ("Interval", "arc"): "[L]", ("Contact", "initial_gap"): "[L]", ("Contact", "tributary_lengths"): "[L]",
+        ("Contact", "motion_load"): "[p L]", ("Scales", "pressure"): "[p]", ("Certificate", "error_bound"): "[p]",
+        ("Expected", "peak"): "[p]", ("Expected", "resultant"): "[p L]", ("Expected", "contact_length"): "[L]",
+    }  # fmt: skip
+    stated = report_schema()["$defs"]
+    for (name, key), unit in units.items():
+        assert unit in stated[name]["properties"][key]["description"], f"{name}: {key}"
 
 
 def test_reports_of_all_kinds_are_valid_and_nothing_is_left_out(written: dict[str, dict]):

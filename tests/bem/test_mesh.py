@@ -1,0 +1,27 @@
+"""Elements and how they join."""
+
+import numpy as np
+import pytest
+
+from bemcontact.bem import mesh
+from bemcontact.problem import Problem
+
+PLANE = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+
+
+def test_inner_angles_are_those_of_the_body():
+    """Along edges π; a corner of 3-4-5 triangles atan(4/3), a right angle, and 3π/2 around a square hole."""
+    triangle = [("bottom", [0, 0]), ("slope", [30, 0]), ("left", [0, 40])]
+    hole = [("west", [5, 5]), ("north", [5, 10]), ("east", [10, 10]), ("south", [10, 5])]
+    loops = [[{"name": name, "start": start, "elements": 2} for name, start in loop] for loop in (triangle, hole)]
+    problem = Problem.model_validate(
+        {
+            "name": "triangle with a hole",
+            "material": {"young_modulus": 1, "poisson_ratio": 0.3},
+            "boundary": {"outer": loops[0], "holes": [loops[1]]},
+            "contact_zones": {"foot": {"edges": "bottom", "surface": PLANE}},
+        }
+    )
+    slope = np.arctan2(4, 3)
+    corners = [np.pi / 2, slope, np.pi / 2 - slope, *[3 * np.pi / 2] * 4]
+    assert mesh.build(problem).inner_angles == pytest.approx(np.ravel([(corner, np.pi) for corner in corners]))
