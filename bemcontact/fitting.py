@@ -24,7 +24,7 @@ MOST_PASSES = 6
 """Meshes tried after the one that was stated."""
 SETTLED = 0.2
 """Distance of an end of contact from where the mesh is graded to, over the shorter element there, that is none."""
-SAWING = 0.02
+SAWING = 0.01
 """Amplitude over the peak above which a pressure that saws more than on the mesh as stated condemns a fitted mesh."""
 CHANGE = 0.01
 """Change of the peak pressure, or of the force on a zone, with the fitted mesh above which it is told."""

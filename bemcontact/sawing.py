@@ -9,9 +9,9 @@ from bemcontact.contact import Array, CondensedContact
 def sawing(contact: CondensedContact, pressure: Array) -> float:
     """Largest amplitude of a pressure that saws, over the peak pressure.
 
-    A point is off by its distance from the cubic through the two points before and the two after it, where pressure
-    acts on all five. Four points in a row that are off to alternate sides saw by the least of the four distances. A
-    smooth pressure has nearly none of it, however it bends.
+    Five points in a row under pressure have one alternating part ±a, by which they are off a cubic, that of the fourth
+    divided difference. Where four such parts in a row alternate, the pressure saws by the least of them. A smooth
+    pressure has nearly none, however it bends.
 
     Parameters
     ----------
@@ -21,22 +21,21 @@ def sawing(contact: CondensedContact, pressure: Array) -> float:
     Returns
     -------
     float
-        0 where no eight points in a row are under pressure, or none at all.
+        0 where no eight points in a row are under pressure.
     """
     amplitudes = [0.0]
     for run in np.unique(contact.run):
         own = np.flatnonzero(contact.run == run)
         own = own[np.argsort(contact.arc_position[own], kind="stable")]
         if len(own) >= 8:
-            off = sliding_window_view(_off_cubics(contact.arc_position[own], pressure[own]), 4)
-            alternate = (off[:, 1:] * off[:, :-1] < 0).all(axis=1)
-            amplitudes.append(float((np.abs(off).min(axis=1) * alternate).max()))
+            parts = sliding_window_view(_alternating(contact.arc_position[own], pressure[own]), 4)
+            saws = (parts[:, 1:] * parts[:, :-1] < 0).all(axis=1)
+            amplitudes.append(float((np.abs(parts).min(axis=1) * saws).max()))
     return max(amplitudes) / peak if (peak := contact.peak(pressure)) > 0 else 0.0
 
 
-def _off_cubics(arc: Array, pressure: Array) -> Array:
-    """Distances (n - 4,) of points from the cubics through their four neighbours; 0 where one of these is open."""
+def _alternating(arc: Array, pressure: Array) -> Array:
+    """Alternating part (n - 4,) of each five points in a row, with the sign of the middle one; 0 where one is open."""
     s, p = sliding_window_view(arc, 5), sliding_window_view(pressure, 5)
-    apart = s[:, :, None] - s[:, None, :] + np.eye(5)  # the divided difference of fourth order, by its own weight of p
-    weights = 1 / apart.prod(axis=2)
-    return np.where((p > 0).all(axis=1), (weights * p).sum(axis=1) / weights[:, 2], 0.0)
+    weights = 1 / (s[:, :, None] - s[:, None, :] + np.eye(5)).prod(axis=2)  # of the divided difference; they alternate
+    return np.where((p > 0).all(axis=1), (weights * p).sum(axis=1) / np.abs(weights).sum(axis=1), 0.0)
