@@ -20,7 +20,7 @@ from bemcontact.problem.problem import Problem
 from bemcontact.sawing import sawing
 from bemcontact.solution import Status
 
-MOST_PASSES = 6
+MOST_PASSES = 8
 """Meshes tried after the one that was stated."""
 SETTLED = 0.2
 """Distance of an end of contact from where the mesh is graded to, over the shorter element there, that is none."""
@@ -60,7 +60,7 @@ def fitted(problem: Problem, progress: Callable[[str], object] | None = None) ->
     """Fit the mesh to the ends of contact, if the problem asks for it.
 
     The complementarity problem is solved on the mesh as stated, the elements of each contact zone are placed anew by
-    `fitted_ends`, and so on until no end of contact moves by more than a fifth of the shorter element beside it, six
+    `fitted_ends`, and so on until no end of contact moves by more than a fifth of the shorter element beside it, eight
     times at most. Elements beside a zone are halved until they are at most twice as long as the one at its end. A mesh
     on which the pressure saws, as it did not on the one stated, is not kept. All this is done without `mesh.refine`,
     which then cuts the fitted elements: so finer meshes contain each other, an observed order means something, and
@@ -129,7 +129,7 @@ def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_T
 def _aim(stated: Mapping[int, ZoneRun], trials: Sequence[_Trial]) -> Stretches:
     """Stretches of contact to fit to next: half-way to those found where the ends of contact only swing to and fro."""
     last = trials[-1]
-    if len(trials) < 3 or last.movement is None or last.movement < _unrest(trials[-2]) / 2:
+    if len(trials) < 3 or last.narrow or last.movement is None or last.movement < _unrest(trials[-2]) / 2:
         return last.found
     return {
         number: half_way(stated[number], last.fitted_to.get(number, ()), found) for number, found in last.found.items()

@@ -22,7 +22,8 @@ SHORTEST_OF_RUN = 1e-6
 LEAST = 3
 """Elements on each side of a contact edge, stated or not."""
 CLOSE = 1e-2
-"""Distance from the end of a run, or from a joint, over its mean element length, that is not resolved by elements."""
+"""Distance from the end of a run, or from a joint, that is not resolved by elements, over the mean length of these, or
+over the contact that ends there if it is shorter."""
 GENTLE = 2.0
 """Length of the element beside a run over that of the one at its end, up to which it is left."""
 GROWTH = 1.5
@@ -74,9 +75,9 @@ class _Part:
 
 def resolved(run: ZoneRun, touched: Sequence[Touched]) -> tuple[Touched, ...]:
     """Move contact edges that are all but at a joint, or at an end of the run, onto it."""
-    close = CLOSE * run.length / (len(run.ends) - 1)
 
-    def settle(position: float, free: bool) -> tuple[float, bool]:
+    def settle(position: float, free: bool, width: float) -> tuple[float, bool]:
+        close = CLOSE * min(run.length / (len(run.ends) - 1), width)
         turns = run.length * np.floor(position / run.length) if run.closed else 0.0
         joint = float(run.joints[np.argmin(np.abs(run.joints - (position - turns)))])
         if abs(joint - (position - turns)) > close:
@@ -85,7 +86,9 @@ def resolved(run: ZoneRun, touched: Sequence[Touched]) -> tuple[Touched, ...]:
 
     moved = []
     for item in touched:
-        (start, start_free), (end, end_free) = settle(item.start, item.start_free), settle(item.end, item.end_free)
+        width = item.end - item.start
+        start, start_free = settle(item.start, item.start_free, width)
+        end, end_free = settle(item.end, item.end_free, width)
         if end > start:
             moved.append(Touched(start=start, end=end, start_free=start_free, end_free=end_free))
     return tuple(moved)
@@ -95,10 +98,10 @@ def fitted_ends(run: ZoneRun, touched: Sequence[Touched]) -> Array:
     """Positions of element ends, at a ± b (i/n)³ around each end of contact a, and nowhere farther apart than stated.
 
     b is the distance to the next mark: an end of the run, a corner at which contact ends, or the middle between two
-    ends of contact. n is such that all n together are as many as are stated, with two in contact for one outside on
-    each side of an end of contact, and `LEAST` at any rate. Such elements grow up to three times as long as equal ones:
-    from where they would be longer than stated, elements are as stated, so that a run gets about half as many again.
-    Joints of edges stay element ends, the nearest being moved onto them.
+    ends of contact. All n together are as many as are stated, with two in contact for one outside, or more where that
+    is longer, and `LEAST` on each side of an end of contact, for which some are added if need be. Such elements grow up
+    to three times as long as equal ones: from where they would be longer than stated, elements are as stated, so that
+    a run gets about half as many again. Joints of edges stay element ends, the nearest being moved onto them.
 
     Parameters
     ----------
@@ -206,7 +209,7 @@ def _beside(run: ZoneRun, position: float) -> tuple[float, Array]:
 def _crowded(run: ZoneRun, position: float) -> float | None:
     """The nearest element end, if elements crowd to it."""
     end, (farther, before, after, beyond) = _beside(run, position)
-    return end if farther >= GROWTH * before and beyond >= GROWTH * after else None
+    return end if farther >= GROWTH * before > 0 and beyond >= GROWTH * after > 0 else None
 
 
 def _parts(run: ZoneRun, touched: Sequence[Touched]) -> list[_Part]:
@@ -263,7 +266,8 @@ def _counted(run: ZoneRun, block: Sequence[_Part]) -> list[_Part]:
     whole = block[0].low_free  # all round a closed run
     stated = len(run.ends) - 1 if whole else 1 + len(_inside(run.ends, run, block[0].low, block[-1].high))
     counts = [max(LEAST * part.sides, 1 + len(_inside(run.joints, run, part.low, part.high))) for part in block]
-    left = max(stated - sum(counts), 0)
+    fair = ceil(LEAST / CONTACT_SHARE * sum(part.share for part in block))  # with the least in contact, enough outside
+    left = max(max(stated, fair) - sum(counts), 0)
     rivals = list(range(len(block)))
     while left:
         claim = [block[i].share / (counts[i] + 0.5) * (1 + 1e-6 * block[i].width / run.length) for i in rivals]

@@ -321,7 +321,7 @@ class Score(Record):
 
 
 class FitPass(Record):
-    """A mesh on the way to one fitted to the ends of contact; how far these would move an element end."""
+    """A mesh on the way to one fitted to the ends of contact; how far these are from where it is graded to."""
 
     movement: float | None
     intervals: list[Interval]

@@ -105,7 +105,7 @@ def test_contact_that_ends_at_a_joint_all_but_is_graded_to_the_joint():
     assert resolved(run, [touched(0, 2.003)])[0].end == 2.003
     assert resolved(run, [touched(1, 3.998)]) == (touched(1, 4.0, end_free=False),)
     assert resolved(run, [touched(0.001, 3)]) == (touched(0, 3, start_free=False),)
-    assert resolved(run, [touched(1.999, 2.001)]) == ()
+    assert resolved(run, [touched(1.999, 2.001)]) == (touched(1.999, 2.001),)  # a contact that is shorter than that
 
 
 def test_a_corner_at_which_contact_ends_divides_the_zone():
@@ -184,6 +184,7 @@ def test_movement_is_measured_in_the_shorter_element_where_the_mesh_is_graded_to
     assert movement(run, [found], [fitted_to]) == pytest.approx(0.001 / (3 / 512), rel=1e-9)
     assert movement(run, [found], None) == movement(run, [found], [fitted_to])  # elements grow from there
     assert movement(stated, [found], None) is None
+    assert movement(run, [touched(0.001, 3.001)], None) is None  # nothing crowds to the end of a run
     assert movement(run, [touched(1, 3)], [fitted_to]) is None  # one end more
 
 
