@@ -54,8 +54,9 @@ def stretches(
         if first == last:
             start_arc = min(start_arc, (arcs[first] + arcs[max(first - 1, 0)]) / 2)
             end_arc = max(end_arc, (arcs[last] + arcs[min(last + 1, len(arcs) - 1)]) / 2)
-        start, start_free = _end(run, start_arc, arcs[first], 0.0 if first == 0 else None)
-        end, end_free = _end(run, end_arc, arcs[last], run.length if last == len(arcs) - 1 else None)
+        corners = first < last  # a single point at a corner says nothing of either side of it
+        start, start_free = _end(run, start_arc, arcs[first], 0.0 if first == 0 else None, corners)
+        end, end_free = _end(run, end_arc, arcs[last], run.length if last == len(arcs) - 1 else None, corners)
         touched = Touched(start=start, end=end, start_free=start_free, end_free=end_free)
         yield Stretch(touched=touched, narrow=last - first < POINTS_OF_ELEMENT - 1)
 
@@ -72,13 +73,13 @@ def _points(run: ZoneRun, contact: CondensedContact, solution: ContactSolution) 
     return (turns[:, None] + arcs).ravel(), np.tile(touching, len(turns))
 
 
-def _end(run: ZoneRun, arc: float, outermost: float, limit: float | None) -> tuple[float, bool]:
+def _end(run: ZoneRun, arc: float, outermost: float, limit: float | None, at_corners: bool) -> tuple[float, bool]:
     """Position of an end of contact, and whether it is free, from the outermost point that touches."""
     if limit is not None and not run.closed:
         return limit, False
     position = run.position(outermost)
     corners = run.joints[run.corner]
     turned = position % run.length if run.closed else position
-    if corners.size and np.abs(corners - turned).min() <= SAME * 100 * run.length:
+    if at_corners and corners.size and np.abs(corners - turned).min() <= SAME * 100 * run.length:
         return position, False
     return run.position(arc), True

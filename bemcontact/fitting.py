@@ -47,7 +47,7 @@ class _Trial:
     movement: float | None = None
     narrow: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    sawing: float = 0.0
+    sawing: float | None = None
     peak: float = 0.0
     forces: Mapping[str, float] = field(default_factory=dict)
 
@@ -105,7 +105,9 @@ def _unrest(trial: _Trial) -> float:
 
 
 def _saws(trial: _Trial, first: _Trial) -> bool:
-    """Tell whether the pressure saws on a mesh, and more than on the first one."""
+    """Tell whether the pressure saws on a mesh, and more than on the first one, if that has points enough to tell."""
+    if trial.sawing is None or first.sawing is None:
+        return False
     return trial.sawing > max(SAWING, first.sawing)
 
 
@@ -122,7 +124,7 @@ def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_T
             placed = _placed(runs, aim)
             trials.append(_trial(body_of(stated.with_element_ends(placed)), placed, runs, aim))
         except (ProblemError, SingularSystemError) as error:
-            return trials, [f"the mesh of pass {len(trials)} was given up: {error}"]
+            return trials, [f"the mesh of pass {len(trials)} was given up: {str(error).splitlines()[0]}"]
     return trials, []
 
 
@@ -213,7 +215,7 @@ def _told_of_fit(first: _Trial, last: _Trial, passes: int, refine: int) -> Itera
 
 def _told_of_none(trials: Sequence[_Trial]) -> Iterator[str]:
     """Say why the mesh is as stated."""
-    first, sawing = trials[0], max(trial.sawing for trial in trials)
+    first, sawing = trials[0], max(trial.sawing or 0.0 for trial in trials)
     if first.settled and first.found:
         yield "the mesh fits the ends of contact already"
     elif first.found and any(_saws(trial, first) for trial in trials):

@@ -130,6 +130,41 @@ def test_hertz_on_a_zone_that_is_much_longer(load):
     assert result.footprint.peak.pressure == pytest.approx(2 * 810 * load / (np.pi * half_width), rel=5e-3)
 
 
+WEDGE = """
+name: wedge on its point
+material: {young_modulus: 1000, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: right face, start: [0, 0], elements: 6}
+    - {name: right, start: [4, 1], elements: 4}
+    - {name: top, start: [4, 5], elements: 6}
+    - {name: left, start: [-4, 5], elements: 4}
+    - {name: left face, start: [-4, 1], elements: 6}
+conditions:
+  top: {pressure: 2}
+  left: {displacement: {x: 0}}
+  right: {displacement: {x: 0}}
+contact_zones:
+  point: {edges: [left face, right face], surface: {kind: plane, point: [0, 0], normal: [0, 1]}}
+mesh: {fit_contact_edges: true}
+"""
+
+
+@pytest.mark.parametrize("load", [20.0, 5.0, 0.5, 0.02])
+def test_contact_round_a_corner_is_fitted_on_both_sides(load):
+    """A wedge has no length of its own: contact grows like the load; its peak is infinite, and only as high as a mesh.
+
+    So it does from three points under pressure down to one, a thousandth of it; against the fine mesh of one load.
+    """
+    finest = bemcontact.solve(bemcontact.loads(WEDGE).refined(4), "complementarity").footprint
+    result = bemcontact.solve(bemcontact.loads(WEDGE).with_value("conditions.top.pressure", load), "complementarity")
+    assert result.certified
+    assert result.mesh_fit.settled
+    for which in ("start", "end"):
+        end, fine = (getattr(found.intervals[0], which)[0] for found in (result.footprint, finest))
+        assert end / load == pytest.approx(fine / 2, rel=0.05)
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_whatever_the_zone_is_like_fitting_helps(seed):
     """Elements of any number and grading, loads down to 1e-7: within 2e-2 of Hertz, and nearer than unfitted.

@@ -36,7 +36,9 @@ def test_what_alternates_is_found_with_its_amplitude():
     assert sawing(contact_on(ARC[order]), p[order]) == pytest.approx(0.05 / p.max(), rel=1e-9)
 
 
-def test_open_points_and_short_contacts_do_not_saw():
-    assert sawing(contact_on(ARC), np.zeros(30)) == 0
-    assert sawing(contact_on(ARC), np.where(np.arange(30) % 2, 1.0, 0.0)) == 0  # no five in a row
-    assert sawing(contact_on(ARC[:7]), 1 + (-1.0) ** np.arange(7) / 2) == 0
+def test_few_points_do_not_tell():
+    """Eight in a row under pressure do."""
+    assert sawing(contact_on(ARC), np.zeros(30)) is None
+    assert sawing(contact_on(ARC), np.where(np.arange(30) % 8, SMOOTH, 0.0)) is None
+    assert sawing(contact_on(ARC), np.where(np.arange(30) % 9, SMOOTH, 0.0)) is not None
+    assert sawing(contact_on(ARC[:7]), SMOOTH[:7]) is None
