@@ -209,9 +209,16 @@ def judged(
         certificate = certify(contact, solution, judged)
         where = footprint(contact, solution)
         touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
-        notes = (*(() if fit is None else fit.notes), *contact.notes, *solution.notes, *remarks.of_few_points(touching))
+        notes = (
+            *(() if fit is None else fit.notes),
+            *contact.notes,
+            *solution.notes,
+            *remarks.of_few_points(contact, touching, where),
+        )
         if condensation is not None:
-            notes += (*remarks.of_zone_ends(condensation.body, touching), *remarks.of_size(condensation.body, where))
+            body = condensation.body
+            notes += (*remarks.of_zone_ends(body, touching), *remarks.of_long_neighbours(body, touching))
+            notes += (*remarks.of_size(body, where),)
     gap = contact.initial_gap + solution.displacement
     return Result(
         problem=problem if isinstance(problem, Problem) else None,

@@ -1,61 +1,71 @@
 """Meshes that find the ends of contact: solve, locate them, grade the contact zones towards them, and again."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.assessment.footprint import ContactInterval, footprint
-from bemcontact.bem.condense import body_of, condense
-from bemcontact.bem.fitted_ends import Touched, fitted_ends, resolved
-from bemcontact.bem.zone_runs import SAME, ZoneRun, zone_runs
-from bemcontact.contact import CondensedContact
+from bemcontact.bem.condense import Body, body_of, condense
+from bemcontact.bem.fitted_ends import Touched, fitted_ends, half_way, halved, movement, resolved
+from bemcontact.bem.zone_runs import ZoneRun, zone_runs
+from bemcontact.contact_stretches import stretches
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
 from bemcontact.mesh_fit import FitPass, MeshFit
+from bemcontact.problem.curves import Edge
 from bemcontact.problem.problem import Problem
-from bemcontact.solution import ContactSolution, Status
+from bemcontact.sawing import sawing
+from bemcontact.solution import Status
 
-MOST_PASSES = 4
+MOST_PASSES = 8
 """Meshes tried after the one that was stated."""
 SETTLED = 0.2
-"""Movement of an element end, over the shorter element beside it, that counts as none."""
+"""Distance of an end of contact from where the mesh is graded to, over the shorter element there, that is none."""
+SAWING = 0.01
+"""Amplitude over the peak above which a pressure that saws more than on the mesh as stated condemns a fitted mesh."""
+CHANGE = 0.01
+"""Change of the peak pressure, or of the force on a zone, with the fitted mesh above which it is told."""
 
 ElementEnds = Mapping[str, tuple[float, ...]]
 """By the name of an edge, where its elements end, as `Problem.with_element_ends` takes them."""
-
-
-PEAK = 0.01
-"""Change of the peak pressure with the fitted mesh above which it says that the mesh does not settle it."""
+Stretches = Mapping[int, tuple[Touched, ...]]
+"""By the number of a run, its stretches of contact, of which one end at least is free."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Trial:
-    """A problem with some element ends placed, and where its ends of contact ask for them, if that is known."""
+    """A mesh with some element ends placed, and where contact is on it, if that is known."""
 
-    problem: Problem
     placed: ElementEnds
-    intervals: tuple[ContactInterval, ...]
-    asked: ElementEnds | None
-    movement: float | None
-    notes: tuple[str, ...]
+    elements: int = 0
+    intervals: tuple[ContactInterval, ...] = ()
+    fitted_to: Stretches = field(default_factory=dict)
+    found: Stretches = field(default_factory=dict)
+    movement: float | None = None
+    narrow: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    sawing: float | None = None
     peak: float = 0.0
+    forces: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def settled(self) -> bool:
-        return self.movement is not None and self.movement <= SETTLED
+        return self.movement is not None and self.movement <= SETTLED and not self.narrow
 
 
 def fitted(problem: Problem, progress: Callable[[str], object] | None = None) -> tuple[Problem, MeshFit | None]:
     """Fit the mesh to the ends of contact, if the problem asks for it.
 
     The complementarity problem is solved on the mesh as stated, the elements of each contact zone are placed anew by
-    `fitted_ends`, and so on until no element end moves by more than a fifth of the shorter element beside it, four
-    times at most. All this is done without `mesh.refine`, which then cuts the fitted elements: so finer meshes contain
-    each other, an observed order means something, and fitting costs little. But the ends of contact are then those of
-    the mesh that was cut: where they matter to many digits, state more elements instead.
+    `fitted_ends`, and so on until no end of contact moves by more than a fifth of the shorter element beside it, eight
+    times at most. Elements beside a zone are halved until they are at most twice as long as the one at its end. A mesh
+    on which the pressure saws, as it did not on the one stated, is not kept. All this is done without `mesh.refine`,
+    which then cuts the fitted elements: so finer meshes contain each other, an observed order means something, and
+    fitting costs little. But the ends of contact are then those of the mesh that was cut: where they matter to many
+    digits, state more elements instead.
 
     Parameters
     ----------
@@ -76,14 +86,15 @@ def fitted(problem: Problem, progress: Callable[[str], object] | None = None) ->
     """
     if not problem.mesh.fit_contact_edges:
         return problem, None
-    stated = problem if problem.mesh.refine == 1 else problem.with_value("mesh.refine", 1)
+    refine = problem.mesh.refine
+    stated = problem if refine == 1 else problem.with_value("mesh.refine", 1)
     trials, failed = _trials(stated, progress or (lambda _: None))
-    kept = min(range(len(trials)), key=lambda number: _unrest(trials[number]))
+    kept = min((i for i, trial in enumerate(trials) if not _saws(trial, trials[0])), key=lambda i: _unrest(trials[i]))
     fit = MeshFit(
         passes=tuple(FitPass(intervals=trial.intervals, movement=trial.movement) for trial in trials),
         kept=kept,
         settled=trials[kept].settled and not trials[kept].notes,
-        notes=(*_told(trials, kept), *failed, *dict.fromkeys(note for trial in trials for note in trial.notes)),
+        notes=(*_told(trials, kept, refine), *failed, *dict.fromkeys(note for trial in trials for note in trial.notes)),
     )
     return problem.with_element_ends(trials[kept].placed), fit
 
@@ -93,146 +104,144 @@ def _unrest(trial: _Trial) -> float:
     return np.inf if trial.movement is None else trial.movement
 
 
+def _saws(trial: _Trial, first: _Trial) -> bool:
+    """Tell whether the pressure saws on a mesh, and more than on the first one, if that has points enough to tell."""
+    if trial.sawing is None or first.sawing is None:
+        return False
+    return trial.sawing > max(SAWING, first.sawing)
+
+
 def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_Trial], list[str]]:
     """Try the mesh as stated, then what the trial before asks for, until one is settled; with notes on what failed."""
     progress("mesh as stated")
-    trials = [_trial(stated, {})]
-    while len(trials) <= MOST_PASSES and trials[-1].asked and not trials[-1].settled:
+    body = body_of(stated)
+    runs = {run.number: run for run in zone_runs(body)}
+    trials = [_trial(body, {}, runs, None)]
+    while len(trials) <= MOST_PASSES and trials[-1].found and not trials[-1].settled:
         progress(f"pass {len(trials)}")
         try:
-            trials.append(_trial(stated, _next_ends(trials)))
+            aim = _aim(runs, trials)
+            placed = _placed(runs, aim)
+            trials.append(_trial(body_of(stated.with_element_ends(placed)), placed, runs, aim))
         except (ProblemError, SingularSystemError) as error:
-            return trials, [f"the mesh of pass {len(trials)} was given up: {error}"]
+            return trials, [f"the mesh of pass {len(trials)} was given up: {str(error).splitlines()[0]}"]
     return trials, []
 
 
-def _next_ends(trials: Sequence[_Trial]) -> ElementEnds:
-    """The element ends to try next: half-way to those asked for where the ends of contact only swing to and fro."""
+def _aim(stated: Mapping[int, ZoneRun], trials: Sequence[_Trial]) -> Stretches:
+    """Stretches of contact to fit to next: half-way to those found where the ends of contact only swing to and fro."""
     last = trials[-1]
-    assert last.asked is not None
-    if len(trials) < 3 or last.movement is None or last.movement < _unrest(trials[-2]) / 2:
-        return last.asked
-    present = {name: last.problem.edge(name).breakpoints()[1:-1] for name in last.asked}
-    return {name: tuple(((present[name] + np.array(ends)) / 2).tolist()) for name, ends in last.asked.items()}
+    if len(trials) < 3 or last.narrow or last.movement is None or last.movement < _unrest(trials[-2]) / 2:
+        return last.found
+    return {
+        number: half_way(stated[number], last.fitted_to.get(number, ()), found) for number, found in last.found.items()
+    }
 
 
-def _trial(stated: Problem, placed: ElementEnds) -> _Trial:
-    """Solve a problem with some element ends placed, and find where its ends of contact ask for them."""
-    problem = stated.with_element_ends(placed)
-    body = body_of(problem)
+def _placed(stated: Mapping[int, ZoneRun], aim: Stretches) -> ElementEnds:
+    """Element ends of the runs on which contact ends, and of edges beside them that have long elements there."""
+    placed: dict[str, tuple[float, ...]] = {}
+    for number, touched in aim.items():
+        placed |= stated[number].fractions(fitted_ends(stated[number], touched))
+    for run in (stated[number] for number in aim):
+        for edge, own, at in zip(run.beside, (run.edges[0], run.edges[-1]), (-1, 0), strict=False):
+            inside, outside = _breakpoints(own, placed), _breakpoints(edge, placed)
+            finer = halved(outside, np.diff(inside)[-1 - at] * own.length / edge.length, at)
+            if len(finer) > len(outside):
+                placed[edge.name] = tuple(finer[1:-1].tolist())
+    return placed
+
+
+def _breakpoints(edge: Edge, placed: ElementEnds) -> Array:
+    """Fractions of the length of an edge where its elements begin and end."""
+    return np.array([0.0, *placed[edge.name], 1.0]) if edge.name in placed else edge.breakpoints()
+
+
+def _trial(body: Body, placed: ElementEnds, stated: Mapping[int, ZoneRun], fitted_to: Stretches | None) -> _Trial:
+    """Solve a problem with some element ends placed, and find where contact ends."""
     contact = condense(body).contact
     solution = complementarity.solve(contact)
     if solution.status is not Status.SOLVED:
         note = f"the mesh could not be fitted to a state of contact: {solution.status.value}"
-        return _Trial(problem=problem, placed=placed, intervals=(), asked=None, movement=None, notes=(note,))
+        return _Trial(placed=placed, notes=(note,))
     intervals = footprint(contact, solution).intervals
-    asked: dict[str, tuple[float, ...]] = {}
+    found: dict[int, tuple[Touched, ...]] = {}
     movements: list[float | None] = [0.0]
-    notes: list[str] = []
+    narrow: list[str] = []
     for run in zone_runs(body):
-        touched = resolved(run, [*_touched(run, contact, solution, intervals)])
-        if not any(item.start_free or item.end_free for item in touched):
-            continue
-        ends = fitted_ends(run, touched)
-        if ends is None:
-            notes.append(_too_few(run))
-            continue
-        asked |= run.fractions(ends)
-        movements.append(_movement(run, asked))
-    movement = None if None in movements else max(filter(None, movements), default=0.0)
+        here = [*stretches(run, contact, solution, intervals)]
+        narrow += [run.zone for one in here if one.narrow]
+        touched = resolved(stated[run.number], [one.touched for one in here])
+        if any(item.start_free or item.end_free for item in touched):
+            found[run.number] = touched
+        movements.append(movement(run, touched, None if fitted_to is None else fitted_to.get(run.number, ())))
+    forces = np.bincount(contact.zone, contact.weights * solution.pressure, len(contact.zone_names))
     return _Trial(
-        problem=problem,
         placed=placed,
+        elements=len(body.mesh.elements),
         intervals=intervals,
-        asked=asked,
-        movement=movement,
-        notes=tuple(notes),
+        fitted_to=fitted_to or {},
+        found=found,
+        movement=None if None in movements else max(filter(None, movements), default=0.0),
+        narrow=tuple(dict.fromkeys(narrow)),
+        sawing=sawing(contact, solution.pressure),
         peak=contact.peak(solution.pressure),
+        forces=dict(zip(contact.zone_names, forces.tolist(), strict=True)),
     )
 
 
-def _touched(
-    run: ZoneRun, contact: CondensedContact, solution: ContactSolution, intervals: Sequence[ContactInterval]
-) -> Iterator[Touched]:
-    """Stretches of contact on a run; an end is free unless contact goes on to the last point or to a corner."""
-    on_run = np.flatnonzero(contact.run == run.number)
-    touching = contact.touching(solution.pressure, solution.displacement)
-    arcs = np.sort(contact.arc_position[on_run])
-    arcs_touching = np.sort(contact.arc_position[on_run[touching[on_run]]])
-    if run.closed:
-        arcs_touching = np.concatenate([turn * run.arc[-1] + arcs_touching for turn in (-1, 0, 1, 2)])
-    same = SAME * run.arc[-1]
-    for interval in intervals:
-        if interval.run != run.number or (run.closed and interval.end_arc - interval.start_arc >= run.arc[-1] - same):
-            continue
-        inside = arcs_touching[
-            (arcs_touching >= interval.start_arc - same) & (arcs_touching <= interval.end_arc + same)
-        ]
-        first, last = float(inside[0]), float(inside[-1])
-        start, start_free = _end(run, interval.start_arc, first, 0.0 if first == arcs[0] else None)
-        end, end_free = _end(run, interval.end_arc, last, run.length if last == arcs[-1] else None)
-        yield Touched(start=start, end=end, start_free=start_free, end_free=end_free)
-
-
-def _end(run: ZoneRun, arc: float, outermost: float, limit: float | None) -> tuple[float, bool]:
-    """Position of an end of contact, and whether it is free, from the outermost point that touches."""
-    if limit is not None and not run.closed:
-        return limit, False
-    position = run.position(outermost)
-    corners = run.joints[run.corner]
-    turned = position % run.length if run.closed else position
-    if corners.size and np.abs(corners - turned).min() <= SAME * 100 * run.length:
-        return position, False
-    return run.position(arc), True
-
-
-def _movement(run: ZoneRun, asked: ElementEnds) -> float | None:
-    """Largest movement of an element end of a run over the shorter element beside it; None if edges change count."""
-    largest = 0.0
-    for edge, old in zip(run.edges, run.breakpoints, strict=True):
-        new = np.array([0.0, *asked[edge.name], 1.0])
-        if len(new) != len(old):
-            return None
-        lengths = np.diff(old)
-        beside = np.minimum(lengths[:-1], lengths[1:])
-        largest = max(largest, float(np.max(np.abs(new - old)[1:-1] / beside, initial=0.0)))
-    return largest
-
-
-def _too_few(run: ZoneRun) -> str:
-    return (
-        f"the contact zone '{run.zone}' has too few elements to grade them towards its ends of contact: they were left "
-        "as stated; give it more"
-    )
-
-
-def _told(trials: Sequence[_Trial], kept: int) -> Iterator[str]:
+def _told(trials: Sequence[_Trial], kept: int, refine: int) -> Iterator[str]:
     """Say how many meshes it took, what moved, and what did not settle."""
-    first, last = trials[0], trials[kept]
-    if kept:
-        moved = [*_moved(first.intervals, last.intervals)]
-        finer = ", before it was refined" if last.problem.mesh.refine > 1 else ""
-        yield "; ".join([f"mesh fitted to the ends of contact in {kept} pass{'es' * (kept > 1)}{finer}", *moved])
-        if abs(last.peak - first.peak) > PEAK * first.peak:
-            yield (
-                f"the peak pressure went from {first.peak:.5g} to {last.peak:.5g} as the mesh was fitted: elements are "
-                "too few or badly placed elsewhere in the zone or beside it; compare with finer meshes"
-            )
-        if not last.settled:
-            still = f"the ends of contact still move by {last.movement:.1g} of an element from pass to pass"
-            yield f"{still}; more elements in the zone settle them"
-    elif first.asked:
-        settled = "the mesh fits the ends of contact already"
-        yield settled if first.settled else "the mesh was left as stated, for no fitted one came to rest"
-    elif first.asked is not None and not first.notes:
-        yield (
-            "the mesh is as stated: contact ends at no place inside a zone that an element could be graded towards, as "
-            "where it reaches the ends of its zone or is narrower than an element"
-        )
+    yield from _told_of_fit(trials[0], trials[kept], kept, refine) if kept else _told_of_none(trials)
+    for zone in trials[kept].narrow:
+        yield f"contact in {zone} is narrower than an element: its pressure and its width are those of the mesh"
     for number, (before, after) in enumerate(pairwise(trials), 1):
         if len(before.intervals) != len(after.intervals):
             counts = f"from {len(before.intervals)} to {len(after.intervals)}"
             yield f"the number of contact intervals changed {counts} with the mesh of pass {number}"
+
+
+def _told_of_fit(first: _Trial, last: _Trial, passes: int, refine: int) -> Iterator[str]:
+    """Say what a fitted mesh is like."""
+    cut = f", before each was cut into {refine}" if refine > 1 else ""
+    elements = f"it has {last.elements} elements where {first.elements} were stated{cut}"
+    done = f"mesh fitted to the ends of contact in {passes} pass{'es' * (passes > 1)}"
+    yield "; ".join([done, elements, *_moved(first.intervals, last.intervals)])
+    yield from _changed(first, last)
+    if last.movement is not None and last.movement > SETTLED:
+        still = f"the ends of contact still move by {last.movement:.2g} of an element from pass to pass{cut}"
+        yield f"{still}; state more elements in the zone{', not a finer cut' * (refine > 1)}"
+
+
+def _told_of_none(trials: Sequence[_Trial]) -> Iterator[str]:
+    """Say why the mesh is as stated."""
+    first, sawing = trials[0], max(trial.sawing or 0.0 for trial in trials)
+    if first.settled and first.found:
+        yield "the mesh fits the ends of contact already"
+    elif first.found and any(_saws(trial, first) for trial in trials):
+        yield (
+            f"the mesh was left as stated: on fitted ones pressures go up and down from point to point by {sawing:.2g} "
+            "of the peak, as where contact ends near a tip; grade elements towards that, and state more of them"
+        )
+    elif first.found:
+        yield "the mesh was left as stated, for no fitted one came to rest"
+    elif not first.notes:
+        yield (
+            "the mesh is as stated: contact ends at no place inside a zone that an element could be graded towards, as "
+            "where it reaches the ends of its zone"
+        )
+
+
+def _changed(first: _Trial, last: _Trial) -> Iterator[str]:
+    """Say if the peak pressure, or the force on a zone, is another one on the fitted mesh."""
+    pairs = {"peak pressure": (first.peak, last.peak)}
+    pairs |= {f"force on {zone}": (force, last.forces[zone]) for zone, force in first.forces.items()}
+    for name, (before, after) in pairs.items():
+        if abs(after - before) > CHANGE * before:
+            yield (
+                f"the {name} went from {before:.5g} to {after:.5g} as the mesh was fitted: one of them is settled by "
+                "neither mesh; compare with finer ones"
+            )
 
 
 def _moved(before: Sequence[ContactInterval], after: Sequence[ContactInterval]) -> Iterator[str]:

@@ -13,8 +13,8 @@ class FitPass:
     Parameters
     ----------
     intervals : of contact, as found on this mesh
-    movement : largest distance by which these intervals would move an element end, over the shorter element beside it;
-        None if they ask for a mesh that is divided in another way, as the first one mostly is
+    movement : largest distance of an end of contact from where the mesh is graded to, over the shorter element there;
+        None if it is not graded to these ends of contact, as the first one mostly is not
     """
 
     intervals: tuple[ContactInterval, ...]
@@ -29,7 +29,8 @@ class MeshFit:
     ----------
     passes : the mesh as it was stated, then each fitted one
     kept : number of the pass whose mesh was kept; 0 is the mesh as it was stated
-    settled : whether the ends of contact found on it are those that it is fitted to
+    settled : whether the ends of contact found on it are those that it is fitted to, and no contact is narrower than an
+        element
     notes : what was done, in words
     """
 

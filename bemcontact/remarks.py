@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 
 from bemcontact.assessment.footprint import Footprint
 from bemcontact.bem.condense import Body
+from bemcontact.bem.contact_points import element_lengths
+from bemcontact.bem.zone_runs import SAME
+from bemcontact.contact import CondensedContact
 
 FEW_POINTS = 5
 """Points under pressure below which a contact is not resolved: three make a parabola, two more its ends."""
@@ -14,18 +17,27 @@ SMOOTH = 0.2
 """Angle in radians by which the boundary may turn at the end of a zone and still go on smoothly."""
 UNBOUNDED = "the pressure there is infinite in theory, and its values at the last nodes depend on the mesh"
 """What holds at an end of contact where the stresses are singular."""
+LONG_NEIGHBOUR = 4.0
+"""Length of the element beyond the end of a zone over that inside, above which pressure at that end suffers."""
 LARGE_PRESSURE = 0.5
 """Peak pressure over Young's modulus beyond which nothing is left of small displacements."""
 
 
-def of_few_points(touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Say if too few points carry pressure to show its course."""
-    carrying = int(np.count_nonzero(touching))
-    if 0 < carrying < FEW_POINTS:
-        yield (
-            f"pressure acts on {carrying} contact point{'s' if carrying > 1 else ''} only: the mesh is too coarse "
-            "there to tell how it is distributed; shorten the elements"
-        )
+def of_few_points(contact: CondensedContact, touching: NDArray[np.bool_], where: Footprint) -> Iterator[str]:
+    """Say of each interval of contact if too few points carry pressure to show its course."""
+    for interval in where.intervals:
+        same = SAME * interval.end_arc
+        beyond = (
+            contact.arc_position - interval.start_arc + same
+        ) % interval.perimeter  # of its start, if need be round
+        inside = (contact.run == interval.run) & (beyond <= interval.end_arc - interval.start_arc + 2 * same)
+        carrying = int(np.count_nonzero(touching & inside))
+        if 0 < carrying < FEW_POINTS:
+            start, end = (f"({x:.5g}, {y:.5g})" for x, y in (interval.start, interval.end))
+            yield (
+                f"pressure acts on {carrying} contact point{'s' if carrying > 1 else ''} only from {start} to {end} in "
+                f"{interval.zone}: the mesh is too coarse there to tell how it is distributed; shorten the elements"
+            )
 
 
 def of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
@@ -40,9 +52,9 @@ def of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     beyond = np.where(in_zone, mesh.before, np.arange(len(in_zone)))
     free = np.all(~body.acting.values.traction_unknown[beyond], axis=1)
     for i in np.flatnonzero(touching & np.isin(points.node, ends)):
-        node, zone = points.node[i], list(body.problem.contact_zones)[points.zone[i]]
+        node = points.node[i]
         x, y = mesh.nodes[node]
-        reached = f"contact reaches the end of the zone '{zone}' at ({x:.5g}, {y:.5g})"
+        reached = f"contact reaches the end of the zone '{_zone(body, i)}' at ({x:.5g}, {y:.5g})"
         if abs(angles[node] - np.pi) < SMOOTH:
             yield (
                 f"{reached}, where the boundary goes on smoothly; make the zone longer, unless the rigid surface ends "
@@ -50,6 +62,22 @@ def of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
             )
         elif free[node] and angles[node] > np.pi / 2 + SMOOTH:
             yield f"{reached}, a corner of the body of {np.degrees(angles[node]):.0f} degrees; {UNBOUNDED}"
+
+
+def of_long_neighbours(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Say where contact goes up to the end of a zone beyond which elements are much longer."""
+    mesh, points = body.mesh, body.points
+    lengths, in_zone = element_lengths(mesh), np.isin(np.arange(len(mesh.elements)), points.element)
+    for i in np.flatnonzero(touching & (points.node < len(mesh.elements))):
+        after, before = points.node[i], mesh.before[points.node[i]]
+        outside, inside = (before, after) if in_zone[after] else (after, before)
+        if not in_zone[outside] and lengths[outside] > LONG_NEIGHBOUR * lengths[inside]:
+            (x, y), times = mesh.nodes[points.node[i]], lengths[outside] / lengths[inside]
+            yield (
+                f"pressure acts at ({x:.5g}, {y:.5g}), the end of the zone '{_zone(body, i)}', beyond which an element "
+                f"of '{mesh.edge_names[mesh.edge[outside]]}' is {times:.2g} times as long as that in the zone: the "
+                "pressure there is less exact for it; grade that edge towards the zone"
+            )
 
 
 def of_size(body: Body, where: Footprint) -> Iterator[str]:
@@ -60,3 +88,8 @@ def of_size(body: Body, where: Footprint) -> Iterator[str]:
             f"the peak pressure is {where.peak.pressure / modulus:.2g} times Young's modulus: displacements are not "
             "small, and the linear answer means little"
         )
+
+
+def _zone(body: Body, point: np.intp) -> str:
+    """Name of the zone of a contact point."""
+    return list(body.problem.contact_zones)[body.points.zone[point]]

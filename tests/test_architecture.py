@@ -60,7 +60,13 @@ HOME = {
     "numba": ("bemcontact.bem.compiled",),
     "meshio": ("bemcontact.report.vtk",),
     "jinja2": ("bemcontact.report.markup",),
-    "rich": ("bemcontact.terminal", "bemcontact.report.text", "bemcontact.report.reproduction_text"),
+    "rich": (
+        "bemcontact.terminal",
+        "bemcontact.report.tables",
+        "bemcontact.report.text",
+        "bemcontact.report.cases_text",
+        "bemcontact.report.reproduction_text",
+    ),
 }
 """Foreign package -> the only rooms that import it."""
 

@@ -22,6 +22,7 @@ from bemcontact.mesh_fit import MeshFit
 from bemcontact.problem import Problem
 from bemcontact.solution import Status
 
+MODELS = Path(__file__).parents[1] / "models"
 HALF_WIDTH, PEAK = 2.7685, 183.335
 """Of the cylinder, by finite elements on four meshes; see the description of the model."""
 
@@ -76,11 +77,12 @@ def test_pressure_converges_with_order_two(cylinders):
 
 
 def test_end_of_contact_converges_with_order_three(cylinders):
-    """Declared: three, against the finest; from 6 to 24 a factor of 64, and within 1e-4 of finite elements at 12."""
+    """Declared: three, against the finest, down to the 1e-5 to which a gap is read; 1e-4 of finite elements at 12."""
     finest = cylinders[96].footprint.intervals[0].end[0]
     error = {n: abs(cylinders[n].footprint.intervals[0].end[0] / finest - 1) for n in (6, 12, 24)}
-    assert error[24] <= error[6] / 64
-    assert error[12] <= 1e-4
+    assert error[6] <= 2e-4
+    assert error[12] <= error[6] / 8
+    assert error[24] <= 1e-5
     assert cylinders[12].footprint.intervals[0].end[0] == pytest.approx(HALF_WIDTH, rel=1e-4)
 
 
@@ -103,7 +105,8 @@ def test_passes_are_told(cylinders):
     first, last = fit.passes[0].intervals[0].end, fit.passes[fit.kept].intervals[0].end
     (told,) = (note for note in cylinders[12].notes if note.startswith("mesh fitted"))
     assert told == (
-        f"mesh fitted to the ends of contact in {fit.kept} passes; end of contact in foot moved from "
+        f"mesh fitted to the ends of contact in {fit.kept} passes; it has 48 elements where 42 were stated; "
+        f"end of contact in foot moved from "
         f"({first[0]:.6g}, {first[1]:.6g}) to ({last[0]:.6g}, {last[1]:.6g})"
     )
     data = json.loads(cylinders[12].to_json())["mesh_fit"]
@@ -112,12 +115,83 @@ def test_passes_are_told(cylinders):
     assert data["passes"][-1]["movement"] <= SETTLED
 
 
-def test_hertz_at_a_hundredth_of_the_load():
-    """b/R = 0.034, where Hertz holds to 0.03 %: on a zone fourteen times as long as the contact, of two elements."""
-    result = bemcontact.solve(cylinder(24, load=0.01))
+@pytest.mark.parametrize("load", [1e-2, 1e-3, 1e-4, 1e-5])
+def test_hertz_on_a_zone_that_is_much_longer(load):
+    """On elements of 0.17 contact is 0.27 wide, or 0.0087, and one point feels it: the mesh is fitted all the same.
+
+    b/R = 0.034 at most, where Hertz holds to 0.03 %; the peak suffers a little from the mesh that was stated beside it.
+    """
+    result = bemcontact.solve(cylinder(24, load=load), "complementarity")
     assert result.certified
-    half_width = np.sqrt(4 * 8.1 * 8 * (1 - 0.3**2) / (np.pi * 1000))
+    assert result.mesh_fit is not None
+    assert result.mesh_fit.settled
+    half_width = np.sqrt(4 * 810 * load * 8 * (1 - 0.3**2) / (np.pi * 1000))
     assert result.footprint.intervals[0].end[0] == pytest.approx(half_width, rel=1e-3)
+    assert result.footprint.peak.pressure == pytest.approx(2 * 810 * load / (np.pi * half_width), rel=5e-3)
+
+
+WEDGE = """
+name: wedge on its point
+material: {young_modulus: 1000, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: right face, start: [0, 0], elements: 6}
+    - {name: right, start: [4, 1], elements: 4}
+    - {name: top, start: [4, 5], elements: 6}
+    - {name: left, start: [-4, 5], elements: 4}
+    - {name: left face, start: [-4, 1], elements: 6}
+conditions:
+  top: {pressure: 2}
+  left: {displacement: {x: 0}}
+  right: {displacement: {x: 0}}
+contact_zones:
+  point: {edges: [left face, right face], surface: {kind: plane, point: [0, 0], normal: [0, 1]}}
+mesh: {fit_contact_edges: true}
+"""
+
+
+@pytest.mark.parametrize("load", [20.0, 5.0, 0.5, 0.02])
+def test_contact_round_a_corner_is_fitted_on_both_sides(load):
+    """A wedge has no length of its own: contact grows like the load; its peak is infinite, and only as high as a mesh.
+
+    So it does from three points under pressure down to one, a thousandth of it; against the fine mesh of one load.
+    """
+    finest = bemcontact.solve(bemcontact.loads(WEDGE).refined(4), "complementarity").footprint
+    result = bemcontact.solve(bemcontact.loads(WEDGE).with_value("conditions.top.pressure", load), "complementarity")
+    assert result.certified
+    assert result.mesh_fit.settled
+    for which in ("start", "end"):
+        end, fine = (getattr(found.intervals[0], which)[0] for found in (result.footprint, finest))
+        assert end / load == pytest.approx(fine / 2, rel=0.05)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_whatever_the_zone_is_like_fitting_helps(seed):
+    """Elements of any number and grading, loads down to 1e-7: within 2e-2 of Hertz, and nearer than unfitted.
+
+    Three elements in contact, which are all that a short zone gets, give a peak to that.
+    """
+    rng = np.random.default_rng(seed)
+    load, towards = 10 ** rng.uniform(-7, -2), str(rng.choice(["start", "end", "both", "middle"]))
+    stated = cylinder(int(rng.integers(5, 30)), load=load)
+    stated = stated.with_value("boundary.outer.foot.grading", {"ratio": rng.uniform(1, 10), "towards": towards})
+    half_width = np.sqrt(4 * 810 * load * 8 * (1 - 0.3**2) / (np.pi * 1000))
+    peak = 2 * 810 * load / (np.pi * half_width)
+    fitted, plain = (
+        bemcontact.solve(stated.with_value("mesh.fit_contact_edges", fit), "complementarity") for fit in (True, False)
+    )
+    assert fitted.certified
+    error, unfitted = (abs(result.footprint.peak.pressure / peak - 1) for result in (fitted, plain))
+    assert error <= min(unfitted, 2e-2)
+    assert fitted.footprint.intervals[0].end[0] == pytest.approx(half_width, rel=1e-2)
+
+
+def test_contact_that_stays_narrower_than_an_element_is_told(monkeypatch):
+    """After no pass at all: one point under pressure, whose neighbours say no more."""
+    monkeypatch.setattr(fitting, "MOST_PASSES", 0)
+    _, fit = fit_of(cylinder(24, load=1e-4))
+    assert not fit.settled
+    assert "contact in foot is narrower than an element: its pressure and its width are those of the mesh" in fit.notes
 
 
 @pytest.mark.parametrize("make", [lambda: cylinder(12), lambda: cylinder(24, load=0.01), cantilever])
@@ -130,14 +204,18 @@ def test_a_fitted_mesh_is_left_as_it_is(make):
     assert second.notes == ("the mesh fits the ends of contact already",)
 
 
-def test_the_number_of_elements_is_kept_and_other_edges_are_not_touched():
+def test_no_element_is_longer_than_stated_and_other_edges_are_not_touched():
+    """But for those beside the zone, which are halved until they are no more than twice as long as their neighbours."""
     stated = table()
     found, _ = fit_of(stated)
-    names = ["left foot", "bridge", "right foot"]
-    assert sum(found.edge(name).elements for name in names) == sum(stated.edge(name).elements for name in names)
-    for edge in stated.boundary.edges:
-        if edge.name not in names:
-            assert found.edge(edge.name) == edge
+    for name in ("left foot", "bridge", "right foot"):
+        ends, own = found.edge(name).breakpoints(), stated.edge(name).breakpoints()
+        assert np.diff(np.interp(ends, own, np.arange(len(own)))).max() <= 1 + 1e-9
+    assert found.edge("top") == stated.edge("top")
+    last = np.diff(found.edge("right foot").breakpoints())[-1] * found.edge("right foot").length
+    beside = np.diff(found.edge("right").breakpoints()) * found.edge("right").length
+    assert beside[0] <= 2 * last * (1 + 1e-9)
+    assert len(beside) > stated.edge("right").elements
 
 
 def test_two_contacts_in_one_zone_of_three_edges():
@@ -180,7 +258,7 @@ def test_contact_up_to_the_corners_needs_no_fit(edges):
     assert fit.settled
     assert fit.notes == (
         "the mesh is as stated: contact ends at no place inside a zone that an element could be graded towards, as "
-        "where it reaches the ends of its zone or is narrower than an element",
+        "where it reaches the ends of its zone",
     )
 
 
@@ -192,7 +270,7 @@ def test_contact_that_reaches_the_end_of_its_zone_is_fitted_at_its_other_end():
     near = int(np.argmin(abs(ends - interval.start[0])))
     assert abs(ends[near] - interval.start[0]) <= SETTLED * np.diff(ends).min()
     inside = np.diff(ends[near:])
-    assert np.all(np.diff(inside) > 0)  # they grow up to the end of the zone
+    assert np.all(np.diff(inside) > -1e-12)  # they do not shrink up to the end of the zone
     assert bemcontact.solve(found).certified
 
 
@@ -222,13 +300,14 @@ def test_contact_all_round_a_closed_zone_needs_no_fit():
     assert_same_elements(found, ring(), 0)
 
 
-def test_too_few_elements_are_told():
-    stated = cylinder(3)
-    found, fit = fit_of(stated)
-    assert_same_elements(found, stated, 0)
-    assert not fit.settled
-    (note,) = fit.notes
-    assert "too few elements to grade them towards its ends of contact" in note
+def test_a_zone_of_three_elements_gets_those_that_it_takes():
+    """Half-width and peak to 2e-3 of finite elements, from which the three are off by 5.5e-3 and 4.8e-3."""
+    found, fit = fit_of(cylinder(3))
+    assert fit.settled
+    assert any("elements where 33 were stated" in note for note in fit.notes)
+    result = bemcontact.solve(found, "complementarity")
+    assert result.footprint.intervals[0].end[0] == pytest.approx(HALF_WIDTH, rel=2e-3)
+    assert result.footprint.peak.pressure == pytest.approx(PEAK, rel=2e-3)
 
 
 def test_contact_that_vanishes_on_the_way_is_told(monkeypatch):
@@ -331,11 +410,45 @@ def test_the_option_of_the_command_line_is_the_key_of_the_spec(tmp_path, monkeyp
 
 
 def test_a_peak_that_moves_with_the_fitted_mesh_is_told():
-    """The bolt's few elements leave none for the rest of its contact; the note tells the peaks of both meshes."""
-    bolt = bemcontact.load(Path(__file__).parents[1] / "models" / "bolt_in_plate.yaml")
-    found, fit = fitted(bolt.with_value("mesh.fit_contact_edges", True))
-    assert fit is not None
-    peaks = [bemcontact.solve(one, "complementarity").footprint.peak.pressure for one in (bolt, found)]
-    assert abs(peaks[1] - peaks[0]) > 0.01 * peaks[0]
+    """One point under pressure has a peak of its own; the note tells the peaks of both meshes."""
+    stated = cylinder(24, load=1e-4)
+    found, fit = fit_of(stated)
+    plain = stated.with_value("mesh.fit_contact_edges", False)
+    peaks = [bemcontact.solve(one, "complementarity").footprint.peak.pressure for one in (plain, found)]
+    assert abs(peaks[1] - peaks[0]) > 0.1 * peaks[0]
     told = f"the peak pressure went from {peaks[0]:.5g} to {peaks[1]:.5g}"
     assert any(note.startswith(told) for note in fit.notes)
+    assert not any(note.startswith("the force") for note in fit.notes)  # contact alone carries the load
+
+
+def test_a_force_that_moves_with_the_fitted_mesh_is_told():
+    """A spring in place of the load: what one point under pressure carries is another force."""
+    first, last = (fitting._Trial(placed={}, forces={"foot": force}) for force in (1.0, 1.02))
+    (note,) = fitting._changed(first, last)
+    assert note.startswith("the force on foot went from 1 to 1.02")
+
+
+def test_what_is_left_to_do_with_a_finer_cut_is_told(monkeypatch):
+    """Cutting elements that lie in the wrong places settles nothing; the numbers are those before they are cut."""
+    monkeypatch.setattr(fitting, "MOST_PASSES", 1)
+    _, fit = fit_of(ring().refined(2))
+    assert "it has 80 elements where 60 were stated, before each was cut into 2" in fit.notes[0]
+    (still,) = (note for note in fit.notes if note.startswith("the ends of contact still move"))
+    assert still.endswith("before each was cut into 2; state more elements in the zone, not a finer cut")
+
+
+def test_a_fitted_mesh_on_which_the_pressure_saws_is_not_kept():
+    """The open node at the tip of the crack is none of the contact's: fitted to it, pressures go up and down by 0.1."""
+    crack = load("elliptical_crack_closure").with_value("mesh.fit_contact_edges", True)
+    found, fit = fit_of(crack)
+    assert_same_elements(found, crack, 0)
+    assert not fit.settled
+    assert any(
+        note.startswith("the mesh was left as stated: on fitted ones pressures go up and down") for note in fit.notes
+    )
+
+
+def load(name: str) -> Problem:
+    """A shipped problem."""
+    (path,) = MODELS.rglob(f"{name}.yaml")
+    return bemcontact.load(path)

@@ -258,6 +258,20 @@ BROKEN = {
         "boundary.outer[3].ends_at[1]",
         ("ends there anyway",),
     ),
+    "element ends too near to each other": Broken(
+        "{name: left, elements: 2}",
+        "{name: left, elements: 4, ends_at: [0.5, 0.5000001]}",
+        "19:48",
+        "boundary.outer[3].ends_at[1]",
+        ("an element of 'left' ends 1e-07 beside it, too near for another", "take another place"),
+    ),
+    "element end too near to the end of the edge": Broken(
+        "{name: left, elements: 2}",
+        "{name: left, elements: 4, ends_at: [[0, 0.9999999]]}",
+        "19:43",
+        "boundary.outer[3].ends_at[0]",
+        ("ends 1e-07 beside it", "leave it out"),
+    ),
     "element end in words": Broken(
         "{name: left, elements: 2}",
         "{name: left, elements: 2, ends_at: [middle]}",

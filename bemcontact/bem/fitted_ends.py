@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil, radians
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,14 +17,17 @@ CONTACT_SHARE = 2.0
 """Elements on the side of a contact edge that is in contact, to those on the open side, where this is no longer."""
 SHORTEST = 5e-4
 """Least element, over the shortest side in contact: shorter ones gain little, and cost digits of the certificate."""
-LEAST = 2
-"""Elements on each side of a contact edge."""
+SHORTEST_OF_RUN = 1e-6
+"""Least element over the length of the run: element ends that are nearer to each other are refused."""
+LEAST = 3
+"""Elements on each side of a contact edge, stated or not."""
 CLOSE = 1e-2
-"""Distance from the end of a run, or from a joint, over its mean element length, that is not resolved by elements."""
-LONGEST, TURNING = 6.0, radians(30)
-"""Length over the mean length in the run, and turning, that elements keep below where there are enough of them."""
-GENTLE = 4.0
-"""Ratio of the lengths of neighbouring elements where a run ends that is avoided if it can be."""
+"""Distance from the end of a run, or from a joint, that is not resolved by elements, over the mean length of these, or
+over the contact that ends there if it is shorter."""
+GENTLE = 2.0
+"""Length of the element beside a run over that of the one at its end, up to which it is left."""
+GROWTH = 1.5
+"""Length of an element over that of its neighbour nearer to an end of contact that counts as grading towards it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,9 +75,9 @@ class _Part:
 
 def resolved(run: ZoneRun, touched: Sequence[Touched]) -> tuple[Touched, ...]:
     """Move contact edges that are all but at a joint, or at an end of the run, onto it."""
-    close = CLOSE * run.length / (len(run.ends) - 1)
 
-    def settle(position: float, free: bool) -> tuple[float, bool]:
+    def settle(position: float, free: bool, width: float) -> tuple[float, bool]:
+        close = CLOSE * min(run.length / (len(run.ends) - 1), width)
         turns = run.length * np.floor(position / run.length) if run.closed else 0.0
         joint = float(run.joints[np.argmin(np.abs(run.joints - (position - turns)))])
         if abs(joint - (position - turns)) > close:
@@ -83,35 +86,38 @@ def resolved(run: ZoneRun, touched: Sequence[Touched]) -> tuple[Touched, ...]:
 
     moved = []
     for item in touched:
-        (start, start_free), (end, end_free) = settle(item.start, item.start_free), settle(item.end, item.end_free)
+        width = item.end - item.start
+        start, start_free = settle(item.start, item.start_free, width)
+        end, end_free = settle(item.end, item.end_free, width)
         if end > start:
             moved.append(Touched(start=start, end=end, start_free=start_free, end_free=end_free))
     return tuple(moved)
 
 
-def fitted_ends(run: ZoneRun, touched: Sequence[Touched]) -> Array | None:
-    """Positions of element ends, as many as there are, at a ± b (i/n)³ around each end of contact a.
+def fitted_ends(run: ZoneRun, touched: Sequence[Touched]) -> Array:
+    """Positions of element ends, at a ± b (i/n)³ around each end of contact a, and nowhere farther apart than stated.
 
     b is the distance to the next mark: an end of the run, a corner at which contact ends, or the middle between two
-    ends of contact. Elements are shared out between corners where contact ends, so that each side of an end of contact
-    gets two in contact for one outside. Joints of edges stay element ends, the nearest being moved onto them.
+    ends of contact. All n together are as many as are stated, with two in contact for one outside, or more where that
+    is longer, and `LEAST` on each side of an end of contact, for which some are added if need be. Such elements grow up
+    to three times as long as equal ones: from where they would be longer than stated, elements are as stated, so that
+    a run gets about half as many again. Joints of edges stay element ends, the nearest being moved onto them.
 
     Parameters
     ----------
-    run : with its present element ends
+    run : with its element ends as stated
     touched : stretches of contact, `resolved`, in order, at least one
 
     Returns
     -------
-    (m + 1,) [L], or None if there are too few elements
+    (m + 1,) [L]
     """
     parts = _parts(run, touched)
     ends = [np.array([parts[0].low])]
     for block in _blocks(parts):
         counted = _counted(run, _shared(block))
-        if counted is None:
-            return None
-        shortest = SHORTEST * min((part.reach for part in counted if part.touched and part.sides), default=0.0)
+        narrowest = min((part.reach for part in counted if part.touched and part.sides), default=0.0)
+        shortest = max(SHORTEST * narrowest, SHORTEST_OF_RUN * run.length)
         ends += [_graded(run, part, shortest)[1:] for part in counted]
     positions = np.concatenate(ends)
     if not run.closed:
@@ -119,6 +125,91 @@ def fitted_ends(run: ZoneRun, touched: Sequence[Touched]) -> Array | None:
     wrapped = np.sort(np.mod(positions[:-1], run.length))
     wrapped = wrapped[(wrapped > SAME * run.length) & (wrapped < (1 - SAME) * run.length)]
     return np.concatenate([[0.0], wrapped, [run.length]])
+
+
+def movement(run: ZoneRun, touched: Sequence[Touched], fitted_to: Sequence[Touched] | None) -> float | None:
+    """Largest distance of a free end of contact from where the mesh is graded to, over the shorter element there.
+
+    Parameters
+    ----------
+    run : with its present element ends
+    touched : stretches of contact
+    fitted_to : those that the mesh is graded to; if None, it is graded to an element end from which the lengths of
+        elements grow by `GROWTH` and more to either side
+
+    Returns
+    -------
+    float or None
+        None if the mesh is not graded to these ends of contact, or to more.
+    """
+    ends = _free_ends(touched)
+    if fitted_to is None:
+        marks = [mark for end in ends if (mark := _crowded(run, end)) is not None]
+    else:
+        marks = _free_ends(fitted_to)
+    if len(marks) != len(ends):
+        return None
+    largest = 0.0
+    for end, mark in zip(ends, marks, strict=True):
+        _, lengths = _beside(run, mark)
+        largest = max(largest, float(abs(_along(run, mark, end)) / min(lengths[1:3])))
+    return largest
+
+
+def halved(ends: Array, neighbour: float, at: int) -> Array:
+    """Halve the element at one end of an edge until it is at most `GENTLE` times as long as its neighbour beyond.
+
+    Parameters
+    ----------
+    ends : (m + 1,) element ends, ascending
+    neighbour : length of the element beyond, in the same unit
+    at : 0 for the first element, -1 for the last
+
+    Returns
+    -------
+    (m + k + 1,)
+    """
+    ends = ends if at == 0 else ends[::-1]
+    while abs(ends[1] - ends[0]) > GENTLE * neighbour * (1 + 1e-9):
+        ends = np.insert(ends, 1, (ends[0] + ends[1]) / 2)
+    return ends if at == 0 else ends[::-1]
+
+
+def half_way(run: ZoneRun, one: Sequence[Touched], other: Sequence[Touched]) -> tuple[Touched, ...]:
+    """Stretches between two lots of them; the second lot if they are not as many, or end in other ways."""
+    kinds = [[(item.start_free, item.end_free) for item in lot] for lot in (one, other)]
+    if kinds[0] != kinds[1]:
+        return tuple(other)
+    return tuple(
+        replace(b, start=b.start + _along(run, b.start, a.start) / 2, end=b.end + _along(run, b.end, a.end) / 2)
+        for a, b in zip(one, other, strict=True)
+    )
+
+
+def _free_ends(touched: Sequence[Touched]) -> list[float]:
+    """Positions of the free ends of contact."""
+    marks = [mark for item in touched for mark in ((item.start, item.start_free), (item.end, item.end_free))]
+    return [position for position, free in marks if free]
+
+
+def _along(run: ZoneRun, start: float, end: Array | float) -> Array:
+    """How far one has to go from one position to others, the shorter way round if the run is closed."""
+    way = np.asarray(end) - start
+    return way - run.length * np.round(way / run.length) if run.closed else way
+
+
+def _beside(run: ZoneRun, position: float) -> tuple[float, Array]:
+    """The nearest element end, and the lengths of the two elements before and after it; 0 where there is none."""
+    i = int(np.argmin(np.abs(_along(run, position, run.ends))))
+    lengths = np.diff(run.ends)
+    around = np.concatenate([lengths[-2:], lengths, lengths[:2]]) if run.closed else np.pad(lengths, 2)
+    return float(run.ends[i]), around[i : i + 4]
+
+
+def _crowded(run: ZoneRun, position: float) -> float | None:
+    """The nearest element end, if elements crowd to it."""
+    end, (farther, before, after, beyond) = _beside(run, position)
+    return end if farther >= GROWTH * before > 0 and beyond >= GROWTH * after > 0 else None
 
 
 def _parts(run: ZoneRun, touched: Sequence[Touched]) -> list[_Part]:
@@ -165,23 +256,18 @@ def _shared(block: Sequence[_Part]) -> list[_Part]:
     return [replace(part, share=share) for part, share in zip(block, shares, strict=True)]
 
 
-def _counted(run: ZoneRun, block: Sequence[_Part]) -> list[_Part] | None:
-    """Share the elements of a block out, each to the part that has the fewest for its share; None if they are too few.
+def _counted(run: ZoneRun, block: Sequence[_Part]) -> list[_Part]:
+    """Share the elements of a block out, each to the part that has the fewest for its share; more if they are too few.
 
     Parts that are alike, as by symmetry, get one each or none.
     """
     if not block[0].sides:
         return [*block]
     whole = block[0].low_free  # all round a closed run
-    left = len(run.ends) - 1 if whole else 1 + len(_inside(run.ends, run, block[0].low, block[-1].high))
-    least = [max(LEAST * part.sides, 1 + len(_inside(run.joints, run, part.low, part.high))) for part in block]
-    for slack in (1.0, 1.5, 2.0, np.inf):
-        counts = [max(count, _fine_enough(run, part, slack)) for count, part in zip(least, block, strict=True)]
-        if sum(counts) <= left:
-            break
-    else:
-        return None
-    left -= sum(counts)
+    stated = len(run.ends) - 1 if whole else 1 + len(_inside(run.ends, run, block[0].low, block[-1].high))
+    counts = [max(LEAST * part.sides, 1 + len(_inside(run.joints, run, part.low, part.high))) for part in block]
+    fair = ceil(LEAST / CONTACT_SHARE * sum(part.share for part in block))  # with the least in contact, enough outside
+    left = max(max(stated, fair) - sum(counts), 0)
     rivals = list(range(len(block)))
     while left:
         claim = [block[i].share / (counts[i] + 0.5) * (1 + 1e-6 * block[i].width / run.length) for i in rivals]
@@ -195,49 +281,33 @@ def _counted(run: ZoneRun, block: Sequence[_Part]) -> list[_Part] | None:
     return [replace(part, count=count) for part, count in zip(block, counts, strict=True)]
 
 
-def _fine_enough(run: ZoneRun, part: _Part, slack: float) -> int:
-    """Number of elements of which the longest, 3 b/n of a side, keeps below so many times `LONGEST` and `TURNING`."""
-    bend = max(edge.turning_per_length for edge in run.edges)
-    longest = min(LONGEST * run.length / (len(run.ends) - 1), TURNING / bend if bend > 0 else np.inf)
-    return part.sides * ceil(3 * part.reach / (slack * longest))
-
-
 def _graded(run: ZoneRun, part: _Part, shortest: float) -> Array:
     """Element ends of a part, from its low to its high end; as they are where contact ends on neither side."""
     low, high = part.low, part.high
     if not part.sides:
         return np.array([low, *_inside(run.ends, run, low, high), high])
     ends = cubic_ends(part.count, both=part.sides == 2, shortest=shortest / part.width)
-    if part.low_free:
-        if part.high == run.length and not part.high_free:
-            ends = _gentle(ends, run.neighbours[1] / part.width)
-        positions = low + part.width * ends
-    else:
-        if part.low == 0.0 and not run.closed:
-            ends = _gentle(ends, run.neighbours[0] / part.width)
-        positions = high - part.width * ends[::-1]
+    positions = low + part.width * ends if part.low_free else high - part.width * ends[::-1]
     positions[0], positions[-1] = low, high
-    return moved_onto(positions, _inside(run.joints, run, low, high))
+    return _kept_short(run, moved_onto(positions, _inside(run.joints, run, low, high)))
 
 
-def _gentle(ends: Array, neighbour: float) -> Array:
-    """Shorten the last elements if the next one beyond is much shorter, at the cost of the others.
-
-    Where these would have to become twice as long, nothing is changed: the zone has too few elements for it.
-    """
-    lengths = np.diff(ends)
-    limits = neighbour * GENTLE ** np.arange(len(lengths), 0, -1.0)
-    long = np.zeros(len(lengths), bool)
-    factor = 1.0
-    while (beyond := (lengths * factor > limits) & ~long).any():
-        long |= beyond
-        room = 1.0 - limits[long].sum()
-        factor = room / lengths[~long].sum() if not long.all() else np.inf
-        if not 0 < factor <= 2:
-            return ends
-    eased = np.concatenate([[0.0], np.cumsum(np.where(long, limits, lengths * factor))])
-    eased[-1] = 1.0
-    return eased
+def _kept_short(run: ZoneRun, ends: Array) -> Array:
+    """Go back to elements as stated, or shorter in proportion, from the first to the last that is longer than these."""
+    stated = np.concatenate([run.ends, run.ends[1:] + run.length]) if run.closed else run.ends
+    count = np.arange(len(stated))
+    number = np.interp(ends, stated, count)
+    long = np.flatnonzero(np.diff(number) > 1 + 1e-9)
+    if not long.size:
+        return ends
+    first, last = long[0], long[-1] + 1
+    joints = _inside(run.joints, run, float(ends[first]), float(ends[last]))
+    marks = [number[first], *np.interp(joints, stated, count), number[last]]
+    between = [
+        np.interp(np.linspace(low, high, ceil((high - low) * (1 - 1e-9)) + 1)[:-1], count, stated)
+        for low, high in pairwise(marks)
+    ]
+    return np.concatenate([ends[:first], *between, ends[last:]])
 
 
 def _inside(positions: Array, run: ZoneRun, low: float, high: float) -> list[float]:

@@ -32,7 +32,7 @@ class ZoneRun:
     arc : (m + 1,) arc length of the elements themselves up to each element end, which is what contact points know
     breakpoints : of each edge, fractions of its length where its elements begin and end
     corner : (k + 1,) whether the boundary turns sharply at each joint of the k edges; false at the ends of an open run
-    neighbours : lengths of the elements before and after the piece [L]; infinite if it is closed
+    beside : the edges before and after the piece; none if it is closed
     """
 
     number: int
@@ -42,7 +42,7 @@ class ZoneRun:
     arc: Array
     breakpoints: tuple[Array, ...]
     corner: NDArray[np.bool_]
-    neighbours: tuple[float, float]
+    beside: tuple[Edge, ...]
 
     @property
     def length(self) -> float:
@@ -98,5 +98,5 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
             arc=np.concatenate([[0.0], np.cumsum(lengths[elements])]),
             breakpoints=breakpoints,
             corner=corner,
-            neighbours=(np.inf, np.inf) if closed else (float(lengths[outside[0]]), float(lengths[outside[1]])),
+            beside=() if closed else tuple(problem.edge(mesh.edge_names[mesh.edge[i]]) for i in outside),
         )

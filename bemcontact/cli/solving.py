@@ -115,17 +115,15 @@ def solve(
         problem = spec_file.load(spec, overrides or (), variant).refined(refine)
         if fit_edges:
             problem = problem.with_value("mesh.fit_contact_edges", True)
-        several = bool(problem.load_cases) and problem.case is None
-        if several and vtk_file:
+        all_cases = bool(problem.load_cases) and problem.case is None
+        if all_cases and vtk_file:
             raise OptionError("--vtk writes the boundary of one load case; name it with --case")
-        if several:
+        if all_cases:
             found = load_cases.carry_out_cases(plan, problem, lambda stage, _: say(f"solving, {stage}"))
-            summary, uncertified = cases_text.cases_summary(found), cases_text.uncertified(found)
         else:
             found = analysis.carry_out(
                 plan, problem, lambda done: say(f"solving, start {min(done + 1, starts or 1)} of {starts}")
             )
-            summary, uncertified = text.result_summary(found), words.verdict(found)
         if figure:
             from bemcontact.report import figures
 
@@ -138,10 +136,11 @@ def solve(
             with output.whole_file(json_file) as temporary:
                 temporary.write_text(found.to_json(indent=2) + "\n", encoding="utf-8")
     with told(spec):
+        several = isinstance(found, load_cases.CaseResults)
         if json_file == STANDARD_OUTPUT:
             write_json(found.to_json(indent=2))
             if not found.certified:
-                tell("not certified: ", uncertified)
+                tell("not certified: ", cases_text.uncertified(found) if several else words.verdict(found))
         else:
-            show(summary)
+            show(cases_text.cases_summary(found) if several else text.result_summary(found))
     raise typer.Exit(0 if found.certified else UNCERTIFIED)

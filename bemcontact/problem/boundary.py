@@ -20,7 +20,10 @@ JOINT_TOLERANCE = 1e-9
 """Distance of two edge ends, over the size of the body, below which they are one point."""
 ON_EDGE = 1e-3
 """Distance of a place from its edge over the length of the edge up to which it is on it: people round coordinates."""
-APART = 1e-12
+APART = 5e-7
+"""Difference of two fractions of the length of an edge below which no element has room between them."""
+
+ROUND_OFF = 1e-12
 """Difference of two fractions of the length of an edge below which they are one place."""
 
 
@@ -227,8 +230,11 @@ def _misplaced_ends(path: Path, loop: Sequence[AnyEdge], joined: Sequence[Edge])
                     message = f"the point {_written(place)} is {off:.3g} away from '{edge.name}'; take one on the edge"
                     yield Complaint(path=(*path, i, *key), message=message)
                     continue
-            if min(abs(fraction - other) for other in taken) < APART:
-                message = f"an element of '{edge.name}' ends there anyway; leave it out, or take another place"
+            if (off := min(abs(fraction - other) for other in taken)) < APART:
+                where = (
+                    "there anyway" if off < ROUND_OFF else f"{off * shape.length:.2g} beside it, too near for another"
+                )
+                message = f"an element of '{edge.name}' ends {where}; leave it out, or take another place"
                 yield Complaint(path=(*path, i, *key), message=message)
             taken.append(fraction)
         if edge.elements < len(taken) - 1:

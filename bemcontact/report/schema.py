@@ -101,10 +101,10 @@ class Score(Record):
 
 
 class FitPass(Record):
-    """A mesh on the way to one fitted to the ends of contact."""
+    """A mesh on the way to one fitted to the ends of contact; how far these are from where it is graded to."""
 
     movement: float | None
-    """By how much an element end would still move, over the shorter element beside it; null if others are asked for."""
+    """Distance of an end of contact from where the mesh is graded to, over the shorter element there, or null."""
     intervals: list[Interval]
     """Contact as found on this mesh."""
 
