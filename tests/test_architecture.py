@@ -15,8 +15,9 @@ ABOVE = ("mesh_fit", "result", "fitting", "study", "analysis", "comparing", "rep
 
 NEVER = {
     "bemcontact.bem": ("spec", "solution", "ends", "formulations", "assessment", "reference", *ABOVE),
-    "bemcontact.formulations": ("spec", "problem", "bem", "assessment", "reference", *ABOVE),
+    "bemcontact.formulations": ("spec", "problem", "bem", "assessment", "parametric", "reference", *ABOVE),
     "bemcontact.assessment": ("spec", "problem", "bem", "formulations", "reference", *ABOVE),
+    "bemcontact.parametric": ("spec", "problem", "bem", "reference", *ABOVE),
     "bemcontact.result": ("spec", "fitting", "study", "analysis", "comparing", "report", "cli"),
     "bemcontact.study": ("spec", "bem", "formulations", "analysis", "comparing", "report", "cli"),
     "bemcontact.fitting": ("spec", "result", "study", "analysis", "comparing", "report", "cli"),
@@ -42,6 +43,11 @@ ONLY = {
     "bemcontact.solution": ("bemcontact.arrays",),
     "bemcontact.ends": ("bemcontact.solution",),
     "bemcontact.mesh_fit": ("bemcontact.assessment.footprint",),
+    "bemcontact.parametric": (
+        "bemcontact.actions", "bemcontact.arrays", "bemcontact.assessment.footprint", "bemcontact.choices",
+        "bemcontact.contact", "bemcontact.errors", "bemcontact.formulations", "bemcontact.parametric",
+        "bemcontact.solution",
+    ),
     "bemcontact.formulations.local_solver": ("bemcontact.errors", "bemcontact.formulations.local_solver"),
     "bemcontact.problem": ("bemcontact.errors", "bemcontact.problem"),
     "bemcontact.reference": (

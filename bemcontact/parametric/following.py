@@ -1,0 +1,166 @@
+"""Follow a contact state along a straight line of offsets and loads, from breakpoint to breakpoint.
+
+Between two breakpoints the points in contact stay the same and the state is linear. At a breakpoint points become
+weakly active; the derivative of the state there (`bemcontact.parametric.derivative`) says which of them are in contact
+afterwards. This is parametric principal pivoting (Cottle, Pang and Stone, "The Linear Complementarity Problem", 1992,
+section 4.5), in which a block of several points is settled at once. Each state is solved for anew from its points in
+contact: no error adds up.
+
+Where a support is left to which the load has wandered away, the body tips at a constant load until another point holds
+it: the pressure stays, the position jumps.
+"""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from bemcontact.actions import Change
+from bemcontact.arrays import Array
+from bemcontact.errors import ProblemError, SingularSystemError, SolverError
+from bemcontact.formulations.active_set import BoolArray
+from bemcontact.formulations.scaling import ScaledContact
+from bemcontact.parametric.contact_block import ContactBlock
+from bemcontact.parametric.derivative import RANK, STILL, Tangent, is_monotone, size_of
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Line:
+    """Offset and load between two ends, s = 0 and s = 1, free of units."""
+
+    first: Change
+    last: Change
+
+    @property
+    def rate(self) -> Change:
+        """The change per unit of s."""
+        return Change(*(last - first for first, last in zip(self.first, self.last, strict=True)))
+
+    def at(self, s: float) -> Change:
+        """Offset and load at s."""
+        return Change(*((1 - s) * first + s * last for first, last in zip(self.first, self.last, strict=True)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """A contact state on the line: s, p >= 0 (n,), δ >= 0 (n,), a (k,), free of units."""
+
+    s: float
+    pressure: Array
+    gap: Array
+    amplitudes: Array
+
+
+@dataclass(kw_only=True, eq=False)
+class Trail:
+    """The states where something happens, from s = 0 on.
+
+    Parameters
+    ----------
+    states : b of them
+    touching : (n,) for each of the b - 1 pieces between them, which points are in contact
+    escape : (k,) motion in which the load carries the body away where the trail ends early, else None
+    stop : why it ends early otherwise, else empty
+    unique : whether each state is known to be the only one
+    """
+
+    states: list[State]
+    touching: list[BoolArray] = field(default_factory=list)
+    escape: Array | None = None
+    stop: str = ""
+    unique: bool
+
+    def add(self, state: State, touching: BoolArray) -> None:
+        """Go on to a state."""
+        self.states.append(state)
+        self.touching.append(touching)
+
+
+def follow(problem: ScaledContact, line: Line, pressure: Array, amplitudes: Array) -> Trail:
+    """Follow a state along the line, as far as it goes.
+
+    Parameters
+    ----------
+    problem : its compliance, motions and weights are used
+    line : offsets and loads
+    pressure, amplitudes : (n,) and (k,), a solution at s = 0
+
+    Returns
+    -------
+    Trail
+        Its first state is the limit of those that follow, which differs from the given one where that is not unique.
+
+    Raises
+    ------
+    SolverError
+        If more points enter and leave than can be, which round-off alone could bring about.
+    """
+    first = line.first.offset + problem.compliance @ pressure + problem.rigid_motions @ amplitudes
+    state = State(s=0.0, pressure=pressure, gap=np.maximum(first, 0.0), amplitudes=amplitudes)
+    trail, block, limit = Trail(states=[state], unique=is_monotone(problem)), None, 1000 + 50 * len(pressure)
+    while trail.states[-1].s < 1.0 and len(trail.states) < limit:
+        state = trail.states[-1]
+        tangent = Tangent.at(problem, state.pressure, state.gap, state.amplitudes, trail.unique)
+        escape = tangent.escape(line.rate)
+        if escape.any():
+            if not _tipped(problem, trail, tangent, escape):
+                return trail
+            block = None
+            continue
+        try:
+            block = replace(tangent, before=block).after(line.rate)
+            following = _next(line, state.s, block)
+        except (ProblemError, SingularSystemError) as error:
+            trail.stop = str(error)
+            return trail
+        trail.add(following, block.touching)
+    if len(trail.states) == limit:
+        raise SolverError(f"the path was given up after {limit} breakpoints: points keep entering and leaving")
+    return trail
+
+
+def _next(line: Line, s: float, block: ContactBlock) -> State:
+    """Go on with the same points in contact until a pressure or a gap is zero, or to the end of the line."""
+    touching, rate = block.touching, line.rate
+    pressures, gaps, amplitudes = block.solve(line.at(s), rate)
+    values, rates = np.where(touching, pressures, gaps)
+    step, blocking = first_zero(values, rates, STILL * size_of(rate, pressures[1], amplitudes[1]))
+    if s + step >= 1.0:
+        s, blocking = 1.0, np.zeros_like(touching)
+    else:
+        s += step
+    (pressure,), (gap,), (amplitude,) = block.solve(line.at(s))
+    return State(
+        s=s,
+        pressure=np.where(blocking, 0.0, np.maximum(pressure, 0.0)),
+        gap=np.where(blocking, 0.0, np.maximum(gap, 0.0)),
+        amplitudes=amplitude,
+    )
+
+
+def _tipped(problem: ScaledContact, trail: Trail, tangent: Tangent, motion: Array) -> bool:
+    """Let the body move under a constant load until a point closes; if none does, the load carries it away."""
+    state, opening = trail.states[-1], problem.rigid_motions @ motion
+    opening[np.append(tangent.strong, tangent.weak)] = np.maximum(opening[np.append(tangent.strong, tangent.weak)], 0.0)
+    step, blocking = first_zero(state.gap, opening, RANK * float(np.linalg.norm(motion)))
+    if not blocking.any():
+        trail.escape = motion
+        return False
+    gap = np.where(blocking, 0.0, state.gap + step * opening)
+    moved = State(s=state.s, pressure=state.pressure, gap=gap, amplitudes=state.amplitudes + step * motion)
+    if state.s == 0.0:
+        trail.states[-1] = moved
+    else:
+        trail.add(moved, np.isin(np.arange(len(gap)), tangent.strong))
+    return True
+
+
+def first_zero(values: Array, rates: Array, still: float) -> tuple[float, BoolArray]:
+    """How far values >= 0 can go at their rates until one is zero, and which are; infinitely far if none falls.
+
+    Rates up to `still` count as zero.
+    """
+    falling = rates < -still
+    steps = np.full(len(values), np.inf)
+    steps[falling] = np.maximum(values[falling], 0.0) / -rates[falling]
+    step = float(steps.min(initial=np.inf))
+    return step, falling & (steps <= step)
