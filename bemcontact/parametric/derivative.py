@@ -38,7 +38,7 @@ STILL = 1e-13
 
 NOT_HELD = "the points in contact do not hold the body, so that its position is not determined"
 NOT_UNIQUE = "the contact state may go on in more than one way here, as the compliance does not rule out"
-NO_WAY = "no contact state continues this one: the path turns back here"
+NO_WAY = "no contact state was found to continue this one: the path turns back or breaks off here"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -84,8 +84,8 @@ class Tangent:
         loaded, closed = pressure > small, gap <= small
         return cls(
             problem=problem,
-            strong=np.flatnonzero(loaded & closed),
-            weak=np.flatnonzero(~loaded & closed),
+            strong=np.array(np.flatnonzero(loaded & closed), np.int64),
+            weak=np.array(np.flatnonzero(~loaded & closed), np.int64),
             unique=unique,
         )
 
@@ -120,11 +120,13 @@ class Tangent:
             return self.before
         free, joined = self._unresisted, self.weak[:0]
         if free.size:
+            if self.weak.size < free.shape[1]:
+                raise ProblemError(NOT_HELD)
             seen = (self.problem.rigid_motions[self.weak] @ free).T
             found = qr(seen, mode="r", pivoting=True)
             triangle, order = np.asarray(found[0]), np.asarray(found[-1])
             sizes = np.abs(np.diag(triangle))
-            if len(sizes) < free.shape[1] or sizes.min() <= RANK:
+            if sizes.min() <= RANK:
                 raise ProblemError(NOT_HELD)
             joined = self.weak[order[: free.shape[1]]]
         return ContactBlock(problem=self.problem, points=np.union1d(self.strong, joined))
@@ -185,11 +187,11 @@ class Tangent:
         vector = np.append(pressure[points[:b]], gap[points[b:]])
         vector[np.abs(vector) <= STILL * size_of(change, pressure, amplitudes)] = 0.0
         matrix, vector = J[:, None] * N, J * vector
-        if not self.unique and eigvalsh(matrix + matrix.T)[0] <= len(matrix) * EPS * np.abs(matrix).max():
-            raise ProblemError(NOT_UNIQUE)
         end = lemke(matrix / (np.abs(matrix).max() or 1.0), vector / (np.abs(vector).max() or 1.0))
         if end.status is not Status.SOLVED:
             raise ProblemError(NO_WAY)
+        if not self.unique and eigvalsh(matrix + matrix.T)[0] <= len(matrix) * EPS * np.abs(matrix).max():
+            raise ProblemError(NOT_UNIQUE)
         loaded = points[end.active ^ (np.arange(len(points)) < b)]
         return ContactBlock(problem=self.problem, points=np.sort(np.append(self.strong, loaded)))
 
