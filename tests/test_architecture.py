@@ -10,7 +10,18 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-ABOVE = ("mesh_fit", "result", "fitting", "study", "analysis", "comparing", "reproduction", "report", "cli")
+ABOVE = (
+    "mesh_fit",
+    "result",
+    "fitting",
+    "study",
+    "analysis",
+    "comparing",
+    "responses",
+    "reproduction",
+    "report",
+    "cli",
+)
 """Rooms that put both halves of the house together."""
 
 NEVER = {
@@ -23,7 +34,10 @@ NEVER = {
     "bemcontact.fitting": ("spec", "result", "study", "analysis", "comparing", "report", "cli"),
     "bemcontact.analysis": ("spec", "study", "comparing", "report", "cli"),
     "bemcontact.comparing": ("spec", "bem", "report", "cli"),
-    "bemcontact.report": ("spec", "formulations", "analysis", "comparing", "reproduction.carrying_out", "cli"),
+    "bemcontact.responses": ("spec", "bem", "study", "comparing", "report", "cli"),
+    "bemcontact.report": (
+        "spec", "formulations", "analysis", "comparing", "responses", "reproduction.carrying_out", "cli",
+    ),
     "bemcontact.reproduction": ("bem", "report", "cli"),
 }  # fmt: skip
 """Room -> rooms of ours that it never imports."""
@@ -66,7 +80,10 @@ HOME = {
     "numba": ("bemcontact.bem.compiled",),
     "meshio": ("bemcontact.report.vtk",),
     "jinja2": ("bemcontact.report.markup",),
-    "rich": ("bemcontact.terminal", "bemcontact.report.text", "bemcontact.report.reproduction_text"),
+    "rich": (
+        "bemcontact.terminal", "bemcontact.report.text", "bemcontact.report.path_text",
+        "bemcontact.report.reproduction_text",
+    ),
 }
 """Foreign package -> the only rooms that import it."""
 

@@ -18,6 +18,13 @@ from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point,
 from bemcontact.parametric.following import Line, Trail, follow
 from bemcontact.solution import ContactSolution, Status
 
+COMMON = {
+    "compliance": "compliance",
+    "rigid_motions": "free motions",
+    "weights": "weights",
+    "normals": "directions of the rigid surfaces",
+}
+"""What the ends of a path have in common, and what it is called."""
 SAME = 1e-11
 """Difference of two compliances, motions or weights, over the largest entry, that is round-off."""
 SOLVER = "parametric pivoting"
@@ -114,6 +121,17 @@ class LoadPath:
         """(b, zones, 2) force Σ w p n of each rigid surface on the body at the breakpoints [p L]."""
         return resultants(self.start, self.pressure)
 
+    @cached_property
+    def residual(self) -> float:
+        """The largest natural residual at the breakpoints, recomputed from p and a, relative and free of units."""
+        unit, worst = measure(self.start, self.end), 0.0
+        line, body = line_between(unit, self.start, self.end), scaled(unit)
+        for t, pressure, amplitudes in zip(self.parameter, self.pressure, self.rigid_amplitudes, strict=True):
+            offset, load = line.at(t)
+            stated = replace(body, offset=offset, motion_load=load)
+            worst = max(worst, stated.residual(*scaled_point(unit, pressure, amplitudes)))
+        return worst
+
     def contact(self, t: float) -> CondensedContact:
         """The contact problem at t; `ProblemError` where the path does not reach."""
         self._ensure_reached(t)
@@ -161,6 +179,14 @@ class LoadPath:
         i, share = (i, (t - self.parameter[j]) / width) if width else (j, 0.0)
         pressure = (1 - share) * self.pressure[j] + share * self.pressure[i]
         amplitudes = (1 - share) * self.rigid_amplitudes[j] + share * self.rigid_amplitudes[i]
+        return self._solution(t, pressure, amplitudes)
+
+    def breakpoint(self, i: int) -> ContactSolution:
+        """The contact state at breakpoint i, of `contact(parameter[i])`."""
+        return self._solution(float(self.parameter[i]), self.pressure[i], self.rigid_amplitudes[i])
+
+    def _solution(self, t: float, pressure: Array, amplitudes: Array) -> ContactSolution:
+        """A contact state from its pressure and amplitudes."""
         contact = self.contact(t)
         return ContactSolution(
             formulation=FormulationName.COMPLEMENTARITY,
@@ -243,7 +269,7 @@ def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:
 
 def ensure_same_body(start: CondensedContact, end: CondensedContact) -> None:
     """Refuse two problems that differ in more than gap and load with a `ProblemError` that says in what."""
-    for name, what in (("compliance", "compliance"), ("rigid_motions", "free motions"), ("weights", "weights")):
+    for name, what in COMMON.items():
         one, other = getattr(start, name), getattr(end, name)
         if one.shape != other.shape:
             raise ProblemError(f"the {what} of start and end differ in shape, {one.shape} and {other.shape}; {WAY_OUT}")
@@ -260,24 +286,27 @@ def _followed(first: CondensedContact, last: CondensedContact) -> tuple[Trail | 
     solution = complementarity.solve(first)
     if solution.status is not Status.SOLVED:
         return None, "; ".join(solution.notes) or solution.status.value
-    unit = _measure(first, last)
-    line = Line(
-        first=scaled_change(unit, Change(first.offset, first.motion_load)),
-        last=scaled_change(unit, Change(last.offset, last.motion_load)),
-    )
-    trail = follow(scaled(unit), line, *scaled_point(unit, solution.pressure, solution.rigid_amplitudes))
+    unit = measure(first, last)
+    point = scaled_point(unit, solution.pressure, solution.rigid_amplitudes)
+    trail = follow(scaled(unit), line_between(unit, first, last), *point)
     return trail, trail.stop if trail.escape is None else complementarity.escape_words(first, trail.escape)
 
 
-def _measure(first: CondensedContact, last: CondensedContact) -> CondensedContact:
+def measure(first: CondensedContact, last: CondensedContact) -> CondensedContact:
     """The one whose scales are to be used: the larger ones, but not of a widest gap where nothing needs a pressure."""
     loaded = [item for item in (first, last) if item.motion_load.any() or (item.offset < 0).any()]
     return max(loaded or (first, last), key=lambda item: item.scales.displacement)
 
 
+def line_between(unit: CondensedContact, first: CondensedContact, last: CondensedContact) -> Line:
+    """The offsets and loads from one problem to another, free of units by the scales of `unit`."""
+    ends = (scaled_change(unit, Change(item.offset, item.motion_load)) for item in (first, last))
+    return Line(first=next(ends), last=next(ends))
+
+
 def _path(start: CondensedContact, end: CondensedContact, trail: Trail, note: str, backwards: bool = False) -> LoadPath:
     """Put units back, and t in ascending order."""
-    unit, order = _measure(*((end, start) if backwards else (start, end))), slice(None, None, -1 if backwards else 1)
+    unit, order = measure(start, end), slice(None, None, -1 if backwards else 1)
     states = trail.states[order]
     found = [unscaled(unit, state.pressure, state.amplitudes) for state in states]
     s = np.array([state.s for state in states])
