@@ -16,6 +16,8 @@ from bemcontact.parametric.path import LoadPath
 
 BETWEEN = (0.25, 0.5, 0.75)
 """Where intervals, whose ends are not linear, are looked at between two breakpoints."""
+ROUND_OFF = 1e-14
+"""Part of a parameter that counts as zero."""
 RESIDUAL = 1e-10
 """Allowed at breakpoints, as by the certificate of a single solution."""
 
@@ -97,8 +99,20 @@ class ParameterPath:
         return self.path.complete and self.path.unique and self.path.residual <= RESIDUAL
 
     def value(self, t: float) -> float:
-        """The parameter at t of the path."""
-        return (1 - t) * self.start + t * self.end
+        """The parameter at t of the path; what is round-off of its ends counts as zero."""
+        value = (1 - t) * self.start + t * self.end
+        return value if abs(value) > ROUND_OFF * max(abs(self.start), abs(self.end)) else 0.0
+
+    @property
+    def reaches(self) -> tuple[float, float]:
+        """The values of the parameter between which there is a path."""
+        return self.value(self.path.begins_at), self.value(self.path.ends_at)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a person should know of the path."""
+        begin, end = self.reaches
+        return self.path.told(f"{begin:.6g}", f"{end:.6g}")
 
     @cached_property
     def states(self) -> tuple[PathState, ...]:
@@ -144,10 +158,10 @@ class ParameterPath:
             "start": self.start,
             "end": self.end,
             "certified": self.certified,
-            "reaches": [self.value(path.begins_at), self.value(path.ends_at)],
+            "reaches": list(self.reaches),
             "unique": path.unique,
             "residual": path.residual,
-            "notes": list(path.notes),
+            "notes": list(self.notes),
             "pivots": path.pivots,
             "units": dict(contact.units),
             "zones": list(contact.zone_names),

@@ -46,7 +46,7 @@ class LoadPath:
     rigid_amplitudes : (b, k) a
     touching : (b - 1, n) which points are in contact between two breakpoints
     unique : whether each state is proved to be the only one
-    note : why the path does not reach from 0 to 1, in a sentence, or empty
+    note : why the path does not reach from 0 to 1, or empty
     """
 
     start: CondensedContact
@@ -89,7 +89,13 @@ class LoadPath:
     @property
     def notes(self) -> tuple[str, ...]:
         """What a person should know of the path."""
-        return tuple(text for text in (self.note, "" if self.unique else NOT_PROVED) if text)
+        return self.told(f"{self.begins_at:.6g}", f"{self.ends_at:.6g}")
+
+    def told(self, begin: str, end: str) -> tuple[str, ...]:
+        """Say what a person should know, in a sentence each, of a path from `begin` to `end`."""
+        where = f"from {begin} on" if self.begins_at > 0.0 else f"up to {end}"
+        early = f"the path is there {where}; beyond, {self.note}" if self.note else ""
+        return tuple(text for text in (early, "" if self.unique else NOT_PROVED) if text)
 
     @cached_property
     def entered(self) -> tuple[tuple[int, ...], ...]:
@@ -319,5 +325,5 @@ def _path(start: CondensedContact, end: CondensedContact, trail: Trail, note: st
         rigid_amplitudes=np.array([amplitudes for _, _, amplitudes in found]),
         touching=np.array(trail.touching[order], bool).reshape(-1, start.size),
         unique=trail.unique,
-        note=note and f"{'from' if backwards else 'up to'} {1 - s[0] if backwards else s[-1]:.6g}: {note}",
+        note=note,
     )

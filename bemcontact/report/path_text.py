@@ -6,7 +6,7 @@ from rich.text import Text
 
 from bemcontact.contact import CondensedContact
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.report.words import number, plural, sentence_case, units_of, vector, with_unit
+from bemcontact.report.words import number, plural, sentence_case, units_of, vector
 
 MANY = 4
 """Points that are named where they enter or leave together; of more the number is told."""
@@ -35,20 +35,20 @@ def path_summary(found: ParameterPath) -> RenderableType:
         table.add_row(*map(Text, _cells(found.contact, state)))
     style = "bold green" if found.certified else "bold red"
     word = "certified" if found.certified else "NOT certified"
-    where = with_unit(f"{found.key} from {number(found.start)} to {number(found.end)}", "")
-    how = f"{plural('breakpoint', len(found.breakpoints))}, {plural('pivot', found.path.pivots)}"
+    where = f"{found.key} from {number(found.start)} to {number(found.end)}"
+    counts = {"breakpoint": len(found.breakpoints), "pivot": found.path.pivots}
+    how = ", ".join(f"{count} {plural(noun, count)}" for noun, count in counts.items())
     end = Text.assemble((word, style), ". ", verdict(found))
     return Group(Text(found.contact.name, "bold"), Text(f"{where}; {how}", "dim"), "", table, "", end)
 
 
 def verdict(found: ParameterPath) -> str:
     """Say in a sentence or two how far the path can be trusted."""
-    first, last = (number(found.value(t)) for t in (found.path.begins_at, found.path.ends_at))
-    notes = " ".join(f"{sentence_case(note)}." for note in found.path.notes)
+    first, last = map(number, found.reaches)
     exact = f"Natural residual {found.path.residual:.0e} at the worst breakpoint."
     if found.certified:
         return f"Every state from {first} to {last} is the contact state, the only one. {exact}"
-    return f"The path reaches from {first} to {last}. {notes} {exact}"
+    return " ".join((*(f"{sentence_case(note)}." for note in found.notes), exact))
 
 
 def _cells(contact: CondensedContact, state: PathState) -> list[str]:

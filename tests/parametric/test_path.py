@@ -105,6 +105,7 @@ def test_bodies_from_no_load_to_the_full_one(full_load: LoadPath):
     assert full_load.unique
     assert apart(full_load, 50) <= 1e-9
     assert natural_residual(full_load) <= 1e-12
+    assert full_load.residual <= 1e-12
 
 
 def test_every_breakpoint_is_certified(full_load: LoadPath):
@@ -177,19 +178,20 @@ def test_load_that_crosses_a_support_with_the_next_one_level():
     assert (path.entered[1], path.left[1]) == ((2,), (0,))
 
 
-@pytest.mark.parametrize(("start", "end", "range_", "word"), [(-0.5, 1.5, (0, 0.75), "up to 0.75"),
-                                                              (1.5, -0.5, (0.25, 1), "from 0.25")])  # fmt: skip
-def test_load_beyond_the_last_support_ends_the_path(start, end, range_, word):
-    """The load reaches the outer support, x = 1, at three quarters of the way."""
+@pytest.mark.parametrize(
+    ("start", "end", "reach", "words"),
+    [(-0.5, 1.5, (0, 0.75), "the path is there up to 0.75"), (1.5, -0.5, (0.25, 1), "the path is there from 0.25 on")],
+)
+def test_load_beyond_the_last_support_ends_the_path(start, end, reach, words):
+    """The load reaches the outer support, x = 1, a quarter of the way from 1.5 to -0.5."""
     path = load_path(rocker(start), rocker(end))
     assert not path.complete
-    assert (path.begins_at, path.ends_at) == pytest.approx(range_, abs=1e-14)
-    assert path.note.startswith(
-        f"{word}: the load carries the body off its support, in a motion that no contact resists"
-    )
+    assert (path.begins_at, path.ends_at) == pytest.approx(reach, abs=1e-14)
+    assert path.note.startswith("the load carries the body off its support, in a motion that no contact resists")
+    assert path.notes == (f"{words}; beyond, {path.note}",)
     with pytest.raises(ProblemError, match="there is nothing at"):
-        path.at(1 - path.begins_at if path.begins_at == 0 else 0.0)
-    np.testing.assert_allclose(path.pressure[-1 if range_[0] == 0 else 0], [0, 0, 1], atol=1e-14)
+        path.at(1.0 if reach[0] == 0 else 0.0)
+    np.testing.assert_allclose(path.pressure[-1 if reach[0] == 0 else 0], [0, 0, 1], atol=1e-14)
 
 
 def test_no_path_without_a_support():
@@ -207,9 +209,7 @@ def test_path_that_turns_back_is_not_followed_silently():
     path = load_path(start, replace(start, initial_gap=np.array([-1.0, -2.1])))
     np.testing.assert_allclose(path.parameter, [0, 0.5], atol=1e-14)
     np.testing.assert_allclose(path.pressure, [[2.8 / 3, 0.1 / 3], [1, 0]], atol=1e-14)
-    assert path.notes[0] == (
-        "up to 0.5: no contact state was found to continue this one: the path turns back or breaks off here"
-    )
+    assert path.notes[0].startswith("the path is there up to 0.5; beyond, no contact state was found to continue")
     assert "does not rule out other contact states" in path.notes[1]
 
 
@@ -259,7 +259,9 @@ def test_resultants_and_peaks_are_those_of_the_states(full_load: LoadPath):
 
 def test_path_in_words_and_numbers():
     path = load_path(rocker(-0.5), rocker(1.5))
-    assert repr(path).startswith("<LoadPath of 'unnamed': 4 breakpoints from 0 to 0.75, 2 pivots; up to 0.75: the load")
+    assert repr(path).startswith(
+        "<LoadPath of 'unnamed': 4 breakpoints from 0 to 0.75, 2 pivots; the path is there up to 0.75; "
+    )
     told = path.to_dict()
     assert (told["complete"], told["pivots"], told["left"]) == (False, 2, [[], [0], [], []])
-    assert told["notes"] == [path.note]
+    assert told["notes"] == list(path.notes)

@@ -12,14 +12,14 @@ from bemcontact.report.figures.course import CYCLE
 from bemcontact.report.figures.page import BLACK, labelled, new_page, plain, shortened
 from bemcontact.report.words import per_thickness, units_of
 
-WIDTH, HEIGHT = 5.6, 7.6
-"""Inches."""
+WIDTH, HEIGHT = 5.6, 2.5
+"""Inches of each picture."""
 SHADE = 0.15
 """Opacity of stretches in contact."""
 
 
 def figure_of_path(found: ParameterPath) -> Figure:
-    """Make a page of three pictures, one above the other, over the same parameter.
+    """Make a page of pictures one below the other, over the same parameter.
 
     Parameters
     ----------
@@ -28,17 +28,19 @@ def figure_of_path(found: ParameterPath) -> Figure:
     Returns
     -------
     Figure
-        Peak pressure, resultants by zone, ends of contact; dots are breakpoints.
+        Peak pressure, resultants of all zones, and for each zone the ends of contact; dots are breakpoints.
     """
-    figure = new_page(WIDTH, HEIGHT)
-    first, second, third = figure.subplots(3, 1, sharex=True)
-    draw_peaks(first, found)
-    draw_resultants(second, found)
-    draw_interval_ends(third, found)
-    for axes in (first, second, third):
+    zones = found.contact.zone_names
+    figure = new_page(WIDTH, HEIGHT * (2 + len(zones)))
+    peaks, forces, *ends = figure.subplots(2 + len(zones), 1, sharex=True)
+    draw_peaks(peaks, found)
+    draw_resultants(forces, found)
+    for axes, zone in zip(ends, zones, strict=True):
+        draw_interval_ends(axes, found, zone)
+    for axes in (peaks, forces, *ends):
         axes.spines[["top", "right"]].set_visible(False)
-    third.set_xlabel(shortened(found.key, 60))
-    first.set_title(shortened(found.contact.name, 60), fontsize=11)
+    ends[-1].set_xlabel(shortened(found.key, 60))
+    peaks.set_title(shortened(found.contact.name, 60), fontsize=11)
     return figure
 
 
@@ -61,15 +63,14 @@ def draw_resultants(axes: Axes, found: ParameterPath) -> None:
         axes.legend(frameon=False, fontsize=8.5)
 
 
-def draw_interval_ends(axes: Axes, found: ParameterPath) -> None:
-    """Draw where each zone is in contact, by arc position, over the parameter."""
-    for order, zone in enumerate(found.contact.zone_names):
-        colour = CYCLE[order % len(CYCLE)]
-        for values, starts, ends in _bands(found.states, zone):
-            axes.fill_between(values, starts, ends, color=colour, alpha=SHADE, linewidth=0)
-            for edge in (starts, ends):
-                axes.plot(values, edge, color=colour, linewidth=1.4)
-    axes.set_ylabel(labelled("contact along the boundary", units_of(found.contact).length))
+def draw_interval_ends(axes: Axes, found: ParameterPath, zone: str) -> None:
+    """Draw where a zone is in contact, by arc position, over the parameter."""
+    colour = CYCLE[found.contact.zone_names.index(zone) % len(CYCLE)]
+    for values, starts, ends in _bands(found.states, zone):
+        axes.fill_between(values, starts, ends, color=colour, alpha=SHADE, linewidth=0)
+        for edge in (starts, ends):
+            axes.plot(values, edge, color=colour, linewidth=1.4)
+    axes.set_ylabel(labelled(f"contact of {shortened(zone, 16)}", units_of(found.contact).length))
 
 
 def _draw_line(axes: Axes, found: ParameterPath, heights: list[float], colour: str, label: str) -> None:
