@@ -81,7 +81,9 @@ HOME = {
     "meshio": ("bemcontact.report.vtk",),
     "jinja2": ("bemcontact.report.markup",),
     "rich": (
-        "bemcontact.terminal", "bemcontact.report.text", "bemcontact.report.path_text",
+        "bemcontact.terminal",
+        "bemcontact.report.text",
+        "bemcontact.report.path_text",
         "bemcontact.report.reproduction_text",
     ),
 }
