@@ -96,7 +96,7 @@ def sensitivities(
             wanted[key] = modulus_change(contact, doubled, E, solution.pressure)
         else:
             wanted[key] = _change(stated, key)
-    return sensitivities_of_contact(contact, wanted, solution if not solution.notes else None)
+    return sensitivities_of_contact(contact, wanted, solution)
 
 
 def _change(problem: Problem, key: str) -> Change:

@@ -1,9 +1,9 @@
 """The one-sided derivative of a contact state: where it goes when offset and load begin to change.
 
 At a state with strongly active points S (p > 0), weakly active points W (p = 0 = δ) and open points the derivative
-along (q̇, load̊) is the solution of the mixed complementarity problem
+along a change (q̇, ḟ) of offset and load is the solution of the mixed complementarity problem
 
-    δ̇ = 0 on S,  0 <= ṗ ⟂ δ̇ >= 0 on W,  ṗ = 0 elsewhere,  ℓᵀṗ = -load̊,  δ̇ = q̇ + M ṗ + R ȧ,
+    δ̇ = 0 on S,  0 <= ṗ ⟂ δ̇ >= 0 on W,  ṗ = 0 elsewhere,  ℓᵀṗ = -ḟ,  δ̇ = q̇ + M ṗ + R ȧ,
 
 (Robinson's generalised equations; Facchinei and Pang, "Finite-Dimensional Variational Inequalities and Complementarity
 Problems", 2003, section 5.4, for strongly regular solutions). S and the motions are eliminated by one factorisation.
@@ -22,6 +22,7 @@ from scipy.optimize import nnls
 from bemcontact.actions import Change
 from bemcontact.arrays import Array, IntArray
 from bemcontact.errors import ProblemError
+from bemcontact.formulations.active_set import BoolArray
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import ScaledContact
 from bemcontact.parametric.contact_block import EPS, ContactBlock
@@ -78,8 +79,16 @@ class Tangent:
     before: ContactBlock | None = None
 
     @classmethod
-    def at(cls, problem: ScaledContact, pressure: Array, gap: Array, amplitudes: Array, unique: bool) -> Self:
-        """Look at a state: p (n,), δ (n,) and a (k,), free of units."""
+    def at(
+        cls,
+        problem: ScaledContact,
+        pressure: Array,
+        gap: Array,
+        amplitudes: Array,
+        unique: bool,
+        before: ContactBlock | None = None,
+    ) -> Self:
+        """Look at a state: p (n,), δ (n,) and a (k,), free of units; the rest is as of the class."""
         small = WEAK * (1.0 + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
         loaded, closed = pressure > small, gap <= small
         return cls(
@@ -87,10 +96,16 @@ class Tangent:
             strong=np.array(np.flatnonzero(loaded & closed), np.int64),
             weak=np.array(np.flatnonzero(~loaded & closed), np.int64),
             unique=unique,
+            before=before,
         )
 
+    @property
+    def loaded(self) -> BoolArray:
+        """(n,) True on S."""
+        return ContactBlock(problem=self.problem, points=self.strong).touching
+
     def escape(self, change: Change) -> Array:
-        """The part r (k,) of a change of load that neither S nor W can answer: the least ℓᵀṗ + load̊ by norm.
+        """The part r (k,) of a change of load that neither S nor W can answer: the least ℓᵀṗ + ḟ by norm.
 
         Where it is not zero, it is a motion that moves no point of S, closes none of W, and on which the load works.
         """
@@ -154,7 +169,7 @@ class Tangent:
 
         Parameters
         ----------
-        change : (q̇, load̊), free of units
+        change : (q̇, ḟ), free of units
 
         Returns
         -------

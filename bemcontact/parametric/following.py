@@ -10,7 +10,7 @@ Where a support is left to which the load has wandered away, the body tips at a 
 it: the pressure stays, the position jumps.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -50,7 +50,7 @@ class State:
     amplitudes: Array
 
 
-@dataclass(kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Trail:
     """The states where something happens, from s = 0 on.
 
@@ -63,16 +63,11 @@ class Trail:
     unique : whether each state is known to be the only one
     """
 
-    states: list[State]
-    touching: list[BoolArray] = field(default_factory=list)
+    states: tuple[State, ...]
+    touching: tuple[BoolArray, ...]
     escape: Array | None = None
     stop: str = ""
     unique: bool
-
-    def add(self, state: State, touching: BoolArray) -> None:
-        """Go on to a state."""
-        self.states.append(state)
-        self.touching.append(touching)
 
 
 def follow(problem: ScaledContact, line: Line, pressure: Array, amplitudes: Array) -> Trail:
@@ -94,28 +89,35 @@ def follow(problem: ScaledContact, line: Line, pressure: Array, amplitudes: Arra
     SolverError
         If more points enter and leave than can be, which round-off alone could bring about.
     """
-    first = line.first.offset + problem.compliance @ pressure + problem.rigid_motions @ amplitudes
-    state = State(s=0.0, pressure=pressure, gap=np.maximum(first, 0.0), amplitudes=amplitudes)
-    trail, block, limit = Trail(states=[state], unique=is_monotone(problem)), None, 1000 + 50 * len(pressure)
-    while trail.states[-1].s < 1.0 and len(trail.states) < limit:
-        state = trail.states[-1]
-        tangent = Tangent.at(problem, state.pressure, state.gap, state.amplitudes, trail.unique)
-        escape = tangent.escape(line.rate)
-        if escape.any():
-            if not _tipped(problem, trail, tangent, escape):
-                return trail
-            block = None
-            continue
+    gap = line.first.offset + problem.compliance @ pressure + problem.rigid_motions @ amplitudes
+    states = [State(s=0.0, pressure=pressure, gap=np.maximum(gap, 0.0), amplitudes=amplitudes)]
+    touching: list[BoolArray] = []
+    unique, block, escape, stop = is_monotone(problem), None, None, ""
+    for _ in range(limit := 1000 + 50 * len(pressure)):
+        if (state := states[-1]).s >= 1.0:
+            break
+        tangent = Tangent.at(problem, state.pressure, state.gap, state.amplitudes, unique, block)
+        motion = tangent.escape(line.rate)
         try:
-            block = replace(tangent, before=block).after(line.rate)
-            following = _next(line, state.s, block)
+            if motion.any():
+                block, following = None, _tipped(problem, state, tangent, motion)
+            else:
+                block = tangent.after(line.rate)
+                following = _next(line, state.s, block)
         except (ProblemError, SingularSystemError) as error:
-            trail.stop = str(error)
-            return trail
-        trail.add(following, block.touching)
-    if len(trail.states) == limit:
+            stop = str(error)
+            break
+        if following is None:
+            escape = motion
+            break
+        if following.s == 0.0:
+            states.clear()
+        else:
+            touching.append(tangent.loaded if block is None else block.touching)
+        states.append(following)
+    else:
         raise SolverError(f"the path was given up after {limit} breakpoints: points keep entering and leaving")
-    return trail
+    return Trail(states=tuple(states), touching=tuple(touching), escape=escape, stop=stop, unique=unique)
 
 
 def _next(line: Line, s: float, block: ContactBlock) -> State:
@@ -137,21 +139,15 @@ def _next(line: Line, s: float, block: ContactBlock) -> State:
     )
 
 
-def _tipped(problem: ScaledContact, trail: Trail, tangent: Tangent, motion: Array) -> bool:
-    """Let the body move under a constant load until a point closes; if none does, the load carries it away."""
-    state, opening = trail.states[-1], problem.rigid_motions @ motion
-    opening[np.append(tangent.strong, tangent.weak)] = np.maximum(opening[np.append(tangent.strong, tangent.weak)], 0.0)
+def _tipped(problem: ScaledContact, state: State, tangent: Tangent, motion: Array) -> State | None:
+    """Let the body move under a constant load until a point closes; None if none does, and the load carries it away."""
+    closed, opening = np.append(tangent.strong, tangent.weak), problem.rigid_motions @ motion
+    opening[closed] = np.maximum(opening[closed], 0.0)
     step, blocking = first_zero(state.gap, opening, RANK * float(np.linalg.norm(motion)))
     if not blocking.any():
-        trail.escape = motion
-        return False
+        return None
     gap = np.where(blocking, 0.0, state.gap + step * opening)
-    moved = State(s=state.s, pressure=state.pressure, gap=gap, amplitudes=state.amplitudes + step * motion)
-    if state.s == 0.0:
-        trail.states[-1] = moved
-    else:
-        trail.add(moved, np.isin(np.arange(len(gap)), tangent.strong))
-    return True
+    return State(s=state.s, pressure=state.pressure, gap=gap, amplitudes=state.amplitudes + step * motion)
 
 
 def first_zero(values: Array, rates: Array, still: float) -> tuple[float, BoolArray]:

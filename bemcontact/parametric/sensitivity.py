@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bemcontact.actions import Change
 from bemcontact.arrays import Array, IntArray, freeze_arrays
@@ -170,9 +171,11 @@ def sensitivities(
     SingularSystemError
         If the equations of contact are singular to working precision.
     """
-    wanted = contact.changes if changes is None else changes
-    _ensure_changes(contact, wanted)
-    state = _solved(contact) if solution is None else solution
+    wanted = contact.changes if changes is None else {key: _fitting(contact, key, *changes[key]) for key in changes}
+    state = complementarity.solve(contact) if solution is None else solution
+    if state.status is not Status.SOLVED:
+        why = "; ".join(state.notes) or state.status.value
+        raise ProblemError(f"there is no contact state to differentiate: {why}")
     problem = scaled(contact)
     p, a = scaled_point(contact, state.pressure, state.rigid_amplitudes)
     if (residual := problem.residual(p, a)) > EXACT:
@@ -217,25 +220,16 @@ def modulus_change(contact: CondensedContact, doubled: CondensedContact, modulus
     return Change(-(loads + M @ pressure) / modulus, np.zeros(contact.free_motions))
 
 
-def _ensure_changes(contact: CondensedContact, changes: Mapping[str, Change]) -> None:
-    """Refuse changes that do not fit the problem."""
+def _fitting(contact: CondensedContact, key: str, offset: ArrayLike, load: ArrayLike) -> Change:
+    """Refuse a change that does not fit the problem."""
     n, k = contact.rigid_motions.shape
-    for key, (offset, load) in changes.items():
-        shapes = np.shape(offset), np.shape(load)
-        if shapes != ((n,), (k,)):
-            raise ProblemError(f"{key}: a change needs an offset ({n},) and a load ({k},); found shapes {shapes}")
-        if not (np.isfinite(offset).all() and np.isfinite(load).all()):
-            raise ProblemError(f"{key}: a change needs finite numbers")
-
-
-def _solved(contact: CondensedContact) -> ContactSolution:
-    """The direct solution; `ProblemError` if there is none."""
-    solution = complementarity.solve(contact)
-    if solution.status is not Status.SOLVED:
-        raise ProblemError(
-            f"there is no contact state to differentiate: {'; '.join(solution.notes) or solution.status.value}"
-        )
-    return solution
+    change = Change(np.array(offset, float), np.array(load, float))
+    shapes = change.offset.shape, change.motion_load.shape
+    if shapes != ((n,), (k,)):
+        raise ProblemError(f"{key}: a change needs an offset ({n},) and a load ({k},); found shapes {shapes}")
+    if not (np.isfinite(change.offset).all() and np.isfinite(change.motion_load).all()):
+        raise ProblemError(f"{key}: a change needs finite numbers")
+    return change
 
 
 def _sensitivity(

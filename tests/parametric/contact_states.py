@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from contact_problems import random_contact
 
-from bemcontact.actions import Change
+from bemcontact.actions import Change, LoadCases, Tools
 from bemcontact.contact import CondensedContact
 
 
@@ -71,3 +71,31 @@ def half_plane(n: int, load: float) -> CondensedContact:
     return CondensedContact.from_compliance(
         compliance, x**2 / 2, np.full(n, h), rigid_motions=np.ones(n), motion_load=[-load]
     )
+
+
+def between_tools() -> CondensedContact:
+    """A random body with a load case, under a tool that is pushed sideways, loaded downwards, and kept from turning."""
+    rng, n = np.random.default_rng(11), 9
+    body = random_contact(2, n, 0)
+    motions = np.column_stack([rng.uniform(-0.3, 0.3, n), np.ones(n), rng.uniform(-1, 1, n)])
+    tools = Tools(
+        names=("punch",),
+        point=np.zeros((1, 2)),
+        motions=motions,
+        amplitudes=np.array([[0.0], [1.0], [0.0]]),
+        free=np.array([False, True, False]),
+        position=np.array([0.2, 0.0, 0.1]),
+        force=np.array([0.0, -3.0, 0.0]),
+    )
+    cases = LoadCases(
+        names=("wind",),
+        displacement=rng.standard_normal((n, 1)),
+        motion_load=np.zeros((1, 1)),
+        position=np.array([[0.1], [0.0], [0.0]]),
+        force=np.array([[0.0], [-0.5], [0.0]]),
+        factors=np.zeros(1),
+    )
+    stated = CondensedContact.from_compliance(
+        body.compliance, rng.uniform(0, 1, n), body.weights, rigid_motions=motions[:, [1]], motion_load=[-3.0]
+    )
+    return replace(stated, initial_gap=stated.initial_gap + motions @ tools.position, tools=tools, cases=cases)

@@ -7,7 +7,7 @@ import exhaustive
 import numpy as np
 import pytest
 from contact_problems import random_contact
-from contact_states import degenerate, half_plane, rocker, without_load
+from contact_states import between_tools, degenerate, half_plane, rocker, without_load
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -81,6 +81,36 @@ def test_path_from_a_state_with_weakly_active_points(seed: int):
     start, _, _ = degenerate(seed, n=9, k=seed % 3, weak=1 + seed % 4)
     _, end = random_path(seed, 9, seed % 3)
     assert apart(load_path(start, replace(end, initial_gap=end.initial_gap + 0.5)), 20) <= 1e-9
+
+
+@pytest.mark.parametrize("what", ["case", "position", "force"])
+def test_load_factors_positions_and_forces_of_tools(what: str):
+    """Problems made at each t by `with_factors` and `with_tools`, solved independently, and where the tool is told."""
+    contact = between_tools()
+
+    def at(t: float) -> CondensedContact:
+        match what:
+            case "case":
+                return contact.with_factors({"wind": 4 * t - 1})
+            case "position":
+                return contact.with_tools(position=[[0.2 - t, 0.0, 0.1 + t]])
+            case _:
+                return contact.with_tools(force=[[0.0, -3 * t, 0.0]])
+
+    path = load_path(at(0.0), at(1.0))
+    assert path.complete
+    assert path.pivots >= 2
+    for t in np.random.default_rng(1).uniform(0, 1, 50):
+        stated, found, made = at(t), path.at(t), path.contact(t)
+        expected = complementarity.solve(stated)
+        np.testing.assert_allclose(found.pressure, expected.pressure, atol=1e-9 * expected.pressure.max())
+        np.testing.assert_allclose(made.cases.factors, stated.cases.factors, atol=1e-14)
+        np.testing.assert_allclose(
+            made.tools.displacement(found.rigid_amplitudes),
+            stated.tools.displacement(expected.rigid_amplitudes),
+            atol=1e-9,
+        )
+        np.testing.assert_allclose(made.tools.force, stated.tools.force, atol=1e-14)
 
 
 def test_path_back_is_the_same_path():

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from contact_problems import random_contact
-from contact_states import changed, degenerate, half_plane, random_change, rocker, without_load
+from contact_states import between_tools, changed, degenerate, half_plane, random_change, rocker, without_load
 
 import bemcontact
-from bemcontact.actions import Change, LoadCases, Tools
+from bemcontact.actions import Change
 from bemcontact.assessment.footprint import footprint
 from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
@@ -49,34 +49,6 @@ def assert_same(rates: Rates, expected: dict[str, np.ndarray], width: float, *na
         found = np.array(getattr(rates, name), float)
         size = np.abs(expected[name]).max(initial=0.0)
         np.testing.assert_allclose(found, expected[name], rtol=0, atol=1e-6 * size + ROUND_OFF / width, err_msg=name)
-
-
-def between_tools() -> CondensedContact:
-    """A random body with a load case, under a tool that is pushed sideways, loaded downwards, and kept from turning."""
-    rng, n = np.random.default_rng(11), 9
-    body = random_contact(2, n, 0)
-    motions = np.column_stack([rng.uniform(-0.3, 0.3, n), np.ones(n), rng.uniform(-1, 1, n)])
-    tools = Tools(
-        names=("punch",),
-        point=np.zeros((1, 2)),
-        motions=motions,
-        amplitudes=np.array([[0.0], [1.0], [0.0]]),
-        free=np.array([False, True, False]),
-        position=np.array([0.2, 0.0, 0.1]),
-        force=np.array([0.0, -3.0, 0.0]),
-    )
-    cases = LoadCases(
-        names=("wind",),
-        displacement=rng.standard_normal((n, 1)),
-        motion_load=np.zeros((1, 1)),
-        position=np.array([[0.1], [0.0], [0.0]]),
-        force=np.array([[0.0], [-0.5], [0.0]]),
-        factors=np.zeros(1),
-    )
-    stated = CondensedContact.from_compliance(
-        body.compliance, rng.uniform(0, 1, n), body.weights, rigid_motions=motions[:, [1]], motion_load=[-3.0]
-    )
-    return replace(stated, initial_gap=stated.initial_gap + motions @ tools.position, tools=tools, cases=cases)
 
 
 def test_tools_and_load_cases_against_central_differences():
