@@ -197,11 +197,13 @@ class Tangent:
         if not self.weak.size:
             return self.held
         points, N = self._small
-        b, J = len(self.exchanged), self.problem.weights[points]
+        b = len(self.exchanged)
         (pressure,), (gap,), (amplitudes,) = self.held.solve(change)
         vector = np.append(pressure[points[:b]], gap[points[b:]])
         vector[np.abs(vector) <= STILL * size_of(change, pressure, amplitudes)] = 0.0
-        matrix, vector = J[:, None] * N, J * vector
+        scale = _scale(N, b)
+        rows = scale * self.problem.weights[points]
+        matrix, vector = rows[:, None] * N * scale, rows * vector
         end = lemke(matrix / (np.abs(matrix).max() or 1.0), vector / (np.abs(vector).max() or 1.0))
         if end.status is not Status.SOLVED:
             raise ProblemError(NO_WAY)
@@ -209,6 +211,12 @@ class Tangent:
             raise ProblemError(NOT_UNIQUE)
         loaded = points[end.active ^ (np.arange(len(points)) < b)]
         return ContactBlock(problem=self.problem, points=np.sort(np.append(self.strong, loaded)))
+
+
+def _scale(N: Array, b: int) -> Array:
+    """Factors (m,) of the rows and columns of N by which pressures and gaps in it are of one size."""
+    compliance = np.abs(N[b:, b:]).max(initial=0.0) or 1.0 / (np.abs(N).max() or 1.0)
+    return np.where(np.arange(len(N)) < b, np.sqrt(compliance), 1.0 / np.sqrt(compliance))
 
 
 def size_of(change: Change, pressure: Array, amplitudes: Array) -> float:

@@ -22,6 +22,9 @@ from bemcontact.formulations.scaling import ScaledContact
 from bemcontact.parametric.contact_block import ContactBlock
 from bemcontact.parametric.derivative import RANK, STILL, Tangent, is_monotone, size_of
 
+ROUND_OFF = 1e-12
+"""Negative pressure or gap, over the size of the numbers, that is none at the end of the line: all may vanish there."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Line:
@@ -126,7 +129,8 @@ def _next(line: Line, s: float, block: ContactBlock) -> State:
     pressures, gaps, amplitudes = block.solve(line.at(s), rate)
     values, rates = np.where(touching, pressures, gaps)
     step, blocking = first_zero(values, rates, STILL * size_of(rate, pressures[1], amplitudes[1]))
-    if s + step >= 1.0:
+    size = 1.0 + float(np.abs(pressures[0]).max(initial=0.0) + np.abs(amplitudes[0]).sum())
+    if s + step >= 1.0 or (values + (1.0 - s) * rates).min() >= -ROUND_OFF * size:
         s, blocking = 1.0, np.zeros_like(touching)
     else:
         s += step

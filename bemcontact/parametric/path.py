@@ -27,6 +27,8 @@ COMMON = {
 """What the ends of a path have in common, and what it is called."""
 SAME = 1e-11
 """Difference of two compliances, motions or weights, over the largest entry, that is round-off."""
+SAME_LOAD = 1e-14
+"""Difference of two loads, over the largest component, that is round-off."""
 SOLVER = "parametric pivoting"
 NOT_PROVED = "the compliance does not rule out other contact states beside those of this path"
 
@@ -180,11 +182,12 @@ class LoadPath:
             If the path does not reach there.
         """
         self._ensure_reached(t)
-        i = int(np.clip(np.searchsorted(self.parameter, t, side="right"), 1, max(len(self.parameter) - 1, 1)))
-        j, width = i - 1, (self.parameter[i] - self.parameter[i - 1] if i < len(self.parameter) else 0.0)
-        i, share = (i, (t - self.parameter[j]) / width) if width else (j, 0.0)
-        pressure = (1 - share) * self.pressure[j] + share * self.pressure[i]
-        amplitudes = (1 - share) * self.rigid_amplitudes[j] + share * self.rigid_amplitudes[i]
+        i = int(np.searchsorted(self.parameter, t, side="right")) - 1
+        j = min(i + 1, len(self.parameter) - 1)
+        width = self.parameter[j] - self.parameter[i]
+        share = (t - self.parameter[i]) / width if width else 0.0
+        pressure = (1 - share) * self.pressure[i] + share * self.pressure[j]
+        amplitudes = (1 - share) * self.rigid_amplitudes[i] + share * self.rigid_amplitudes[j]
         return self._solution(t, pressure, amplitudes)
 
     def breakpoint(self, i: int) -> ContactSolution:
@@ -306,8 +309,10 @@ def measure(first: CondensedContact, last: CondensedContact) -> CondensedContact
 
 def line_between(unit: CondensedContact, first: CondensedContact, last: CondensedContact) -> Line:
     """The offsets and loads from one problem to another, free of units by the scales of `unit`."""
-    ends = (scaled_change(unit, Change(item.offset, item.motion_load)) for item in (first, last))
-    return Line(first=next(ends), last=next(ends))
+    begin, end = (scaled_change(unit, Change(item.offset, item.motion_load)) for item in (first, last))
+    largest = np.abs([begin.motion_load, end.motion_load]).max(initial=0.0)
+    same = np.abs(end.motion_load - begin.motion_load) <= SAME_LOAD * largest
+    return Line(first=begin, last=Change(end.offset, np.where(same, begin.motion_load, end.motion_load)))
 
 
 def _path(start: CondensedContact, end: CondensedContact, trail: Trail, note: str, backwards: bool = False) -> LoadPath:

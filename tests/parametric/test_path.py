@@ -83,6 +83,53 @@ def test_path_from_a_state_with_weakly_active_points(seed: int):
     assert apart(load_path(start, replace(end, initial_gap=end.initial_gap + 0.5)), 20) <= 1e-9
 
 
+def coarse_path(rng: np.random.Generator) -> tuple[CondensedContact, CondensedContact]:
+    """Data out of few whole numbers: points enter and leave together, and are weakly active at the ends."""
+    n, k = int(rng.integers(3, 8)), int(rng.integers(0, 3))
+    B, x = rng.integers(-1, 2, (n, n)), np.arange(n) - (n - 1) / 2
+    R = np.column_stack([np.ones(n), x])[:, :k]
+    loads = [-R.T @ np.maximum(rng.integers(-1, 3, n), 0) for _ in range(2)]
+    start = CondensedContact.from_compliance(
+        (B @ B.T + np.diag(rng.integers(1, 3, n))) / 2,
+        rng.integers(-1, 3, n) / 2,
+        rigid_motions=R if k else None,
+        motion_load=loads[0] if k else None,
+    )
+    return start, replace(start, initial_gap=rng.integers(-1, 3, n) / 2, motion_load=loads[1])
+
+
+def wandering_load(rng: np.random.Generator) -> tuple[CondensedContact, CondensedContact]:
+    """A load that wanders over springs of uneven height while it changes; on stiff ones the block tips over."""
+    n = int(rng.integers(3, 8))
+    x, gap, compliance = np.arange(n) - (n - 1) / 2, rng.integers(0, 4, n) / 2, 10.0 ** rng.integers(-4, 1)
+    R = np.column_stack([np.ones(n), x])
+    places, loads = rng.uniform(x[0], x[-1], 2), rng.permutation([0.0, 1.0, 2.0])[:2]
+    start, end = (
+        CondensedContact.from_compliance(
+            compliance * np.eye(n), gap, rigid_motions=R, motion_load=[-load, -load * place]
+        )
+        for load, place in zip(loads, places, strict=True)
+    )
+    return start, end
+
+
+@pytest.mark.parametrize("made", [coarse_path, wandering_load])
+def test_degenerate_paths_are_those_of_exhaustive_search(made):
+    """Pressures are of size 1; on springs of compliance 1e-4, the stiffest, the search allows 1e-5 of them."""
+    tipped = together = 0
+    for seed in range(100):
+        rng = np.random.default_rng(seed)
+        path = load_path(*made(rng))
+        assert path.complete or path.note.startswith("the load carries the body off its support")
+        assert path.residual <= 1e-12
+        tipped += bool((np.diff(path.parameter) == 0).any())
+        together += any(len(points) > 1 for points in (*path.entered, *path.left))
+        for t in rng.uniform(path.begins_at, path.ends_at, 2):
+            expected = exhaustive.state(path.contact(t))[0]
+            np.testing.assert_allclose(path.at(t).pressure, expected, atol=1e-5, err_msg=f"seed {seed}")
+    assert (together if made is coarse_path else tipped) >= 5
+
+
 @pytest.mark.parametrize("what", ["case", "position", "force"])
 def test_load_factors_positions_and_forces_of_tools(what: str):
     """Problems made at each t by `with_factors` and `with_tools`, solved independently, and where the tool is told."""
@@ -169,6 +216,16 @@ def test_load_path_of_a_body_that_contact_alone_holds_begins_at_its_first_touch(
     assert not path.pressure[0].any()
     np.testing.assert_array_equal(np.flatnonzero(path.gap[0] == 0), [20])
     np.testing.assert_allclose(path.gap[0], np.linspace(-1, 1, 41) ** 2 / 2, atol=1e-15)
+
+
+@pytest.mark.parametrize("at", [0.0, 0.3, -0.7, 1.0])
+def test_load_that_vanishes_leaves_a_body_where_it_stood(at: float):
+    """Towards no load the pressures go to zero together: the end is the limit of what was before, and is reached."""
+    path = load_path(rocker(at, gap=0.0), rocker(at, load=0.0, gap=0.0))
+    assert path.complete
+    assert not path.notes
+    np.testing.assert_allclose(path.pressure[-1], 0, atol=1e-15)
+    np.testing.assert_allclose(path.rigid_amplitudes[-1], 0, atol=1e-14)  # on three level springs, unloaded
 
 
 def test_points_that_enter_together_are_one_breakpoint():
