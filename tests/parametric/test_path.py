@@ -86,7 +86,7 @@ def test_path_from_a_state_with_weakly_active_points(seed: int):
 def coarse_path(rng: np.random.Generator) -> tuple[CondensedContact, CondensedContact]:
     """Data out of few whole numbers: points enter and leave together, and are weakly active at the ends."""
     n, k = int(rng.integers(3, 8)), int(rng.integers(0, 3))
-    B, x = rng.integers(-1, 2, (n, n)), np.arange(n) - (n - 1) / 2
+    B, x = rng.integers(0, 2) * rng.integers(-1, 2, (n, n)), np.arange(n) - (n - 1) / 2
     R = np.column_stack([np.ones(n), x])[:, :k]
     loads = [-R.T @ np.maximum(rng.integers(-1, 3, n), 0) for _ in range(2)]
     start = CondensedContact.from_compliance(
