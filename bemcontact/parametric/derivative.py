@@ -110,9 +110,9 @@ class Tangent:
         Where it is not zero, it is a motion that moves no point of S, closes none of W, and on which the load works.
         """
         ell, load = self.problem.equilibrium, change.motion_load
-        free = self._unresisted
-        if not (free.size and load.any()):
+        if not (load.any() and self._unresisted.size):
             return np.zeros_like(load)
+        free = self._unresisted
         seen, uncarried = free.T @ ell[self.weak].T, free.T @ load
         r = free @ (seen @ nnls(seen, -uncarried)[0] + uncarried if self.weak.size else uncarried)
         return r if np.linalg.norm(r) > UNCARRIED * np.linalg.norm(load) else np.zeros_like(load)

@@ -3,8 +3,8 @@
 Between two breakpoints the points in contact stay the same and the state is linear. At a breakpoint points become
 weakly active; the derivative of the state there (`bemcontact.parametric.derivative`) says which of them are in contact
 afterwards. This is parametric principal pivoting (Cottle, Pang and Stone, "The Linear Complementarity Problem", 1992,
-section 4.5), in which a block of several points is settled at once. Each state is solved for anew from its points in
-contact: no error adds up.
+section 4.5), in which a block of several points is settled at once. On each piece state and derivative are solved for
+anew from the points in contact: no error adds up.
 
 Where a support is left to which the load has wandered away, the body tips at a constant load until another point holds
 it: the pressure stays, the position jumps.
@@ -131,15 +131,13 @@ def _next(line: Line, s: float, block: ContactBlock) -> State:
     step, blocking = first_zero(values, rates, STILL * size_of(rate, pressures[1], amplitudes[1]))
     size = 1.0 + float(np.abs(pressures[0]).max(initial=0.0) + np.abs(amplitudes[0]).sum())
     if s + step >= 1.0 or (values + (1.0 - s) * rates).min() >= -ROUND_OFF * size:
-        s, blocking = 1.0, np.zeros_like(touching)
-    else:
-        s += step
-    (pressure,), (gap,), (amplitude,) = block.solve(line.at(s))
+        step, blocking = 1.0 - s, np.zeros_like(touching)
+    reached = np.where(blocking, 0.0, np.maximum(values + step * rates, 0.0))
     return State(
-        s=s,
-        pressure=np.where(blocking, 0.0, np.maximum(pressure, 0.0)),
-        gap=np.where(blocking, 0.0, np.maximum(gap, 0.0)),
-        amplitudes=amplitude,
+        s=1.0 if not blocking.any() else s + step,
+        pressure=np.where(touching, reached, 0.0),
+        gap=np.where(touching, 0.0, reached),
+        amplitudes=amplitudes[0] + step * amplitudes[1],
     )
 
 
