@@ -63,9 +63,9 @@ def sensitivities(
     Parameters
     ----------
     problem : Problem or CondensedContact
-    changes : with respect to what. By key, each per unit; or keys alone: those of `CondensedContact.changes` and, of a
-        `Problem`, also "material.young_modulus" and paths to any value on which gaps and loads depend linearly, and
-        nothing else. If not given, all of `CondensedContact.changes`
+    changes : with respect to what. By key, each per unit; or keys alone: those of `CondensedContact.changes`,
+        "initial_gap[i]" for the gap at point i, and, of a `Problem`, also "material.young_modulus" and paths to any
+        value on which gaps and loads depend linearly, and nothing else. If not given, `CondensedContact.changes`
 
     Returns
     -------
@@ -84,23 +84,22 @@ def sensitivities(
     if changes is None or isinstance(changes, Mapping):
         return sensitivities_of_contact(contact, changes)
     solution, known = complementarity.solve(contact), contact.changes
-    wanted = {}
-    for key in [changes] if isinstance(changes, str) else changes:
-        if key in known:
-            wanted[key] = known[key]
-        elif stated is None:
-            raise ProblemError(f"there is no '{key}' in this condensed problem; it has: {', '.join(known) or 'none'}")
-        elif key == MODULUS:
-            E = stated.material.young_modulus
-            doubled = condense(stated.with_value(MODULUS, 2 * E))
-            wanted[key] = modulus_change(contact, doubled, E, solution.pressure)
-        else:
-            wanted[key] = _change(stated, key)
+    keys = [changes] if isinstance(changes, str) else changes
+    wanted = {key: known[key] if key in known else _change(contact, stated, key, solution.pressure) for key in keys}
     return sensitivities_of_contact(contact, wanted, solution)
 
 
-def _change(problem: Problem, key: str) -> Change:
-    """What a value of the problem does to gap and load, per unit."""
+def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:
+    """What something else than load cases and tools does to gap and load, per unit."""
+    path = parsed_path(key)
+    if path[0] == "initial_gap" and isinstance(path[-1], int) and path[-1] < contact.size and len(path) == 2:
+        return Change(np.eye(contact.size)[path[-1]], np.zeros(contact.free_motions))
+    if problem is None:
+        known = ", ".join((*contact.changes, f"initial_gap[0] to initial_gap[{contact.size - 1}]"))
+        raise ProblemError(f"there is no '{key}' in this condensed problem; it has: {known}")
+    if key == MODULUS:
+        E = problem.material.young_modulus
+        return modulus_change(contact, condense(problem.with_value(MODULUS, 2 * E)), E, pressure)
     value = stated_value(problem, key)
     other = 2 * value or 1.0
     first, last = between(problem, key, value, other)
@@ -179,11 +178,13 @@ def _ensure_linear(key: str, first: CondensedContact, middle: CondensedContact, 
             found = next(what for name, what in COMMON.items() if _differs(getattr(middle, name), getattr(end, name)))
             message = f"the {found} depends on it; a path is exact only for loads, gaps and tools"
             raise ProblemError(Complaint(path=parsed_path(key), message=message)) from None
+    displacement, pressure = np.max([first.scales, last.scales], axis=0)
+    least = {"offset": displacement, "motion_load": pressure * np.abs(middle.equilibrium).sum(axis=0)}
     for name, what in (("offset", "gap"), ("motion_load", "load")):
         one, half, other = (getattr(item, name) for item in (first, middle, last))
-        size = max(float(np.abs(item).max(initial=0.0)) for item in (one, other))
-        if (bend := float(np.abs(half - (one + other) / 2).max(initial=0.0))) > SAME * size:
-            message = f"the {what} does not change in proportion to it, it bends by {bend / size:.2g}; {LINEAR}"
+        size = np.maximum(np.abs([one, other]).max(axis=0), least[name])
+        if (bend := float((np.abs(half - (one + other) / 2) / size).max(initial=0.0))) > SAME:
+            message = f"the {what} does not change in proportion to it, it bends by {bend:.2g}; {LINEAR}"
             raise ProblemError(Complaint(path=parsed_path(key), message=message))
 
 

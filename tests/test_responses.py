@@ -109,6 +109,17 @@ def test_value_that_turns_the_rigid_surface_is_refused():
         follow(circle, f"{key}.center[0]", 1.0)
 
 
+def test_gap_that_is_all_round_off_is_no_bend():
+    """A block flush in a corner: gaps are zero, and what a pressure adds to them is round-off of 1e-19.
+
+    As the pressure on the floor vanishes, that on the wall is 5 still, as statics wants; the path arrives there.
+    """
+    found = follow(bemcontact.load(MODELS / "gallery" / "block_in_corner.yaml"), PRESSURE, 0.0, 8.0)
+    assert found.certified
+    assert found.reaches == (8.0, 0.0)
+    assert [state.peak for state in found.breakpoints] == pytest.approx([8.0, 5.0], rel=1e-9)
+
+
 def test_two_ends_that_nothing_presses_are_refused(cylinder: Problem):
     with pytest.raises(ProblemError, match="only contact holds the body"):
         between(cylinder.with_value(PRESSURE, 0.0), "contact_zones.foot.surface.point[1]", 0.0, 1.0)
@@ -148,11 +159,23 @@ def test_sensitivities_of_a_condensed_problem(cylinder: Problem):
     contact = bemcontact.condense(cylinder)
     assert len(sensitivities(contact)) == 0
     with pytest.raises(
-        ProblemError, match=r"there is no 'material\.young_modulus' in this condensed problem; it has: none"
+        ProblemError, match=r"there is no 'material\.young_modulus' in this condensed problem; it has: init"
     ):
         sensitivities(contact, ["material.young_modulus"])
     with pytest.raises(ProblemError, match="a Problem or a CondensedContact is needed, found str"):
         sensitivities("cylinder.yaml")  # pyright: ignore[reportArgumentType]
+
+
+def test_sensitivity_to_the_gap_at_a_point(cylinder: Problem):
+    """A difference over 1e-6 of a state that is linear in the gap as long as no point enters or leaves."""
+    contact, step = bemcontact.condense(cylinder.with_value(PRESSURE, 45)), 1e-6
+    wider = contact.initial_gap + step * (np.arange(contact.size) == 5)
+    then = complementarity.solve(replace(contact, initial_gap=wider)).pressure
+    expected = (then - complementarity.solve(contact).pressure) / step
+    found = sensitivities(contact, "initial_gap[5]")["initial_gap[5]"]
+    np.testing.assert_allclose(found.rising.pressure, expected, atol=1e-6 * np.abs(expected).max())
+    with pytest.raises(ProblemError, match=r"there is no 'initial_gap\[45\]'"):
+        sensitivities(contact, ["initial_gap[45]"])
 
 
 def test_public_names_are_there(cylinder: Problem):

@@ -20,10 +20,7 @@ from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.formulations.active_set import BoolArray
 from bemcontact.formulations.scaling import ScaledContact
 from bemcontact.parametric.contact_block import ContactBlock
-from bemcontact.parametric.derivative import RANK, STILL, Tangent, is_monotone, size_of
-
-ROUND_OFF = 1e-12
-"""Negative pressure or gap, over the size of the numbers, that is none at the end of the line: all may vanish there."""
+from bemcontact.parametric.derivative import RANK, STILL, WEAK, Tangent, is_monotone, size_of
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -129,8 +126,8 @@ def _next(line: Line, s: float, block: ContactBlock) -> State:
     pressures, gaps, amplitudes = block.solve(line.at(s), rate)
     values, rates = np.where(touching, pressures, gaps)
     step, blocking = first_zero(values, rates, STILL * size_of(rate, pressures[1], amplitudes[1]))
-    size = 1.0 + float(np.abs(pressures[0]).max(initial=0.0) + np.abs(amplitudes[0]).sum())
-    if s + step >= 1.0 or (values + (1.0 - s) * rates).min() >= -ROUND_OFF * size:
+    small = WEAK * (1.0 + np.abs(pressures[0]).max(initial=0.0) + np.abs(amplitudes[0]).sum())
+    if s + step >= 1.0 or (values + (1.0 - s) * rates).min() >= -small:  # at the end all pressures may vanish
         step, blocking = 1.0 - s, np.zeros_like(touching)
     reached = np.where(blocking, 0.0, np.maximum(values + step * rates, 0.0))
     return State(
