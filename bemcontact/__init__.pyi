@@ -1,3 +1,4 @@
+from bemcontact.actions import Change as Change
 from bemcontact.analysis import condense as condense
 from bemcontact.analysis import random_starts as random_starts
 from bemcontact.analysis import solve as solve
@@ -23,7 +24,14 @@ from bemcontact.formulations.local_solver import QPStatus as QPStatus
 from bemcontact.formulations.local_solver import minimize_qp as minimize_qp
 from bemcontact.load_cases import CaseResults as CaseResults
 from bemcontact.load_cases import solve_cases as solve_cases
+from bemcontact.parametric.parameter_path import ParameterPath as ParameterPath
+from bemcontact.parametric.path import LoadPath as LoadPath
+from bemcontact.parametric.path import load_path as load_path
+from bemcontact.parametric.sensitivity import Sensitivities as Sensitivities
+from bemcontact.parametric.sensitivity import Sensitivity as Sensitivity
 from bemcontact.problem.problem import Problem as Problem
+from bemcontact.responses import follow as follow
+from bemcontact.responses import sensitivities as sensitivities
 from bemcontact.result import Result as Result
 from bemcontact.solution import ContactSolution as ContactSolution
 from bemcontact.solution import LocalSearch as LocalSearch

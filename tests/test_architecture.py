@@ -10,19 +10,34 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-ABOVE = ("mesh_fit", "result", "fitting", "study", "analysis", "comparing", "reproduction", "report", "cli")
+ABOVE = (
+    "mesh_fit",
+    "result",
+    "fitting",
+    "study",
+    "analysis",
+    "comparing",
+    "responses",
+    "reproduction",
+    "report",
+    "cli",
+)
 """Rooms that put both halves of the house together."""
 
 NEVER = {
     "bemcontact.bem": ("spec", "solution", "ends", "formulations", "assessment", "reference", *ABOVE),
-    "bemcontact.formulations": ("spec", "problem", "bem", "assessment", "reference", *ABOVE),
+    "bemcontact.formulations": ("spec", "problem", "bem", "assessment", "parametric", "reference", *ABOVE),
     "bemcontact.assessment": ("spec", "problem", "bem", "formulations", "reference", *ABOVE),
+    "bemcontact.parametric": ("spec", "problem", "bem", "reference", *ABOVE),
     "bemcontact.result": ("spec", "fitting", "study", "analysis", "comparing", "report", "cli"),
     "bemcontact.study": ("spec", "bem", "formulations", "analysis", "comparing", "report", "cli"),
     "bemcontact.fitting": ("spec", "result", "study", "analysis", "comparing", "report", "cli"),
     "bemcontact.analysis": ("spec", "study", "comparing", "report", "cli"),
     "bemcontact.comparing": ("spec", "bem", "report", "cli"),
-    "bemcontact.report": ("spec", "formulations", "analysis", "comparing", "reproduction.carrying_out", "cli"),
+    "bemcontact.responses": ("spec", "bem", "study", "comparing", "report", "cli"),
+    "bemcontact.report": (
+        "spec", "formulations", "analysis", "comparing", "responses", "reproduction.carrying_out", "cli",
+    ),
     "bemcontact.reproduction": ("bem", "report", "cli"),
 }  # fmt: skip
 """Room -> rooms of ours that it never imports."""
@@ -42,6 +57,11 @@ ONLY = {
     "bemcontact.solution": ("bemcontact.arrays",),
     "bemcontact.ends": ("bemcontact.solution",),
     "bemcontact.mesh_fit": ("bemcontact.assessment.footprint",),
+    "bemcontact.parametric": (
+        "bemcontact.actions", "bemcontact.arrays", "bemcontact.assessment.footprint", "bemcontact.choices",
+        "bemcontact.contact", "bemcontact.errors", "bemcontact.formulations", "bemcontact.parametric",
+        "bemcontact.solution",
+    ),
     "bemcontact.formulations.local_solver": ("bemcontact.errors", "bemcontact.formulations.local_solver"),
     "bemcontact.problem": ("bemcontact.errors", "bemcontact.problem"),
     "bemcontact.reference": (
@@ -65,6 +85,7 @@ HOME = {
         "bemcontact.report.tables",
         "bemcontact.report.text",
         "bemcontact.report.cases_text",
+        "bemcontact.report.path_text",
         "bemcontact.report.reproduction_text",
     ),
 }

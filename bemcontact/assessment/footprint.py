@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, IntArray
 from bemcontact.contact import CondensedContact
 from bemcontact.solution import ContactSolution
 
@@ -109,18 +109,36 @@ def footprint(condensed: CondensedContact, solution: ContactSolution) -> Footpri
     -------
     Footprint
     """
-    gap = condensed.initial_gap + solution.displacement
-    touching = condensed.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
-    pieces = sorted(set(zip(condensed.zone.tolist(), condensed.run.tolist(), strict=True)))
     return Footprint(
         intervals=tuple(
             interval
-            for zone, run in pieces
-            for interval in _intervals(_path(condensed, zone, run, gap, touching), condensed.zone_names[zone])
+            for zone, path in _paths(condensed, solution)
+            for interval in _intervals(path, condensed.zone_names[zone])
         ),
         peak=_peak(condensed, solution.pressure),
         resultant=_resultant(condensed, solution.pressure),
     )
+
+
+def end_rates(
+    condensed: CondensedContact, solution: ContactSolution, gap_rate: Array
+) -> tuple[tuple[float | None, float | None], ...]:
+    """How fast the ends of contact move along the boundary, as `footprint` reads them off the gap.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    solution : of any formulation
+    gap_rate : (n,) derivative of the gap per unit of something, [L] over its unit; not a number at points that are
+        about to enter or leave contact
+
+    Returns
+    -------
+    tuple
+        For each interval of `footprint` the derivatives of `start_arc` and `end_arc`: zero where an end is kept at a
+        point, None beside a point that is about to enter or leave contact.
+    """
+    return tuple(pair for _, path in _paths(condensed, solution) for pair in _rates(path, gap_rate[path.index]))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -140,6 +158,20 @@ class _Path:
     perimeter: float
     held_arc: Array
     held_points: Array
+    index: IntArray
+
+    @property
+    def closed(self) -> bool:
+        """Whether there is contact all around a closed run."""
+        return self.first > 0 and bool(self.touching.all())
+
+
+def _paths(condensed: CondensedContact, solution: ContactSolution) -> list[tuple[int, _Path]]:
+    """All runs, each with the number of its zone."""
+    gap = condensed.initial_gap + solution.displacement
+    touching = condensed.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
+    pieces = sorted(set(zip(condensed.zone.tolist(), condensed.run.tolist(), strict=True)))
+    return [(zone, _path(condensed, zone, run, gap, touching)) for zone, run in pieces]
 
 
 def _path(condensed: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
@@ -161,20 +193,29 @@ def _path(condensed: CondensedContact, zone: int, run: int, gap: Array, touching
         perimeter=float(perimeter),
         held_arc=np.full(2, np.nan) if condensed.held_arc is None else condensed.held_arc[run],
         held_points=np.zeros((2, 2)) if condensed.held_points is None else condensed.held_points[run],
+        index=around,
     )
+
+
+def _stretches(path: _Path) -> list[tuple[int, int]]:
+    """First and last point of the unbroken stretches of contact of a run, one that goes all around apart."""
+    edges = np.diff(np.concatenate([[0], path.touching.astype(int), [0]]))
+    begins, ends = np.flatnonzero(edges > 0).tolist(), (np.flatnonzero(edges < 0) - 1).tolist()
+    return [(begin, finish) for begin, finish in zip(begins, ends, strict=True) if path.first <= begin < path.last]
 
 
 def _intervals(path: _Path, zone: str) -> list[ContactInterval]:
     """The unbroken stretches of contact of a run; a closed run in contact all around is one, from its first point."""
-    if path.first and path.touching.all():
+    if path.closed:
         return [_interval(path, zone, path.arc[path.first], path.arc[path.last])]
-    edges = np.diff(np.concatenate([[0], path.touching.astype(int), [0]]))
-    begins, ends = np.flatnonzero(edges > 0).tolist(), (np.flatnonzero(edges < 0) - 1).tolist()
-    return [
-        _interval(path, zone, _end(path, begin, -1), _end(path, finish, +1))
-        for begin, finish in zip(begins, ends, strict=True)
-        if path.first <= begin < path.last
-    ]
+    return [_interval(path, zone, _end(path, begin, -1), _end(path, finish, +1)) for begin, finish in _stretches(path)]
+
+
+def _rates(path: _Path, rate: Array) -> list[tuple[float | None, float | None]]:
+    """Derivatives of the ends of `_intervals`."""
+    if path.closed:
+        return [(0.0, 0.0)]
+    return [(_end_rate(path, rate, begin, -1), _end_rate(path, rate, finish, +1)) for begin, finish in _stretches(path)]
 
 
 def _interval(path: _Path, zone: str, start: float, end: float) -> ContactInterval:
@@ -190,13 +231,19 @@ def _interval(path: _Path, zone: str, start: float, end: float) -> ContactInterv
     )
 
 
-def _end(path: _Path, last: int, step: int) -> float:
-    """Arc position of the end of contact beyond the point `last`, walking by `step`."""
+def _opened(path: _Path, last: int, step: int) -> list[int]:
+    """The first open points beyond the point `last`, walking by `step`, as long as the gap grows."""
     opened: list[int] = []
     for i in range(last + step, last + (OPEN_NODES + 1) * step, step):
         if not 0 <= i < len(path.arc) or path.touching[i] or (opened and path.gap[i] <= path.gap[opened[-1]]):
             break
         opened.append(i)
+    return opened
+
+
+def _end(path: _Path, last: int, step: int) -> float:
+    """Arc position of the end of contact beyond the point `last`, walking by `step`."""
+    opened = _opened(path, last, step)
     if not opened:
         beyond = last + step in (-1, len(path.arc))
         held = path.held_arc[0 if step < 0 else 1]
@@ -206,6 +253,20 @@ def _end(path: _Path, last: int, step: int) -> float:
         return (path.arc[last] + nearest) / 2
     slope, value = np.polyfit(path.arc[opened] - path.arc[last], path.gap[opened] ** (2 / 3), 1)
     return np.clip(path.arc[last] - value / slope, *sorted((path.arc[last], nearest)))
+
+
+def _end_rate(path: _Path, rate: Array, last: int, step: int) -> float | None:
+    """Derivative of `_end` by the chain rule; zero where the end is kept at a place, None where there is none."""
+    opened = _opened(path, last, step)
+    if np.isnan(rate[[last, *opened]]).any():
+        return None
+    if len(opened) < 2:
+        return 0.0
+    arc, gap = path.arc[opened] - path.arc[last], path.gap[opened]
+    slope, value = np.polyfit(arc, gap ** (2 / 3), 1)
+    slope_rate, value_rate = np.polyfit(arc, 2 / 3 * gap ** (-1 / 3) * rate[opened], 1)
+    free = 0 < -value / slope / arc[0] < 1
+    return float((value * slope_rate / slope - value_rate) / slope) if free else 0.0
 
 
 def _at(path: _Path, position: float) -> Point:

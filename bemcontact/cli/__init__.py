@@ -13,6 +13,7 @@ import typer
 from bemcontact.cli.checking import check
 from bemcontact.cli.comparing import compare
 from bemcontact.cli.condensing import condense
+from bemcontact.cli.following import path
 from bemcontact.cli.reproducing import reproduce
 from bemcontact.cli.schemas import schema
 from bemcontact.cli.solving import solve
@@ -60,5 +61,5 @@ def bemcontact(
     """
 
 
-for command in (check, solve, compare, reproduce, condense, schema):
+for command in (check, solve, compare, path, reproduce, condense, schema):
     app.command()(command)

@@ -169,6 +169,11 @@ def escape_note(condensed: CondensedContact, problem: ScaledContact) -> str | No
     motion = loose_load(problem)
     if np.linalg.norm(motion) <= BALANCED * np.linalg.norm(problem.motion_load):
         return None
+    return escape_words(condensed, motion)
+
+
+def escape_words(condensed: CondensedContact, motion: Array) -> str:
+    """Say that the load carries the body off its support in a motion (k,), free of units."""
     parts = zip(motion / np.abs(motion).max(), condensed.motion_names, strict=True)
     terms = ", ".join(f"{part:+.3g} x {name}" for part, name in parts if abs(part) > NAMED)
     return f"the load carries the body off its support, in a motion that no contact resists: {terms}"

@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from bemcontact.actions import Change
 from bemcontact.arrays import Array
 from bemcontact.choices import Weights
 from bemcontact.contact import CondensedContact
@@ -68,14 +69,13 @@ def scaled(condensed: CondensedContact) -> ScaledContact:
     ScaledContact
     """
     U, T = condensed.scales
-    weight = condensed.weights.max()
-    motion = _motion_sizes(condensed)
+    given = scaled_change(condensed, Change(condensed.offset, condensed.motion_load))
     return ScaledContact(
         compliance=condensed.compliance * (T / U),
-        offset=condensed.offset / U,
-        rigid_motions=condensed.rigid_motions / motion,
-        motion_load=condensed.motion_load / (motion * weight * T),
-        weights=condensed.weights / weight,
+        offset=given.offset,
+        rigid_motions=condensed.rigid_motions / _motion_sizes(condensed),
+        motion_load=given.motion_load,
+        weights=condensed.weights / condensed.weights.max(),
     )
 
 
@@ -89,6 +89,12 @@ def scaled_point(condensed: CondensedContact, pressure: Array, amplitudes: Array
     """Take the units out of a pressure (n,) [p] and amplitudes (k,)."""
     U, T = condensed.scales
     return pressure / T, amplitudes * _motion_sizes(condensed) / U
+
+
+def scaled_change(condensed: CondensedContact, change: Change) -> Change:
+    """Take the units out of an offset (n,) [L] and a load (k,), or of a change of both."""
+    U, T = condensed.scales
+    return Change(change.offset / U, change.motion_load / (_motion_sizes(condensed) * condensed.weights.max() * T))
 
 
 def unscaled(condensed: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array, Array]:

@@ -1,4 +1,4 @@
-"""The folders that studies and reproductions are written to: page, numbers, pictures and more, all or none of them."""
+"""The folders that studies, reproductions and paths are written to: page, numbers, pictures and more, all or none."""
 
 import json
 import re
@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bemcontact import output
+from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report import page, reproduction_page
-from bemcontact.report.figures import figures_of, figures_of_reproduction, vector_graphic
+from bemcontact.report.figures import figure_of_path, figures_of, figures_of_reproduction, vector_graphic
 from bemcontact.reproduction.reproduced import Reproduction
 from bemcontact.study import Study
 
@@ -55,7 +56,16 @@ REPRODUCTION = Contents(
     keys=frozenset({"reproduced", "refine", "problems", "versions"}),
 )
 """Of the problems of the paper."""
-KINDS = {kind.title: kind for kind in (REPORT, REPRODUCTION)}
+PATH = Contents(
+    title="path",
+    page="path.svg",
+    numbers="path.json",
+    others=("path.csv",),
+    picture=re.compile(r"(?!)"),
+    keys=frozenset({"key", "start", "end", "states"}),
+)
+"""Of a load path; its page is a picture."""
+KINDS = {kind.title: kind for kind in (REPORT, REPRODUCTION, PATH)}
 """By their titles."""
 
 
@@ -130,13 +140,33 @@ def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
         pass
 
 
+def save_path(found: ParameterPath, folder: Path) -> None:
+    """Write a load path.
+
+    Parameters
+    ----------
+    found : the path, in values of its parameter
+    folder : that appears, or is replaced, as a whole: path.svg, path.csv, path.json
+
+    Raises
+    ------
+    OSError
+        As of `ensure_folder_writable`; nothing is changed then.
+    """
+    ensure_folder_writable(folder, PATH)
+    picture = vector_graphic(figure_of_path(found)).decode()
+    with _written(folder, PATH, picture, found.to_json(), {}) as temporary:
+        (temporary / "path.csv").write_text(found.to_csv(), encoding="utf-8", newline="\n")
+
+
 @contextmanager
 def _written(
     folder: Path, contents: Contents, text: str, numbers: str, pictures: Mapping[str, bytes]
 ) -> Iterator[Path]:
     """Write page, numbers and pictures, and give the temporary folder for what else belongs there."""
     with output.whole_folder(folder) as temporary:
-        (temporary / PICTURES).mkdir()
+        if pictures:
+            (temporary / PICTURES).mkdir()
         for name, picture in pictures.items():
             (temporary / PICTURES / f"{name}.svg").write_bytes(picture)
         (temporary / contents.numbers).write_text(f"{numbers}\n", encoding="utf-8", newline="\n")

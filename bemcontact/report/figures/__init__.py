@@ -3,10 +3,11 @@
 Each ``draw_...`` function draws into axes that it is given; each ``figure_of_...`` composes a page of them.
 """
 
-from bemcontact.report.figures.cases import draw_case_pressures, draw_peaks, figure_of, figure_of_cases
+from bemcontact.report.figures.cases import draw_case_peaks, draw_case_pressures, figure_of, figure_of_cases
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.course import draw_convergence, draw_history
 from bemcontact.report.figures.page import FORMATS, ensure_known_format, save
+from bemcontact.report.figures.path import draw_interval_ends, draw_peaks, draw_resultants, figure_of_path
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
 from bemcontact.report.figures.reproduction import draw_against, figures_of_reproduction
 from bemcontact.report.figures.result import draw_deformed, draw_gap, draw_pressure, figure_of_result
@@ -16,6 +17,7 @@ from bemcontact.report.figures.vector_graphic import vector_graphic
 __all__ = [
     "FORMATS",
     "draw_against",
+    "draw_case_peaks",
     "draw_case_pressures",
     "draw_convergence",
     "draw_deformed",
@@ -23,13 +25,16 @@ __all__ = [
     "draw_gap",
     "draw_gaps",
     "draw_history",
+    "draw_interval_ends",
     "draw_peaks",
     "draw_pressure",
     "draw_pressures",
     "draw_problem",
+    "draw_resultants",
     "ensure_known_format",
     "figure_of",
     "figure_of_cases",
+    "figure_of_path",
     "figure_of_problem",
     "figure_of_result",
     "figures_of",

@@ -24,7 +24,7 @@ def figure_of_cases(found: CaseResults) -> Figure:
     figure = new_page(INCHES, 6)
     above, below = figure.subplots(2, 1, height_ratios=(3, 1))
     draw_case_pressures(above, found)
-    draw_peaks(below, found)
+    draw_case_peaks(below, found)
     verdict = "all certified" if found.certified else "NOT all certified"
     title = f"{wrapped(found.name, 6 * INCHES)}: {verdict}"
     figure.suptitle(title, x=0.01, ha="left", fontweight="bold", color=BLACK if found.certified else VERMILION)
@@ -50,7 +50,7 @@ def draw_case_pressures(axes: Axes, found: CaseResults) -> None:
     axes.legend()
 
 
-def draw_peaks(axes: Axes, found: CaseResults) -> None:
+def draw_case_peaks(axes: Axes, found: CaseResults) -> None:
     """Draw a bar for the peak pressure of each load case."""
     first = next(iter(found.results.values()))
     peaks = [result.footprint.peak.pressure if result.footprint.peak else 0.0 for result in found.results.values()]

@@ -1,0 +1,73 @@
+"""The command path: contact states between two values of one parameter."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from bemcontact.cli.failures import UNCERTIFIED, claim, claim_folder, told, write_json
+from bemcontact.cli.options import STANDARD_OUTPUT, JsonOption, RefineOption, SetOption, SpecArgument, VariantOption
+from bemcontact.output import whole_file
+from bemcontact.terminal import busy, show, tell
+
+
+def path(
+    spec: SpecArgument,
+    vary: Annotated[
+        str, typer.Option(metavar="KEY.PATH", help="Value to vary, by the same paths as --set.", show_default=False)
+    ],
+    to: Annotated[float, typer.Option(metavar="VALUE", help="Where the path ends.", show_default=False)],
+    start: Annotated[
+        float | None,
+        typer.Option("--from", metavar="VALUE", help="Where the path begins.", show_default="as in the spec"),
+    ] = None,
+    refine: RefineOption = 1,
+    overrides: SetOption = None,
+    variant: VariantOption = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Write path.svg, path.csv and path.json.", show_default=False),
+    ] = None,
+    json_file: JsonOption = None,
+) -> None:
+    """Follow the contact state from one value of a parameter to another, with each point that enters or leaves.
+
+    Between two breakpoints pressure and gap are linear in the parameter, so that the path is exact: no steps are taken.
+    The parameter must enter gaps and loads linearly and nothing else: a pressure, a traction, a prescribed
+    displacement, gravity, the position of a rigid surface. The exit status is 0 only if the path reaches its end and
+    each state on it is proved to be the only one.
+
+    FOLDER gets a picture of peak, resultants and ends of contact over the parameter (path.svg), the same as a table
+    with three rows between each two breakpoints (path.csv), and all of it (path.json). An earlier path is replaced.
+
+    [bold]Examples[/bold]
+      bemcontact path models/cylinder_on_plane.yaml --vary conditions.top.pressure --from 0 --to 50.625
+      bemcontact path models/cantilever_flat_surface.yaml --vary conditions.top.traction.y --from 0 --to -3.6 --out path
+      bemcontact path models/gallery/three_zones.yaml --vary conditions.loaded.pressure --to 40 --json - | jq .pivots
+    """
+    with told(spec, overrides, variant), busy("following") as say:
+        json_claim = None if json_file == STANDARD_OUTPUT else json_file
+        claim(spec, {"--json": json_claim})
+        claim_folder(spec, "--out", out, json_claim, "path")
+        from bemcontact import responses
+        from bemcontact import spec as spec_file
+        from bemcontact.report import path_text
+
+        problem = spec_file.load(spec, overrides or (), variant).refined(refine)
+        found = responses.follow(problem, vary, to, start)
+        if out:
+            say("drawing")
+            from bemcontact.report import folder
+
+            folder.save_path(found, out)
+        if json_file and json_file != STANDARD_OUTPUT:
+            with whole_file(json_file) as temporary:
+                temporary.write_text(found.to_json() + "\n", encoding="utf-8")
+    with told(spec):
+        if json_file == STANDARD_OUTPUT:
+            write_json(found.to_json())
+            if not found.certified:
+                tell("not certified: ", path_text.verdict(found))
+        else:
+            show(path_text.path_summary(found))
+    raise typer.Exit(0 if found.certified else UNCERTIFIED)

@@ -1,0 +1,1 @@
+"""How a contact state answers to what changes linearly: its derivative, its sensitivities, its path."""

@@ -1,0 +1,234 @@
+"""The one-sided derivative of a contact state: where it goes when offset and load begin to change.
+
+At a state with strongly active points S (p > 0), weakly active points W (p = 0 = δ) and open points the derivative
+along a change (q̇, ḟ) of offset and load is the solution of the mixed complementarity problem
+
+    δ̇ = 0 on S,  0 <= ṗ ⟂ δ̇ >= 0 on W,  ṗ = 0 elsewhere,  ℓᵀṗ = -ḟ,  δ̇ = q̇ + M ṗ + R ȧ,
+
+(Robinson's generalised equations; Facchinei and Pang, "Finite-Dimensional Variational Inequalities and Complementarity
+Problems", 2003, section 5.4, for strongly regular solutions). S and the motions are eliminated by one factorisation.
+Where S alone does not hold the body, points B of W join them, on which pressure and gap change places, as in
+`bemcontact.formulations.complementarity.standard_form`.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+from scipy.linalg import eigvalsh, qr
+from scipy.optimize import nnls
+
+from bemcontact.actions import Change
+from bemcontact.arrays import Array, IntArray
+from bemcontact.errors import ProblemError
+from bemcontact.formulations.active_set import BoolArray
+from bemcontact.formulations.lemke import lemke
+from bemcontact.formulations.scaling import ScaledContact
+from bemcontact.parametric.contact_block import EPS, ContactBlock
+from bemcontact.solution import Status
+
+WEAK = 1e-10
+"""Pressure and gap, over the size of the numbers in them, that count as zero together."""
+RANK = 1e-9
+"""Part of a motion by which it must move some point, for the point to hold it."""
+UNCARRIED = 1e-12
+"""Part of the change of load that may be left without support."""
+STILL = 1e-13
+"""Rate over the size of the numbers in it that counts as zero."""
+
+NOT_HELD = "the points in contact do not hold the body, so that its position is not determined"
+NOT_UNIQUE = "the contact state may go on in more than one way here, as the compliance does not rule out"
+NO_WAY = "no contact state was found to continue this one: the path turns back or breaks off here"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Rate:
+    """Derivative of a state, free of units.
+
+    Parameters
+    ----------
+    pressure, gap : (n,) ṗ and δ̇
+    amplitudes : (k,) ȧ
+    block : the points that are in contact just after, with their equations
+    """
+
+    pressure: Array
+    gap: Array
+    amplitudes: Array
+    block: ContactBlock
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Tangent:
+    """A contact state, seen by what may change at once.
+
+    Parameters
+    ----------
+    problem : ScaledContact
+    strong : S, indices of points
+    weak : W, indices of points
+    unique : whether sym(JM) is known to be positive definite on the equilibrium space
+    before : the equations of points that hold the body, S and some of W, if there are any at hand
+    """
+
+    problem: ScaledContact
+    strong: IntArray
+    weak: IntArray
+    unique: bool
+    before: ContactBlock | None = None
+
+    @classmethod
+    def at(
+        cls,
+        problem: ScaledContact,
+        pressure: Array,
+        gap: Array,
+        amplitudes: Array,
+        unique: bool,
+        before: ContactBlock | None = None,
+    ) -> Self:
+        """Look at a state: p (n,), δ (n,) and a (k,), free of units; the rest is as of the class."""
+        small = WEAK * (1.0 + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
+        loaded, closed = pressure > small, gap <= small
+        return cls(
+            problem=problem,
+            strong=np.array(np.flatnonzero(loaded & closed), np.int64),
+            weak=np.array(np.flatnonzero(~loaded & closed), np.int64),
+            unique=unique,
+            before=before,
+        )
+
+    @property
+    def loaded(self) -> BoolArray:
+        """(n,) True on S."""
+        return ContactBlock(problem=self.problem, points=self.strong).touching
+
+    def escape(self, change: Change) -> Array:
+        """The part r (k,) of a change of load that neither S nor W can answer: the least ℓᵀṗ + ḟ by norm.
+
+        Where it is not zero, it is a motion that moves no point of S, closes none of W, and on which the load works.
+        """
+        ell, load = self.problem.equilibrium, change.motion_load
+        if not (load.any() and self._unresisted.size):
+            return np.zeros_like(load)
+        free = self._unresisted
+        seen, uncarried = free.T @ ell[self.weak].T, free.T @ load
+        r = free @ (seen @ nnls(seen, -uncarried)[0] + uncarried if self.weak.size else uncarried)
+        return r if np.linalg.norm(r) > UNCARRIED * np.linalg.norm(load) else np.zeros_like(load)
+
+    @cached_property
+    def _unresisted(self) -> Array:
+        """An orthonormal basis (k, ·) of the motions that move no point of S."""
+        R = self.problem.rigid_motions[self.strong]
+        k = R.shape[1]
+        _, sizes, motions = np.linalg.svd(np.linalg.qr(np.vstack([R, np.zeros((k, k))]), mode="r"))
+        return motions[sizes <= RANK].T
+
+    @cached_property
+    def held(self) -> ContactBlock:
+        """The equations of S and B, as few points of W as hold the body with S, by QR with pivoting; or those at hand.
+
+        `ProblemError` where S and W do not hold the body.
+        """
+        if self.before is not None:
+            return self.before
+        free, joined = self._unresisted, self.weak[:0]
+        if free.size:
+            if self.weak.size < free.shape[1]:
+                raise ProblemError(NOT_HELD)
+            seen = (self.problem.rigid_motions[self.weak] @ free).T
+            found = qr(seen, mode="r", pivoting=True)
+            triangle, order = np.asarray(found[0]), np.asarray(found[-1])
+            sizes = np.abs(np.diag(triangle))
+            if sizes.min() <= RANK:
+                raise ProblemError(NOT_HELD)
+            joined = self.weak[order[: free.shape[1]]]
+        return ContactBlock(problem=self.problem, points=np.union1d(self.strong, joined))
+
+    @cached_property
+    def exchanged(self) -> IntArray:
+        """B: what there is in `held` beside S."""
+        return np.setdiff1d(self.held.points, self.strong, assume_unique=True)
+
+    @cached_property
+    def _small(self) -> tuple[IntArray, Array]:
+        """The points of W, those of B first, and w = N z on them: z is δ̇ on B, ṗ elsewhere, w the other one."""
+        M, A, B = self.problem.compliance, self.held.points, self.exchanged
+        rest, place, b = np.setdiff1d(self.weak, B, assume_unique=True), np.searchsorted(A, B), len(B)
+        right = np.zeros((len(self.held.matrix), len(self.weak)))
+        right[place, np.arange(b)] = 1.0
+        right[: len(A), b:], right[len(A) :, b:] = -M[np.ix_(A, rest)], -self.problem.equilibrium[rest].T
+        inner = self.held.inverse(right)
+        below = np.hstack([M[np.ix_(rest, A)], self.problem.rigid_motions[rest]]) @ inner
+        below[:, b:] += M[np.ix_(rest, rest)]
+        return np.append(B, rest), np.vstack([inner[place], below])
+
+    def rate(self, change: Change) -> Rate:
+        """Find the derivative along a change.
+
+        Parameters
+        ----------
+        change : (q̇, ḟ), free of units
+
+        Returns
+        -------
+        Rate
+
+        Raises
+        ------
+        ProblemError
+            If the state does not determine it: the body is not held, the change of load carries it away, there is no
+            state beside this one in that direction, or there may be several.
+        SingularSystemError
+            If the equations of contact are singular to working precision.
+        """
+        if self.escape(change).any():
+            raise ProblemError("the points in contact do not carry what the load changes by, and the body moves away")
+        block = self.after(change)
+        (pressure,), (gap,), (amplitudes,) = block.solve(change)
+        return Rate(pressure=pressure, gap=gap, amplitudes=amplitudes, block=block)
+
+    def after(self, change: Change) -> ContactBlock:
+        """The points in contact just after: S and those of W that the small complementarity problem loads.
+
+        Errors are as of `rate`, but that a load that is carried away goes unnoticed.
+        """
+        if not self.weak.size:
+            return self.held
+        points, N = self._small
+        b = len(self.exchanged)
+        (pressure,), (gap,), (amplitudes,) = self.held.solve(change)
+        vector = np.append(pressure[points[:b]], gap[points[b:]])
+        vector[np.abs(vector) <= STILL * size_of(change, pressure, amplitudes)] = 0.0
+        scale = _scale(N, b)
+        rows = scale * self.problem.weights[points]
+        matrix, vector = rows[:, None] * N * scale, rows * vector
+        end = lemke(matrix / (np.abs(matrix).max() or 1.0), vector / (np.abs(vector).max() or 1.0))
+        if end.status is not Status.SOLVED:
+            raise ProblemError(NO_WAY)
+        if not self.unique and eigvalsh(matrix + matrix.T)[0] <= len(matrix) * EPS * np.abs(matrix).max():
+            raise ProblemError(NOT_UNIQUE)
+        loaded = points[end.active ^ (np.arange(len(points)) < b)]
+        return ContactBlock(problem=self.problem, points=np.sort(np.append(self.strong, loaded)))
+
+
+def _scale(N: Array, b: int) -> Array:
+    """Factors (m,) of the rows and columns of N by which pressures and gaps in it are of one size."""
+    compliance = np.abs(N[b:, b:]).max(initial=0.0) or 1.0 / (np.abs(N).max() or 1.0)
+    return np.where(np.arange(len(N)) < b, np.sqrt(compliance), 1.0 / np.sqrt(compliance))
+
+
+def size_of(change: Change, pressure: Array, amplitudes: Array) -> float:
+    """Size of the numbers that are added up in a rate, or in a state."""
+    return float(np.abs(change.offset).max(initial=0.0) + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
+
+
+def is_monotone(problem: ScaledContact) -> bool:
+    """Whether sym(JM) is positive definite on the equilibrium space, so that each contact state is the only one."""
+    Z = problem.equilibrium_space
+    if not Z.shape[1]:
+        return True
+    weighted = problem.weights[:, None] * problem.compliance
+    smallest = eigvalsh(Z.T @ (weighted + weighted.T) @ Z / 2, subset_by_index=(0, 0))[0]
+    return bool(smallest > len(weighted) * EPS)

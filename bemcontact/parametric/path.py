@@ -1,0 +1,334 @@
+"""Load paths: all contact states between two of one body, exact, with every point that enters or leaves contact."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.actions import Change, LoadCases
+from bemcontact.arrays import Array, freeze_arrays
+from bemcontact.assessment.footprint import Footprint, footprint
+from bemcontact.choices import FormulationName
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import ProblemError
+from bemcontact.formulations import complementarity
+from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
+from bemcontact.parametric.following import Line, Trail, follow
+from bemcontact.solution import ContactSolution, Status
+
+COMMON = {
+    "compliance": "compliance",
+    "rigid_motions": "free motions",
+    "weights": "weights",
+    "normals": "directions of the rigid surfaces",
+}
+"""What the ends of a path have in common, and what it is called."""
+SAME = 1e-11
+"""Difference of two compliances, motions or weights, over the largest entry, that is round-off."""
+SAME_LOAD = 1e-14
+"""Difference of two loads, over the largest component, that is round-off."""
+SOLVER = "parametric pivoting"
+NOT_PROVED = "the compliance does not rule out other contact states beside those of this path"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class LoadPath:
+    """The contact states between two ends, t = 0 and t = 1, linear in t between b breakpoints.
+
+    Where the body tips over at a constant load, two breakpoints have the same t.
+
+    Parameters
+    ----------
+    start, end : the problems at t = 0 and t = 1
+    parameter : (b,) t of the breakpoints, ascending, those at which the path begins and ends included
+    pressure : (b, n) p [p]
+    gap : (b, n) δ [L], zero on contact
+    rigid_amplitudes : (b, k) a
+    touching : (b - 1, n) which points are in contact between two breakpoints
+    unique : whether each state is proved to be the only one
+    note : why the path does not reach from 0 to 1, or empty
+    """
+
+    start: CondensedContact
+    end: CondensedContact
+    parameter: Array
+    pressure: Array
+    gap: Array
+    rigid_amplitudes: Array
+    touching: NDArray[np.bool_]
+    unique: bool
+    note: str
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    def __repr__(self) -> str:
+        """One line: name, range, breakpoints, what is wrong."""
+        wrong = "".join(f"; {text}" for text in self.notes)
+        return (
+            f"<LoadPath of {self.start.name!r}: {len(self.parameter)} breakpoints from {self.begins_at:g} to "
+            f"{self.ends_at:g}, {self.pivots} pivots{wrong}>"
+        )
+
+    @property
+    def begins_at(self) -> float:
+        """The least t to which the path reaches."""
+        return float(self.parameter[0])
+
+    @property
+    def ends_at(self) -> float:
+        """The largest t to which the path reaches."""
+        return float(self.parameter[-1])
+
+    @property
+    def complete(self) -> bool:
+        """Whether the path reaches from 0 to 1."""
+        return self.begins_at == 0.0 and self.ends_at == 1.0
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a person should know of the path."""
+        return self.told(f"{self.begins_at:.6g}", f"{self.ends_at:.6g}")
+
+    def told(self, begin: str, end: str) -> tuple[str, ...]:
+        """Say what a person should know, in a sentence each, of a path from `begin` to `end`."""
+        where = f"from {begin} on" if self.begins_at > 0.0 else f"up to {end}"
+        early = f"the path is there {where}; beyond, {self.note}" if self.note else ""
+        return tuple(text for text in (early, "" if self.unique else NOT_PROVED) if text)
+
+    @cached_property
+    def entered(self) -> tuple[tuple[int, ...], ...]:
+        """For each breakpoint, the points that enter contact there, as t rises."""
+        return self._changed(self.touching[1:] & ~self.touching[:-1])
+
+    @cached_property
+    def left(self) -> tuple[tuple[int, ...], ...]:
+        """For each breakpoint, the points that leave contact there, as t rises."""
+        return self._changed(self.touching[:-1] & ~self.touching[1:])
+
+    def _changed(self, masks: NDArray[np.bool_]) -> tuple[tuple[int, ...], ...]:
+        """Indices of points at the breakpoints between the first and the last."""
+        found = (tuple(np.flatnonzero(mask).tolist()) for mask in masks)
+        return ((), *found, ())[: len(self.parameter)]
+
+    @property
+    def pivots(self) -> int:
+        """How often a point enters or leaves."""
+        return int((self.touching[1:] ^ self.touching[:-1]).sum())
+
+    @property
+    def peak(self) -> Array:
+        """(b,) largest pressure at the breakpoints [p]; convex in t between two of them."""
+        return self.pressure.max(axis=1, initial=0.0)
+
+    @property
+    def resultant(self) -> Array:
+        """(b, zones, 2) force Σ w p n of each rigid surface on the body at the breakpoints [p L]."""
+        return resultants(self.start, self.pressure)
+
+    @cached_property
+    def residual(self) -> float:
+        """The largest natural residual at the breakpoints, recomputed from p and a, relative and free of units."""
+        unit, worst = measure(self.start, self.end), 0.0
+        line, body = line_between(unit, self.start, self.end), scaled(unit)
+        for t, pressure, amplitudes in zip(self.parameter, self.pressure, self.rigid_amplitudes, strict=True):
+            offset, load = line.at(t)
+            stated = replace(body, offset=offset, motion_load=load)
+            worst = max(worst, stated.residual(*scaled_point(unit, pressure, amplitudes)))
+        return worst
+
+    def contact(self, t: float) -> CondensedContact:
+        """The contact problem at t; `ProblemError` where the path does not reach."""
+        self._ensure_reached(t)
+        first, last = self.start, self.end
+
+        def between(one: Array, other: Array) -> Array:
+            return (1 - t) * one + t * other
+
+        tools, cases = last.tools, last.cases
+        if len(tools):
+            position = between(first.tools.position, tools.position)
+            tools = replace(tools, position=position, force=between(first.tools.force, tools.force))
+        n, k = first.rigid_motions.shape
+        same = cases.names == first.cases.names and np.array_equal(cases.displacement, first.cases.displacement)
+        factors = between(first.cases.factors, cases.factors) if same else cases.factors
+        return replace(
+            first,
+            free_displacement=between(first.free_displacement, last.free_displacement),
+            initial_gap=between(first.initial_gap, last.initial_gap),
+            motion_load=between(first.motion_load, last.motion_load),
+            tools=tools,
+            cases=replace(cases, factors=factors) if same else LoadCases.none(n, k, len(tools)),
+        )
+
+    def at(self, t: float) -> ContactSolution:
+        """The contact state at t, exact.
+
+        Parameters
+        ----------
+        t : from `begins_at` to `ends_at`
+
+        Returns
+        -------
+        ContactSolution
+            Of `contact(t)`. Where the body tips over, that after it.
+
+        Raises
+        ------
+        ProblemError
+            If the path does not reach there.
+        """
+        self._ensure_reached(t)
+        i = int(np.searchsorted(self.parameter, t, side="right")) - 1
+        j = min(i + 1, len(self.parameter) - 1)
+        width = self.parameter[j] - self.parameter[i]
+        share = (t - self.parameter[i]) / width if width else 0.0
+        pressure = (1 - share) * self.pressure[i] + share * self.pressure[j]
+        amplitudes = (1 - share) * self.rigid_amplitudes[i] + share * self.rigid_amplitudes[j]
+        return self._solution(t, pressure, amplitudes)
+
+    def breakpoint(self, i: int) -> ContactSolution:
+        """The contact state at breakpoint i, of `contact(parameter[i])`."""
+        return self._solution(float(self.parameter[i]), self.pressure[i], self.rigid_amplitudes[i])
+
+    def _solution(self, t: float, pressure: Array, amplitudes: Array) -> ContactSolution:
+        """A contact state from its pressure and amplitudes."""
+        contact = self.contact(t)
+        return ContactSolution(
+            formulation=FormulationName.COMPLEMENTARITY,
+            solver=SOLVER,
+            status=Status.SOLVED,
+            pressure=pressure,
+            displacement=contact.gap(pressure, amplitudes) - contact.initial_gap,
+            rigid_amplitudes=amplitudes,
+            iterations=0,
+        )
+
+    def footprint(self, t: float) -> Footprint:
+        """Intervals, peak and resultant at t; the ends of intervals are not linear in t."""
+        return footprint(self.contact(t), self.at(t))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as numbers, lists and texts, ready for JSON."""
+        return {
+            "name": self.start.name,
+            "begins_at": self.begins_at,
+            "ends_at": self.ends_at,
+            "complete": self.complete,
+            "unique": self.unique,
+            "notes": list(self.notes),
+            "pivots": self.pivots,
+            "zones": list(self.start.zone_names),
+            "parameter": self.parameter.tolist(),
+            "entered": [list(points) for points in self.entered],
+            "left": [list(points) for points in self.left],
+            "peak": self.peak.tolist(),
+            "resultant": self.resultant.tolist(),
+            "pressure": self.pressure.tolist(),
+            "gap": self.gap.tolist(),
+            "rigid_amplitudes": self.rigid_amplitudes.tolist(),
+        }
+
+    def _ensure_reached(self, t: float) -> None:
+        """Refuse a t outside of the path."""
+        if not self.begins_at <= t <= self.ends_at:
+            raise ProblemError(
+                f"the path reaches from {self.begins_at:g} to {self.ends_at:g}, there is nothing at {t:g}"
+                + (f": {self.note}" if self.note else "")
+            )
+
+
+def resultants(contact: CondensedContact, pressure: Array) -> Array:
+    """Σ w p n over each zone, (..., zones, 2) [p L], of pressures (..., n)."""
+    forces = (contact.weights * pressure)[..., None] * contact.normals
+    return np.stack([forces[..., contact.zone == i, :].sum(axis=-2) for i in range(len(contact.zone_names))], axis=-2)
+
+
+def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:
+    """Follow the contact state from one problem to another of the same body, exactly.
+
+    Parameters
+    ----------
+    start, end : with the same compliance, free motions and weights; gaps and loads differ, as `with_factors` and
+        `with_tools` change them
+
+    Returns
+    -------
+    LoadPath
+        It is followed from the start, or from the end backwards where the start has no solution or leaves the position
+        of the body open. Where it is given up early, `note` says why.
+
+    Raises
+    ------
+    ProblemError
+        If the two differ in something else, or neither has a contact state from which a path leads.
+    """
+    ensure_same_body(start, end)
+    trail, note = _followed(start, end)
+    if trail is None or len(trail.states) == 1:
+        backwards, other = _followed(end, start)
+        if backwards is None or len(backwards.states) == 1:
+            raise ProblemError(f"there is no path of contact states: at the start, {note}; at the end, {other}")
+        return _path(start, end, backwards, other, backwards=True)
+    return _path(start, end, trail, note)
+
+
+def ensure_same_body(start: CondensedContact, end: CondensedContact) -> None:
+    """Refuse two problems that differ in more than gap and load with a `ProblemError` that says in what."""
+    for name, what in COMMON.items():
+        one, other = getattr(start, name), getattr(end, name)
+        if one.shape != other.shape:
+            raise ProblemError(f"the {what} of start and end differ in shape, {one.shape} and {other.shape}; {WAY_OUT}")
+        size = np.abs(one).max(initial=0.0)
+        if (apart := np.abs(one - other).max(initial=0.0)) > SAME * size:
+            raise ProblemError(f"the {what} of start and end differ, by {apart / size:.2g} of the largest; {WAY_OUT}")
+
+
+WAY_OUT = "a path is exact only for loads, gaps and tools: condense once, then use with_factors and with_tools"
+
+
+def _followed(first: CondensedContact, last: CondensedContact) -> tuple[Trail | None, str]:
+    """Solve the first problem and follow its state to the last; why it does not get there, or nothing."""
+    solution = complementarity.solve(first)
+    if solution.status is not Status.SOLVED:
+        return None, "; ".join(solution.notes) or solution.status.value
+    unit = measure(first, last)
+    point = scaled_point(unit, solution.pressure, solution.rigid_amplitudes)
+    trail = follow(scaled(unit), line_between(unit, first, last), *point)
+    return trail, trail.stop if trail.escape is None else complementarity.escape_words(first, trail.escape)
+
+
+def measure(first: CondensedContact, last: CondensedContact) -> CondensedContact:
+    """The one whose scales are to be used: the larger ones, but not of a widest gap where nothing needs a pressure."""
+    loaded = [item for item in (first, last) if item.motion_load.any() or (item.offset < 0).any()]
+    return max(loaded or (first, last), key=lambda item: item.scales.displacement)
+
+
+def line_between(unit: CondensedContact, first: CondensedContact, last: CondensedContact) -> Line:
+    """The offsets and loads from one problem to another, free of units by the scales of `unit`."""
+    begin, end = (scaled_change(unit, Change(item.offset, item.motion_load)) for item in (first, last))
+    largest = np.abs([begin.motion_load, end.motion_load]).max(initial=0.0)
+    same = np.abs(end.motion_load - begin.motion_load) <= SAME_LOAD * largest
+    return Line(first=begin, last=Change(end.offset, np.where(same, begin.motion_load, end.motion_load)))
+
+
+def _path(start: CondensedContact, end: CondensedContact, trail: Trail, note: str, backwards: bool = False) -> LoadPath:
+    """Put units back, and t in ascending order."""
+    unit, order = measure(start, end), slice(None, None, -1 if backwards else 1)
+    states = trail.states[order]
+    found = [unscaled(unit, state.pressure, state.amplitudes) for state in states]
+    s = np.array([state.s for state in states])
+    return LoadPath(
+        start=start,
+        end=end,
+        parameter=1.0 - s if backwards else s,
+        pressure=np.array([pressure for pressure, _, _ in found]),
+        gap=np.array([state.gap for state in states]) * unit.scales.displacement,
+        rigid_amplitudes=np.array([amplitudes for _, _, amplitudes in found]),
+        touching=np.array(trail.touching[order], bool).reshape(-1, start.size),
+        unique=trail.unique,
+        note=note,
+    )

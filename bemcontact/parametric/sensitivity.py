@@ -1,0 +1,295 @@
+"""Sensitivities: exact derivatives of a contact state, from the points in contact and one factorisation for all."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bemcontact.actions import Change
+from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.formulations import complementarity
+from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
+from bemcontact.parametric.derivative import WEAK, Tangent, is_monotone
+from bemcontact.parametric.path import NOT_PROVED, resultants
+from bemcontact.solution import ContactSolution, Status
+
+EXACT = 1e-9
+"""Residual up to which a solution is one whose derivative has a meaning."""
+INVERSE = 1e-10
+"""Part by which a compliance may differ from twice that at twice the modulus."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Rates:
+    """Derivatives of a contact state per unit of what changes.
+
+    Parameters
+    ----------
+    pressure : (n,) [p]
+    gap : (n,) [L]
+    rigid_amplitudes : (k,)
+    resultant : (zones, 2) of the force of each rigid surface on the body [p L]
+    peak : of the largest pressure [p]
+    interval_ends : for each interval of the footprint, of `start_arc` and `end_arc` [L]: zero where an end is kept at a
+        point, None beside a point that is about to enter or leave contact
+    """
+
+    pressure: Array
+    gap: Array
+    rigid_amplitudes: Array
+    resultant: Array
+    peak: float
+    interval_ends: tuple[tuple[float | None, float | None], ...]
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give them as numbers and lists, ready for JSON."""
+        return {
+            "pressure": self.pressure.tolist(),
+            "gap": self.gap.tolist(),
+            "rigid_amplitudes": self.rigid_amplitudes.tolist(),
+            "resultant": self.resultant.tolist(),
+            "peak": self.peak,
+            "interval_ends": [list(pair) for pair in self.interval_ends],
+        }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Sensitivity:
+    """How a contact state changes with one parameter.
+
+    Parameters
+    ----------
+    key : of the parameter
+    rising, falling : derivatives to the right and to the left, both per unit by which the parameter rises; one and the
+        same object where the state is smooth
+    """
+
+    key: str
+    rising: Rates
+    falling: Rates
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether the two sides are to be told apart."""
+        return self.rising is not self.falling
+
+    def __repr__(self) -> str:
+        """One line: key and rate of the peak."""
+        peaks = f"{self.rising.peak:.6g}" + (f" rising, {self.falling.peak:.6g} falling" if self.one_sided else "")
+        return f"<Sensitivity to {self.key}: peak {peaks} per unit>"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as numbers, lists and texts, ready for JSON."""
+        return {
+            "key": self.key,
+            "one_sided": self.one_sided,
+            "rising": self.rising.to_dict(),
+            "falling": self.falling.to_dict(),
+        }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Sensitivities:
+    """How a contact state changes with its parameters; a sensitivity is found by its key.
+
+    Parameters
+    ----------
+    solution : the state
+    intervals : of its footprint, whose ends move
+    each : by key
+    weak : indices of the points that are about to enter or leave contact: no pressure and no gap
+    notes : what a person should know
+    """
+
+    solution: ContactSolution
+    intervals: tuple[ContactInterval, ...]
+    each: Mapping[str, Sensitivity]
+    weak: tuple[int, ...]
+    notes: tuple[str, ...]
+
+    def __getitem__(self, key: str) -> Sensitivity:
+        """Return the sensitivity to a parameter; `ProblemError` if there is none of that key."""
+        if key not in self.each:
+            raise ProblemError(f"there is no sensitivity to '{key}'; there are: {', '.join(self.each) or 'none'}")
+        return self.each[key]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the keys."""
+        return iter(self.each)
+
+    def __len__(self) -> int:
+        """Return the number of parameters."""
+        return len(self.each)
+
+    def __repr__(self) -> str:
+        """One line: keys, and what is to be known."""
+        told = "".join(f"; {note}" for note in self.notes)
+        return f"<Sensitivities to {', '.join(self.each) or 'nothing'}{told}>"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give all of them as numbers, lists and texts, ready for JSON."""
+        return {
+            "intervals": [interval.to_dict() for interval in self.intervals],
+            "weak": list(self.weak),
+            "notes": list(self.notes),
+            "sensitivities": [item.to_dict() for item in self.each.values()],
+        }
+
+
+def sensitivities(
+    contact: CondensedContact,
+    changes: Mapping[str, Change] | None = None,
+    solution: ContactSolution | None = None,
+) -> Sensitivities:
+    """Differentiate a contact state with respect to what changes its gap and load linearly.
+
+    Parameters
+    ----------
+    contact : CondensedContact
+    changes : by key, per unit; `contact.changes`, factors of load cases and tools, if not given. A profile added to the
+        initial gap is ``Change(profile, np.zeros(k))``
+    solution : of the problem; that of the direct solver if not given
+
+    Returns
+    -------
+    Sensitivities
+
+    Raises
+    ------
+    ProblemError
+        If there is no contact state, the given one is none, or it does not determine a derivative: contact does not
+        hold the body, or the change carries it away.
+    SingularSystemError
+        If the equations of contact are singular to working precision.
+    """
+    wanted = contact.changes if changes is None else {key: _fitting(contact, key, *changes[key]) for key in changes}
+    state = complementarity.solve(contact) if solution is None else solution
+    if state.status is not Status.SOLVED:
+        why = "; ".join(state.notes) or state.status.value
+        raise ProblemError(f"there is no contact state to differentiate: {why}")
+    problem = scaled(contact)
+    p, a = scaled_point(contact, state.pressure, state.rigid_amplitudes)
+    if (residual := problem.residual(p, a)) > EXACT:
+        raise ProblemError(f"the given solution is no contact state to differentiate: its residual is {residual:.2g}")
+    tangent = Tangent.at(problem, p, np.maximum(problem.gap(p, a), 0.0), a, is_monotone(problem))
+    each = {key: _sensitivity(contact, state, tangent, key, change) for key, change in wanted.items()}
+    return Sensitivities(
+        solution=state,
+        intervals=footprint(contact, state).intervals,
+        each=each,
+        weak=tuple(tangent.weak.tolist()),
+        notes=tuple(_notes(contact, tangent.weak, _highest(contact, state), tangent.unique)),
+    )
+
+
+def modulus_change(contact: CondensedContact, doubled: CondensedContact, modulus: float, pressure: Array) -> Change:
+    """What a change of Young's modulus E does to the gap at a given pressure, per unit of E.
+
+    M falls as 1/E, and so does the part Δs/E of Δ1 that loads bring about; Δu, from prescribed displacements, stays.
+    Δ1(E) - Δ1(2E) = Δs/(2E) tells them apart, so that d(Δ1 + M p)/dE = -(2 (Δ1(E) - Δ1(2E)) + M p)/E.
+
+    Parameters
+    ----------
+    contact, doubled : the problem with E, and with 2 E
+    modulus : E [p]
+    pressure : (n,) of the state that is differentiated [p]
+
+    Returns
+    -------
+    Change
+        Of this state only, since it contains M p.
+
+    Raises
+    ------
+    ProblemError
+        If the second problem is not the first with twice the modulus.
+    """
+    M = contact.compliance
+    if M.shape != doubled.compliance.shape or np.abs(2 * doubled.compliance - M).max() > INVERSE * np.abs(M).max():
+        raise ProblemError("the second problem is not the first with twice Young's modulus: its compliance is not half")
+    loads = 2 * (contact.free_displacement - doubled.free_displacement)
+    return Change(-(loads + M @ pressure) / modulus, np.zeros(contact.free_motions))
+
+
+def _fitting(contact: CondensedContact, key: str, offset: ArrayLike, load: ArrayLike) -> Change:
+    """Refuse a change that does not fit the problem."""
+    n, k = contact.rigid_motions.shape
+    change = Change(np.array(offset, float), np.array(load, float))
+    shapes = change.offset.shape, change.motion_load.shape
+    if shapes != ((n,), (k,)):
+        raise ProblemError(f"{key}: a change needs an offset ({n},) and a load ({k},); found shapes {shapes}")
+    if not (np.isfinite(change.offset).all() and np.isfinite(change.motion_load).all()):
+        raise ProblemError(f"{key}: a change needs finite numbers")
+    return change
+
+
+def _sensitivity(
+    contact: CondensedContact, solution: ContactSolution, tangent: Tangent, key: str, change: Change
+) -> Sensitivity:
+    """Differentiate to the right, and to the left where that may differ."""
+    highest = _highest(contact, solution)
+    rising = _rates(contact, solution, tangent, key, change, highest, 1.0)
+    smooth = not tangent.weak.size and len(highest) == 1
+    falling = rising if smooth else _rates(contact, solution, tangent, key, change, highest, -1.0)
+    return Sensitivity(key=key, rising=rising, falling=falling)
+
+
+def _rates(
+    contact: CondensedContact,
+    solution: ContactSolution,
+    tangent: Tangent,
+    key: str,
+    change: Change,
+    highest: IntArray,
+    side: float,
+) -> Rates:
+    """The derivative to one side, per unit by which the parameter rises."""
+    towards = Change(side * change.offset, side * change.motion_load)
+    try:
+        rate = tangent.rate(scaled_change(contact, towards))
+    except (ProblemError, SingularSystemError) as error:
+        way = "rises" if side > 0 else "falls"
+        raise type(error)(f"there is no derivative with respect to {key} as it {way}: {error}") from None
+    pressure, _, amplitudes = unscaled(contact, side * rate.pressure, side * rate.amplitudes)
+    gap = side * rate.gap * contact.scales.displacement
+    about_to_change = np.isin(np.arange(contact.size), tangent.weak)
+    return Rates(
+        pressure=pressure,
+        gap=gap,
+        rigid_amplitudes=amplitudes,
+        resultant=resultants(contact, pressure),
+        peak=side * float((side * pressure[highest]).max()),
+        interval_ends=end_rates(contact, solution, np.where(about_to_change, np.nan, gap)),
+    )
+
+
+def _highest(contact: CondensedContact, solution: ContactSolution) -> IntArray:
+    """The points that bear the peak pressure."""
+    p = solution.pressure
+    return np.array(np.flatnonzero(p >= p.max(initial=0.0) - WEAK * contact.scales.pressure), np.int64)
+
+
+def _notes(contact: CondensedContact, weak: IntArray, highest: IntArray, unique: bool) -> Iterator[str]:
+    """What is not as usual."""
+    if weak.size:
+        verb = "touch" if weak.size > 1 else "touches"
+        yield f"{_placed(contact, weak)} {verb} without pressure: derivatives differ as a parameter rises and falls"
+    elif highest.size > 1:
+        yield f"{_placed(contact, highest)} share the peak pressure: its derivative has two sides"
+    if not unique:
+        yield NOT_PROVED
+
+
+def _placed(contact: CondensedContact, points: IntArray) -> str:
+    """Name points by number and place."""
+    told = (f"{i} at ({x:g}, {y:g})" for i, (x, y) in zip(points, contact.points[points], strict=True))
+    return f"{'points' if len(points) > 1 else 'point'} {', '.join(told)}"

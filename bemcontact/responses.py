@@ -1,0 +1,215 @@
+"""How the answer to a problem responds to its parameters: paths and sensitivities, by the key paths of a spec."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from bemcontact.actions import Change
+from bemcontact.analysis import condense, ensure_kind
+from bemcontact.arrays import Array
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import Complaint, ProblemError
+from bemcontact.fitting import fitted
+from bemcontact.formulations import complementarity
+from bemcontact.parametric.parameter_path import ParameterPath
+from bemcontact.parametric.path import COMMON, SAME, ensure_same_body, load_path
+from bemcontact.parametric.sensitivity import Sensitivities, modulus_change
+from bemcontact.parametric.sensitivity import sensitivities as sensitivities_of_contact
+from bemcontact.problem.key_path import existing_path, parsed_path
+from bemcontact.problem.problem import Problem
+
+MODULUS = "material.young_modulus"
+NOTHING = 1e-13
+"""Part of the largest entry that is the round-off of an entry that should be zero."""
+
+
+def follow(problem: Problem, key: str, to: float, start: float | None = None) -> ParameterPath:
+    """Follow the contact state while one value of the problem changes, exactly.
+
+    Parameters
+    ----------
+    problem : Problem
+    key : path to the value, as of `Problem.with_value`; gaps and loads must depend on it linearly, and nothing else
+    to : value at the end of the path
+    start : value at its beginning, that of the problem if not given
+
+    Returns
+    -------
+    ParameterPath
+
+    Raises
+    ------
+    ProblemError
+        If the key leads to no number, more than gaps and loads depend on it, they do not linearly, or there is no
+        contact state at either end.
+    """
+    ensure_kind(problem, Problem)
+    begin = stated_value(problem, key) if start is None else float(start)
+    end = float(to)
+    if not (np.isfinite(begin) and np.isfinite(end)) or begin == end:
+        raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
+    ends = between(fitted(problem)[0], key, begin, end)
+    return ParameterPath(key=key, start=begin, end=end, path=load_path(*ends))
+
+
+def sensitivities(
+    problem: Problem | CondensedContact, changes: Mapping[str, Change] | Sequence[str] | None = None
+) -> Sensitivities:
+    """Differentiate the contact state of a problem.
+
+    Parameters
+    ----------
+    problem : Problem or CondensedContact
+    changes : with respect to what. By key, each per unit; or keys alone: those of `CondensedContact.changes`,
+        "initial_gap[i]" for the gap at point i, and, of a `Problem`, also "material.young_modulus" and paths to any
+        value on which gaps and loads depend linearly, and nothing else. If not given, `CondensedContact.changes`
+
+    Returns
+    -------
+    Sensitivities
+
+    Raises
+    ------
+    ProblemError
+        If a key is none of these, there is no contact state, or it does not determine a derivative.
+    SingularSystemError
+        If the equations of contact are singular to working precision.
+    """
+    ensure_kind(problem)
+    stated = fitted(problem)[0] if isinstance(problem, Problem) else None
+    contact = problem if isinstance(problem, CondensedContact) else condense(stated or problem)
+    if changes is None or isinstance(changes, Mapping):
+        return sensitivities_of_contact(contact, changes)
+    solution, known = complementarity.solve(contact), contact.changes
+    keys = [changes] if isinstance(changes, str) else changes
+    wanted = {key: known[key] if key in known else _change(contact, stated, key, solution.pressure) for key in keys}
+    return sensitivities_of_contact(contact, wanted, solution)
+
+
+def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:
+    """What something else than load cases and tools does to gap and load, per unit."""
+    path = parsed_path(key)
+    if path[0] == "initial_gap" and isinstance(path[-1], int) and path[-1] < contact.size and len(path) == 2:
+        return Change(np.eye(contact.size)[path[-1]], np.zeros(contact.free_motions))
+    if problem is None:
+        known = ", ".join((*contact.changes, f"initial_gap[0] to initial_gap[{contact.size - 1}]"))
+        raise ProblemError(f"there is no '{key}' in this condensed problem; it has: {known}")
+    if key == MODULUS:
+        E = problem.material.young_modulus
+        return modulus_change(contact, condense(problem.with_value(MODULUS, 2 * E)), E, pressure)
+    value = stated_value(problem, key)
+    other = 2 * value or 1.0
+    first, last = between(problem, key, value, other)
+    width = other - value
+    return Change((last.offset - first.offset) / width, (last.motion_load - first.motion_load) / width)
+
+
+def stated_value(problem: Problem, key: str) -> float:
+    """The number at a key path, or the constant of a field that is one; `ProblemError` if there is neither."""
+    data: Any = problem.model_dump()
+    path = existing_path(data, parsed_path(key))
+    for step in path:
+        data = data.get(step) if isinstance(data, Mapping) else None if data is None else data[step]
+    if isinstance(data, Mapping) and "constant" in data and not any(data[name] for name in data if name != "constant"):
+        data = data["constant"]
+    if not isinstance(data, Real) or isinstance(data, bool):
+        message = "there is no number to vary; give a path to one, or the value to begin with"
+        raise ProblemError(Complaint(path=path, message=message))
+    return float(data)
+
+
+def between(problem: Problem, key: str, start: float, end: float) -> tuple[CondensedContact, CondensedContact]:
+    """Condense a problem at two values of a key, and make sure that it changes linearly from one to the other.
+
+    Parameters
+    ----------
+    problem : whose mesh is not to be fitted any more
+    key : path to the value
+    start, end : its values. One of them may leave a body without a load that presses it onto its support; this end is
+        then found from the middle and the other end
+
+    Returns
+    -------
+    first, last : CondensedContact
+
+    Raises
+    ------
+    ProblemError
+        If neither end can be condensed, more than gaps and loads depend on the value, or these not linearly.
+    """
+    middle = _at(problem, key, (start + end) / 2)
+    first, last = (_attempted(problem, key, value) for value in (start, end))
+    if isinstance(first, ProblemError) and isinstance(last, ProblemError):
+        raise last
+    if isinstance(first, ProblemError):
+        assert isinstance(last, CondensedContact)
+        _ensure_linear(key, middle, _at(problem, key, (start + 3 * end) / 4), last)
+        return _beyond(middle, last), last
+    if isinstance(last, ProblemError):
+        _ensure_linear(key, middle, _at(problem, key, (3 * start + end) / 4), first)
+        return first, _beyond(middle, first)
+    _ensure_linear(key, first, middle, last)
+    return first, last
+
+
+def _at(problem: Problem, key: str, value: float) -> CondensedContact:
+    """Condense the problem at a value."""
+    return condense(problem.with_value(key, value))
+
+
+def _attempted(problem: Problem, key: str, value: float) -> CondensedContact | ProblemError:
+    """Condense the problem at a value that is allowed; the error where nothing presses the body onto its support."""
+    varied = problem.with_value(key, value)
+    try:
+        return condense(varied)
+    except ProblemError as error:
+        return error
+
+
+def _ensure_linear(key: str, first: CondensedContact, middle: CondensedContact, last: CondensedContact) -> None:
+    """Refuse a value on which more than gaps and loads depends, or these not linearly."""
+    for end in (first, last):
+        try:
+            ensure_same_body(middle, end)
+        except ProblemError:
+            found = next(what for name, what in COMMON.items() if _differs(getattr(middle, name), getattr(end, name)))
+            message = f"the {found} depends on it; a path is exact only for loads, gaps and tools"
+            raise ProblemError(Complaint(path=parsed_path(key), message=message)) from None
+    displacement, pressure = np.max([first.scales, last.scales], axis=0)
+    least = {"offset": displacement, "motion_load": pressure * np.abs(middle.equilibrium).sum(axis=0)}
+    for name, what in (("offset", "gap"), ("motion_load", "load")):
+        one, half, other = (getattr(item, name) for item in (first, middle, last))
+        size = np.maximum(np.abs([one, other]).max(axis=0), least[name])
+        if (bend := float((np.abs(half - (one + other) / 2) / size).max(initial=0.0))) > SAME:
+            message = f"the {what} does not change in proportion to it, it bends by {bend:.2g}; {LINEAR}"
+            raise ProblemError(Complaint(path=parsed_path(key), message=message))
+
+
+LINEAR = "a path is exact only for what enters gaps and loads linearly, as forces, pressures and displacements do"
+
+
+def _differs(one: Array, other: Array) -> bool:
+    return one.shape != other.shape or bool(np.abs(one - other).max(initial=0.0) > SAME * np.abs(one).max(initial=0.0))
+
+
+def _beyond(middle: CondensedContact, end: CondensedContact) -> CondensedContact:
+    """The problem as far on the other side of the middle as an end is on this one."""
+
+    def mirrored(one: Array, other: Array) -> Array:
+        found = 2 * one - other
+        return np.where(np.abs(found) <= NOTHING * np.abs(other).max(initial=0.0), 0.0, found)
+
+    return replace(
+        middle,
+        free_displacement=mirrored(middle.free_displacement, end.free_displacement),
+        initial_gap=mirrored(middle.initial_gap, end.initial_gap),
+        motion_load=mirrored(middle.motion_load, end.motion_load),
+        tools=replace(
+            middle.tools,
+            position=mirrored(middle.tools.position, end.tools.position),
+            force=mirrored(middle.tools.force, end.tools.force),
+        ),
+    )

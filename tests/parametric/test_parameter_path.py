@@ -1,0 +1,72 @@
+"""A load path in the values of its parameter: states, tables, numbers."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+from contact_states import half_plane, rocker
+
+from bemcontact.parametric.parameter_path import BETWEEN, ParameterPath
+from bemcontact.parametric.path import load_path
+
+
+def pressed_parabola() -> ParameterPath:
+    path = load_path(half_plane(21, 0.0), half_plane(21, 0.2))
+    return ParameterPath(key="load", start=0.0, end=-8.0, path=path)
+
+
+def crossing(start: float, end: float) -> ParameterPath:
+    return ParameterPath(key="place", start=start, end=end, path=load_path(rocker(start), rocker(end)))
+
+
+def test_states_are_breakpoints_and_three_between_each_two():
+    found = pressed_parabola()
+    breakpoints = [state.breakpoint for state in found.states]
+    assert breakpoints == [True, *([False] * len(BETWEEN) + [True]) * (len(found.breakpoints) - 1)]
+    np.testing.assert_allclose([state.value for state in found.breakpoints], -8 * found.path.parameter, atol=1e-14)
+    assert found.certified
+
+
+def test_peaks_between_breakpoints_are_those_of_the_line():
+    """Pressures are linear between breakpoints, and here the middle bears the peak: so is the peak."""
+    found = pressed_parabola()
+    values, peaks = ([getattr(state, name) for state in found.breakpoints] for name in ("value", "peak"))
+    for state in found.states:
+        assert state.peak == pytest.approx(np.interp(-state.value, -np.array(values), peaks), abs=1e-13)
+
+
+def test_resultant_is_the_load():
+    """Equilibrium: the rigid plane carries 0.2 at t = 1, and in proportion before."""
+    for state in pressed_parabola().states:
+        assert state.resultant[0] == pytest.approx((0.0, -state.value / 40), abs=1e-14)
+
+
+def test_table_has_a_row_for_each_state():
+    found = pressed_parabola()
+    head, *rows = csv.reader(io.StringIO(found.to_csv()))
+    assert head == [
+        "load", "breakpoint", "enter", "leave", "peak", "peak x", "peak y", "contact resultant x",
+        "contact resultant y", "contact starts", "contact ends", "nodes in contact",
+    ]  # fmt: skip
+    assert [float(row[0]) for row in rows] == [state.value for state in found.states]
+    last = rows[-1]
+    assert last[5:7] == ["10.0", "0.0"]
+    assert [int(i) for i in last[-1].split()] == list(found.states[-1].touching)
+    assert float(last[10]) + float(last[9]) == pytest.approx(20, abs=1e-9)  # symmetry about point 10
+    entering = next(row for row in rows if row[2])
+    assert entering[2] == "9 11"
+
+
+def test_numbers_are_json():
+    told = json.loads(crossing(-0.5, 1.5).to_json())
+    assert not told["certified"]
+    assert told["reaches"] == pytest.approx([-0.5, 1.0])
+    assert told["notes"][0].startswith("the path is there up to 1; beyond, the load carries the body off its support")
+    assert [state["left"] for state in told["states"] if state["breakpoint"]] == [[], [0], [], []]
+
+
+def test_round_off_of_a_parameter_is_zero():
+    """From 0.3 to -0.1 the value 0 is at t = 3/4, where round-off leaves 3e-17."""
+    assert ParameterPath(key="x", start=0.3, end=-0.1, path=pressed_parabola().path).value(0.75) == 0.0

@@ -1,0 +1,50 @@
+"""The picture of a load path shows what the path is."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bemcontact
+from bemcontact.parametric.parameter_path import ParameterPath
+from bemcontact.report import figures, folder, path_text
+
+MODELS = Path(__file__).parents[2] / "models"
+
+
+@pytest.fixture(scope="module")
+def link() -> ParameterPath:
+    problem = bemcontact.load(MODELS / "gallery" / "three_zones.yaml")
+    return bemcontact.follow(problem, "conditions.loaded.pressure", 20, 0)
+
+
+def test_page_has_a_picture_of_each_zone(link: ParameterPath):
+    page = figures.figure_of_path(link)
+    labels = [axes.get_ylabel() for axes in page.axes]
+    assert labels == ["peak pressure [N/mm²]", "resultant [N/mm]", *(f"contact of {zone} [mm]" for zone in
+                      ("drum", "table", "wall"))]  # fmt: skip
+    assert page.axes[-1].get_xlabel() == "conditions.loaded.pressure"
+
+
+def test_lines_are_the_states(link: ParameterPath):
+    page = figures.figure_of_path(link)
+    line, dots = page.axes[0].lines
+    np.testing.assert_array_equal(line.get_xydata(), [(state.value, state.peak) for state in link.states])
+    np.testing.assert_array_equal(dots.get_xydata(), [(state.value, state.peak) for state in link.breakpoints])
+    drum = page.axes[1].lines[0]
+    assert np.asarray(drum.get_ydata())[-1] == pytest.approx(250, rel=1e-3)  # statics, 0.1 % for the bent link
+    start, end = page.axes[2].lines[-2:]
+    interval = link.states[-1].footprint.intervals[0]
+    assert np.asarray(start.get_ydata())[-1] == interval.start_arc
+    assert np.asarray(end.get_ydata())[-1] == interval.end_arc
+
+
+def test_written_twice_it_is_the_same(link: ParameterPath, tmp_path: Path):
+    for name in ("a", "b"):
+        folder.save_path(link, tmp_path / name)
+    for name in ("path.svg", "path.csv", "path.json"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_verdict_is_a_sentence(link: ParameterPath):
+    assert path_text.verdict(link).startswith("Every state from 0 to 20 is the contact state, the only one. Natural")
