@@ -62,6 +62,14 @@ def ensure_kind(problem: object, *kinds: type) -> None:
         )
 
 
+def ensure_acting(problem: Problem | CondensedContact) -> None:
+    """Refuse what is no problem, and one with load cases of which none acts, with a `ProblemError`."""
+    ensure_kind(problem)
+    if isinstance(problem, Problem) and problem.load_cases and problem.case is None:
+        message = f"say which one acts, case: {' or '.join(problem.case_names)}, or solve all of them"
+        raise ProblemError(Complaint(path=("load_cases",), message=message))
+
+
 def solve(
     problem: Problem | CondensedContact,
     formulation: str = FormulationName.QP3,
@@ -142,18 +150,11 @@ def fitted_to_contact(
 
     Refuses a problem with load cases of which none acts, with a `ProblemError`.
     """
-    ensure_kind(problem)
-    if isinstance(problem, Problem) and problem.load_cases and problem.case is None:
-        raise ProblemError(Complaint(path=("load_cases",), message=_which_case(problem)))
+    ensure_acting(problem)
     if isinstance(problem, CondensedContact) or not problem.mesh.fit_contact_edges:
         return problem, None
     with watch.stage("mesh fit") as say:
         return fitted(problem, say)
-
-
-def _which_case(problem: Problem) -> str:
-    """Ask which load case is meant."""
-    return f"say which one acts, case: {' or '.join(problem.case_names)}, or solve all of them"
 
 
 def condensed(problem: Problem | CondensedContact, watch: Stopwatch) -> tuple[CondensedContact, Condensation | None]:

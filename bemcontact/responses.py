@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from bemcontact.actions import Change
-from bemcontact.analysis import condense, ensure_kind
+from bemcontact.analysis import condense, ensure_acting, ensure_kind
 from bemcontact.arrays import Array
 from bemcontact.contact import CondensedContact
 from bemcontact.errors import Complaint, ProblemError
@@ -32,7 +32,8 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     Parameters
     ----------
     problem : Problem
-    key : path to the value, as of `Problem.with_value`; gaps and loads must depend on it linearly, and nothing else
+    key : path to the value, as of `Problem.with_value`, or "load_cases.wind" for the factor of a load case; gaps and
+        loads must depend on it linearly, and nothing else
     to : value at the end of the path
     start : value at its beginning, that of the problem if not given
 
@@ -47,6 +48,8 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
         contact state at either end.
     """
     ensure_kind(problem, Problem)
+    if _case_of(problem, key) is None:
+        ensure_acting(problem)
     begin = stated_value(problem, key) if start is None else float(start)
     end = float(to)
     if not (np.isfinite(begin) and np.isfinite(end)) or begin == end:
@@ -78,7 +81,7 @@ def sensitivities(
     SingularSystemError
         If the equations of contact are singular to working precision.
     """
-    ensure_kind(problem)
+    ensure_acting(problem)
     stated = fitted(problem)[0] if isinstance(problem, Problem) else None
     contact = problem if isinstance(problem, CondensedContact) else condense(stated or problem)
     if changes is None or isinstance(changes, Mapping):
@@ -108,7 +111,12 @@ def _change(contact: CondensedContact, problem: Problem | None, key: str, pressu
 
 
 def stated_value(problem: Problem, key: str) -> float:
-    """The number at a key path, or the constant of a field that is one; `ProblemError` if there is neither."""
+    """The number at a key path, the constant of a field that is one, or the factor by which a load case acts.
+
+    `ProblemError` if there is none of these.
+    """
+    if (case := _case_of(problem, key)) is not None:
+        return problem.factors().get(case, 0.0)
     data: Any = problem.model_dump()
     path = existing_path(data, parsed_path(key))
     for step in path:
@@ -157,12 +165,24 @@ def between(problem: Problem, key: str, start: float, end: float) -> tuple[Conde
 
 def _at(problem: Problem, key: str, value: float) -> CondensedContact:
     """Condense the problem at a value."""
-    return condense(problem.with_value(key, value))
+    return condense(_varied(problem, key, value))
+
+
+def _varied(problem: Problem, key: str, value: float) -> Problem:
+    """The problem with another value, or with another factor of a load case."""
+    case = _case_of(problem, key)
+    return problem.with_value(key, value) if case is None else problem.with_factors({**problem.factors(), case: value})
+
+
+def _case_of(problem: Problem, key: str) -> str | None:
+    """The load case whose factor a key path means, as `load_cases.wind` does; None for other paths."""
+    room, *rest = parsed_path(key)
+    return str(rest[0]) if room == "load_cases" and len(rest) == 1 and rest[0] in problem.load_cases else None
 
 
 def _attempted(problem: Problem, key: str, value: float) -> CondensedContact | ProblemError:
     """Condense the problem at a value that is allowed; the error where nothing presses the body onto its support."""
-    varied = problem.with_value(key, value)
+    varied = _varied(problem, key, value)
     try:
         return condense(varied)
     except ProblemError as error:

@@ -6,7 +6,16 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.failures import UNCERTIFIED, claim, claim_folder, told, write_json
-from bemcontact.cli.options import STANDARD_OUTPUT, JsonOption, RefineOption, SetOption, SpecArgument, VariantOption
+from bemcontact.cli.options import (
+    STANDARD_OUTPUT,
+    CaseOption,
+    JsonOption,
+    RefineOption,
+    SetOption,
+    SpecArgument,
+    VariantOption,
+    with_case,
+)
 from bemcontact.output import whole_file
 from bemcontact.terminal import busy, show, tell
 
@@ -24,6 +33,7 @@ def path(
     refine: RefineOption = 1,
     overrides: SetOption = None,
     variant: VariantOption = None,
+    case: CaseOption = None,
     out: Annotated[
         Path | None,
         typer.Option(metavar="FOLDER", help="Write path.svg, path.csv and path.json.", show_default=False),
@@ -34,7 +44,8 @@ def path(
 
     Between two breakpoints pressure and gap are linear in the parameter, so that the path is exact: no steps are taken.
     The parameter must enter gaps and loads linearly and nothing else: a pressure, a traction, a prescribed
-    displacement, gravity, the position of a rigid surface. The exit status is 0 only if the path reaches its end and
+    displacement, gravity, the position of a rigid surface, the force on a tool, the factor of a load case
+    (load_cases.NAME). The exit status is 0 only if the path reaches its end and
     each state on it is proved to be the only one.
 
     FOLDER gets a picture of peak, resultants and ends of contact over the parameter (path.svg), the same as a table
@@ -45,8 +56,8 @@ def path(
       bemcontact path models/cantilever_flat_surface.yaml --vary conditions.top.traction.y --from 0 --to -3.6 --out path
       bemcontact path models/gallery/three_zones.yaml --vary conditions.loaded.pressure --to 40 --json - | jq .pivots
     """
-    with told(spec, overrides, variant), busy("following") as say:
-        json_claim = None if json_file == STANDARD_OUTPUT else json_file
+    overrides, json_claim = with_case(overrides, case), None if json_file == STANDARD_OUTPUT else json_file
+    with told(spec, overrides, variant, (out, json_claim)), busy("following") as say:
         claim(spec, {"--json": json_claim})
         claim_folder(spec, "--out", out, json_claim, "path")
         from bemcontact import responses

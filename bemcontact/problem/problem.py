@@ -167,6 +167,18 @@ class Problem(Stated):
         self.factors(name)
         return self.model_copy(update={"case": name})
 
+    def with_factors(self, factors: Mapping[str, float]) -> Self:
+        """Let load cases act by some factors, as a combination with a name that tells them.
+
+        Raises
+        ------
+        ProblemError
+            If there is no such load case, or a factor is no number.
+        """
+        name = " + ".join(f"{factor:.6g} {case}" for case, factor in factors.items()).replace(".", ",")
+        data = self.model_dump(exclude={"variants"})
+        return type(self)(**{**data, "combinations": {**self.combinations, name: dict(factors)}, "case": name})
+
     def edge(self, name: str) -> Edge:
         """Find an edge by its name; `ProblemError` if there is none."""
         for edge in self.boundary.edges:
