@@ -31,6 +31,7 @@ _HOMES = {
     "solve_lcp": "bemcontact.formulations.complementarity",
     "Problem": "bemcontact.problem.problem",
     "CondensedContact": "bemcontact.contact",
+    "ContactModel": "bemcontact.modelling.contact_model",
     "ContactSolution": "bemcontact.solution",
     "LocalSearch": "bemcontact.solution",
     "Status": "bemcontact.solution",

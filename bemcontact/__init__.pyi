@@ -21,6 +21,7 @@ from bemcontact.formulations.local_solver import QPOptions as QPOptions
 from bemcontact.formulations.local_solver import QPResult as QPResult
 from bemcontact.formulations.local_solver import QPStatus as QPStatus
 from bemcontact.formulations.local_solver import minimize_qp as minimize_qp
+from bemcontact.modelling.contact_model import ContactModel as ContactModel
 from bemcontact.problem.problem import Problem as Problem
 from bemcontact.result import Result as Result
 from bemcontact.solution import ContactSolution as ContactSolution
