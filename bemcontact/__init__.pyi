@@ -22,6 +22,9 @@ from bemcontact.formulations.local_solver import QPResult as QPResult
 from bemcontact.formulations.local_solver import QPStatus as QPStatus
 from bemcontact.formulations.local_solver import minimize_qp as minimize_qp
 from bemcontact.modelling.contact_model import ContactModel as ContactModel
+from bemcontact.modelling.designed_gap import GapDesign as GapDesign
+from bemcontact.modelling.gap_design import design_gap as design_gap
+from bemcontact.modelling.relief import Relief as Relief
 from bemcontact.problem.problem import Problem as Problem
 from bemcontact.result import Result as Result
 from bemcontact.solution import ContactSolution as ContactSolution

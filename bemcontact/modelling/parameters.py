@@ -9,6 +9,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
+from bemcontact.modelling.rest import at_rest
 
 Value = cp.Expression | Array
 
@@ -97,9 +98,3 @@ def value_of(expression: cp.Expression) -> Array:
     if expression.value is None:
         raise ProblemError(f"'{expression.name()}' has no value yet; set it, or solve first")
     return np.array(expression.value, float)
-
-
-def at_rest(condensed: CondensedContact) -> CondensedContact:
-    """Switch all load cases off, put all tools where they are not displaced, and unload them."""
-    off, none = condensed.with_factors({}), np.zeros((len(condensed.tools), 3))
-    return off.with_tools(none, none)

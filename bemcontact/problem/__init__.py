@@ -10,7 +10,16 @@ from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 from bemcontact.problem.problem import MeshDensity, Problem, Units
 from bemcontact.problem.reference import Reference, Table, Values
-from bemcontact.problem.rigid_surface import Circle, Closest, DeflectedContour, Plane, Polyline, RigidSurface, Shape
+from bemcontact.problem.rigid_surface import (
+    Circle,
+    Closest,
+    DeflectedContour,
+    Plane,
+    Polyline,
+    RigidSurface,
+    Shape,
+    Spline,
+)
 from bemcontact.problem.variant import Variant
 
 __all__ = [
@@ -43,6 +52,7 @@ __all__ = [
     "RigidSurface",
     "Shape",
     "ShrinkFit",
+    "Spline",
     "Table",
     "Temperature",
     "Uniform",
