@@ -109,14 +109,19 @@ class Profiles:
         shapes[points] = given / sizes
         families = _families(relief, shapes[points], sizes, position, run)
         rows, low, high = (np.concatenate(parts) for parts in zip(*families.values(), strict=True))
-        size = np.abs(rows).max(axis=1)
+        size, family = (
+            np.abs(rows).max(axis=1),
+            np.repeat(np.arange(len(families)), [len(b.low) for b in families.values()]),
+        )
+        kept = (size > 0) | (low > 0) | (high < 0)  # what no profile changes and none violates bounds nothing
+        size = np.where(size > 0, size, 1.0)
         found = cls(
             points=points,
             shapes=shapes,
-            rows=rows / size[:, None],
-            low=low / size,
-            high=high / size,
-            family=np.repeat(np.arange(len(families)), [len(part[1]) for part in families.values()]),
+            rows=(rows / size[:, None])[kept],
+            low=(low / size)[kept],
+            high=(high / size)[kept],
+            family=family[kept],
             families=tuple(families),
             sizes=sizes,
         )
@@ -242,9 +247,7 @@ def _families(relief: Relief, shapes: Array, sizes: Array, position: Array, run:
     for name, rows, given in (("slope", slopes, relief.slope), ("curvature", curvatures, relief.curvature)):
         if given is not None and len(rows):
             pair = given if isinstance(given, tuple) else (-given, given)
-            used = np.abs(rows @ shapes).max(axis=1) > 0
-            low, high = _limits(pair, len(rows), name)
-            families[name] = Bounds((rows @ shapes)[used], low[used], high[used])
+            families[name] = Bounds(rows @ shapes, *_limits(pair, len(rows), name))
     if relief.coefficients is not None:
         low, high = _limits(relief.coefficients, len(sizes), "coefficients")
         families["coefficients"] = Bounds(np.eye(len(sizes)), low * sizes, high * sizes)

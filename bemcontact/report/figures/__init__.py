@@ -5,6 +5,7 @@ Each ``draw_...`` function draws into axes that it is given; each ``figure_of_..
 
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.course import draw_convergence, draw_history
+from bemcontact.report.figures.design import draw_relief, draw_relieved_pressure, figure_of_design
 from bemcontact.report.figures.page import FORMATS, ensure_known_format, save
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
 from bemcontact.report.figures.reproduction import draw_against, figures_of_reproduction
@@ -24,7 +25,10 @@ __all__ = [
     "draw_pressure",
     "draw_pressures",
     "draw_problem",
+    "draw_relief",
+    "draw_relieved_pressure",
     "ensure_known_format",
+    "figure_of_design",
     "figure_of_problem",
     "figure_of_result",
     "figures_of",

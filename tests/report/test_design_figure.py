@@ -1,0 +1,44 @@
+"""The picture of a design: what is drawn are the pressures and the profile, with units, and what runs out is told."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bemcontact
+from bemcontact import GapDesign, Relief, design_gap, spec
+from bemcontact.report import figures
+
+FLAT_PUNCH = Path(__file__).parents[2] / "models" / "gallery" / "flat_punch.yaml"
+
+
+@pytest.fixture(scope="module")
+def design() -> GapDesign:
+    contact = bemcontact.condense(spec.load(FLAT_PUNCH))
+    return design_gap(contact, Relief(lower=0, upper=0.01, slope=0.003))
+
+
+def test_curves_are_those_of_the_design(design: GapDesign, tmp_path: Path):
+    figure = figures.figure_of_design(design)
+    above, below = figure.axes
+    arc = design.before[0].contact.arc_position
+    curves = [design.before[0].pressure, design.after[0].pressure]
+    for line, values in zip(above.lines, curves, strict=True):
+        np.testing.assert_array_equal(line.get_xydata(), np.column_stack([arc, values]))
+    np.testing.assert_array_equal(below.lines[0].get_ydata(), design.profile)
+    assert above.get_ylabel() == "pressure [N/mm²]"
+    assert below.get_ylabel() == "profile [mm]"
+    assert below.get_xlabel() == "distance along the contact zone [mm]"
+    assert above.get_title() == "flat punch on a large block: peak on punch"
+    legend = above.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["without", "with profile"]
+    figures.save(figure, tmp_path / "design.png")
+    assert (tmp_path / "design.png").stat().st_size > 10_000
+
+
+def test_a_singular_pressure_runs_out_of_the_picture_and_is_told(design: GapDesign):
+    """7653 without the profile beside 202 with it: the axis ends at three times 202."""
+    above = figures.figure_of_design(design).axes[0]
+    assert above.get_ylim()[1] == pytest.approx(1.08 * 3 * design.peak)
+    assert [text.get_text() for text in above.texts] == [f"up to {design.peak_before:.4g} without"]
