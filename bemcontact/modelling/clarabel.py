@@ -10,6 +10,7 @@ from typing import Any
 
 import cvxpy as cp
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csc_array, diags_array
 
 from bemcontact.arrays import Array, IntArray
@@ -79,7 +80,7 @@ def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], tuple[Array, Ar
     return scaled | ({"P": csc_array(s * P)} if "P" in data else {}), (D, E, s)
 
 
-def _largest(entries: Array, index: IntArray, size: int) -> Array:
+def _largest(entries: Array, index: NDArray[np.integer], size: int) -> Array:
     """Largest of the entries (none negative) of each index, (size,)."""
     found = np.zeros(size)
     np.maximum.at(found, index, entries)

@@ -6,7 +6,7 @@ With contact sets A_l given, gap_l = 0 on A_l and p_l = 0 off it: every feasible
 although the profile is unknown. Without them, complementarity is dropped, and the optimum is a lower bound.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ import cvxpy as cp
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, freeze_arrays
+from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.contact import CondensedContact, ContactScales
 from bemcontact.errors import SolverError
 from bemcontact.formulations import qp3
@@ -28,6 +28,10 @@ BoolArray = NDArray[np.bool_]
 
 WEAK = 1e-6
 """Scaled pressure or gap that is none to the tolerance of the solver."""
+ROOM = 3e-10
+"""Part of the goal that the gentlest profile may give away."""
+MARGIN = 1e-6
+"""By which a value that is reached is taken too high, so that the relaxation surely admits it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -88,7 +92,7 @@ class SharedProfile:
         states = tuple(scaled(contact, scales) for contact in contacts)
         return cls(states=states, profiles=profiles, scales=scales, goal=goal)
 
-    def measure(self, pressures: Sequence[Array]) -> float:
+    def measure(self, pressures: Iterable[Array]) -> float:
         """The goal [p] at pressures (n,) [p]."""
         if self.goal is Goal.PEAK:
             return max(float(p.max()) for p in pressures)
@@ -137,39 +141,53 @@ class SharedProfile:
         Piece or None
         """
         program = self._stated()
-        closed, open_ = [], []
-        for p, gap, inside in zip(program.pressures, program.gaps, touching, strict=True):
-            A, off = np.flatnonzero(inside), np.flatnonzero(~inside)
-            closed.append((gap[A] == 0, p[A] >= 0) if len(A) else ())
-            open_.append((p[off] == 0, gap[off] >= 0) if len(off) else ())
-        every = [constraint for some in (*closed, *open_) for constraint in some]
-        problem = cp.Problem(cp.Minimize(program.top), [*program.constraints, *every])
+        sets = program.with_contact(touching)
+        problem = cp.Problem(cp.Minimize(program.top), [*program.constraints, *sets.constraints])
         try:
             minimise(problem)
         except SolverError:  # sets that hardly fit together; others will do
             return None
-        if program.top.value is None:
-            return None
-        promise = np.full(touching.shape, -np.inf)
-        for row, inside, shut, free, p, gap in zip(
-            promise, touching, closed, open_, program.pressures, program.gaps, strict=True
-        ):
-            for at, pair, size in ((inside, shut, p.value), (~inside, free, gap.value)):
-                if pair:  # on the edge of the set, and what letting it go would gain
-                    row[at] = np.where(size[at] <= WEAK, pair[0].dual_value, -np.inf)
-        order = [
-            divmod(int(i), touching.shape[1]) for i in np.argsort(-promise, axis=None) if promise.flat[i] > -np.inf
-        ]
+        return None if program.top.value is None else self._piece(program, touching, sets.promise())
+
+    def gentlest(self, piece: Piece) -> Piece:
+        """Find, among profiles with these contact sets that are as good, that of the least mean square.
+
+        Parameters
+        ----------
+        piece : the best with its contact sets
+
+        Returns
+        -------
+        Piece
+            The same one if no gentler one is found.
+        """
+        program = self._stated()
+        sets = program.with_contact(piece.touching)
+        width = np.sqrt(self.states[0].weights / self.states[0].weights.sum())
+        as_good = program.top <= piece.value + ROOM * abs(piece.value)
+        size = float(np.abs(self.profiles.shapes @ piece.coefficients).max()) / self.scales.displacement
+        goal = cp.Minimize(cp.sum_squares(cp.multiply(width / (size or 1.0), program.relief)))
+        try:
+            minimise(cp.Problem(goal, [*program.constraints, *sets.constraints, as_good]))
+        except SolverError:
+            return piece
+        found = None if program.top.value is None else self._piece(program, piece.touching, sets.promise())
+        return found if found is not None and found.value <= piece.value + 2 * ROOM * abs(piece.value) else piece
+
+    def _piece(self, program: "_Program", touching: BoolArray, promise: Array) -> Piece:
+        """Take the numbers out of a program that has been solved."""
+        pressures = np.array([value_of(p) for p in program.pressures]) * self.scales.pressure
+        edge = [int(i) for i in np.argsort(-promise, axis=None) if promise.flat[i] > -np.inf]
         return Piece(
-            value=float(program.top.value),
+            value=self.measure(pressures) / self.scales.pressure,
             coefficients=value_of(program.coefficients) * self.scales.displacement,
-            pressures=np.array([value_of(p) for p in program.pressures]) * self.scales.pressure,
+            pressures=pressures,
             touching=touching,
-            turns=tuple(order),
+            turns=tuple(divmod(i, touching.shape[1]) for i in edge),
             promising=int((promise > WEAK).sum()),
         )
 
-    def relaxed(self, best: float) -> "Relaxation":
+    def relaxed(self, best: float) -> Relaxation:
         """Find a value [p] below which the goal cannot be.
 
         Complementarity is dropped but for what is convex in it: F3 at the designed gap is zero, and in it p·g is at
@@ -186,33 +204,65 @@ class SharedProfile:
         """
         U, T = self.scales
         program = self._stated()
-        cuts: list[cp.Constraint] = []
+        signs = [sign for p, gap in zip(program.pressures, program.gaps, strict=True) for sign in (p >= 0, gap >= 0)]
+        work = self._work_cuts(program, best * (1 + MARGIN))
+        try:
+            minimise(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs, *work]))
+        except SolverError:  # the bound without F3 is a lower one, but a bound
+            minimise(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs]))
+        pairs = zip(program.pressures, program.gaps, strict=True)
+        return Relaxation(
+            float(value_of(program.top)) * T,
+            value_of(program.coefficients) * U,
+            np.array([value_of(p) > value_of(gap) for p, gap in pairs]),
+        )
+
+    def _work_cuts(self, program: "_Program", best: float) -> Iterator[cp.Constraint]:
+        """F3 <= 0 with McCormick's planes for p·g, where F3 is convex."""
+        U, T = self.scales
         lowest, highest = (limit / U for limit in self.profiles.value_range)
-        for state, p, a, gap in zip(self.states, program.pressures, program.motions, program.gaps, strict=True):
-            cuts += [p >= 0, gap >= 0]
+        for state, p, a in zip(self.states, program.pressures, program.motions, strict=True):
             weights = np.diag(state.weights)
             eigenvalue = qp3.smallest_eigenvalue(state, weights)
             if eigenvalue is not None and eigenvalue < -qp3.NEGLIGIBLE:
                 continue
             product = cp.Variable(len(lowest))
-            cuts.append(product >= cp.multiply(lowest, p))
+            yield product >= cp.multiply(lowest, p)
             if self.goal is Goal.PEAK:
-                cuts.append(product >= cp.multiply(highest, p) + (best / T) * (program.relief - highest))
+                yield product >= cp.multiply(highest, p) + (best / T) * (program.relief - highest)
             work = qp3.objective(state, weights)
             values, vectors = np.linalg.eigh(work.hessian)
             root = (vectors * np.sqrt(np.maximum(values, 0.0) / 2)).T
             linear = work.pressure @ p + work.constant + (0.0 if a is None else work.amplitudes @ a)
-            cuts.append(cp.sum_squares(root @ p) + linear + state.weights @ product <= 0)
-        problem = cp.Problem(cp.Minimize(program.top), [*program.constraints, *cuts])
-        minimise(problem)
-        if program.top.value is None:
-            raise SolverError("the convex relaxation of the design has no optimum, although a profile was found")
-        pairs = zip(program.pressures, program.gaps, strict=True)
-        return Relaxation(
-            float(program.top.value) * T,
-            value_of(program.coefficients) * U,
-            np.array([value_of(p) > value_of(gap) for p, gap in pairs]),
-        )
+            yield cp.sum_squares(root @ p) + linear + state.weights @ product <= 0
+
+
+class _Side(NamedTuple):
+    """Points (j,) of a load state on one side: what is zero there (j,), and what is not negative."""
+
+    load: int
+    points: IntArray
+    zero: cp.Constraint
+    signed: cp.Expression
+
+
+class _Sets(NamedTuple):
+    """Contact sets as constraints."""
+
+    shape: tuple[int, int]
+    sides: list[_Side]
+
+    @property
+    def constraints(self) -> list[cp.Constraint]:
+        """What is zero, and what is not negative."""
+        return [constraint for side in self.sides for constraint in (side.zero, side.signed >= 0)]
+
+    def promise(self) -> Array:
+        """What turning a point would gain, to first order, (loads, n); minus infinity off the edge of contact."""
+        found = np.full(self.shape, -np.inf)
+        for load, points, zero, signed in self.sides:
+            found[load, points] = np.where(value_of(signed) <= WEAK, np.asarray(zero.dual_value, float), -np.inf)
+        return found
 
 
 class _Program(NamedTuple):
@@ -225,3 +275,12 @@ class _Program(NamedTuple):
     motions: list[cp.Variable | None]
     gaps: list[cp.Expression]
     constraints: list[cp.Constraint]
+
+    def with_contact(self, touching: BoolArray) -> _Sets:
+        """State gap = 0 and p >= 0 on the contact sets (loads, n), p = 0 and gap >= 0 off them."""
+        sides = []
+        for load, (p, gap, inside) in enumerate(zip(self.pressures, self.gaps, touching, strict=True)):
+            for points, none, signed in ((np.flatnonzero(inside), gap, p), (np.flatnonzero(~inside), p, gap)):
+                if len(points):
+                    sides.append(_Side(load, points, none[points] == 0, signed[points]))
+        return _Sets(touching.shape, sides)

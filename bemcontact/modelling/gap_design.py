@@ -56,7 +56,8 @@ def design_gap(
     Returns
     -------
     GapDesign
-        Solved again with the profile by the direct solver, and certified. Check `proved_optimal`.
+        Of equally good profiles that with the least mean square, solved again by the direct solver and certified. Check
+        `proved_optimal`.
 
     Raises
     ------
@@ -74,6 +75,7 @@ def design_gap(
     if best.value * shared.scales.pressure > bound * (1 + MET):
         others = (_descended(shared, some) for some in (sets, _state(states, profiles.shapes @ coefficients)[1]))
         best = min((piece for piece in (best, *others) if piece is not None), key=_value)
+    best = shared.gentlest(best)
     after = tuple(_solved(state, profiles.shapes @ best.coefficients) for state in states)
     reached = shared.measure([state.pressure for state in after])
     return GapDesign(
@@ -206,7 +208,7 @@ def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:
 
 
 def _next(shared: SharedProfile, piece: Piece) -> Piece | None:
-    """The first better one of: all promising points turned, half of them, one by one, and the others one by one."""
+    """The first better one of: all promising points turned at once, each by itself, each of the others."""
     promising, others = piece.turns[: piece.promising], piece.turns[piece.promising :]
     together = [promising] if len(promising) > 1 else []
     for turned in (*together, *((turn,) for turn in (*promising, *others))):

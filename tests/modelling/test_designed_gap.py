@@ -119,3 +119,21 @@ def test_surfaces_that_cannot_be_written_are_refused():
     halves = replace(random_contact(0, 5, 0), run=np.array([0, 0, 1, 1, 1]), run_length=np.full(2, np.inf))
     with pytest.raises(ProblemError, match="goes round or is in pieces, which no spline does; divide the zone"):
         design_gap(halves, Relief(lower=0, upper=0.1)).surface()
+
+
+def test_a_roller_crowned_by_the_closed_form():
+    """The contour of a half-plane under uniform pressure as a spline in a spec: that pressure, away from the edges.
+
+    Johnson's (2.30a) with 20 N/mm² on a = 5 mm. Its slope is infinite at the edge, where no spline follows it; within
+    0.9 a the pressure is uniform to 0.1 %, which the block of 40 half-widths leaves open.
+    """
+    a, pressure = 5.0, 20.0
+    x = a * np.sin(np.linspace(-np.pi / 2, np.pi / 2, 49))
+    sides = [(1 + sign * x / a) * np.log(np.maximum(1 + sign * x / a, 1e-300)) for sign in (1, -1)]
+    crown = 2 * pressure * a * (1 - 0.3**2) / (np.pi * 210e3) * sum(sides)
+    points = ", ".join(f"[{at:.12f}, {height:.12f}]" for at, height in zip(x[::-1], crown[::-1], strict=True))
+    surface = f"    surface: {{kind: spline, points: [{points}]}}\n"
+    result = bemcontact.solve(spec.loads(spec_of(0.1, surface)))
+    assert result.certified
+    inside = abs(result.contact.points[:, 0]) < 0.9 * a
+    np.testing.assert_allclose(result.solution.pressure[inside], pressure, rtol=1e-3)

@@ -4,9 +4,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bemcontact.arrays import Array, IntArray
 from bemcontact.modelling.designed_gap import GapDesign
 from bemcontact.report.figures.course import CYCLE
-from bemcontact.report.figures.page import GREY, Array, labelled, new_page, plain
+from bemcontact.report.figures.page import GREY, labelled, new_page, plain
 from bemcontact.report.words import units_of
 
 
@@ -71,7 +72,7 @@ def draw_relief(axes: Axes, design: GapDesign) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def _points(design: GapDesign) -> tuple[Array, Array]:
+def _points(design: GapDesign) -> tuple[IntArray, Array]:
     """Indices of the contact points of the zone, in order, and their arc positions; runs one after the other."""
     contact = design.before[0].contact
     at = np.flatnonzero(contact.zone == contact.zone[design.points[0]])
