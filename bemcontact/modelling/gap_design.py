@@ -75,19 +75,28 @@ def design_gap(
     if best.value * shared.scales.pressure > bound * (1 + MET):
         others = (_descended(shared, some) for some in (sets, _state(states, profiles.shapes @ coefficients)[1]))
         best = min((piece for piece in (best, *others) if piece is not None), key=_value)
-    best = shared.gentlest(best)
-    after = tuple(_solved(state, profiles.shapes @ best.coefficients) for state in states)
-    reached = shared.measure([state.pressure for state in after])
+    gentle = _carried_out(shared, states, before, shared.gentlest(best), bound)
+    return gentle if gentle.verified else _carried_out(shared, states, before, best, bound)
+
+
+def _carried_out(
+    shared: SharedProfile, states: Sequence[CondensedContact], before: tuple[LoadState, ...], piece: Piece, bound: float
+) -> GapDesign:
+    """Solve the contact problems with the profile of a piece, and put the design together."""
+    profiles = shared.profiles
+    profile = profiles.shapes @ piece.coefficients
+    after = tuple(_solved(state, profile) for state in states)
+    reached = shared.measure(state.pressure for state in after)
     return GapDesign(
-        goal=goal,
+        goal=shared.goal,
         zone=states[0].zone_names[states[0].zone[profiles.points[0]]],
         points=profiles.points,
-        profile=profiles.shapes @ best.coefficients,
-        coefficients=None if relief.shapes is None else best.coefficients / profiles.sizes,
+        profile=profile,
+        coefficients=piece.coefficients / profiles.sizes if profiles.shaped else None,
         before=before,
         after=after,
-        designed=best.pressures,
-        value_before=shared.measure([state.pressure for state in before]),
+        designed=piece.pressures,
+        value_before=shared.measure(state.pressure for state in before),
         value=reached,
         lower_bound=bound,
         proved_optimal=reached - bound <= MET * reached,

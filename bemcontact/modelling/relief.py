@@ -63,6 +63,7 @@ class Profiles:
     family : (r,) number in `families` of each row
     families : what is bounded, in words
     sizes : (s,) largest entry of each shape as it was given: user's coefficients are c / sizes
+    shaped : whether shapes were given; if not, each point has a coefficient of its own
     """
 
     points: IntArray
@@ -73,6 +74,7 @@ class Profiles:
     family: IntArray
     families: tuple[str, ...]
     sizes: Array
+    shaped: bool
 
     def __post_init__(self) -> None:
         """Make arrays read-only."""
@@ -124,6 +126,7 @@ class Profiles:
             family=family[kept],
             families=tuple(families),
             sizes=sizes,
+            shaped=relief.shapes is not None,
         )
         found._ensure_some()
         return found

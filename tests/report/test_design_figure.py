@@ -1,12 +1,15 @@
 """The picture of a design: what is drawn are the pressures and the profile, with units, and what runs out is told."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 
 import bemcontact
 from bemcontact import GapDesign, Relief, design_gap, spec
+from bemcontact.bem import mesh
 from bemcontact.report import figures
 
 FLAT_PUNCH = Path(__file__).parents[2] / "models" / "gallery" / "flat_punch.yaml"
@@ -42,3 +45,32 @@ def test_a_singular_pressure_runs_out_of_the_picture_and_is_told(design: GapDesi
     above = figures.figure_of_design(design).axes[0]
     assert above.get_ylim()[1] == pytest.approx(1.08 * 3 * design.peak)
     assert [text.get_text() for text in above.texts] == [f"up to {design.peak_before:.4g} without"]
+
+
+def test_the_designed_surface_is_drawn_on_the_plan(design: GapDesign):
+    """The spline goes through its points and on straight, its hatching on the side away from the body."""
+    problem = spec.load(FLAT_PUNCH).with_value("contact_zones.punch.surface", design.surface("spline").model_dump())
+    axes = figures.figure_of_problem(problem, mesh.build(problem)).axes[0]
+    points = np.array(design.surface("spline").points)
+    lines = [np.asarray(line.get_xydata()) for line in axes.lines]
+    drawn = next(line for line in lines if len(line) > 16 * len(points))
+    nearest = [np.hypot(*(drawn - point).T).min() for point in points]
+    assert max(nearest) <= np.hypot(*np.diff(points, axis=0).T).max() / 16
+    assert np.ptp(drawn[:, 0]) > np.ptp(points[:, 0])
+    hatching = np.concatenate([np.concatenate(strokes) for strokes in hatchings(axes)])
+    assert hatching[:, 1].max() > points[:, 1].max() + 1  # the block is below
+
+
+def hatchings(axes):
+    return [item.get_segments() for item in axes.collections if isinstance(item, LineCollection)]
+
+
+def test_each_load_state_has_its_colour():
+    contact = bemcontact.condense(spec.load(FLAT_PUNCH))
+    half = {"free_displacement": contact.free_displacement / 2, "motion_load": contact.motion_load / 2}
+    two = design_gap([contact, replace(contact, **half)], Relief(lower=0, upper=0.01))
+    lines = figures.figure_of_design(two).axes[0].lines
+    assert [line.get_label() for line in lines] == [
+        "without, state 1", "with profile, state 1", "without, state 2", "with profile, state 2"
+    ]  # fmt: skip
+    assert lines[0].get_color() == lines[1].get_color() != lines[2].get_color()
