@@ -63,7 +63,10 @@ def minimise(problem: cp.Problem, max_iterations: int | None = None) -> None:
 
 
 def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], tuple[Array, Array, float]]:
-    """Bring min ½xᵀP x + cᵀx, b - A x in cones, to size one: x = D x', rows times E, costs times s."""
+    """Bring min ½xᵀP x + cᵀx, b - A x in cones, to size one: x = D x', rows times E, costs times s.
+
+    D has the size of b in it where that is below one, the least that Clarabel compares with.
+    """
     # by the constraints alone: costs have a unit of their own, which would pull the columns along
     A, c, b = csc_array(data["A"]), data["c"], data["b"]
     P = csc_array(data["P"]) if "P" in data else csc_array((len(c), len(c)))
@@ -74,6 +77,8 @@ def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], tuple[Array, Ar
         column = _largest(entries, work.col, len(c))
         row = _largest(entries, cone[work.row], len(b))[cone]
         D, E = D / np.sqrt(np.where(column > 0, column, 1.0)), E / np.sqrt(np.where(row > 0, row, 1.0))
+    size = min(float(np.abs(E * b).max(initial=0.0)), 1.0) or 1.0
+    D, E = size * D, E / size
     P, c = diags_array(D) @ P @ diags_array(D), D * c
     s = 1.0 / (max(float(np.abs(P.data).max(initial=0.0)), float(np.abs(c).max(initial=0.0))) or 1.0)
     scaled = {**data, "A": csc_array(diags_array(E) @ A @ diags_array(D)), "b": E * b, "c": s * c}
@@ -90,7 +95,7 @@ def _largest(entries: Array, index: NDArray[np.integer], size: int) -> Array:
 def _cone_of_rows(dims: Any) -> IntArray:
     """Number of the cone of each row; each row of an equation or inequality is one by itself."""
     sizes = [1] * (dims.zero + dims.nonneg) + list(dims.soc) + [k * (k + 1) // 2 for k in dims.psd]
-    sizes += [3] * (dims.exp + len(dims.p3d))
+    sizes += [3] * (dims.exp + len(dims.p3d)) + [len(powers) + 1 for powers in getattr(dims, "pnd", ())]
     return np.repeat(np.arange(len(sizes)), sizes)
 
 

@@ -224,8 +224,8 @@ class ContactModel:
             return None
         contact, motions = self.contact, self.motions
         found = judged(contact, polish(contact, solution_at(contact, self.pressure, motions, ACTIVE_SET)), added=False)
-        solution = found.solution
-        if solution is None or not (found.contact_state and solution.polished):
+        solution, certificate = found.solution, found.certificate
+        if solution is None or certificate is None or not certificate.certified:
             return None
         U, T = self.scales
         self.pressure.variables()[0].value = solution.pressure / T

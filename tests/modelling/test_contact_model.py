@@ -226,3 +226,29 @@ def test_a_design_variable_composes_with_the_gap():
     found = model.solve()
     assert found.contact_state
     np.testing.assert_allclose(found.pressure, designed.pressure, rtol=1e-6)
+
+
+def test_solving_again_starts_from_the_last_solution():
+    """The same problem again, and a neighbour: the active-set step gets there without Clarabel, and says so."""
+    contact = random_contact(3, 40, 1)
+    model = contact.model()
+    assert model.solve().solution.solver == "Clarabel"
+    same = model.solve()
+    assert same.solution.solver == "primal-dual active set"
+    same_pressure(same.pressure, contact)
+    model.initial_gap.value = contact.initial_gap + 0.01 * np.random.default_rng(0).standard_normal(40)
+    found = model.solve()
+    assert found.solution.solver == "primal-dual active set"
+    same_pressure(found.pressure, model.contact)
+    np.testing.assert_allclose(model.pressure.value, found.pressure, rtol=1e-13)
+    np.testing.assert_allclose(model.motions.value, found.motions, rtol=1e-13)
+
+
+def test_a_slightly_indefinite_objective_is_told_and_polished():
+    """sym(M) = [[1, 1.01], [1.01, 1]] has eigenvalues 2.01 and -0.01: half a hundredth, left out of F3."""
+    contact = CondensedContact.from_compliance([[1.0, 2.02], [0.0, 1.0]], [-1.0, -1.0])
+    model = contact.model()
+    assert "not convex on this mesh" in model.notes[0]
+    found = model.solve()
+    assert found.contact_state
+    same_pressure(found.pressure, contact)
