@@ -1,6 +1,7 @@
 """The model in cvxpy: its optimum is the contact state, its parameters are the data, what is added is judged."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import cvxpy as cp
 import numpy as np
@@ -14,6 +15,7 @@ from bemcontact.errors import NotConvexError, ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.solution import Status
 
+GALLERY = Path(__file__).parents[2] / "models" / "gallery"
 CONTACTS = {f"{n} points, {k} motions": random_contact(n + k, n, k) for n, k in ((9, 0), (14, 1), (14, 3))}
 CONTACTS |= {"tools": tool_contact(), "resting": resting()}
 
@@ -66,6 +68,15 @@ def test_expressions_are_those_of_the_condensed_problem(contact):
     np.testing.assert_allclose(model.resultant().value, forces.sum(axis=0), atol=1e-12 * np.abs(forces).sum())
     if model.tool_displacement is not None:
         np.testing.assert_allclose(model.tool_displacement.value, contact.tools.displacement(a), atol=1e-13 * U)
+
+
+@pytest.mark.parametrize("path", sorted(GALLERY.glob("*.yaml")), ids=lambda path: path.stem)
+def test_bodies_of_the_gallery(path):
+    """Certified, and the pressure of the direct solver, on bodies with up to three free motions and three zones."""
+    contact = bemcontact.condense(bemcontact.load(path))
+    result = contact.model().solve()
+    assert result.certificate.certified
+    same_pressure(result.pressure, contact)
 
 
 def test_resultant_of_a_zone():
