@@ -24,6 +24,10 @@ from bemcontact.formulations.local_solver import QPStatus as QPStatus
 from bemcontact.formulations.local_solver import minimize_qp as minimize_qp
 from bemcontact.load_cases import CaseResults as CaseResults
 from bemcontact.load_cases import solve_cases as solve_cases
+from bemcontact.modelling.contact_model import ContactModel as ContactModel
+from bemcontact.modelling.designed_gap import GapDesign as GapDesign
+from bemcontact.modelling.gap_design import design_gap as design_gap
+from bemcontact.modelling.relief import Relief as Relief
 from bemcontact.parametric.parameter_path import ParameterPath as ParameterPath
 from bemcontact.parametric.path import LoadPath as LoadPath
 from bemcontact.parametric.path import load_path as load_path

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -358,6 +358,22 @@ class CondensedContact:
             ) from None
         S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / row_scale
         return StiffnessRows(S, np.eye(n), S @ self.free_displacement + V @ self.motion_load)
+
+    def model(self) -> Any:
+        """Write the problem as a `bemcontact.ContactModel`: variables, expressions and parameters of cvxpy to build on.
+
+        Returns
+        -------
+        ContactModel
+
+        Raises
+        ------
+        NotConvexError
+            If the objective F3 has a clearly negative eigenvalue on the equilibrium space.
+        """
+        from bemcontact.modelling.contact_model import ContactModel
+
+        return ContactModel.of(self)
 
     def gap(self, pressure: Array, rigid_amplitudes: Array) -> Array:
         """δ = ε + Δ1 + M p + R a, (n,) [L], from p (n,) [p] and a (k,)."""

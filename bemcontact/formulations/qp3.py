@@ -166,7 +166,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     work = objective(problem, J)
     notes = []
     if eigenvalue is not None and eigenvalue < -NEGLIGIBLE:
-        work = _nearly_convex(work, eigenvalue, options.weights)
+        work = nearly_convex(work, eigenvalue, options.weights)
         notes.append(
             f"QP3 is not convex on this mesh (smallest eigenvalue {eigenvalue:.1e}): it was solved without the "
             "negative part of its Hessian, as a start for the active-set step"
@@ -296,10 +296,25 @@ def _solve(program: Any, tolerance: float, limit: int) -> Array:
     return progress[np.logical_and.accumulate(np.isfinite(progress).all(axis=1))]
 
 
-def _nearly_convex(work: Objective, eigenvalue: float, weights: Weights) -> Objective:
+def nearly_convex(work: Objective, eigenvalue: float, weights: Weights) -> Objective:
     """Leave out the negative part of a Hessian that is indefinite by the mesh alone; refuse any other.
 
     Collocation leaves sym(JM) slightly indefinite on coarse meshes of slender bodies and at acute corners.
+
+    Parameters
+    ----------
+    work : Objective
+    eigenvalue : `smallest_eigenvalue` of the problem, negative
+    weights : of the objective
+
+    Returns
+    -------
+    Objective
+
+    Raises
+    ------
+    NotConvexError
+        If the weights are not tributary, or the eigenvalue is more than a hundredth of the largest.
     """
     values, vectors = np.linalg.eigh(work.hessian)
     if weights is Weights.TRIBUTARY and eigenvalue >= -SLIGHT * values[-1]:

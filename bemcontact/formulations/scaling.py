@@ -13,7 +13,7 @@ import numpy as np
 from bemcontact.actions import Change
 from bemcontact.arrays import Array
 from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact import CondensedContact, ContactScales
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,25 +57,27 @@ class ScaledContact:
         return float(max(natural.max(initial=0.0), balance.max(initial=0.0)) / size)
 
 
-def scaled(condensed: CondensedContact) -> ScaledContact:
+def scaled(condensed: CondensedContact, scales: ContactScales | None = None) -> ScaledContact:
     """Take the units out of a contact problem.
 
     Parameters
     ----------
     condensed : CondensedContact
+    scales : other ones than those of the problem, which depend on its load; then ‖M‖∞ = 1 only if U = ‖M‖∞ T
 
     Returns
     -------
     ScaledContact
     """
-    U, T = condensed.scales
-    given = scaled_change(condensed, Change(condensed.offset, condensed.motion_load))
+    U, T = scales or condensed.scales
+    weight = condensed.weights.max()
+    motion = motion_sizes(condensed)
     return ScaledContact(
         compliance=condensed.compliance * (T / U),
-        offset=given.offset,
-        rigid_motions=condensed.rigid_motions / _motion_sizes(condensed),
-        motion_load=given.motion_load,
-        weights=condensed.weights / condensed.weights.max(),
+        offset=condensed.offset / U,
+        rigid_motions=condensed.rigid_motions / motion,
+        motion_load=condensed.motion_load / (motion * weight * T),
+        weights=condensed.weights / weight,
     )
 
 
@@ -88,13 +90,13 @@ def scaled_weights(condensed: CondensedContact, weights: Weights) -> Array:
 def scaled_point(condensed: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array]:
     """Take the units out of a pressure (n,) [p] and amplitudes (k,)."""
     U, T = condensed.scales
-    return pressure / T, amplitudes * _motion_sizes(condensed) / U
+    return pressure / T, amplitudes * motion_sizes(condensed) / U
 
 
 def scaled_change(condensed: CondensedContact, change: Change) -> Change:
     """Take the units out of an offset (n,) [L] and a load (k,), or of a change of both."""
     U, T = condensed.scales
-    return Change(change.offset / U, change.motion_load / (_motion_sizes(condensed) * condensed.weights.max() * T))
+    return Change(change.offset / U, change.motion_load / (motion_sizes(condensed) * condensed.weights.max() * T))
 
 
 def unscaled(condensed: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array, Array]:
@@ -113,10 +115,15 @@ def unscaled(condensed: CondensedContact, pressure: Array, amplitudes: Array) ->
     amplitudes : (k,) in the user's units
     """
     U, T = condensed.scales
-    p, a = pressure * T, amplitudes * U / _motion_sizes(condensed)
+    p, a = pressure * T, amplitudes * U / motion_sizes(condensed)
     return p, condensed.free_displacement + condensed.compliance @ p + condensed.rigid_motions @ a, a
 
 
-def _motion_sizes(condensed: CondensedContact) -> Array:
-    """Largest normal component of each free motion, (k,)."""
+def motion_sizes(condensed: CondensedContact) -> Array:
+    """Largest normal component of each free motion, (k,).
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    """
     return np.abs(condensed.rigid_motions).max(axis=0, initial=0.0)

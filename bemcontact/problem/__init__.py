@@ -11,7 +11,16 @@ from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 from bemcontact.problem.problem import MeshDensity, Problem, Units
 from bemcontact.problem.reference import Reference, Table, Values
-from bemcontact.problem.rigid_surface import Circle, Closest, DeflectedContour, Plane, Polyline, RigidSurface, Shape
+from bemcontact.problem.rigid_surface import (
+    Circle,
+    Closest,
+    DeflectedContour,
+    Plane,
+    Polyline,
+    RigidSurface,
+    Shape,
+    Spline,
+)
 from bemcontact.problem.rigid_tool import RigidTool, ToolAction, ToolDisplacement, ToolForce
 from bemcontact.problem.variant import Variant
 
@@ -47,6 +56,7 @@ __all__ = [
     "RigidTool",
     "Shape",
     "ShrinkFit",
+    "Spline",
     "Table",
     "Temperature",
     "ToolAction",

@@ -11,7 +11,7 @@ from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import MOST_ELEMENTS
-from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, Polyline, RigidSurface, Shape
+from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, Polyline, RigidSurface, Shape, Spline
 
 LARGEST_TURNING = radians(60)
 """Largest angle by which a quadratic element may turn: beyond it the element strays visibly from its arc."""
@@ -102,7 +102,7 @@ def _faces_away(edge: str, surface: RigidSurface) -> str:
             way_out = f"turn the normal round: [{0 - x:g}, {0 - y:g}]"
         case Circle():
             way_out = f"is the body {'inside' if surface.body == 'outside' else 'outside'} the circle?"
-        case Polyline():
+        case Polyline() | Spline():
             way_out = "list its points in the opposite order, so that the body is on their left"
         case DeflectedContour():
             x, y = surface.direction

@@ -1,12 +1,14 @@
 """Rigid surfaces: gap and unit normal, from the surface into the body."""
 
 from collections.abc import Mapping
+from functools import cached_property
 from itertools import pairwise
 from typing import Annotated, Any, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
+from scipy.interpolate import CubicSpline
 
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.kinds import ByKind
@@ -18,6 +20,11 @@ Array = NDArray[np.float64]
 
 ON_CORNER = 1e-9
 """Distance from a corner, over the extent of line and points, below which a point is on it."""
+
+
+SAMPLES = 16
+"""Of a spline between two of its points, to start from."""
+NEWTON_STEPS = 60
 
 
 class Closest(NamedTuple):
@@ -34,7 +41,7 @@ class Plane(Stated):
     """A straight surface without end."""
 
     kind: Literal["plane"] = "plane"
-    """The shape of the surface: plane, circle, polyline, or deflected_contour."""
+    """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
     point: Point
     """Any point [x, y] of the surface."""
     normal: Point
@@ -63,7 +70,7 @@ class Circle(Stated):
     """A rigid disc with the body outside, or a rigid hole with the body inside."""
 
     kind: Literal["circle"] = "circle"
-    """The shape of the surface: plane, circle, polyline, or deflected_contour."""
+    """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
     center: Point
     """The centre [x, y]."""
     radius: Positive
@@ -82,20 +89,14 @@ class Polyline(Stated):
     """Straight pieces from point to point, the first and the last going on without end, the body on the left."""
 
     kind: Literal["polyline"] = "polyline"
-    """The shape of the surface: plane, circle, polyline, or deflected_contour."""
+    """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
     points: Annotated[tuple[Point, ...], Field(min_length=2)]
     """The corners [x, y] in order; the body is on the left of one who walks along them."""
 
     @model_validator(mode="after")
     def _simple(self) -> Self:
         """Refuse points that repeat and pieces that fold back on the one before."""
-        sides = np.diff(np.array(self.points), axis=0)
-        for i, side in enumerate(sides):
-            if not np.hypot(*side) > 0:
-                raise complain(f"points {i} and {i + 1} are the same: {list(self.points[i])}; leave one out")
-        for i, (side, after) in enumerate(pairwise(sides)):
-            if side @ after <= -(1 - 1e-12) * np.hypot(*side) * np.hypot(*after):
-                raise complain(f"the line folds back on itself at point {i + 1}: {list(self.points[i + 1])}")
+        _ensure_simple(self.points)
         return self
 
     def closest(self, points: Array) -> Closest:
@@ -130,6 +131,78 @@ class Polyline(Stated):
         return Closest(np.einsum("ki,ki->k", offset, normals), normals)
 
 
+class Spline(Stated):
+    """A smooth curve through points, straight at both ends and going on so without end, the body on the left.
+
+    Both coordinates are natural cubic splines of the length along the chords.
+    """
+
+    kind: Literal["spline"] = "spline"
+    """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
+    points: Annotated[tuple[Point, ...], Field(min_length=2)]
+    """The points [x, y] in order; the body is on the left of one who walks along them."""
+
+    @model_validator(mode="after")
+    def _simple(self) -> Self:
+        """Refuse points that repeat, and chords that fold back on the one before."""
+        _ensure_simple(self.points)
+        return self
+
+    @cached_property
+    def curve(self) -> CubicSpline:
+        """The points (2,) of the curve by the length along the chords, from zero."""
+        points = np.array(self.points)
+        return CubicSpline(np.append(0.0, np.hypot(*np.diff(points, axis=0).T).cumsum()), points, bc_type="natural")
+
+    def closest(self, points: Array) -> Closest:
+        """Gap and normal at points (k, 2) [L], of the nearest point of the curve or of its straight ends.
+
+        Newton's method starts from the nearest of the samples on the curve, which finds the nearest point unless the
+        curve bends more than once between two samples.
+        """
+        points = np.asarray(points, float)
+        t = np.stack([self._along_end(points, 0), self._on_curve(points), self._along_end(points, -1)], axis=1)
+        feet, tangents = self._at(t)
+        nearest = np.argmin(np.hypot(*np.moveaxis(points[:, None] - feet, 2, 0)), axis=1)
+        rows = np.arange(len(points))
+        foot, tangent = feet[rows, nearest], tangents[rows, nearest]
+        normals = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.hypot(*tangent.T)[:, None]
+        return Closest(np.einsum("ki,ki->k", points - foot, normals), normals)
+
+    def _at(self, t: Array) -> tuple[Array, Array]:
+        """Points and tangents (..., 2) at parameters (...,), which may be beyond the ends."""
+        curve = self.curve
+        inside = np.clip(t, 0.0, curve.x[-1])
+        tangents = curve(inside, 1)
+        return curve(inside) + (t - inside)[..., None] * tangents, tangents
+
+    def _along_end(self, points: Array, end: int) -> Array:
+        """Parameter (k,) of the nearest point of a straight end: the first (0) or the last (-1)."""
+        t, tangent = self.curve.x[end], self.curve(self.curve.x[end], 1)
+        along = (points - np.array(self.points[end])) @ tangent / (tangent @ tangent)
+        return t + (np.minimum(along, 0.0) if end == 0 else np.maximum(along, 0.0))
+
+    def _on_curve(self, points: Array) -> Array:
+        """Parameter (k,) of the nearest point of the curve: Newton between two samples, halving where it strays."""
+        curve = self.curve
+        knots = np.concatenate([np.linspace(a, b, SAMPLES, endpoint=False) for a, b in pairwise(curve.x)])
+        samples = np.append(knots, curve.x[-1])
+        squares = ((points[:, None] - curve(samples)) ** 2).sum(axis=2)
+        i = np.argmin(squares, axis=1)
+        low, high, t = samples[np.maximum(i - 1, 0)], samples[np.minimum(i + 1, len(samples) - 1)], samples[i]
+        for _ in range(NEWTON_STEPS):
+            off, tangent = curve(t) - points, curve(t, 1)
+            slope = np.einsum("ki,ki->k", off, tangent)
+            low, high = np.where(slope <= 0, t, low), np.where(slope >= 0, t, high)
+            bend = np.einsum("ki,ki->k", tangent, tangent) + np.einsum("ki,ki->k", off, curve(t, 2))
+            step = t - slope / np.where(bend > 0, bend, np.inf)
+            t_next = np.where((step > low) & (step < high) & (bend > 0), step, (low + high) / 2)
+            if np.all(np.abs(t_next - t) <= 1e-15 * curve.x[-1]):
+                break
+            t = t_next
+        return t
+
+
 def _says_something(value: Any) -> Any:
     """Refuse a condition of the contour that states nothing: here, it may be meant to take a load away."""
     if isinstance(value, Mapping) and all(part == {} for part in value.values()):
@@ -153,7 +226,7 @@ class DeflectedContour(Stated):
     """
 
     kind: Literal["deflected_contour"] = "deflected_contour"
-    """The shape of the surface: plane, circle, polyline, or deflected_contour."""
+    """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
     conditions: Annotated[dict[Name, OtherCondition], Field(default_factory=dict)]
     """What is prescribed on edges instead of the problem's own conditions there, by edge name; others are kept."""
     loads: Loads = Loads()
@@ -181,6 +254,17 @@ class DeflectedContour(Stated):
         return Closest(-(displacement @ direction), np.tile(direction, (len(displacement), 1)))
 
 
+def _ensure_simple(points: tuple[Point, ...]) -> None:
+    """Refuse points that repeat and pieces that fold back on the one before."""
+    sides = np.diff(np.array(points), axis=0)
+    for i, side in enumerate(sides):
+        if not np.hypot(*side) > 0:
+            raise complain(f"points {i} and {i + 1} are the same: {list(points[i])}; leave one out")
+    for i, (side, after) in enumerate(pairwise(sides)):
+        if side @ after <= -(1 - 1e-12) * np.hypot(*side) * np.hypot(*after):
+            raise complain(f"the line folds back on itself at point {i + 1}: {list(points[i + 1])}")
+
+
 def _of_length_one(vector: Point) -> Point:
     length = float(np.hypot(*vector))
     return vector[0] / length, vector[1] / length
@@ -193,7 +277,7 @@ def _unit(vectors: Array, otherwise: Array) -> Array:
     return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
 
 
-Shape = Plane | Circle | Polyline
+Shape = Plane | Circle | Polyline | Spline
 """A rigid surface that has a gap at any point of the plane."""
 RigidSurface = Shape | DeflectedContour
 """The surface that the body may touch."""
@@ -201,7 +285,13 @@ StatedSurface = Annotated[
     RigidSurface,
     ByKind(
         what="a rigid surface",
-        kinds={"plane": Plane, "circle": Circle, "polyline": Polyline, "deflected_contour": DeflectedContour},
+        kinds={
+            "plane": Plane,
+            "circle": Circle,
+            "polyline": Polyline,
+            "spline": Spline,
+            "deflected_contour": DeflectedContour,
+        },
     ),
 ]
 """A rigid surface as it is written; `kind` says which."""

@@ -21,6 +21,7 @@ from bemcontact.problem import (
     Problem,
     Reference,
     RigidSurface,
+    Spline,
     Table,
     ToolAction,
     Units,
@@ -127,9 +128,9 @@ def surface_in_words(surface: RigidSurface) -> str:
             return f"plane through {vector(surface.point)}, normal {vector(surface.unit_normal)}"
         case Circle():
             return f"circle about {vector(surface.center)}, radius {number(surface.radius)}, body {surface.body}"
-        case Polyline():
+        case Polyline() | Spline():
             first, last = vector(surface.points[0]), vector(surface.points[-1])
-            return f"polyline of {len(surface.points)} points from {first} to {last}"
+            return f"{surface.kind} of {len(surface.points)} points from {first} to {last}"
         case DeflectedContour():
             return f"own contour, deflected; gap along {vector(surface.unit_direction)}"
 

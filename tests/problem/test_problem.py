@@ -135,6 +135,7 @@ def test_zone_lists_an_edge_once():
         ({"kind": "circle", "center": [0, -9], "radius": 9, "body": "inside"}, "is the body outside the circle?"),
         ({"kind": "circle", "center": [0, 20], "radius": 20, "body": "outside"}, "is the body inside the circle?"),
         ({"kind": "polyline", "points": [[1, 0], [-1, 0]]}, "list its points in the opposite order"),
+        ({"kind": "spline", "points": [[1, 0], [0, 0], [-1, 0]]}, "list its points in the opposite order"),
     ],
 )
 def test_surface_that_faces_away_is_refused_with_the_way_out(surface, way_out):

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Circle, DeflectedContour, Plane, Polyline
+from bemcontact.problem import Circle, DeflectedContour, Plane, Polyline, Spline
 
 COORDINATE = st.floats(-10, 10)
 POINT = st.tuples(COORDINATE, COORDINATE)
@@ -173,3 +173,88 @@ def test_on_a_corner_the_normal_is_the_bisector_whatever_round_off_says(size: fl
     bisector = np.array([-1.0, 1.0]) / np.sqrt(2) + np.array([1.0, 5.0]) / np.sqrt(26)
     assert normals == pytest.approx(bisector[None] / np.hypot(*bisector), abs=1e-12)
     assert abs(gap[0]) <= 1e-13 * size
+
+
+CIRCLE = [(np.pi + 0.3 + a, 2.0) for a in np.linspace(0, 1.5, 31)]
+ARCH = Spline(points=tuple((r * cos(a), r * sin(a)) for a, r in CIRCLE))
+WAVE = Spline(points=tuple((x, 0.3 * sin(2 * x)) for x in np.linspace(-3, 3, 13)))
+
+
+@given(st.sampled_from([WAVE, ARCH]), POINT)
+def test_gap_of_a_spline_is_the_least_distance(surface, point):
+    """Against 20 000 points of curve and straight ends: one of them is within half a step of the nearest point."""
+    t = np.linspace(0, surface.curve.x[-1], 20_000)
+    ends = [surface.curve(t[i]) + np.linspace(0, 30, 20_000)[:, None] * sign * unit(surface.curve(t[i], 1))
+            for i, sign in ((0, -1), (-1, 1))]  # fmt: skip
+    distance = np.hypot(*(np.concatenate([surface.curve(t), *ends]) - point).T).min()
+    assert abs(closest(surface, point)[0]) == pytest.approx(distance, abs=30 / 20_000)
+
+
+@given(st.sampled_from([WAVE, ARCH]), st.floats(0, 1), st.floats(-0.05, 0.05))
+def test_spline_gap_is_what_one_steps_off_along_the_normal(surface, part, way):
+    """A step of less than the radius of curvature (0.8 at least) leads back to where it started, side and all."""
+    t = part * surface.curve.x[-1]
+    tangent = unit(surface.curve(t, 1))
+    normal = np.array([-tangent[1], tangent[0]])
+    gap, found = closest(surface, surface.curve(t) + way * normal)
+    assert gap == pytest.approx(way, abs=1e-12)
+    assert found == pytest.approx(normal, abs=1e-9)
+
+
+def unit(vector):
+    return vector / np.hypot(*vector)
+
+
+def test_spline_goes_through_its_points_and_on_straight():
+    gaps, _ = WAVE.closest(np.array(WAVE.points))
+    assert abs(gaps).max() <= 1e-14
+    for end, sign in ((0, -1), (-1, 1)):
+        tangent = unit(WAVE.curve(WAVE.curve.x[end], 1))
+        normal = np.array([-tangent[1], tangent[0]])
+        gap, found = closest(WAVE, np.array(WAVE.points[end]) + sign * 7 * tangent + 2 * normal)
+        assert gap == pytest.approx(2, rel=1e-13)
+        assert found == pytest.approx(normal, abs=1e-13)
+
+
+@given(POINT, ANGLE)
+def test_spline_of_two_points_is_a_plane(point, angle):
+    spline = Spline(points=((1, 2), (1 + cos(angle), 2 + sin(angle))))
+    gap, normal = closest(spline, point)
+    plane_gap, plane_normal = closest(Plane(point=(1, 2), normal=(-sin(angle), cos(angle))), point)
+    assert gap == pytest.approx(plane_gap, abs=1e-12)
+    assert normal == pytest.approx(plane_normal, abs=1e-12)
+
+
+def test_spline_through_a_circle_is_of_the_fourth_order_inside():
+    """Away from its ends, where the second derivative is another: half the chord, a sixteenth of the error."""
+
+    def error(count):
+        angles = np.linspace(0, np.pi, count)
+        spline = Spline(points=tuple((-2 * cos(a), 2 * sin(a)) for a in angles))
+        inner = np.linspace(0.35 * np.pi, 0.65 * np.pi, 401)
+        return abs(spline.closest(3 * np.column_stack([-np.cos(inner), np.sin(inner)])).gap - 1).max()
+
+    assert np.log2(error(17) / error(33)) == pytest.approx(4, abs=0.3)
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e6])
+def test_spline_in_other_units(size):
+    """A kilometre instead of a millimetre: the same normals, the gap times the factor."""
+    points = np.random.default_rng(0).uniform(-2, 2, (50, 2))
+    scaled = Spline(points=tuple((size * x, size * y) for x, y in WAVE.points))
+    one, other = WAVE.closest(points), scaled.closest(size * points)
+    np.testing.assert_allclose(other.gap, size * one.gap, atol=1e-12 * size)
+    np.testing.assert_allclose(other.normals, one.normals, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("points", "words"),
+    [
+        ([(0, 0)], "points: expected at least 2 in the list, found a list of 1"),
+        ([(0, 0), (1, 0), (1, 0)], "points 1 and 2 are the same"),
+        ([(0, 0), (2, 0), (1, 0)], "folds back on itself at point 1"),
+    ],
+)
+def test_points_that_make_no_spline_are_refused(points, words):
+    with pytest.raises(ProblemError, match=words):
+        Spline(points=points)

@@ -11,7 +11,7 @@ from bemcontact import analysis
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.bem.condense import body_of
 from bemcontact.contact import CondensedContact
-from bemcontact.problem import Circle, DeflectedContour, Field, Plane, Polyline, Problem, Units
+from bemcontact.problem import Circle, DeflectedContour, Field, Plane, Polyline, Problem, Spline, Units
 from bemcontact.report import text, words
 from bemcontact.solution import LocalSearch, Penalty, Status
 
@@ -65,6 +65,8 @@ def test_surfaces_in_words():
     assert words.surface_in_words(circle) == "circle about (1, 2), radius 3, body inside"
     polyline = Polyline(kind="polyline", points=((0, 0), (1, 0), (2, 1)))
     assert words.surface_in_words(polyline) == "polyline of 3 points from (0, 0) to (2, 1)"
+    spline = Spline(points=((0, 0), (1, 0), (2, 1)))
+    assert words.surface_in_words(spline) == "spline of 3 points from (0, 0) to (2, 1)"
     contour = DeflectedContour(conditions={"top": {"pressure": 1}}, direction=(0, 2))  # pyright: ignore
     assert words.surface_in_words(contour) == "own contour, deflected; gap along (0, 1)"
 

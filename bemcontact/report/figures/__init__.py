@@ -6,6 +6,7 @@ Each ``draw_...`` function draws into axes that it is given; each ``figure_of_..
 from bemcontact.report.figures.cases import draw_case_peaks, draw_case_pressures, figure_of, figure_of_cases
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.course import draw_convergence, draw_history
+from bemcontact.report.figures.design import draw_relief, draw_relieved_pressure, figure_of_design
 from bemcontact.report.figures.page import FORMATS, ensure_known_format, save
 from bemcontact.report.figures.path import draw_interval_ends, draw_peaks, draw_resultants, figure_of_path
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
@@ -30,10 +31,13 @@ __all__ = [
     "draw_pressure",
     "draw_pressures",
     "draw_problem",
+    "draw_relief",
+    "draw_relieved_pressure",
     "draw_resultants",
     "ensure_known_format",
     "figure_of",
     "figure_of_cases",
+    "figure_of_design",
     "figure_of_path",
     "figure_of_problem",
     "figure_of_result",

@@ -27,6 +27,7 @@ from bemcontact.problem import (
     Polyline,
     Problem,
     Shape,
+    Spline,
 )
 from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
 from bemcontact.report.figures.page import (
@@ -241,6 +242,15 @@ def _surface_line(surface: Shape, facing: Array, size: float) -> tuple[Array, Ar
             tangents = (ends[:, 1] - ends[:, 0]) / np.hypot(*(ends[:, 1] - ends[:, 0]).T)[:, None]
             normals = np.column_stack([-tangents[:, 1], tangents[:, 0]])
             return ends.reshape(-1, 2), np.repeat(normals, 2, axis=0)
+        case Spline():
+            curve = surface.curve
+            t = np.linspace(0.0, curve.x[-1], 16 * len(surface.points))
+            points, tangents = curve(t), curve(t, 1)
+            tangents = tangents / np.hypot(*tangents.T)[:, None]
+            reach = 0.12 * size * tangents[[0, -1]]
+            points = np.vstack([points[:1] - reach[:1], points, points[-1:] + reach[1:]])
+            tangents = np.vstack([tangents[:1], tangents, tangents[-1:]])
+            return points, np.column_stack([-tangents[:, 1], tangents[:, 0]])
 
 
 def _traction(problem: Problem, edge: str, points: Array, normals: Array) -> Array:

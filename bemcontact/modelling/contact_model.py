@@ -1,0 +1,334 @@
+"""A condensed contact as a model in cvxpy: variables, expressions, parameters, objective and constraints."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import cvxpy as cp
+import numpy as np
+
+from bemcontact.arrays import Array
+from bemcontact.choices import Weights
+from bemcontact.contact import CondensedContact, ContactScales
+from bemcontact.errors import ProblemError
+from bemcontact.formulations import qp3
+from bemcontact.formulations.complementarity import ACTIVE_SET, polish
+from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
+from bemcontact.modelling.clarabel import minimise
+from bemcontact.modelling.model_result import ModelResult, judged, solution_at, taken_out
+from bemcontact.modelling.parameters import Parameters, Value
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class ContactModel:
+    """Minimise F3 = pᵀJ gap with gap = q + M p + R a >= 0, p >= 0, ℓᵀp = -load, (40)-(42): to build on in cvxpy.
+
+    All is in the user's units; the variables behind the expressions are scaled, so that units do not matter to a
+    solver. The expressions are affine and may be used in what is added. After new values of parameters nothing is
+    compiled anew. Values stand in the expressions, as is cvxpy's way, until the next solve; `result` takes them out.
+
+    Parameters
+    ----------
+    condensed : what the model was made of
+    parameters : what may change; `initial_gap`, `case_factors`, `tool_position` and `tool_force` are its own
+    pressure : (n,) p [p], an expression
+    motions : (k,) a, an expression; None without free motions
+    gap : (n,) δ [L]
+    displacement : (n,) u_n = Δ1 + M p + R a [L]
+    tool_displacement : (t, 3) where the tools are: x, y [L] and rotation [rad]; None without tools
+    objective : F3 [p L²], which is zero at a contact state; in equilibrium it is pᵀJ gap
+    constraints : "no_penetration", "no_tension" and, with free motions, "equilibrium"
+    scales : displacement [L] and pressure [p] that the variables behind the expressions are divided by
+    notes : what a person should know
+    """
+
+    condensed: CondensedContact
+    parameters: Parameters
+    pressure: cp.Expression
+    motions: cp.Expression | None
+    gap: cp.Expression
+    displacement: cp.Expression
+    tool_displacement: cp.Expression | None
+    objective: cp.Expression
+    constraints: dict[str, cp.Constraint]
+    scales: ContactScales
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, condensed: CondensedContact) -> "ContactModel":
+        """Write a condensed contact as a model whose parameters have the values that are in effect.
+
+        Parameters
+        ----------
+        condensed : CondensedContact
+
+        Returns
+        -------
+        ContactModel
+
+        Raises
+        ------
+        NotConvexError
+            The Hessian has a negative eigenvalue on the equilibrium space, of more than a hundredth of the largest.
+        """
+        U, T = scales = typical_scales(condensed)
+        problem, given = scaled(condensed, scales), Parameters.of(condensed)
+        n, k = condensed.rigid_motions.shape
+        hessian, notes = _convex_hessian(problem)
+        p = cp.Variable(n, name="pressure")
+        a = cp.Variable(k, name="motions") if k else None
+        moved = problem.compliance @ p + (problem.rigid_motions @ a if a is not None else 0.0)
+        sizes = motion_sizes(condensed)
+        load, offset = given.motion_load / (sizes * condensed.weights.max() * T), given.offset / U
+        balance = {} if a is None else {"equilibrium": problem.equilibrium.T @ p == -load}
+        motions = None if a is None else cp.multiply(U / sizes, a)
+        return cls(
+            condensed=condensed,
+            parameters=given,
+            pressure=T * p,
+            motions=motions,
+            gap=U * (offset + moved),
+            displacement=U * (given.free_displacement / U + moved),
+            tool_displacement=_tool_displacement(given, motions),
+            objective=U * T * condensed.weights.max() * _work(problem, hessian, p, a, offset, load),
+            constraints={"no_penetration": offset + moved >= 0, "no_tension": p >= 0, **balance},
+            scales=scales,
+            notes=notes,
+        )
+
+    def __repr__(self) -> str:
+        """One line: name, points, what may change."""
+        names = ", ".join(parameter.name() for parameter in self.objective.parameters())
+        return f"<ContactModel of {self.condensed.name!r}: {self.condensed.size} points; {names} may change>"
+
+    @property
+    def initial_gap(self) -> cp.Parameter:
+        """ε (n,) [L] with all tools undisplaced."""
+        return self.parameters.initial_gap
+
+    @property
+    def case_factors(self) -> cp.Parameter | None:
+        """Factors (c,) of the load cases; None without load cases."""
+        return self.parameters.case_factors
+
+    @property
+    def tool_position(self) -> cp.Parameter | None:
+        """Displacement (t, 3) of tools beside what the load cases add: x, y [L] and rotation [rad]; None without tools.
+
+        That of free components is unused.
+        """
+        return self.parameters.tool_position
+
+    @property
+    def tool_force(self) -> cp.Parameter | None:
+        """Force (t, 3) on the free components of tools, likewise: x, y [p L] and moment [p L²]; None without tools."""
+        return self.parameters.tool_force
+
+    def resultant(self, zone: str | None = None) -> cp.Expression:
+        """Force (2,) [p L] of the rigid surface of a zone on the body, Σ w p n; of all zones if None.
+
+        Parameters
+        ----------
+        zone : name of a contact zone
+
+        Returns
+        -------
+        cvxpy Expression
+
+        Raises
+        ------
+        ProblemError
+            If there is no such zone.
+        """
+        names = self.condensed.zone_names
+        if zone is not None and zone not in names:
+            raise ProblemError(f"there is no contact zone '{zone}'; there are: {', '.join(names)}")
+        inside = np.ones(self.condensed.size, bool) if zone is None else self.condensed.zone == names.index(zone)
+        forces = np.where(inside, self.condensed.weights, 0.0)[:, None] * self.condensed.normals
+        return forces.T @ self.pressure
+
+    @property
+    def contact(self) -> CondensedContact:
+        """The contact problem with the present values of the parameters."""
+        return self.parameters.contact()
+
+    def problem(
+        self, extra_objective: cp.Expression | None = None, extra_constraints: Sequence[cp.Constraint] = ()
+    ) -> cp.Problem:
+        """Put objective and constraints together with what is added; to be solved again after changes of parameters.
+
+        Parameters
+        ----------
+        extra_objective : convex scalar that is added to F3 [p L²]
+        extra_constraints : convex constraints
+
+        Returns
+        -------
+        cvxpy Problem
+
+        Raises
+        ------
+        ProblemError
+            If what is added is not convex, or parameters enter it so that each change of them is a new problem.
+        """
+        goal = self.objective if extra_objective is None else self.objective + extra_objective
+        problem = cp.Problem(cp.Minimize(goal), [*self.constraints.values(), *extra_constraints])
+        ensure_convex(problem)
+        return problem
+
+    @cached_property
+    def _pure(self) -> cp.Problem:
+        """Nothing added."""
+        return self.problem()
+
+    def solve(
+        self,
+        extra_objective: cp.Expression | None = None,
+        extra_constraints: Sequence[cp.Constraint] = (),
+        *,
+        problem: cp.Problem | None = None,
+        max_iterations: int | None = None,
+    ) -> ModelResult:
+        """Solve with the present values of the parameters, to tolerances from which the contact state is polished.
+
+        Parameters
+        ----------
+        extra_objective, extra_constraints : as of `problem`
+        problem : one that was made before, in place of these; solved again, it is not compiled again
+        max_iterations : of Clarabel, 200 if None
+
+        Returns
+        -------
+        ModelResult
+            Check its `status`: a model without a solution is no error.
+
+        Raises
+        ------
+        ProblemError
+            As of `problem`, or if both ways are used at once.
+        SolverError
+            If Clarabel cannot state the model, or breaks down.
+        """
+        added = extra_objective is not None or len(extra_constraints) > 0
+        if problem is not None and added:
+            raise ProblemError("give either a problem that was made before, or what is to be added, not both")
+        chosen = problem or (self.problem(extra_objective, extra_constraints) if added else self._pure)
+        if chosen is self._pure and (found := self._from_last()) is not None:
+            return found
+        minimise(chosen, max_iterations)
+        return self.result(chosen)
+
+    def _from_last(self) -> ModelResult | None:
+        """Try a few active-set steps from the values that stand in the model; None if they do not get there."""
+        if self.pressure.value is None:
+            return None
+        contact, motions = self.contact, self.motions
+        found = judged(contact, polish(contact, solution_at(contact, self.pressure, motions, ACTIVE_SET)), added=False)
+        solution, certificate = found.solution, found.certificate
+        if solution is None or certificate is None or not certificate.certified:
+            return None
+        U, T = self.scales
+        self.pressure.variables()[0].value = solution.pressure / T
+        if motions is not None:
+            motions.variables()[0].value = solution.rigid_amplitudes * (motion_sizes(self.condensed) / U)
+        return found
+
+    def result(self, problem: cp.Problem) -> ModelResult:
+        """Take everything out of a problem that has been solved, and judge it at the present values of the parameters.
+
+        Parameters
+        ----------
+        problem : of `problem`, or one that was put together from parts of the model otherwise
+
+        Returns
+        -------
+        ModelResult
+
+        Raises
+        ------
+        ProblemError
+            If it has not been solved, or knows nothing of the model's pressure.
+        """
+        parts = zip(problem.constraints, self.constraints.values(), strict=False)
+        pure = len(problem.constraints) == len(self.constraints) and all(one is other for one, other in parts)
+        return taken_out(
+            self.contact,
+            problem,
+            self.pressure,
+            self.motions,
+            added=not pure or problem.objective.expr is not self.objective,
+        )
+
+
+def ensure_convex(problem: cp.Problem) -> None:
+    """Refuse what is not convex, or not so in parameters that it need be compiled once only, with a `ProblemError`."""
+    if problem.is_dpp():
+        return
+    if problem.is_dcp():
+        raise ProblemError(
+            "parameters enter what was added so that each change of them is a new problem (not DPP): let each term "
+            "have at most one parameter as a factor, or put a new parameter for their product"
+        )
+    parts = [("the objective", problem.objective), *((f"constraint {c}", c) for c in problem.constraints)]
+    bad = next(name for name, part in parts if not part.is_dcp())
+    raise ProblemError(
+        f"the model is not convex by cvxpy's rules (DCP) in {bad:.200}; write what was added with convex functions "
+        "that are minimised or bounded from above"
+    )
+
+
+def typical_scales(condensed: CondensedContact) -> ContactScales:
+    """Displacement [L] and pressure [p] of the present state, or of a load case by itself, whichever is largest.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+
+    Returns
+    -------
+    ContactScales
+    """
+    states = [condensed, *(condensed.with_factors({name: 1.0}) for name in condensed.cases.names)]
+    told = [state for state in states if state.offset.any() or state.motion_load.any()]
+    return max((state.scales for state in told), default=condensed.scales)
+
+
+def _convex_hessian(problem: ScaledContact) -> tuple[Array, tuple[str, ...]]:
+    """Hessian (n, n) of F3 on the equilibrium space, as QP3 has it, and what was left out of it."""
+    J = np.diag(problem.weights)
+    work, eigenvalue = qp3.objective(problem, J), qp3.smallest_eigenvalue(problem, J)
+    if eigenvalue is None or eigenvalue >= -qp3.NEGLIGIBLE:
+        return work.hessian, ()
+    note = (
+        f"F3 is not convex on this mesh (smallest eigenvalue {eigenvalue:.1e}): the model is without the negative part "
+        "of its Hessian, and its optimum near the contact state, not on it"
+    )
+    return qp3.nearly_convex(work, eigenvalue, Weights.TRIBUTARY).hessian, (note,)
+
+
+def _work(
+    problem: ScaledContact, hessian: Array, p: cp.Variable, a: cp.Variable | None, offset: Value, load: Value
+) -> cp.Expression:
+    """F3, scaled: ½ pᵀPᵀHP p + (J q + ½ (I + Pᵀ) H p0)ᵀp - loadᵀa with H = JM + MᵀJ.
+
+    With P and p0 of `qp3.objective` every p in equilibrium is P p + p0 and p0 = (I - P) p, so that
+    pᵀJM p = ½ (P p)ᵀH P p + p0ᵀH P p + ½ p0ᵀH (I - P) p: linear in parameters, and no constant is left.
+    """
+    M, R, ell, J = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.weights
+    work = 0.5 * cp.quad_form(p, cp.psd_wrap(hessian)) + cp.multiply(J, offset) @ p
+    if a is None:
+        return work
+    weighted = J[:, None] * M
+    inverse = np.linalg.inv(ell.T @ R)
+    project = np.eye(len(M)) - R @ inverse @ ell.T
+    held = -0.5 * (np.eye(len(M)) + project.T) @ (weighted + weighted.T) @ R @ inverse
+    return work + (held @ load) @ p - load @ a
+
+
+def _tool_displacement(given: Parameters, motions: cp.Expression | None) -> cp.Expression | None:
+    """Where the tools are, (t, 3)."""
+    tools = given.rest.tools
+    if not len(tools):
+        return None
+    moved = given.position if motions is None else given.position + tools.amplitudes @ motions
+    return cp.reshape(moved, (len(tools), 3), order="C")

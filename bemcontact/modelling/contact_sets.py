@@ -1,0 +1,286 @@
+"""The convex programs of a design: states of contact that share a profile, with given contact sets or with none.
+
+    gap_l = q_l + S c + M p_l + R a_l >= 0,  p_l >= 0,  ℓᵀp_l = -load_l,  low <= W c <= high    for each load state l
+
+With contact sets A_l given, gap_l = 0 on A_l and p_l = 0 off it: every feasible point is a contact state for each load,
+although the profile is unknown. Without them, complementarity is dropped, and the optimum is a lower bound.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import cvxpy as cp
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.contact import CondensedContact, ContactScales
+from bemcontact.errors import SolverError
+from bemcontact.formulations import qp3
+from bemcontact.formulations.scaling import ScaledContact, scaled
+from bemcontact.modelling.clarabel import minimise
+from bemcontact.modelling.designed_gap import Goal
+from bemcontact.modelling.parameters import value_of
+from bemcontact.modelling.relief import Profiles
+
+BoolArray = NDArray[np.bool_]
+
+WEAK = 1e-6
+"""Scaled pressure or gap that is none to the tolerance of the solver."""
+ROOM = 3e-10
+"""Part of the goal that the gentlest profile may give away."""
+MARGIN = 1e-6
+"""By which a value that is reached is taken too high, so that the relaxation surely admits it."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Piece:
+    """The best profile for given contact sets.
+
+    Parameters
+    ----------
+    value : scaled goal
+    coefficients : (s,) c [L]
+    pressures : (loads, n) [p]
+    touching : (loads, n) the contact sets
+    turns : pairs (load, point) that lie on the edge of the contact set, the most promising ones first
+    promising : how many of these the multipliers speak for
+    """
+
+    value: float
+    coefficients: Array
+    pressures: Array
+    touching: BoolArray
+    turns: tuple[tuple[int, int], ...]
+    promising: int
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+
+class Relaxation(NamedTuple):
+    """Lower bound of the goal [p], the coefficients (s,) [L] there, and where (loads, n) p is larger than the gap."""
+
+    bound: float
+    coefficients: Array
+    touching: BoolArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SharedProfile:
+    """Load states that share a profile, scaled alike.
+
+    Parameters
+    ----------
+    states : scaled, without profile
+    profiles : to choose from
+    scales : displacement [L] and pressure [p]
+    goal : to be made small
+    """
+
+    states: tuple[ScaledContact, ...]
+    profiles: Profiles
+    scales: ContactScales
+    goal: Goal
+
+    @classmethod
+    def of(cls, contacts: Sequence[CondensedContact], profiles: Profiles, goal: Goal) -> "SharedProfile":
+        """Scale all states by the largest of their scales."""
+        scales = max(contact.scales for contact in contacts)
+        states = tuple(scaled(contact, scales) for contact in contacts)
+        return cls(states=states, profiles=profiles, scales=scales, goal=goal)
+
+    def measure(self, pressures: Iterable[Array]) -> float:
+        """The goal [p] at pressures (n,) [p]."""
+        if self.goal is Goal.PEAK:
+            return max(float(p.max()) for p in pressures)
+        return max(float(np.linalg.norm(self._deviation @ p)) for p in pressures)
+
+    @property
+    def _deviation(self) -> Array:
+        """D (m, n): |D p| is the root of the weighted mean square deviation on the interval."""
+        points, weights = self.profiles.points, self.states[0].weights
+        part = weights[points] / weights[points].sum()
+        rows = np.zeros((len(points), len(weights)))
+        rows[:, points] = np.sqrt(part)[:, None] * (np.eye(len(points)) - part)
+        return rows
+
+    def _stated(self) -> "_Program":
+        """Variables, expressions, and all constraints but those that contact sets make."""
+        U, profiles = self.scales.displacement, self.profiles
+        c, top = cp.Variable(profiles.shapes.shape[1]), cp.Variable()
+        relief, rows = profiles.shapes @ c, profiles.rows @ c
+        low, high = np.isfinite(profiles.low), np.isfinite(profiles.high)
+        constraints: list[cp.Constraint] = [rows[low] >= profiles.low[low] / U] if low.any() else []
+        constraints += [rows[high] <= profiles.high[high] / U] if high.any() else []
+        pressures, motions, gaps = [], [], []
+        for state in self.states:
+            n, k = state.rigid_motions.shape
+            p, a = cp.Variable(n), cp.Variable(k) if k else None
+            gap = state.offset + relief + state.compliance @ p
+            if a is not None:
+                gap = gap + state.rigid_motions @ a
+                constraints.append(state.equilibrium.T @ p == -state.motion_load)
+            constraints.append(p <= top if self.goal is Goal.PEAK else cp.norm(self._deviation @ p) <= top)
+            pressures.append(p)
+            motions.append(a)
+            gaps.append(gap)
+        return _Program(c, top, relief, pressures, motions, gaps, constraints)
+
+    def best_with(self, touching: BoolArray) -> Piece | None:
+        """Find the best profile with which the contact sets are those given; None if none is found.
+
+        Parameters
+        ----------
+        touching : (loads, n)
+
+        Returns
+        -------
+        Piece or None
+        """
+        program = self._stated()
+        sets = program.with_contact(touching)
+        problem = cp.Problem(cp.Minimize(program.top), [*program.constraints, *sets.constraints])
+        try:
+            minimise(problem)
+        except SolverError:  # sets that hardly fit together; others will do
+            return None
+        return None if program.top.value is None else self._piece(program, touching, sets.promise())
+
+    def gentlest(self, piece: Piece) -> Piece:
+        """Find, among profiles with these contact sets that are as good, that of the least mean square.
+
+        Parameters
+        ----------
+        piece : the best with its contact sets
+
+        Returns
+        -------
+        Piece
+            The same one if no gentler one is found.
+        """
+        program = self._stated()
+        sets = program.with_contact(piece.touching)
+        width = np.sqrt(self.states[0].weights / self.states[0].weights.sum())
+        as_good = program.top <= piece.value + ROOM * abs(piece.value)
+        size = float(np.abs(self.profiles.shapes @ piece.coefficients).max()) / self.scales.displacement
+        goal = cp.Minimize(cp.sum_squares(cp.multiply(width / (size or 1.0), program.relief)))
+        try:
+            minimise(cp.Problem(goal, [*program.constraints, *sets.constraints, as_good]))
+        except SolverError:
+            return piece
+        found = None if program.top.value is None else self._piece(program, piece.touching, sets.promise())
+        return found if found is not None and found.value <= piece.value + 2 * ROOM * abs(piece.value) else piece
+
+    def _piece(self, program: "_Program", touching: BoolArray, promise: Array) -> Piece:
+        """Take the numbers out of a program that has been solved."""
+        pressures = np.array([value_of(p) for p in program.pressures]) * self.scales.pressure
+        edge = [int(i) for i in np.argsort(-promise, axis=None) if promise.flat[i] > -np.inf]
+        return Piece(
+            value=self.measure(pressures) / self.scales.pressure,
+            coefficients=value_of(program.coefficients) * self.scales.displacement,
+            pressures=pressures,
+            touching=touching,
+            turns=tuple(divmod(i, touching.shape[1]) for i in edge),
+            promising=int((promise > WEAK).sum()),
+        )
+
+    def relaxed(self, best: float) -> Relaxation:
+        """Find a value [p] below which the goal cannot be.
+
+        Complementarity is dropped but for what is convex in it: F3 at the designed gap is zero, and in it p·g is at
+        least what McCormick's two planes say (Math. Programming 10, 1976, 147-175) for g within its range and, where
+        the peak is minimised, p up to the best peak that is known.
+
+        Parameters
+        ----------
+        best : a value of the goal that is reached [p]
+
+        Returns
+        -------
+        Relaxation
+        """
+        U, T = self.scales
+        program = self._stated()
+        signs = [sign for p, gap in zip(program.pressures, program.gaps, strict=True) for sign in (p >= 0, gap >= 0)]
+        work = self._work_cuts(program, best * (1 + MARGIN))
+        try:
+            minimise(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs, *work]))
+        except SolverError:  # the bound without F3 is a lower one, but a bound
+            minimise(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs]))
+        pairs = zip(program.pressures, program.gaps, strict=True)
+        return Relaxation(
+            float(value_of(program.top)) * T,
+            value_of(program.coefficients) * U,
+            np.array([value_of(p) > value_of(gap) for p, gap in pairs]),
+        )
+
+    def _work_cuts(self, program: "_Program", best: float) -> Iterator[cp.Constraint]:
+        """F3 <= 0 with McCormick's planes for p·g, where F3 is convex."""
+        U, T = self.scales
+        lowest, highest = (limit / U for limit in self.profiles.value_range)
+        for state, p, a in zip(self.states, program.pressures, program.motions, strict=True):
+            weights = np.diag(state.weights)
+            eigenvalue = qp3.smallest_eigenvalue(state, weights)
+            if eigenvalue is not None and eigenvalue < -qp3.NEGLIGIBLE:
+                continue
+            product = cp.Variable(len(lowest))
+            yield product >= cp.multiply(lowest, p)
+            if self.goal is Goal.PEAK:
+                yield product >= cp.multiply(highest, p) + (best / T) * (program.relief - highest)
+            work = qp3.objective(state, weights)
+            values, vectors = np.linalg.eigh(work.hessian)
+            root = (vectors * np.sqrt(np.maximum(values, 0.0) / 2)).T
+            linear = work.pressure @ p + work.constant + (0.0 if a is None else work.amplitudes @ a)
+            yield cp.sum_squares(root @ p) + linear + state.weights @ product <= 0
+
+
+class _Side(NamedTuple):
+    """Points (j,) of a load state on one side: what is zero there (j,), and what is not negative."""
+
+    load: int
+    points: IntArray
+    zero: cp.Constraint
+    signed: cp.Expression
+
+
+class _Sets(NamedTuple):
+    """Contact sets as constraints."""
+
+    shape: tuple[int, int]
+    sides: list[_Side]
+
+    @property
+    def constraints(self) -> list[cp.Constraint]:
+        """What is zero, and what is not negative."""
+        return [constraint for side in self.sides for constraint in (side.zero, side.signed >= 0)]
+
+    def promise(self) -> Array:
+        """What turning a point would gain, to first order, (loads, n); minus infinity off the edge of contact."""
+        found = np.full(self.shape, -np.inf)
+        for load, points, zero, signed in self.sides:
+            found[load, points] = np.where(value_of(signed) <= WEAK, np.asarray(zero.dual_value, float), -np.inf)
+        return found
+
+
+class _Program(NamedTuple):
+    """Variables and expressions of a design, scaled."""
+
+    coefficients: cp.Variable
+    top: cp.Variable
+    relief: cp.Expression
+    pressures: list[cp.Variable]
+    motions: list[cp.Variable | None]
+    gaps: list[cp.Expression]
+    constraints: list[cp.Constraint]
+
+    def with_contact(self, touching: BoolArray) -> _Sets:
+        """State gap = 0 and p >= 0 on the contact sets (loads, n), p = 0 and gap >= 0 off them."""
+        sides = []
+        for load, (p, gap, inside) in enumerate(zip(self.pressures, self.gaps, touching, strict=True)):
+            for points, none, signed in ((np.flatnonzero(inside), gap, p), (np.flatnonzero(~inside), p, gap)):
+                if len(points):
+                    sides.append(_Side(load, points, none[points] == 0, signed[points]))
+        return _Sets(touching.shape, sides)

@@ -1,0 +1,243 @@
+"""A designed gap: the profile, the contact states without and with it, and what is proved of it."""
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.assessment.certificate import Certificate
+from bemcontact.assessment.footprint import Footprint
+from bemcontact.assessment.residual import Residuals
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import ProblemError
+from bemcontact.modelling.rest import at_rest
+from bemcontact.problem.rigid_surface import Polyline, Spline
+from bemcontact.solution import ContactSolution
+
+AGREED = 1e-6
+"""Difference of the designed pressure from that of the contact state, over the peak, that is none."""
+SURFACES = {"spline": Spline, "polyline": Polyline}
+
+
+class Goal(Enum):
+    """What a design makes small, in the worst of all load states."""
+
+    PEAK = "peak"
+    UNIFORM = "uniform"
+
+
+MEASURED = {Goal.PEAK: "The largest pressure", Goal.UNIFORM: "The root mean square deviation from a uniform pressure"}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LoadState:
+    """A contact state, solved by the direct solver and judged.
+
+    Parameters
+    ----------
+    contact : the problem
+    solution, residuals, certificate, footprint : of it
+    """
+
+    contact: CondensedContact
+    solution: ContactSolution
+    residuals: Residuals
+    certificate: Certificate
+    footprint: Footprint
+
+    @property
+    def pressure(self) -> Array:
+        """The pressure (n,) [p]."""
+        return self.solution.pressure
+
+    @property
+    def peak(self) -> float:
+        """The largest pressure [p]."""
+        return self.contact.peak(self.pressure)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as numbers, lists and texts, ready for JSON."""
+        return {
+            "pressure": self.pressure.tolist(),
+            **self.footprint.to_dict(),
+            "residuals": self.residuals.to_dict(),
+            "certificate": self.certificate.to_dict(),
+        }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class GapDesign:
+    """The best profile that was found, with the contact states of all load states without and with it.
+
+    Parameters
+    ----------
+    goal : what was made small
+    zone : name of the contact zone
+    points : (m,) indices of the contact points on the interval
+    profile : (n,) g [L], zero off the interval
+    coefficients : (s,) of the shapes, if the profile is made of some
+    before, after : the load states without and with the profile, by the direct solver
+    designed : (loads, n) pressure [p] by the convex program, which is to agree with that of `after`
+    value_before, value : of the goal [p], of the contact states
+    lower_bound : of the goal within the bounds on the profile [p], by convex relaxation
+    proved_optimal : whether the value is at the bound, to a millionth
+    """
+
+    goal: Goal
+    zone: str
+    points: IntArray
+    profile: Array
+    coefficients: Array | None
+    before: tuple[LoadState, ...]
+    after: tuple[LoadState, ...]
+    designed: Array
+    value_before: float
+    value: float
+    lower_bound: float
+    proved_optimal: bool
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    def __repr__(self) -> str:
+        """One line: zone, goal, values."""
+        return f"<GapDesign on {self.zone!r}: {self.goal.value} {self.value_before:.6g} -> {self.value:.6g}>"
+
+    @property
+    def peak_before(self) -> float:
+        """The largest pressure of all load states without the profile [p]."""
+        return max(state.peak for state in self.before)
+
+    @property
+    def peak(self) -> float:
+        """The largest pressure of all load states with the profile [p]."""
+        return max(state.peak for state in self.after)
+
+    @property
+    def difference(self) -> float:
+        """Largest difference of the designed pressure from that of the contact state, over the peak."""
+        found = np.array([state.pressure for state in self.after])
+        return float(np.abs(found - self.designed).max()) / (self.peak or 1.0)
+
+    @property
+    def verified(self) -> bool:
+        """Whether all load states with the profile are certified and have the designed pressure, to a millionth."""
+        return all(state.certificate.certified for state in self.after) and self.difference <= AGREED
+
+    @property
+    def words(self) -> str:
+        """What was reached and what is proved of it, in a few sentences."""
+        change = f" ({100 * (self.value / self.value_before - 1):+.1f} %)" if self.value_before > 0 else ""
+        worst = f", the worst of {len(self.after)} load states" if len(self.after) > 1 else ""
+        told = f"{MEASURED[self.goal]} goes from {self.value_before:.5g} to {self.value:.5g}{change}{worst}."
+        if self.proved_optimal:
+            proof = "No profile within the bounds does better: the lower bound of the convex relaxation is met."
+        else:
+            proof = (
+                f"Whether another profile does better is not proved: none goes below {self.lower_bound:.5g}, the lower "
+                "bound of the convex relaxation."
+            )
+        if self.verified:
+            check = (
+                f"Solved again with the profile and certified: pressures differ by {self.difference:.0e} of the peak."
+            )
+        else:
+            check = (
+                f"The contact states with the profile are not as designed: pressures differ by {self.difference:.0e} "
+                f"of the peak. {' '.join(state.certificate.words for state in self.after)}"
+            )
+        return f"{told} {proof} {check}"
+
+    def surface(self, kind: str = "spline") -> Spline | Polyline:
+        """Make a rigid surface of the zone's own and the profile, through the feet of all its contact points.
+
+        Its normals are tilted by the slope of the profile, which a contact problem on it sees as a relative change of
+        pressure by about that slope.
+
+        Parameters
+        ----------
+        kind : "spline" or "polyline"
+
+        Returns
+        -------
+        Spline or Polyline
+            Where no tool is displaced.
+
+        Raises
+        ------
+        ProblemError
+            If the kind is unknown, the zone has several pieces or goes round, or the surface would fold.
+        """
+        if kind not in SURFACES:
+            raise ProblemError(f"there is no surface of kind {kind!r} to write; there are: {', '.join(SURFACES)}")
+        contact = at_rest(self.before[0].contact)
+        inside = np.flatnonzero(contact.zone == contact.zone[self.points[0]])
+        runs = np.unique(contact.run[inside])
+        if len(runs) > 1 or np.isfinite(contact.run_length[runs[0]]):
+            raise ProblemError(f"zone '{self.zone}' goes round or is in pieces, which no {kind} does; divide the zone")
+        inside = inside[np.argsort(contact.arc_position[inside], kind="stable")]
+        normals = contact.normals[inside]
+        feet = contact.points[inside] - (contact.initial_gap + self.profile)[inside, None] * normals
+        steps = np.diff(feet, axis=0)
+        lefts = np.column_stack([-steps[:, 1], steps[:, 0]])
+        if len(feet) < 2 or not (np.einsum("ki,ki->k", lefts, normals[1:] + normals[:-1]) > 0).all():
+            raise ProblemError("the designed surface folds back on itself; ask for less slope, or a coarser mesh")
+        return SURFACES[kind](points=tuple((float(x), float(y)) for x, y in feet))
+
+    def to_yaml(self, kind: str = "spline") -> str:
+        """Write the surface as it stands in a spec, to go below a contact zone's ``edges``.
+
+        Parameters
+        ----------
+        kind : "spline" or "polyline"
+
+        Returns
+        -------
+        str
+        """
+        points = "".join(f"    - [{_number(x)}, {_number(y)}]\n" for x, y in self.surface(kind).points)
+        return f"surface:\n  kind: {kind}\n  points:\n{points}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give all of it as numbers, lists and texts, ready for JSON."""
+        return {
+            "goal": self.goal.value,
+            "zone": self.zone,
+            "points": self.before[0].contact.points[self.points].tolist(),
+            "arc_position": self.before[0].contact.arc_position[self.points].tolist(),
+            "profile": self.profile[self.points].tolist(),
+            "coefficients": None if self.coefficients is None else self.coefficients.tolist(),
+            "before": [state.to_dict() for state in self.before],
+            "after": [state.to_dict() for state in self.after],
+            "value_before": self.value_before,
+            "value": self.value,
+            "lower_bound": self.lower_bound,
+            "proved_optimal": self.proved_optimal,
+            "difference": self.difference,
+            "verified": self.verified,
+            "words": self.words,
+        }
+
+
+def relieved(contact: CondensedContact, profile: Array) -> CondensedContact:
+    """Add a profile (n,) [L] to the initial gap.
+
+    Parameters
+    ----------
+    contact : CondensedContact
+    profile : (n,) g [L]
+
+    Returns
+    -------
+    CondensedContact
+    """
+    return replace(contact, initial_gap=contact.initial_gap + profile)
+
+
+def _number(value: float) -> str:
+    """All digits, with the point that YAML wants before an exponent."""
+    mantissa, e, exponent = repr(value).partition("e")
+    return mantissa + ("" if "." in mantissa or not e else ".0") + e + exponent

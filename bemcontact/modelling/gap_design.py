@@ -1,0 +1,230 @@
+"""The profile of a rigid surface that makes contact pressure low or uniform: `design_gap`.
+
+For given contact sets the best profile is a convex program (`contact_sets`). Contact sets are improved by turning
+points on their edge, as long as the goal gets smaller, from several starts. What comes out is solved again as a contact
+problem.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from bemcontact.arrays import Array
+from bemcontact.assessment.certificate import certify
+from bemcontact.assessment.footprint import footprint
+from bemcontact.assessment.residual import residuals
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import ProblemError, SolverError
+from bemcontact.formulations import complementarity
+from bemcontact.modelling.contact_sets import BoolArray, Piece, SharedProfile
+from bemcontact.modelling.designed_gap import GapDesign, Goal, LoadState, relieved
+from bemcontact.modelling.relief import Profiles, Relief
+from bemcontact.solution import Status
+
+GAIN = 1e-8
+"""Part of the goal that a step must gain to be one."""
+MET = 1e-6
+"""Distance from the lower bound, relative, at which a design is proved to be the best."""
+STEPS = 200
+CORNERS, KEPT = 60, 8
+"""Random corners of the set of profiles that are looked at, as many as between them, and how many become starts."""
+SAME = 1e-12
+"""Relative difference of compliances that is round-off."""
+
+
+def design_gap(
+    contact: CondensedContact | Sequence[CondensedContact],
+    relief: Relief,
+    *,
+    zone: str | None = None,
+    arc: tuple[float, float] | None = None,
+    cases: Sequence[Mapping[str, float]] | None = None,
+    goal: Goal | str = Goal.PEAK,
+) -> GapDesign:
+    """Find the profile within bounds that, added to the initial gap, makes the peak pressure smallest.
+
+    Parameters
+    ----------
+    contact : the problem, or several load states of one body on the same surfaces, of which the worst counts
+    relief : what the profile may be
+    zone, arc : where it is: a contact zone, which may be left out if it is the only one, and the least and largest arc
+        position on it [L], the whole zone if left out
+    cases : factors of load cases, one mapping for each load state, as of `CondensedContact.with_factors`
+    goal : a `Goal` or its name: "peak" (the largest pressure anywhere) or "uniform" (the mean square deviation of the
+        pressure on the interval from its mean there)
+
+    Returns
+    -------
+    GapDesign
+        Of equally good profiles that with the least mean square, solved again by the direct solver and certified. Check
+        `proved_optimal`.
+
+    Raises
+    ------
+    ProblemError
+        If bounds exclude each other, states are not those of one body, or a state has no contact state.
+    SolverError
+        If Clarabel breaks down.
+    """
+    states, goal = _states(contact, cases), _goal(goal)
+    profiles = Profiles.of(states[0], relief, zone, arc)
+    shared = SharedProfile.of(states, profiles, goal)
+    before = tuple(_solved(state, np.zeros(state.size)) for state in states)
+    best = _best(shared, states)
+    bound, coefficients, sets = shared.relaxed(best.value * shared.scales.pressure)
+    if best.value * shared.scales.pressure > bound * (1 + MET):
+        others = (_descended(shared, some) for some in (sets, _state(states, profiles.shapes @ coefficients)[1]))
+        best = min((piece for piece in (best, *others) if piece is not None), key=_value)
+    gentle = _carried_out(shared, states, before, shared.gentlest(best), bound)
+    return gentle if gentle.verified else _carried_out(shared, states, before, best, bound)
+
+
+def _carried_out(
+    shared: SharedProfile, states: Sequence[CondensedContact], before: tuple[LoadState, ...], piece: Piece, bound: float
+) -> GapDesign:
+    """Solve the contact problems with the profile of a piece, and put the design together."""
+    profiles = shared.profiles
+    profile = profiles.shapes @ piece.coefficients
+    after = tuple(_solved(state, profile) for state in states)
+    reached = shared.measure(state.pressure for state in after)
+    return GapDesign(
+        goal=shared.goal,
+        zone=states[0].zone_names[states[0].zone[profiles.points[0]]],
+        points=profiles.points,
+        profile=profile,
+        coefficients=piece.coefficients / profiles.sizes if profiles.shaped else None,
+        before=before,
+        after=after,
+        designed=piece.pressures,
+        value_before=shared.measure(state.pressure for state in before),
+        value=reached,
+        lower_bound=bound,
+        proved_optimal=reached - bound <= MET * reached,
+    )
+
+
+def _states(
+    contact: CondensedContact | Sequence[CondensedContact], cases: Sequence[Mapping[str, float]] | None
+) -> tuple[CondensedContact, ...]:
+    """The load states, and that they are those of one body."""
+    states = (contact,) if isinstance(contact, CondensedContact) else tuple(contact)
+    if not states or not all(isinstance(state, CondensedContact) for state in states):
+        raise ProblemError("a design needs a CondensedContact, or several of one body; bemcontact.condense makes them")
+    if cases is not None:
+        if len(states) != 1 or not len(cases):
+            raise ProblemError("factors of load cases go with one condensed contact, and at least one state is needed")
+        return tuple(states[0].with_factors(factors) for factors in cases)
+    first = states[0]
+    for number, state in enumerate(states[1:], start=2):
+        for key in ("points", "compliance", "rigid_motions", "weights"):
+            one, other = getattr(first, key), getattr(state, key)
+            if one.shape != other.shape or np.abs(one - other).max(initial=0.0) > SAME * np.abs(one).max(initial=0.0):
+                raise ProblemError(
+                    f"load state {number} differs from the first one in its {key.replace('_', ' ')}; states of a "
+                    "design are one body on the same surfaces, as CondensedContact.with_factors makes them"
+                )
+    return states
+
+
+def _goal(goal: Goal | str) -> Goal:
+    """Read the name of a goal."""
+    try:
+        return Goal(goal)
+    except ValueError:
+        raise ProblemError(
+            f"there is no goal {goal!r}; there are: {', '.join(known.value for known in Goal)}"
+        ) from None
+
+
+def _solved(contact: CondensedContact, profile: Array) -> LoadState:
+    """Solve and judge the contact problem with a profile (n,)."""
+    there = relieved(contact, profile)
+    solution = complementarity.solve(there)
+    if solution.status is not Status.SOLVED:
+        raise ProblemError(f"a load state has no contact state: {' '.join((solution.status.value, *solution.notes))}")
+    found = residuals(there, solution)
+    return LoadState(
+        contact=there,
+        solution=solution,
+        residuals=found,
+        certificate=certify(there, solution, found),
+        footprint=footprint(there, solution),
+    )
+
+
+def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> Piece:
+    """The best of what all starts lead to."""
+    known = set[bytes]()
+    ends: list[Piece] = []
+    for sets in _starts(shared, states):
+        end = None if sets.tobytes() in known else _descended(shared, sets)
+        known.add(sets.tobytes())
+        if end is not None:
+            ends.append(end)
+    if not ends:
+        raise SolverError("no convex program of the design had an optimum; look in the mesh for very short elements")
+    return min(ends, key=_value)
+
+
+def _starts(shared: SharedProfile, states: Sequence[CondensedContact]) -> Iterator[BoolArray]:
+    """Contact sets (loads, n): the whole interval, and those of profiles.
+
+    These are next to none, extreme in mean value, tilt and crown, and the best of random ones.
+    """
+    profiles, rng = shared.profiles, np.random.default_rng(0)
+    yield np.tile(np.isin(np.arange(states[0].size), profiles.points), (len(states), 1))
+    there = np.linspace(-1.0, 1.0, len(profiles.points))
+    extremes = [_corner(profiles, sign * shape) for shape in (there**0, there, there**2 - 1 / 3) for sign in (1, -1)]
+    for coefficients in (profiles.nearest_to_none(), *extremes):
+        yield _state(states, profiles.shapes @ coefficients)[1]
+    corners = [_corner(profiles, rng.standard_normal(len(there))) for _ in range(CORNERS)]
+    mixed = [rng.dirichlet(np.ones(len(few))) @ few for few in zip(corners, corners[1:], corners[2:], strict=False)]
+    looked_at = [_state(states, profiles.shapes @ coefficients) for coefficients in (*corners, *mixed)]
+    looked_at.sort(key=lambda state: shared.measure(state[0]))
+    distinct = {sets.tobytes(): sets for _, sets in looked_at}
+    yield from list(distinct.values())[:KEPT]
+
+
+def _corner(profiles: Profiles, direction: Array) -> Array:
+    """The profile that reaches farthest against a direction (m,) on the interval."""
+    spread = np.zeros(len(profiles.shapes))
+    spread[profiles.points] = direction
+    return profiles.extreme(spread)
+
+
+def _state(states: Sequence[CondensedContact], profile: Array) -> tuple[list[Array], BoolArray]:
+    """Pressure (n,) [p] of each state with a profile, and the contact sets (loads, n)."""
+    contacts = [relieved(state, profile) for state in states]
+    found = [complementarity.solve(contact) for contact in contacts]
+    sets = [one.touching(two.pressure, two.displacement) for one, two in zip(contacts, found, strict=True)]
+    return [solution.pressure for solution in found], np.array(sets)
+
+
+def _value(piece: Piece) -> float:
+    return piece.value
+
+
+def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:
+    """Turn points on the edge of contact as long as that makes the goal smaller."""
+    piece = shared.best_with(touching)
+    for _ in range(STEPS if piece is not None else 0):
+        assert piece is not None
+        better = _next(shared, piece)
+        if better is None:
+            break
+        piece = better
+    return piece
+
+
+def _next(shared: SharedProfile, piece: Piece) -> Piece | None:
+    """The first better one of: all promising points turned at once, each by itself, each of the others."""
+    promising, others = piece.turns[: piece.promising], piece.turns[piece.promising :]
+    together = [promising] if len(promising) > 1 else []
+    for turned in (*together, *((turn,) for turn in (*promising, *others))):
+        touching = piece.touching.copy()
+        for load, point in turned:
+            touching[load, point] ^= True
+        found = shared.best_with(touching)
+        if found is not None and found.value < piece.value - GAIN * abs(piece.value):
+            return found
+    return None

@@ -1,0 +1,202 @@
+"""What came out of a model: arrays of ours, judged, and a verdict in words."""
+
+from dataclasses import dataclass, replace
+from typing import Any, cast
+
+import cvxpy as cp
+import numpy as np
+
+from bemcontact.arrays import Array, freeze_arrays
+from bemcontact.assessment.certificate import Certificate, certify
+from bemcontact.assessment.residual import Residuals, residuals
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import ProblemError
+from bemcontact.formulations.complementarity import escape_note, polish
+from bemcontact.formulations.qp3 import STATUSES
+from bemcontact.formulations.scaling import scaled
+from bemcontact.solution import ContactSolution, Status
+
+SEEN = 1e-5
+"""Residual above which the optimum of a model with additions is no contact state: the root of Clarabel's tolerance."""
+INACCURATE = "optimal_inaccurate"
+NOT_CONTACT = "optimum of your model, not a contact state"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class ModelResult:
+    """The optimum of a contact model, recomputed and judged; arrays are None where there is no optimum.
+
+    Parameters
+    ----------
+    status : how the solver ended
+    words : what this is, in a sentence or two
+    contact_state : whether it is a contact state: to round-off if nothing was added, else to the solver's tolerance
+    objective : of all that was minimised, in the user's units
+    pressure : (n,) [p]
+    gap : (n,) [L]
+    motions : (k,) a
+    tool_displacement : (t, 3) x, y [L] and rotation [rad]
+    solution : the same as a contact solution, polished if nothing was added
+    residuals, certificate : the judgement, recomputed
+    """
+
+    status: Status
+    words: str
+    contact_state: bool = False
+    objective: float | None = None
+    pressure: Array | None = None
+    gap: Array | None = None
+    motions: Array | None = None
+    tool_displacement: Array | None = None
+    solution: ContactSolution | None = None
+    residuals: Residuals | None = None
+    certificate: Certificate | None = None
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    def __repr__(self) -> str:
+        """One line: the words."""
+        return f"<ModelResult: {self.words}>"
+
+
+def taken_out(
+    contact: CondensedContact,
+    problem: cp.Problem,
+    pressure: cp.Expression,
+    motions: cp.Expression | None,
+    *,
+    added: bool,
+) -> ModelResult:
+    """Take the arrays out of a solved problem and judge them.
+
+    Parameters
+    ----------
+    contact : the contact problem with the present values of the parameters
+    problem : solved
+    pressure, motions : of the model
+    added : whether the problem is more than the contact problem
+
+    Returns
+    -------
+    ModelResult
+
+    Raises
+    ------
+    ProblemError
+        If the problem has not been solved, has no pressure of the model, or is not the last one solved.
+    """
+    if problem.status is None:
+        raise ProblemError("the problem has not been solved; solve it first, or let model.solve do both")
+    status = STATUSES.get(problem.status, Status.NUMERICAL_FAILURE)
+    _ensure_of_the_model(problem, pressure)
+    if pressure.value is None:
+        return ModelResult(status=status, words=_without_optimum(contact, status, added=added))
+    statistics, value = cast(Any, problem.solver_stats), cast(float, problem.value)
+    solution = replace(
+        solution_at(contact, pressure, motions, str(statistics.solver_name).capitalize()),
+        status=status,
+        iterations=int(statistics.num_iters or 0),
+        notes=("the tolerance asked of the solver was not reached",) if problem.status == INACCURATE else (),
+    )
+    found = judged(contact, solution if added else polish(contact, solution), added=added)
+    return replace(found, objective=float(value)) if added else found
+
+
+def solution_at(
+    contact: CondensedContact, pressure: cp.Expression, motions: cp.Expression | None, solver: str
+) -> ContactSolution:
+    """The values that stand in a model, as a contact solution.
+
+    Parameters
+    ----------
+    contact : the contact problem with the present values of the parameters
+    pressure, motions : of the model
+    solver : name of the program that found them
+
+    Returns
+    -------
+    ContactSolution
+    """
+    p = np.array(pressure.value, float)
+    a = np.zeros(0) if motions is None else np.array(motions.value, float)
+    return ContactSolution(
+        formulation="model",
+        solver=solver,
+        status=Status.SOLVED,
+        pressure=p,
+        displacement=contact.gap(p, a) - contact.initial_gap,
+        rigid_amplitudes=a,
+        iterations=0,
+    )
+
+
+def judged(contact: CondensedContact, solution: ContactSolution, *, added: bool) -> ModelResult:
+    """Judge the optimum of a model.
+
+    Parameters
+    ----------
+    contact : the contact problem with the present values of the parameters
+    solution : of the model
+    added : whether the model is more than the contact problem
+
+    Returns
+    -------
+    ModelResult
+    """
+    found = residuals(contact, solution)
+    certificate = certify(contact, solution, found, SEEN) if added else certify(contact, solution, found)
+    gap = contact.initial_gap + solution.displacement
+    return ModelResult(
+        status=solution.status,
+        words=_words(solution.status, certificate, found, added=added),
+        contact_state=not certificate.complaint,
+        objective=float(contact.weights @ (solution.pressure * gap)),
+        pressure=solution.pressure,
+        gap=gap,
+        motions=solution.rigid_amplitudes,
+        tool_displacement=contact.tools.displacement(solution.rigid_amplitudes),
+        solution=solution,
+        residuals=found,
+        certificate=certificate,
+    )
+
+
+def _ensure_of_the_model(problem: cp.Problem, pressure: cp.Expression) -> None:
+    """Refuse a problem without the model's pressure, and one whose values another solve has replaced."""
+    variable = pressure.variables()[0]
+    if variable.id not in {own.id for own in problem.variables()}:
+        raise ProblemError("the problem does not contain the pressure of this model; build it from the model's parts")
+    found = None if problem.solution is None else problem.solution.primal_vars.get(variable.id)
+    same = found is None if variable.value is None else found is not None and np.array_equal(found, variable.value)
+    if not same:
+        raise ProblemError("another problem of this model was solved since; take a result out right after its solve")
+
+
+def _without_optimum(contact: CondensedContact, status: Status, *, added: bool) -> str:
+    """Say why there is no optimum."""
+    reason = escape_note(contact, scaled(contact)) if status is Status.INFEASIBLE else None
+    if reason is not None:
+        return f"There is no contact state: {reason}."
+    of_whom = "what was added to the model" if added else "the contact problem"
+    match status:
+        case Status.INFEASIBLE:
+            return f"No pressure satisfies all constraints: {of_whom} asks for too much."
+        case Status.UNBOUNDED:
+            return f"The objective has no lower bound: {of_whom} rewards something without limit."
+        case _:
+            return f"No optimum was found: the solver {status.value}."
+
+
+def _words(status: Status, certificate: Certificate, found: Residuals, *, added: bool) -> str:
+    """The verdict."""
+    cut = "" if status is Status.SOLVED else f" The solver {status.value}."
+    if certificate.complaint and added:
+        return f"This is the {NOT_CONTACT}: {certificate.complaint}.{cut}"
+    if added:
+        return (
+            "What was added leaves a contact state, to the solver's tolerance (residual of complementarity "
+            f"{found.complementarity:.1e}).{cut}"
+        )
+    return f"{certificate.words}{cut}"

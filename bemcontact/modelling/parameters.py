@@ -1,0 +1,100 @@
+"""What may change in a model: initial gap, load cases and tools as parameters of cvxpy, and what they add up to."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import cvxpy as cp
+import numpy as np
+
+from bemcontact.arrays import Array
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import ProblemError
+from bemcontact.modelling.rest import at_rest
+
+Value = cp.Expression | Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Parameters:
+    """Parameters in the user's units, None where there is nothing of the kind, and the sums that they enter linearly.
+
+    Parameters
+    ----------
+    rest : the condensed contact with all load cases off and all tools undisplaced and unloaded
+    initial_gap : (n,) [L]
+    case_factors : (c,)
+    tool_position, tool_force : (t, 3), beside what the load cases add
+    """
+
+    rest: CondensedContact
+    initial_gap: cp.Parameter
+    case_factors: cp.Parameter | None
+    tool_position: cp.Parameter | None
+    tool_force: cp.Parameter | None
+
+    @classmethod
+    def of(cls, condensed: CondensedContact) -> "Parameters":
+        """Parameters with the values that are in effect."""
+        cases, tools = condensed.cases, condensed.tools
+        rest = at_rest(condensed)
+        position = (tools.position - cases.position @ cases.factors).reshape(-1, 3)
+        force = (tools.force - cases.force @ cases.factors).reshape(-1, 3)
+        return cls(
+            rest=rest,
+            initial_gap=cp.Parameter(condensed.size, name="initial_gap", value=rest.initial_gap),
+            case_factors=cp.Parameter(len(cases), name="case_factors", value=cases.factors) if len(cases) else None,
+            tool_position=cp.Parameter((len(tools), 3), name="tool_position", value=position) if len(tools) else None,
+            tool_force=cp.Parameter((len(tools), 3), name="tool_force", value=force) if len(tools) else None,
+        )
+
+    @cached_property
+    def _factors(self) -> Value:
+        return np.zeros(0) if self.case_factors is None else self.case_factors
+
+    @cached_property
+    def position(self) -> Value:
+        """Displacement (3 t,) of the tools, zero where a component is free."""
+        own = np.zeros(0) if self.tool_position is None else cp.vec(self.tool_position, order="C")
+        return cp.multiply(~self.rest.tools.free, own + self.rest.cases.position @ self._factors)
+
+    @cached_property
+    def force(self) -> Value:
+        """Force (3 t,) on the tools, zero where a component is not free."""
+        own = np.zeros(0) if self.tool_force is None else cp.vec(self.tool_force, order="C")
+        return cp.multiply(self.rest.tools.free, own + self.rest.cases.force @ self._factors)
+
+    @cached_property
+    def free_displacement(self) -> Value:
+        """Δ1 (n,) [L]."""
+        return self.rest.free_displacement + self.rest.cases.displacement @ self._factors
+
+    @cached_property
+    def offset(self) -> Value:
+        """The gap without contact (n,), q = ε + Δ1 [L]."""
+        return self.initial_gap + self.rest.tools.motions @ self.position + self.free_displacement
+
+    @cached_property
+    def motion_load(self) -> Value:
+        """The load (k,)."""
+        rest = self.rest
+        return rest.motion_load + rest.cases.motion_load @ self._factors + rest.tools.amplitudes.T @ self.force
+
+    def contact(self) -> CondensedContact:
+        """The contact problem with the present values."""
+        rest, tools = self.rest, len(self.rest.tools)
+        contact = replace(rest, initial_gap=value_of(self.initial_gap))
+        if self.case_factors is not None:
+            contact = contact.with_factors(dict(zip(rest.cases.names, value_of(self.case_factors), strict=True)))
+        if self.tool_position is None or self.tool_force is None:
+            return contact
+        own = value_of(self.tool_position).ravel(), value_of(self.tool_force).ravel()
+        added = contact.cases.position @ contact.cases.factors, contact.cases.force @ contact.cases.factors
+        position, force = ((one + other).reshape(tools, 3) for one, other in zip(own, added, strict=True))
+        return contact.with_tools(position, force)
+
+
+def value_of(expression: cp.Expression) -> Array:
+    """Give the value of an expression or parameter; `ProblemError` if it has none."""
+    if expression.value is None:
+        raise ProblemError(f"'{expression.name()}' has no value yet; set it, or solve first")
+    return np.array(expression.value, float)

@@ -1,0 +1,276 @@
+"""The profiles that a design may choose from: bounds on values, slope and curvature, or on a few shapes."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import linprog
+
+from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import ProblemError
+
+Shape = Callable[[Array], ArrayLike]
+Range = float | tuple[float, float]
+UNBOUNDED = 3
+"""Status of a linear program of scipy that has no end."""
+
+
+class Bounds(NamedTuple):
+    """Rows W (r, s) with limits low <= W c <= high, (r,) each."""
+
+    rows: Array
+    low: Array
+    high: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Relief:
+    """Bounds on a profile g that is added to the initial gap: g > 0 takes material away. All given bounds hold at once.
+
+    Parameters
+    ----------
+    lower, upper : of g [L], a number or one for each point of the interval
+    slope : of g between neighbouring points [1], ± a number or (least, largest)
+    curvature : of g at inner points, by second divided differences over arc length [1/L], likewise
+    shapes : functions of the arc position (m,) that g is a combination of, or their values (m, s) at the points of the
+        interval; without them each point has a value of its own
+    coefficients : (least, largest) of the shapes' coefficients, numbers or (s,) each
+    """
+
+    lower: ArrayLike | None = None
+    upper: ArrayLike | None = None
+    slope: Range | None = None
+    curvature: Range | None = None
+    shapes: Sequence[Shape] | Array | None = None
+    coefficients: tuple[ArrayLike, ArrayLike] | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Profiles:
+    """The set of profiles g = S c with low <= W c <= high, at all n contact points of a problem; all of it is in [L].
+
+    Parameters
+    ----------
+    points : (m,) indices of the contact points on the interval, in the order of the boundary
+    shapes : (n, s) S, zero off the interval, the largest entry of each column 1
+    rows : (r, s) W, the largest entry of each row 1
+    low, high : (r,) [L]
+    family : (r,) number in `families` of each row
+    families : what is bounded, in words
+    sizes : (s,) largest entry of each shape as it was given: user's coefficients are c / sizes
+    shaped : whether shapes were given; if not, each point has a coefficient of its own
+    """
+
+    points: IntArray
+    shapes: Array
+    rows: Array
+    low: Array
+    high: Array
+    family: IntArray
+    families: tuple[str, ...]
+    sizes: Array
+    shaped: bool
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    @classmethod
+    def of(
+        cls, contact: CondensedContact, relief: Relief, zone: str | None = None, arc: tuple[float, float] | None = None
+    ) -> Self:
+        """Write bounds as rows, and see that some profile keeps them all.
+
+        Parameters
+        ----------
+        contact : CondensedContact
+        relief : the bounds
+        zone : name of the contact zone, which may be left out if there is one only
+        arc : least and largest arc position of the interval [L], the whole zone if left out
+
+        Returns
+        -------
+        Profiles
+
+        Raises
+        ------
+        ProblemError
+            If there is no such zone or no point on the interval, shapes do not fit, the profile is not bounded, or
+            bounds exclude each other.
+        """
+        points = _interval(contact, zone, arc)
+        position, run = contact.arc_position[points], contact.run[points]
+        given = _shapes(relief, position)
+        sizes = np.abs(given).max(axis=0)
+        shapes = np.zeros((contact.size, len(sizes)))
+        shapes[points] = given / sizes
+        families = _families(relief, shapes[points], sizes, position, run)
+        rows, low, high = (np.concatenate(parts) for parts in zip(*families.values(), strict=True))
+        size, family = (
+            np.abs(rows).max(axis=1),
+            np.repeat(np.arange(len(families)), [len(b.low) for b in families.values()]),
+        )
+        kept = (size > 0) | (low > 0) | (high < 0)  # what no profile changes and none violates bounds nothing
+        size = np.where(size > 0, size, 1.0)
+        found = cls(
+            points=points,
+            shapes=shapes,
+            rows=(rows / size[:, None])[kept],
+            low=(low / size)[kept],
+            high=(high / size)[kept],
+            family=family[kept],
+            families=tuple(families),
+            sizes=sizes,
+            shaped=relief.shapes is not None,
+        )
+        found._ensure_some()
+        return found
+
+    def extreme(self, weights: Array) -> Array:
+        """Find the coefficients (s,) of the profile with the least weights·g; weights (n,) at all contact points."""
+        found = self._least(self.shapes.T @ weights, range(len(self.families)))
+        if found is None or not np.isfinite(found).all():
+            raise ProblemError("the profile has no bound; give lower and upper values, or bounds on coefficients")
+        return found
+
+    def nearest_to_none(self) -> Array:
+        """Find the coefficients (s,) of a profile whose largest value is as small as can be."""
+        there = self.shapes[self.points]
+        below = np.hstack([np.vstack([there, -there]), -np.ones((2 * len(there), 1))])
+        rows, limits = self._one_sided(range(len(self.families)))
+        matrix = np.vstack([np.hstack([rows, np.zeros((len(rows), 1))]), below])
+        cost = np.append(np.zeros(there.shape[1]), 1.0)
+        found = linprog(cost, A_ub=matrix, b_ub=np.append(limits, np.zeros(len(below))), bounds=(None, None))
+        return self._unit * found.x[:-1]
+
+    @cached_property
+    def value_range(self) -> tuple[Array, Array]:
+        """Least and largest g (n,) [L] that each point by itself may have."""
+        unit = np.eye(len(self.shapes))
+        low, high = np.zeros(len(unit)), np.zeros(len(unit))
+        for i in self.points:
+            low[i] = self.shapes[i] @ self.extreme(unit[i])
+            high[i] = self.shapes[i] @ self.extreme(-unit[i])
+        return low, high
+
+    @cached_property
+    def _unit(self) -> float:
+        """The largest bound [L], in which linear programs are written."""
+        limits = np.abs(np.concatenate([self.low, self.high]))
+        return float(limits[np.isfinite(limits)].max(initial=0.0)) or 1.0
+
+    def _one_sided(self, families: Iterable[int]) -> tuple[Array, Array]:
+        """Rows and limits of W c <= high, -W c <= -low in some families, without those that bound nothing."""
+        used = np.isin(self.family, list(families))
+        rows, limits = np.vstack([self.rows, -self.rows]), np.concatenate([self.high, -self.low]) / self._unit
+        kept = np.tile(used, 2) & np.isfinite(limits)
+        return rows[kept], limits[kept]
+
+    def _least(self, cost: Array, families: Iterable[int]) -> Array | None:
+        """The c with the least cost·c within some families of bounds; None if they exclude each other."""
+        rows, limits = self._one_sided(families)
+        found = linprog(cost, A_ub=rows, b_ub=limits, bounds=(None, None))
+        if found.status == UNBOUNDED:
+            return np.full(len(cost), np.inf)
+        return self._unit * found.x if found.success else None
+
+    def _ensure_some(self) -> None:
+        """Refuse bounds that exclude each other, by the fewest of them that do, and profiles without bounds."""
+        everything, none = range(len(self.families)), np.zeros(self.shapes.shape[1])
+        if self._least(none, everything) is None:
+            few = next(
+                some
+                for count in range(1, len(self.families) + 1)
+                for some in combinations(everything, count)
+                if self._least(none, some) is None
+            )
+            names = " and ".join(self.families[i] for i in few)
+            raise ProblemError(
+                f"no profile keeps the bounds on {names}; widen {'it' if len(few) == 1 else 'one of them'}"
+            )
+        for weights in (self.shapes.sum(axis=1), -self.shapes.sum(axis=1)):
+            self.extreme(weights)
+
+
+def _interval(contact: CondensedContact, zone: str | None, arc: tuple[float, float] | None) -> IntArray:
+    """Indices of the contact points on an interval, by run and arc position."""
+    names = contact.zone_names
+    if zone is None and len(names) > 1:
+        raise ProblemError(f"say which zone is to be relieved: {', '.join(names)}")
+    if zone is not None and zone not in names:
+        raise ProblemError(f"there is no contact zone '{zone}'; there are: {', '.join(names)}")
+    inside = contact.zone == (0 if zone is None else names.index(zone))
+    if arc is not None:
+        inside &= (contact.arc_position >= arc[0]) & (contact.arc_position <= arc[1])
+    points = np.flatnonzero(inside)
+    if not len(points):
+        where = "in the zone" if arc is None else f"between the arc positions {arc[0]:g} and {arc[1]:g}"
+        raise ProblemError(
+            f"there is no contact point {where}; arc positions are lengths along the edge from its start"
+        )
+    return points[np.lexsort((contact.arc_position[points], contact.run[points]))]
+
+
+def _shapes(relief: Relief, position: Array) -> Array:
+    """The shapes (m, s) as they were given; the unit vectors if none were."""
+    m = len(position)
+    if relief.shapes is None:
+        if relief.coefficients is not None:
+            raise ProblemError("coefficients belong to shapes; give shapes, or lower and upper values")
+        return np.eye(m)
+    if isinstance(relief.shapes, np.ndarray):
+        found = np.array(relief.shapes, float, ndmin=2)
+    else:
+        columns = [np.broadcast_to(np.asarray(shape(position), float), m) for shape in relief.shapes]
+        found = np.column_stack(columns) if columns else np.zeros((m, 0))
+    if found.shape[0] != m or not found.shape[1] or not np.isfinite(found).all():
+        raise ProblemError(f"shapes need finite values at the {m} points of the interval; found an array {found.shape}")
+    if not np.abs(found).max(axis=0).all():
+        raise ProblemError(f"shape {int(np.argmin(np.abs(found).max(axis=0)))} is zero on the interval; leave it out")
+    return found
+
+
+def _families(relief: Relief, shapes: Array, sizes: Array, position: Array, run: IntArray) -> dict[str, Bounds]:
+    """All bounds by what they bound, as rows W with their limits: low <= W c <= high."""
+    m, step = len(position), np.diff(position)
+    inner = np.flatnonzero(run[1:] == run[:-1])
+    slopes = (np.eye(m)[1:] - np.eye(m)[:-1])[inner] / step[inner, None]
+    bent = np.flatnonzero((np.diff(inner) == 1) & (run[inner[:-1]] == run[inner[1:]])) if len(inner) > 1 else inner[:0]
+    width = (step[inner[bent]] + step[inner[bent] + 1]) / 2
+    curvatures = (slopes[bent + 1] - slopes[bent]) / width[:, None]
+    families: dict[str, Bounds] = {}
+    if relief.lower is not None or relief.upper is not None:
+        limits = _limits((relief.lower, relief.upper), m, "values")
+        families["values"] = Bounds(shapes, *limits)
+    for name, rows, given in (("slope", slopes, relief.slope), ("curvature", curvatures, relief.curvature)):
+        if given is not None and len(rows):
+            pair = given if isinstance(given, tuple) else (-given, given)
+            families[name] = Bounds(rows @ shapes, *_limits(pair, len(rows), name))
+    if relief.coefficients is not None:
+        low, high = _limits(relief.coefficients, len(sizes), "coefficients")
+        families["coefficients"] = Bounds(np.eye(len(sizes)), low * sizes, high * sizes)
+    return {name: bounds for name, bounds in families.items() if len(bounds.low)} or _nothing_bounded()
+
+
+def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int, what: str) -> tuple[Array, Array]:
+    """Least and largest (count,), infinite where not given."""
+    limits = []
+    for given, otherwise in zip(pair, (-np.inf, np.inf), strict=True):
+        numbers = np.asarray(otherwise if given is None else given, float)
+        if numbers.ndim and numbers.shape != (count,):
+            raise ProblemError(f"bounds on {what} are a number or {count} of them; found an array {numbers.shape}")
+        limits.append(np.broadcast_to(numbers, count).astype(float))
+    low, high = limits
+    if not (low <= high).all():  # false also for what is not a number
+        raise ProblemError(f"the lower bound on {what} is above the upper one, or no number; exchange them")
+    return low, high
+
+
+def _nothing_bounded() -> dict[str, Bounds]:
+    """Refuse a relief that says nothing."""
+    raise ProblemError("nothing bounds the profile; give lower and upper values, or shapes with coefficients")

@@ -1,0 +1,80 @@
+"""The picture of a designed gap: pressure without and with the profile, and the profile."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bemcontact.arrays import Array, IntArray
+from bemcontact.modelling.designed_gap import GapDesign
+from bemcontact.report.figures.course import CYCLE
+from bemcontact.report.figures.page import GREY, labelled, new_page, plain
+from bemcontact.report.words import units_of
+
+
+def figure_of_design(design: GapDesign) -> Figure:
+    """Draw the pressure of all load states without and with the profile, and the profile below, over arc length.
+
+    Parameters
+    ----------
+    design : GapDesign
+
+    Returns
+    -------
+    Figure
+    """
+    figure = new_page(6.4, 6.2)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
+    draw_relief(below, design)
+    draw_relieved_pressure(above, design)
+    above.set_title(plain(f"{design.before[0].contact.name}: {design.goal.value} on {design.zone}"), fontsize=10)
+    return figure
+
+
+def draw_relieved_pressure(axes: Axes, design: GapDesign) -> None:
+    """Draw pressure over arc length, dashed without and full with the profile.
+
+    A pressure without the profile of more than three times the peak with it runs out of the picture, and is told.
+
+    Parameters
+    ----------
+    axes : to draw into
+    design : GapDesign
+    """
+    at, arc = _points(design)
+    for number, (before, after) in enumerate(zip(design.before, design.after, strict=True)):
+        colour = CYCLE[number % len(CYCLE)]
+        state = f", state {number + 1}" if len(design.after) > 1 else ""
+        axes.plot(arc, before.pressure[at], color=colour, linestyle="dashed", linewidth=1.2, label=f"without{state}")
+        axes.plot(arc, after.pressure[at], color=colour, marker=".", linewidth=1.5, label=f"with profile{state}")
+    highest = min(design.peak_before, 3 * design.peak) or 1.0
+    axes.set_ylim(-0.03 * highest, 1.08 * highest)
+    if design.peak_before > highest:
+        axes.text(0.98, 0.95, f"up to {design.peak_before:.4g} without", ha="right", va="top", transform=axes.transAxes)
+    axes.set_ylabel(labelled("pressure", units_of(design.before[0].contact).stress))
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(frameon=False, fontsize=8.5)
+
+
+def draw_relief(axes: Axes, design: GapDesign) -> None:
+    """Draw the profile over arc length.
+
+    Parameters
+    ----------
+    axes : to draw into
+    design : GapDesign
+    """
+    at, arc = _points(design)
+    axes.fill_between(arc, design.profile[at], 0.0, color=GREY, alpha=0.25, linewidth=0)
+    axes.plot(arc, design.profile[at], color=GREY, marker=".", linewidth=1.5)
+    unit = units_of(design.before[0].contact).length
+    axes.set_xlabel(labelled("distance along the contact zone", unit))
+    axes.set_ylabel(labelled("profile", unit))
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _points(design: GapDesign) -> tuple[IntArray, Array]:
+    """Indices of the contact points of the zone, in order, and their arc positions; runs one after the other."""
+    contact = design.before[0].contact
+    at = np.flatnonzero(contact.zone == contact.zone[design.points[0]])
+    at = at[np.lexsort((contact.arc_position[at], contact.run[at]))]
+    return at, contact.arc_position[at]

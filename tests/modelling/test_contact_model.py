@@ -1,0 +1,265 @@
+"""The model in cvxpy: its optimum is the contact state, its parameters are the data, what is added is judged."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import cvxpy as cp
+import numpy as np
+import pytest
+from contact_problems import random_contact, resting
+from modelling.tool_contact import tool_contact
+
+import bemcontact
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import NotConvexError, ProblemError
+from bemcontact.formulations import complementarity
+from bemcontact.solution import Status
+
+GALLERY = Path(__file__).parents[2] / "models" / "gallery"
+CONTACTS = {f"{n} points, {k} motions": random_contact(n + k, n, k) for n, k in ((9, 0), (14, 1), (14, 3))}
+CONTACTS |= {"tools": tool_contact(), "resting": resting()}
+
+
+def same_pressure(found, contact: CondensedContact, within: float = 1e-10) -> None:
+    """Against the direct solver; the compliance is positive definite on the equilibrium space, so there is one."""
+    direct = complementarity.solve(contact)
+    assert direct.status is Status.SOLVED
+    np.testing.assert_allclose(found, direct.pressure, atol=within * direct.pressure.max())
+
+
+@pytest.mark.parametrize("contact", CONTACTS.values(), ids=CONTACTS)
+def test_optimum_is_the_contact_state(contact):
+    """F3 is zero there, and nowhere below among what the constraints admit."""
+    model = contact.model()
+    assert isinstance(model, bemcontact.ContactModel)
+    result = model.solve()
+    assert result.contact_state
+    assert result.certificate.certified
+    same_pressure(result.pressure, contact)
+    U, T = contact.scales
+    assert abs(result.objective) <= 1e-12 * U * T * contact.weights.max()
+    assert model._pure.value == pytest.approx(0, abs=1e-9 * U * T * contact.weights.max())
+    np.testing.assert_allclose(result.gap, contact.gap(result.pressure, result.motions), atol=1e-12 * U)
+
+
+@pytest.mark.parametrize("contact", CONTACTS.values(), ids=CONTACTS)
+def test_expressions_are_those_of_the_condensed_problem(contact):
+    """gap, displacement and F3 = pᵀJ gap at any p in equilibrium, whatever the gauge of M."""
+    rng = np.random.default_rng(0)
+    model = contact.model()
+    ell, U, T = contact.equilibrium, *contact.scales
+    p = rng.standard_normal(contact.size) * T
+    p -= contact.rigid_motions @ np.linalg.solve(ell.T @ contact.rigid_motions, ell.T @ p + contact.motion_load)
+    a = rng.standard_normal(contact.free_motions) * U
+    model.pressure.variables()[0].value = p / model.scales.pressure
+    if model.motions is not None:
+        scale = np.ones(len(a))
+        model.motions.variables()[0].value = scale
+        model.motions.variables()[0].value = a / model.motions.value
+        np.testing.assert_allclose(model.motions.value, a, rtol=1e-13)
+        assert model.constraints["equilibrium"].violation().max() <= 1e-13 * np.abs(p).max() / T * contact.size
+    gap = contact.gap(p, a)
+    np.testing.assert_allclose(model.pressure.value, p, rtol=1e-14)
+    np.testing.assert_allclose(model.gap.value, gap, atol=1e-12 * np.abs(gap).max())
+    np.testing.assert_allclose(model.displacement.value, gap - contact.initial_gap, atol=1e-12 * np.abs(gap).max())
+    work = contact.weights * p * gap
+    assert model.objective.value == pytest.approx(work.sum(), abs=1e-12 * np.abs(work).sum())
+    forces = (contact.weights * p)[:, None] * contact.normals
+    np.testing.assert_allclose(model.resultant().value, forces.sum(axis=0), atol=1e-12 * np.abs(forces).sum())
+    if model.tool_displacement is not None:
+        np.testing.assert_allclose(model.tool_displacement.value, contact.tools.displacement(a), atol=1e-13 * U)
+
+
+@pytest.mark.parametrize("path", sorted(GALLERY.glob("*.yaml")), ids=lambda path: path.stem)
+def test_bodies_of_the_gallery(path):
+    """Certified, and the pressure of the direct solver, on bodies with up to three free motions and three zones."""
+    contact = bemcontact.condense(bemcontact.load(path))
+    result = contact.model().solve()
+    assert result.certificate.certified
+    same_pressure(result.pressure, contact)
+
+
+def test_resultant_of_a_zone():
+    contact = replace(random_contact(0, 6, 0), zone=np.array([0, 0, 1, 1, 1, 1]), zone_names=("left", "right"))
+    model = contact.model()
+    p = model.solve().pressure
+    parts = model.resultant("left").value, model.resultant("right").value
+    np.testing.assert_allclose(parts[0][1], contact.weights[:2] @ p[:2], rtol=1e-6)  # the values are Clarabel's own
+    np.testing.assert_allclose(sum(parts), model.resultant().value, rtol=1e-13)
+    with pytest.raises(ProblemError, match="no contact zone 'top'; there are: left, right"):
+        model.resultant("top")
+
+
+def test_parameters_are_the_data_of_the_problem():
+    """Each against `with_factors` and `with_tools` of the waist; the values that are in effect come first."""
+    contact = tool_contact()
+    model = contact.model()
+    assert model.case_factors.value == pytest.approx([1, 0])
+    np.testing.assert_allclose(model.contact.offset, contact.offset, atol=1e-15)
+    np.testing.assert_allclose(model.contact.motion_load, contact.motion_load, atol=1e-15)
+    model.solve()
+    model.case_factors.value = np.array([0.5, 2.0])
+    loaded = contact.with_factors({"dead": 0.5, "live": 2.0})
+    same_pressure(model.solve().pressure, loaded)
+    moves, forces = np.array([[0, 0.1, -0.02], [0, 0, 0]]), np.array([[0, 0, 0], [0, 0.3, 0.01]])
+    position, force = loaded.tools.position.reshape(2, 3) + moves, loaded.tools.force.reshape(2, 3) + forces
+    unused = 7.0 * np.array([[0, 0, 0], [0, 1, 1]])
+    model.tool_position.value = model.tool_position.value + moves + unused
+    model.tool_force.value = model.tool_force.value + forces + unused[::-1]
+    moved = loaded.with_tools(position, force)
+    found = model.solve()
+    same_pressure(found.pressure, moved)
+    np.testing.assert_allclose(found.tool_displacement[0], position[0], atol=1e-14)
+    step = 0.1 * np.random.default_rng(1).standard_normal(contact.size)
+    model.initial_gap.value = model.initial_gap.value + step
+    relieved = replace(moved, initial_gap=moved.initial_gap + step)
+    same_pressure(model.solve().pressure, relieved)
+    same_pressure(model.solve(problem=model.problem()).pressure, relieved)
+
+
+@pytest.mark.parametrize("added", [False, True])
+def test_new_values_of_parameters_are_not_compiled(added):
+    """The compiler of cvxpy hands out the very same parametrised program again: DPP by its own word."""
+    model = tool_contact().model()
+    problem = model.problem(extra_constraints=[model.pressure <= 9] if added else ())
+    assert problem.is_dpp()
+    first = model.solve(problem=problem)
+    before = problem.get_problem_data(cp.CLARABEL, solver_opts={})[0]["param_prob"]
+    model.case_factors.value = np.array([0.7, 1.0])
+    model.tool_force.value = 1.5 * model.tool_force.value
+    second = model.solve(problem=problem)
+    assert problem.get_problem_data(cp.CLARABEL, solver_opts={})[0]["param_prob"] is before
+    assert np.abs(second.pressure - first.pressure).max() > 0.01
+    same_pressure(second.pressure, model.contact, 1e-6 if added else 1e-10)  # added: not polished
+
+
+@pytest.mark.parametrize(("length", "stress"), [(1e6, 1.0), (1e-9, 1.0), (1.0, 1e6), (1.0, 1e-9), (1e-9, 1e6)])
+def test_units_do_not_matter(length, stress):
+    """Nothing added: to round-off. With additions in the user's units: to the tolerance of the solver."""
+    one, other = tool_contact(), tool_contact(units=(length, stress))
+    first, second = one.model().solve(), other.model().solve()
+    np.testing.assert_allclose(second.pressure / stress, first.pressure, atol=1e-12 * first.pressure.max())
+    limit = 0.8 * first.pressure.max()
+    found = []
+    for contact, L, S in ((one, 1.0, 1.0), (other, length, stress)):
+        model = contact.model()
+        lift = cp.Variable(nonneg=True)
+        cut = model.solve(0.1 * S * L * cp.sum(model.gap) + lift * S * L, [model.pressure <= limit * S + lift * S / L])
+        assert cut.status is Status.SOLVED
+        found.append((cut.pressure / S, cut.objective / (S * L**2), lift.value / L))
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_allclose(other, one, atol=1e-6 * limit)
+
+
+def test_an_addition_may_break_contact_and_is_told():
+    """A bound on the pressure below the peak: all constraints hold, complementarity fails, the sentence says so."""
+    model = random_contact(4, 12, 1).model()
+    free = model.solve()
+    p_max = 0.7 * free.pressure.max()
+    found = model.solve(extra_constraints=[model.pressure <= p_max])
+    assert found.status is Status.SOLVED
+    assert found.pressure.max() <= p_max * (1 + 1e-9)
+    assert not found.contact_state
+    assert "optimum of your model, not a contact state" in found.words
+    assert found.residuals.complementarity > 1e-2
+    assert f"{found.residuals.complementarity:.1e}" in found.words
+    idle = model.solve(extra_constraints=[model.pressure <= 2 * free.pressure.max()])
+    assert idle.contact_state
+    assert "leaves a contact state" in idle.words
+    np.testing.assert_allclose(idle.pressure, free.pressure, atol=1e-5 * p_max)
+
+
+def test_a_model_without_an_optimum_is_a_status_in_words():
+    model = random_contact(4, 12, 1).model()
+    too_much = model.solve(extra_constraints=[model.pressure <= -1])
+    assert too_much.status is Status.INFEASIBLE
+    assert too_much.pressure is None
+    assert "what was added to the model asks for too much" in too_much.words
+    without_end = model.solve(-1e3 * cp.Variable())
+    assert without_end.status is Status.UNBOUNDED
+    assert "no lower bound" in without_end.words
+    upwards = CondensedContact.from_compliance(np.eye(3), np.zeros(3), rigid_motions=np.ones(3), motion_load=1.0)
+    assert "+1 x motion 1" in upwards.model().solve().words
+
+
+def test_what_cannot_be_modelled_is_refused():
+    model = random_contact(4, 12, 1).model()
+    with pytest.raises(ProblemError, match=r"not convex by cvxpy's rules \(DCP\) in the objective"):
+        model.problem(cp.sqrt(model.pressure[0]))
+    with pytest.raises(ProblemError, match=r"not convex .* in constraint"):
+        model.problem(extra_constraints=[cp.norm(model.pressure) >= 1])
+    with pytest.raises(ProblemError, match=r"each change of them is a new problem \(not DPP\)"):
+        model.problem(cp.exp(model.initial_gap[0]) * cp.Parameter(nonneg=True) * model.pressure[0])
+    with pytest.raises(ProblemError, match="not both"):
+        model.solve(cp.sum(model.pressure), problem=model.problem())
+    with pytest.raises(ProblemError, match="has not been solved"):
+        model.result(model.problem())
+    with pytest.raises(bemcontact.SolverError, match="Clarabel cannot solve this model"):
+        model.solve(cp.Variable(boolean=True))
+    stranger = cp.Problem(cp.Minimize(0))
+    stranger.solve()
+    with pytest.raises(ProblemError, match="does not contain the pressure"):
+        model.result(stranger)
+    with pytest.raises(NotConvexError):
+        CondensedContact.from_compliance([[1.0, 3.0], [0.0, 1.0]], [-1.0, -1.0], [4.0, 1.0]).model()
+
+
+def test_a_result_is_taken_out_before_the_next_solve():
+    model = random_contact(4, 12, 1).model()
+    one, other = model.problem(), model.problem(extra_constraints=[model.pressure <= 1.0])
+    one.solve(solver=cp.CLARABEL)
+    kept = model.result(one)
+    other.solve(solver=cp.CLARABEL)
+    with pytest.raises(ProblemError, match="another problem of this model was solved since"):
+        model.result(one)
+    assert kept.solution.polished
+    assert not kept.pressure.flags.writeable
+
+
+def test_a_design_variable_composes_with_the_gap():
+    """A shift of a clamped body's support that makes the peak smallest for a given force: contact on all points.
+
+    gap + h >= 0 with contact closed, gap + h = 0, where p may be positive: its optimum is a contact state at the
+    shifted gap, which the model finds again through its parameter.
+    """
+    contact = random_contact(11, 8, 0)
+    model = contact.model()
+    h, peak = cp.Variable(contact.size), cp.Variable()
+    force = 5.0
+    problem = cp.Problem(
+        cp.Minimize(peak),
+        [model.pressure <= peak, model.gap + h == 0, model.resultant()[1] == force, model.constraints["no_tension"]],
+    )
+    designed = model.solve(problem=problem)
+    assert "not a contact state" in designed.words  # at the gap that is not shifted
+    np.testing.assert_allclose(designed.pressure, force / contact.weights.sum(), rtol=1e-7)
+    model.initial_gap.value = model.initial_gap.value + h.value
+    found = model.solve()
+    assert found.contact_state
+    np.testing.assert_allclose(found.pressure, designed.pressure, rtol=1e-6)
+
+
+def test_solving_again_starts_from_the_last_solution():
+    """The same problem again, and a neighbour: the active-set step gets there without Clarabel, and says so."""
+    contact = random_contact(3, 40, 1)
+    model = contact.model()
+    assert model.solve().solution.solver == "Clarabel"
+    same = model.solve()
+    assert same.solution.solver == "primal-dual active set"
+    same_pressure(same.pressure, contact)
+    model.initial_gap.value = contact.initial_gap + 0.01 * np.random.default_rng(0).standard_normal(40)
+    found = model.solve()
+    assert found.solution.solver == "primal-dual active set"
+    same_pressure(found.pressure, model.contact)
+    np.testing.assert_allclose(model.pressure.value, found.pressure, rtol=1e-13)
+    np.testing.assert_allclose(model.motions.value, found.motions, rtol=1e-13)
+
+
+def test_a_slightly_indefinite_objective_is_told_and_polished():
+    """sym(M) = [[1, 1.01], [1.01, 1]] has eigenvalues 2.01 and -0.01: half a hundredth, left out of F3."""
+    contact = CondensedContact.from_compliance([[1.0, 2.02], [0.0, 1.0]], [-1.0, -1.0])
+    model = contact.model()
+    assert "not convex on this mesh" in model.notes[0]
+    found = model.solve()
+    assert found.contact_state
+    same_pressure(found.pressure, contact)

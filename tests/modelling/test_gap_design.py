@@ -1,0 +1,246 @@
+"""Design of gaps: the best there is by exhaustive search, closed forms, random profiles, and the whole chain."""
+
+from dataclasses import replace
+from functools import cache
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import pytest
+from contact_problems import random_contact, resting
+from modelling.tool_contact import tool_contact
+from scipy.optimize import linprog
+
+import bemcontact
+from bemcontact import GapDesign, Relief, design_gap, spec
+from bemcontact.contact import CondensedContact
+from bemcontact.errors import ProblemError
+from bemcontact.formulations import complementarity
+from bemcontact.modelling.designed_gap import relieved
+from bemcontact.modelling.relief import Profiles
+
+GALLERY = Path(__file__).parents[2] / "models" / "gallery"
+POWERS = [lambda s, k=k: (1 - s / 5) ** k for k in (2, 4, 8)]
+"""Shapes for half a punch, from its edge (s = 0) to its middle (s = 5)."""
+
+
+@cache
+def condensed(name: str) -> CondensedContact:
+    return bemcontact.condense(spec.load(GALLERY / f"{name}.yaml"))
+
+
+def loaded(contact: CondensedContact, factor: float) -> CondensedContact:
+    """The same body under all loads times a factor: Δ1 and the load are linear in them."""
+    return replace(
+        contact,
+        free_displacement=factor * contact.free_displacement,
+        motion_load=factor * contact.motion_load,
+    )
+
+
+def three_loads() -> tuple[CondensedContact, ...]:
+    rng, contact = np.random.default_rng(1), random_contact(7, 12, 1)
+    return (
+        contact,
+        loaded(contact, 1.5),
+        replace(contact, initial_gap=contact.initial_gap + 0.3 * rng.standard_normal(12)),
+    )
+
+
+CASES = {
+    "roller on a shaped plane": (
+        lambda: condensed("hertz_small"),
+        Relief(lower=-0.002, upper=0.0, slope=0.02, curvature=0.05),
+        {},
+    ),
+    "punch, blunt edges": (
+        lambda: condensed("flat_punch"),
+        Relief(lower=0, upper=0.002, slope=1e-3, curvature=1e-3),
+        {},
+    ),
+    "punch, three shapes": (lambda: condensed("flat_punch"), Relief(shapes=POWERS, coefficients=(0.0, 0.02)), {}),
+    "punch under two loads": (
+        lambda: (condensed("flat_punch"), loaded(condensed("flat_punch"), 0.5)),
+        Relief(lower=0, upper=0.01),
+        {},
+    ),
+    "beam on a shaped support": (
+        lambda: condensed("beam_on_two_supports"),
+        Relief(lower=-0.03, upper=0.03, slope=0.1),
+        {"zone": "end roller"},
+    ),
+    "three loads": (three_loads, Relief(lower=-0.2, upper=0.4, slope=0.2), {"arc": (2, 9)}),
+}
+
+
+@cache
+def designed(name: str) -> GapDesign:
+    contact, relief, where = CASES[name]
+    return design_gap(contact(), relief, **where)
+
+
+def states_of(name: str) -> tuple[CondensedContact, ...]:
+    contact = CASES[name][0]()
+    return (contact,) if isinstance(contact, CondensedContact) else contact
+
+
+def peak(states: tuple[CondensedContact, ...], profile: np.ndarray) -> float:
+    return max(complementarity.solve(relieved(state, profile)).pressure.max() for state in states)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_no_random_profile_has_a_lower_peak(name):
+    """A thousand of them: corners of the set of profiles, mixtures of corners, and mixtures with the design itself."""
+    design, states, (_, relief, where) = designed(name), states_of(name), CASES[name]
+    profiles, rng = Profiles.of(states[0], relief, **where), np.random.default_rng(99)
+    size = len(profiles.points)
+    corners = []
+    for _ in range(200):
+        direction = np.zeros(states[0].size)
+        direction[profiles.points] = rng.standard_normal(size)
+        corners.append(profiles.shapes @ profiles.extreme(direction))
+    mixed = [rng.dirichlet(np.full(4, 0.7)) @ [corners[i] for i in rng.integers(0, 200, 4)] for _ in range(400)]
+    near = [design.profile + 10 ** rng.uniform(-6, 0) * (corners[i % 200] - design.profile) for i in range(400)]
+    lowest = min(peak(states, profile) for profile in (*corners, *mixed, *near))
+    assert design.peak <= lowest * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_design_is_verified_and_keeps_its_bounds(name):
+    """Solved again, certified, pressures as designed to 1e-6; bounds by differences over arc length written here."""
+    design, states, relief = designed(name), states_of(name), CASES[name][1]
+    assert design.verified
+    assert design.difference <= 1e-6
+    for state, after in zip(states, design.after, strict=True):
+        direct = complementarity.solve(relieved(state, design.profile))
+        np.testing.assert_allclose(after.pressure, direct.pressure, atol=1e-9 * design.peak)
+    assert design.lower_bound <= design.peak * (1 + 1e-9)
+    assert design.peak <= peak(states, np.zeros(states[0].size)) * (1 + 1e-9)
+    contact, at = states[0], design.points
+    g, s = design.profile[at], contact.arc_position[at]
+    same_run = np.diff(contact.run[at]) == 0
+    slope = np.diff(g)[same_run] / np.diff(s)[same_run]
+    room = 1e-8 * max(abs(g).max(), 1e-12)
+    if relief.lower is not None:
+        assert relief.lower - room <= g.min()
+        assert g.max() <= relief.upper + room
+    if relief.slope is not None:
+        assert abs(slope).max() <= relief.slope * (1 + 1e-7)
+    if relief.curvature is not None:
+        assert abs(np.diff(slope) / ((s[2:] - s[:-2]) / 2)).max() <= relief.curvature * (1 + 1e-6)
+    if relief.shapes is not None:
+        assert design.coefficients is not None
+        np.testing.assert_allclose(
+            sum(c * f(s) for c, f in zip(design.coefficients, POWERS, strict=True)), g, atol=room
+        )
+        assert (design.coefficients >= -1e-9).all()
+
+
+def exhaustive(contact: CondensedContact, low: float, high: float) -> float:
+    """The least peak over all 2ⁿ contact sets, by scipy: gap = 0 and p >= 0 on each, p = 0 and gap >= 0 off it.
+
+    Variables are the peak, g (n,), p (n,) and a (k,).
+    """
+    n, k = contact.rigid_motions.shape
+    eye, none, R, ell = np.eye(n), np.zeros((n, n)), contact.rigid_motions, contact.equilibrium
+    gap = np.hstack([np.zeros((n, 1)), eye, contact.compliance, R])
+    below_peak = np.hstack([-np.ones((n, 1)), none, eye, np.zeros((n, k))])
+    balance = np.hstack([np.zeros((k, 1 + n)), ell.T, np.zeros((k, k))])
+    best = np.inf
+    for touching in product((False, True), repeat=n):
+        A = np.array(touching)
+        bounds = [(None, None), *[(low, high)] * n, *((0, None if on else 0) for on in A), *[(None, None)] * k]
+        found = linprog(
+            np.append(1.0, np.zeros(2 * n + k)),
+            A_ub=np.vstack([below_peak, -gap[~A]]),
+            b_ub=np.append(np.zeros(n), contact.offset[~A]),
+            A_eq=np.vstack([gap[A], balance]),
+            b_eq=np.append(-contact.offset[A], -contact.motion_load),
+            bounds=bounds,
+        )
+        best = min(best, found.fun if found.success else np.inf)
+    return best
+
+
+@pytest.mark.parametrize("seed", range(9))
+def test_the_best_of_all_contact_sets_is_found(seed):
+    contact = random_contact(seed, 6, seed % 3)
+    design = design_gap(contact, Relief(lower=-0.3, upper=0.5))
+    best = exhaustive(contact, -0.3, 0.5)
+    assert design.value == pytest.approx(best, rel=1e-6, abs=1e-9)
+    assert design.lower_bound <= best * (1 + 1e-6)
+    assert not design.proved_optimal or design.lower_bound == pytest.approx(best, rel=1e-5)
+
+
+def test_a_free_profile_makes_the_pressure_of_a_punch_uniform():
+    """1000 N/mm on half a face of 5 mm: 200, which no pressure on that face can be below; the profile is the contour.
+
+    Uniform pressure p on |x| < a of a half-plane lowers its surface against the middle by
+    p/(π E*) [(a + x) ln(1 + x/a)² + (a - x) ln(1 - x/a)²] less (Johnson, Contact Mechanics, 2.30a). The block is 40
+    half-widths large, 0.1 %; the rest is for the mesh beside the edge of the load.
+    """
+    design = design_gap(condensed("flat_punch"), Relief(lower=0, upper=0.01))
+    assert design.proved_optimal
+    assert "No profile within the bounds does better" in design.words
+    np.testing.assert_allclose(design.after[0].pressure, 200, rtol=1e-6)
+    x = design.before[0].contact.points[:, 0] / 5
+    log = [np.log(np.maximum(1 + side * x, 1e-300)) * (1 + side * x) for side in (1, -1)]
+    contour = 200 * 5 * (1 - 0.3**2) / (np.pi * 210e3) * 2 * (log[0] + log[1])
+    relative = design.profile - design.profile[np.argmin(abs(x))]
+    assert abs(relative - contour).max() <= 0.01 * contour.max()
+
+
+def test_uniform_is_another_goal():
+    """Free: no deviation at all. Bounded: not above that of the peak's design, whose peak is not above this one's."""
+    contact = condensed("flat_punch")
+    free = design_gap(contact, Relief(lower=0, upper=0.01), goal="uniform")
+    assert free.value <= 1e-5 * 200
+    np.testing.assert_allclose(free.after[0].pressure, 200, rtol=1e-5)
+    relief = Relief(shapes=POWERS, coefficients=(0.0, 0.02))
+    even, low = design_gap(contact, relief, goal="uniform"), designed("punch, three shapes")
+    weights = contact.weights / contact.weights.sum()
+
+    def deviation(p):
+        return np.sqrt(weights @ (p - weights @ p) ** 2)
+
+    assert even.verified
+    assert even.value == pytest.approx(deviation(even.after[0].pressure), rel=1e-12)
+    assert even.value <= deviation(low.after[0].pressure) * (1 + 1e-9)
+    assert low.peak <= even.peak * (1 + 1e-9)
+
+
+def test_load_cases_are_load_states():
+    contact = tool_contact()
+    factors = [{"dead": 1.0}, {"dead": 1.0, "live": 0.5}]
+    design = design_gap(contact, Relief(lower=0, upper=0.2), cases=factors)
+    again = design_gap([contact.with_factors(some) for some in factors], Relief(lower=0, upper=0.2))
+    assert design.verified
+    assert "the worst of 2 load states" in design.words
+    assert design.value == pytest.approx(again.value, rel=1e-9)
+    assert design.value < design.value_before
+
+
+@pytest.mark.parametrize(("length", "stress"), [(1e6, 1e-3), (1e-9, 1e6)])
+def test_units_do_not_matter(length, stress):
+    found = []
+    for L, S in ((1.0, 1.0), (length, stress)):
+        contact = tool_contact(units=(L, S))
+        found.append(design_gap(contact, Relief(lower=0, upper=0.2 * L, slope=0.5)).value / S)
+    assert found[1] == pytest.approx(found[0], rel=1e-6)
+
+
+def test_what_is_no_design_is_refused():
+    contact = random_contact(0, 6, 1)
+    relief = Relief(lower=0, upper=1)
+    with pytest.raises(ProblemError, match="needs a CondensedContact"):
+        design_gap([], relief)
+    with pytest.raises(ProblemError, match="no goal 'low'; there are: peak, uniform"):
+        design_gap(contact, relief, goal="low")
+    with pytest.raises(ProblemError, match="load state 2 differs from the first one in its compliance"):
+        design_gap([contact, random_contact(1, 6, 1)], relief)
+    with pytest.raises(ProblemError, match="factors of load cases go with one condensed contact"):
+        design_gap([contact, contact], relief, cases=[{}])
+    with pytest.raises(ProblemError, match=r"no contact state: .* off its support"):
+        design_gap(replace(resting(), motion_load=np.ones(1)), relief)
+    with pytest.raises(ProblemError, match="no profile keeps the bounds on values and slope"):
+        design_gap(contact, Relief(lower=(0, 5, 0, 0, 0, 0), upper=(1, 6, 1, 1, 1, 1), slope=0.1))
