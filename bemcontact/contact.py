@@ -10,40 +10,22 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import linprog
 
 from bemcontact import archive
 from bemcontact.actions import Change, LoadCases, Tools
 from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.choices import Weights
-from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.contact_scales import ContactScales, typical_scales
+from bemcontact.errors import ProblemError
 from bemcontact.gauge import fix_gauge
-
-INTERFERENCE = 1e-6
-"""Part of the widest gap that counts as interference; a linear program knows no less."""
-
+from bemcontact.stiffness import StiffnessRows, stiffness_rows
 
 PEAK = 1e-12
 """Part of T below which the largest pressure is round-off, and nothing touches."""
-
-
-class ContactScales(NamedTuple):
-    """Typical displacement U [L] and pressure T [p] of a contact problem, by which residuals are divided."""
-
-    displacement: float
-    pressure: float
-
-
-class StiffnessRows(NamedTuple):
-    """K u_n = B p + r, [SS92] (12), as contact stiffness rows: K (n, n) [p/L], B (n, n) [1], r (n,) [p]."""
-
-    K: Array
-    B: Array
-    r: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -244,22 +226,7 @@ class CondensedContact:
         A load that presses a free body needs the balancing pressure; interference is what penetrates without pressure
         however the body is placed. Wide gaps far from contact do not count; if there is neither, U = max|q|.
         """
-        norm = float(np.abs(self.compliance).sum(axis=1).max(initial=0.0))
-        pressure = float(np.abs(self.balancing_pressure).max(initial=0.0))
-        widest = float(np.abs(self.offset).max(initial=0.0))
-        displacement = max(norm * pressure, self._interference) or widest or 1.0
-        return ContactScales(displacement, displacement / norm if norm > 0 else pressure or 1.0)
-
-    @property
-    def _interference(self) -> float:
-        """Least s >= 0 [L] with q + R a >= -s for some a: a linear program; below 1e-6 of the widest gap it is none."""
-        widest = float(np.abs(self.offset).max(initial=0.0))
-        if self.free_motions == 0 or widest == 0:
-            return float(np.maximum(-self.offset, 0.0).max(initial=0.0))
-        columns = np.column_stack([self.rigid_motions, np.ones(self.size)])
-        cost, bounds = np.append(np.zeros(self.free_motions), 1.0), [(None, None)] * self.free_motions + [(0, None)]
-        found = linprog(cost, A_ub=-columns, b_ub=self.offset / widest, bounds=bounds)
-        return widest * found.fun if found.success and found.fun > INTERFERENCE else 0.0
+        return typical_scales(self.compliance, self.offset, self.rigid_motions, self.balancing_pressure)
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
         """Let load cases act, each by its factor, and those that are not named not at all; nothing is condensed anew.
@@ -344,20 +311,9 @@ class CondensedContact:
 
         `SingularSystemError` where that has no inverse.
         """
-        n, k = self.rigid_motions.shape
-        U, T = self.scales
-        row_scale = np.abs(self.equilibrium).max(axis=0, initial=0.0)
-        unit_rows = (self.equilibrium / row_scale).T
-        bordered = np.block([[self.compliance * (T / U), self.rigid_motions], [unit_rows, np.zeros((k, k))]])
-        try:
-            inverse = np.linalg.inv(bordered.T).T.astype(float)  # accurate as a left inverse, which is how K is used
-        except np.linalg.LinAlgError:
-            raise SingularSystemError(
-                "the compliance is singular: some change of pressure moves no contact point, so that pressures cannot "
-                "be told apart; give each contact point a compliance of its own"
-            ) from None
-        S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / row_scale
-        return StiffnessRows(S, np.eye(n), S @ self.free_displacement + V @ self.motion_load)
+        return stiffness_rows(
+            self.compliance, self.rigid_motions, self.equilibrium, self.free_displacement, self.motion_load, self.scales
+        )
 
     def model(self) -> Any:
         """Write the problem as a `bemcontact.ContactModel`: variables, expressions and parameters of cvxpy to build on.

@@ -13,7 +13,8 @@ import numpy as np
 from bemcontact.actions import Change
 from bemcontact.arrays import Array
 from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact, ContactScales
+from bemcontact.contact import CondensedContact
+from bemcontact.contact_scales import ContactScales
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

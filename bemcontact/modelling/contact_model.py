@@ -9,7 +9,8 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact, ContactScales
+from bemcontact.contact import CondensedContact
+from bemcontact.contact_scales import ContactScales
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
