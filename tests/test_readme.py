@@ -21,11 +21,18 @@ def shown(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
 
 
+def chapter(language: str) -> list[str]:
+    """The same of the chapter on what may be composed."""
+    text = README.partition("\n## Loads, tools and models to compose\n")[2].partition("\n## ")[0]
+    return re.findall(rf"```{language}\n(.*?)```", text, flags=re.DOTALL)
+
+
 @pytest.fixture
 def block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     spec = shown("yaml")[0]
     path = tmp_path / "block.yaml"
     path.write_text(spec, encoding="utf-8")
+    (tmp_path / "punch.yaml").write_text(chapter("yaml")[0], encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     return path
 
@@ -94,6 +101,18 @@ def test_the_starts_that_are_told_have_these_fields():
         exec(line.strip(), names)
     assert names["result"].solution.search.start == "given point"
     assert names["result"].solution.search.penalty.value == 0.1
+
+
+def test_the_chapter_on_composing_prints_what_is_told(block: Path, capsys: pytest.CaptureFixture[str]):
+    """Each `print` line ends with what it prints, or how that begins."""
+    calls, names = chapter("python"), {}
+    assert len(calls) == 5
+    for call in calls:
+        exec(compile(call, "README.md", "exec"), names)
+        told = re.findall(r"print\(.*\)  # (.*)", call)
+        printed = capsys.readouterr().out.splitlines()
+        assert len(printed) == len(told) > 0
+        assert all(line.startswith(start) for line, start in zip(printed, told, strict=True)), (printed, told)
 
 
 def test_the_commands_run(block: Path):

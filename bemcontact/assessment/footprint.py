@@ -141,6 +141,30 @@ def end_rates(
     return tuple(pair for _, path in _paths(condensed, solution) for pair in _rates(path, gap_rate[path.index]))
 
 
+def resting_ends(condensed: CondensedContact, solution: ContactSolution) -> tuple[Point, ...]:
+    """Ends of contact that `footprint` keeps at a point, although open points follow: their rates are zero.
+
+    There the line through the gaps of the open points would end beyond the two points between which contact ends.
+
+    Parameters
+    ----------
+    condensed : CondensedContact
+    solution : of any formulation
+
+    Returns
+    -------
+    tuple of points
+    """
+    found = []
+    for _, path in _paths(condensed, solution):
+        for ends in () if path.closed else _stretches(path):
+            for last, step in zip(ends, (-1, +1), strict=True):
+                position = _end(path, last, step)
+                if len(_opened(path, last, step)) > 1 and position in (path.arc[last], path.arc[last + step]):
+                    found.append(_at(path, position))
+    return tuple(found)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Path:
     """The points of one run in order, gap cut off below zero; a closed run three times over.

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from bemcontact.actions import Change
 from bemcontact.arrays import Array, IntArray, freeze_arrays
-from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint
+from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint, resting_ends
 from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
@@ -35,8 +35,9 @@ class Rates:
     rigid_amplitudes : (k,)
     resultant : (zones, 2) of the force of each rigid surface on the body [p L]
     peak : of the largest pressure [p]
-    interval_ends : for each interval of the footprint, of `start_arc` and `end_arc` [L]: zero where an end is kept at a
-        point, None beside a point that is about to enter or leave contact
+    interval_ends : for each interval of the footprint, of `start_arc` and `end_arc` [L], as it reads them: zero where
+        an end is kept at a point, None beside a point that is about to enter or leave contact. On its way from point to
+        point the reading moves unevenly; it is right on the average over a node spacing
     """
 
     pressure: Array
@@ -187,7 +188,7 @@ def sensitivities(
         intervals=footprint(contact, state).intervals,
         each=each,
         weak=tuple(tangent.weak.tolist()),
-        notes=tuple(_notes(contact, tangent.weak, _highest(contact, state), tangent.unique)),
+        notes=(*_notes(contact, tangent.weak, _highest(contact, state), tangent.unique), *_at_rest(contact, state)),
     )
 
 
@@ -287,6 +288,15 @@ def _notes(contact: CondensedContact, weak: IntArray, highest: IntArray, unique:
         yield f"{_placed(contact, highest)} share the peak pressure: its derivative has two sides"
     if not unique:
         yield NOT_PROVED
+
+
+def _at_rest(contact: CondensedContact, state: ContactSolution) -> Iterator[str]:
+    """Which ends of contact have no rate, as they are kept at a point."""
+    for x, y in resting_ends(contact, state):
+        yield (
+            f"the end of contact at ({x:.6g}, {y:.6g}) is read at a point, where it rests as parameters change a little: "
+            "its rates are zero; between two points the reading moves unevenly, so follow a path to see it move"
+        )
 
 
 def _placed(contact: CondensedContact, points: IntArray) -> str:
