@@ -154,10 +154,20 @@ def test_a_closed_run_with_a_corner_where_contact_ends():
 
 
 def test_a_zone_gets_the_elements_that_it_takes():
-    """Three on each side of each end of contact, of which the first are 1/27 of what they are graded over."""
+    """Four inside each end of contact and three outside: the first are 1/64 and 1/27 of what they are graded over."""
     ends = fitted_ends(run_of([4.0], [2]), [touched(1, 3)])
-    assert len(ends) == 13
-    np.testing.assert_allclose(ends[3:5], [1, 1 + 1 / 27], rtol=1e-12)
+    assert len(ends) == 15
+    np.testing.assert_allclose(ends[2:5], [1 - 1 / 27, 1, 1 + 1 / 64], rtol=1e-12)
+
+
+@pytest.mark.parametrize("seam", [0.0, 5.0, 30.0])
+def test_what_is_open_on_a_closed_run_has_elements_for_both_its_ends(seam):
+    """So the shortest is at most `CONTACT_SHARE`³ times as long as that in contact; twice, as numbers are whole."""
+    run = run_of([60.0], [30], closed=True)
+    ends = fitted_ends(run, [touched(10 + seam, 27 + seam)])
+    at = int(np.argmin(abs(ends - (10 + seam))))
+    before, after = np.diff(ends[at - 1 : at + 2])
+    assert before / after <= 2 * CONTACT_SHARE**3
 
 
 def test_a_very_short_contact_has_no_element_that_would_be_refused():
