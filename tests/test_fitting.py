@@ -165,6 +165,36 @@ def test_contact_round_a_corner_is_fitted_on_both_sides(load):
         assert end / load == pytest.approx(fine / 2, rel=0.05)
 
 
+TILTED = """
+name: block on its lower left corner, its left side in the zone too
+material: {young_modulus: 1000, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: bottom, start: [0, 0], elements: 13}
+    - {name: right, start: [3.993, 0.235], elements: 2}
+    - {name: top, start: [3.875, 2.232], elements: 5}
+    - {name: left, start: [-0.118, 1.997], elements: 3}
+conditions:
+  top: {traction: {y: -0.2325}}
+  right: {displacement: {x: 0}}
+contact_zones:
+  corner: {edges: [left, bottom], surface: {kind: plane, point: [0, 0], normal: [0, 1]}}
+mesh: {fit_contact_edges: true}
+"""
+
+
+def test_contact_on_one_side_of_a_corner_is_fitted_to():
+    """A point at first; with long elements beyond the corner the passes would swing between two states for ever."""
+    result = bemcontact.solve(bemcontact.loads(TILTED), "complementarity")
+    finest = bemcontact.solve(bemcontact.loads(TILTED).refined(4), "complementarity")
+    assert result.certified
+    assert result.mesh_fit.settled
+    assert result.mesh_fit.kept
+    (interval,), (fine,) = result.footprint.intervals, finest.footprint.intervals
+    assert interval.start == pytest.approx((0, 0), abs=1e-12)
+    assert interval.end[0] == pytest.approx(fine.end[0], rel=5e-3)
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_whatever_the_zone_is_like_fitting_helps(seed):
     """Elements of any number and grading, loads down to 1e-7: within 2e-2 of Hertz, and nearer than unfitted.

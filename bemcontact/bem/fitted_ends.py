@@ -113,19 +113,33 @@ def fitted_ends(run: ZoneRun, touched: Sequence[Touched]) -> Array:
     -------
     (m + 1,) [L]
     """
-    parts = _parts(run, touched)
-    ends = [np.array([parts[0].low])]
-    for block in _blocks(parts):
-        counted = _counted(run, _shared(block))
-        narrowest = min((part.reach for part in counted if part.touched and part.sides), default=0.0)
-        shortest = max(SHORTEST * narrowest, SHORTEST_OF_RUN * run.length)
-        ends += [_graded(run, part, shortest)[1:] for part in counted]
-    positions = np.concatenate(ends)
+    blocks = _blocks(_parts(run, touched))
+    pieces = _evened([_divided(run, block) for block in blocks], around=run.closed and not blocks[0][0].low_free)
+    positions = np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
     if not run.closed:
         return positions
     wrapped = np.sort(np.mod(positions[:-1], run.length))
     wrapped = wrapped[(wrapped > SAME * run.length) & (wrapped < (1 - SAME) * run.length)]
     return np.concatenate([[0.0], wrapped, [run.length]])
+
+
+def _divided(run: ZoneRun, block: Sequence[_Part]) -> Array:
+    """Element ends of the parts of a block."""
+    counted = _counted(run, _shared(block))
+    narrowest = min((part.reach for part in counted if part.touched and part.sides), default=0.0)
+    shortest = max(SHORTEST * narrowest, SHORTEST_OF_RUN * run.length)
+    ends = [_graded(run, part, shortest) for part in counted]
+    return np.concatenate([ends[0], *(positions[1:] for positions in ends[1:])])
+
+
+def _evened(pieces: Sequence[Array], *, around: bool) -> list[Array]:
+    """Halve long elements that meet short ones across a corner at which contact ends; around, the last the first."""
+    evened = [*pieces]
+    for i, j in pairwise([*range(len(pieces)), *([0] * around)]):
+        before, after = np.diff(evened[i])[-1], np.diff(evened[j])[0]
+        evened[i] = halved(evened[i], after, -1)
+        evened[j] = halved(evened[j], before, 0)
+    return evened
 
 
 def movement(run: ZoneRun, touched: Sequence[Touched], fitted_to: Sequence[Touched] | None) -> float | None:
