@@ -26,6 +26,8 @@ SETTLED = 0.2
 """Distance of an end of contact from where the mesh is graded to, over the shorter element there, that is none."""
 SAWING = 0.01
 """Amplitude over the peak above which a pressure that saws more than on the mesh as stated condemns a fitted mesh."""
+SAWING_UNTOLD = 0.05
+"""The same where the mesh as stated has too few points to tell: twice the amplitude beside an infinite pressure."""
 CHANGE = 0.01
 """Change of the peak pressure, or of the force on a zone, with the fitted mesh above which it is told."""
 
@@ -105,10 +107,10 @@ def _unrest(trial: _Trial) -> float:
 
 
 def _saws(trial: _Trial, first: _Trial) -> bool:
-    """Tell whether the pressure saws on a mesh, and more than on the first one, if that has points enough to tell."""
-    if trial.sawing is None or first.sawing is None:
+    """Tell whether the pressure saws on a mesh, and more than on the first one, or much if that has too few points."""
+    if trial.sawing is None:
         return False
-    return trial.sawing > max(SAWING, first.sawing)
+    return trial.sawing > (SAWING_UNTOLD if first.sawing is None else max(SAWING, first.sawing))
 
 
 def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_Trial], list[str]]:
@@ -225,6 +227,8 @@ def _told_of_none(trials: Sequence[_Trial]) -> Iterator[str]:
         )
     elif first.found:
         yield "the mesh was left as stated, for no fitted one came to rest"
+    elif not first.notes and not first.intervals:
+        yield "the mesh is as stated, for nothing touches"
     elif not first.notes:
         yield (
             "the mesh is as stated: contact ends at no place inside a zone that an element could be graded towards, as "
