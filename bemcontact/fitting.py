@@ -24,6 +24,8 @@ MOST_PASSES = 8
 """Meshes tried after the one that was stated."""
 SETTLED = 0.2
 """Distance of an end of contact from where the mesh is graded to, over the shorter element there, that is none."""
+SWING = 5.0
+"""The same distance beyond which an end of contact does not swing to and fro, but is on its way."""
 SAWING = 0.01
 """Amplitude over the peak above which a pressure that saws more than on the mesh as stated condemns a fitted mesh."""
 SAWING_UNTOLD = 0.05
@@ -133,7 +135,7 @@ def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_T
 def _aim(stated: Mapping[int, ZoneRun], trials: Sequence[_Trial]) -> Stretches:
     """Stretches of contact to fit to next: half-way to those found where the ends of contact only swing to and fro."""
     last = trials[-1]
-    if len(trials) < 3 or last.narrow or last.movement is None or last.movement < _unrest(trials[-2]) / 2:
+    if len(trials) < 3 or last.narrow or not _unrest(trials[-2]) / 2 <= _unrest(last) <= SWING:
         return last.found
     return {
         number: half_way(stated[number], last.fitted_to.get(number, ()), found) for number, found in last.found.items()
