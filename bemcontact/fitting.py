@@ -24,8 +24,12 @@ MOST_PASSES = 8
 """Meshes tried after the one that was stated."""
 SETTLED = 0.2
 """Distance of an end of contact from where the mesh is graded to, over the shorter element there, that is none."""
+SWING = 5.0
+"""The same distance beyond which an end of contact does not swing to and fro, but is on its way."""
 SAWING = 0.01
 """Amplitude over the peak above which a pressure that saws more than on the mesh as stated condemns a fitted mesh."""
+SAWING_UNTOLD = 0.05
+"""The same where the mesh as stated has too few points to tell: twice the amplitude beside an infinite pressure."""
 CHANGE = 0.01
 """Change of the peak pressure, or of the force on a zone, with the fitted mesh above which it is told."""
 
@@ -105,10 +109,10 @@ def _unrest(trial: _Trial) -> float:
 
 
 def _saws(trial: _Trial, first: _Trial) -> bool:
-    """Tell whether the pressure saws on a mesh, and more than on the first one, if that has points enough to tell."""
-    if trial.sawing is None or first.sawing is None:
+    """Tell whether the pressure saws on a mesh, and more than on the first one, or much if that has too few points."""
+    if trial.sawing is None:
         return False
-    return trial.sawing > max(SAWING, first.sawing)
+    return trial.sawing > (SAWING_UNTOLD if first.sawing is None else max(SAWING, first.sawing))
 
 
 def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_Trial], list[str]]:
@@ -131,7 +135,7 @@ def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_T
 def _aim(stated: Mapping[int, ZoneRun], trials: Sequence[_Trial]) -> Stretches:
     """Stretches of contact to fit to next: half-way to those found where the ends of contact only swing to and fro."""
     last = trials[-1]
-    if len(trials) < 3 or last.narrow or last.movement is None or last.movement < _unrest(trials[-2]) / 2:
+    if len(trials) < 3 or last.narrow or not _unrest(trials[-2]) / 2 <= _unrest(last) <= SWING:
         return last.found
     return {
         number: half_way(stated[number], last.fitted_to.get(number, ()), found) for number, found in last.found.items()
@@ -225,6 +229,8 @@ def _told_of_none(trials: Sequence[_Trial]) -> Iterator[str]:
         )
     elif first.found:
         yield "the mesh was left as stated, for no fitted one came to rest"
+    elif not first.notes and not first.intervals:
+        yield "the mesh is as stated, for nothing touches"
     elif not first.notes:
         yield (
             "the mesh is as stated: contact ends at no place inside a zone that an element could be graded towards, as "

@@ -19,8 +19,8 @@ SHORTEST = 5e-4
 """Least element, over the shortest side in contact: shorter ones gain little, and cost digits of the certificate."""
 SHORTEST_OF_RUN = 1e-6
 """Least element over the length of the run: element ends that are nearer to each other are refused."""
-LEAST = 3
-"""Elements on each side of a contact edge, stated or not."""
+LEAST_TOUCHED, LEAST_OPEN = 4, 3
+"""Elements on each side of a contact edge, stated or not: with three in contact its place swings from pass to pass."""
 CLOSE = 1e-2
 """Distance from the end of a run, or from a joint, that is not resolved by elements, over the mean length of these, or
 over the contact that ends there if it is shorter."""
@@ -99,9 +99,10 @@ def fitted_ends(run: ZoneRun, touched: Sequence[Touched]) -> Array:
 
     b is the distance to the next mark: an end of the run, a corner at which contact ends, or the middle between two
     ends of contact. All n together are as many as are stated, with two in contact for one outside, or more where that
-    is longer, and `LEAST` on each side of an end of contact, for which some are added if need be. Such elements grow up
-    to three times as long as equal ones: from where they would be longer than stated, elements are as stated, so that
-    a run gets about half as many again. Joints of edges stay element ends, the nearest being moved onto them.
+    is longer, but no fewer than `LEAST_TOUCHED` and `LEAST_OPEN` beside an end of contact, for which some are added.
+    Such elements grow up to three times as long as equal ones: from where they would be longer than stated, elements
+    are as stated, so that a run gets about half as many again. Joints of edges stay element ends, the nearest being
+    moved onto them.
 
     Parameters
     ----------
@@ -112,19 +113,33 @@ def fitted_ends(run: ZoneRun, touched: Sequence[Touched]) -> Array:
     -------
     (m + 1,) [L]
     """
-    parts = _parts(run, touched)
-    ends = [np.array([parts[0].low])]
-    for block in _blocks(parts):
-        counted = _counted(run, _shared(block))
-        narrowest = min((part.reach for part in counted if part.touched and part.sides), default=0.0)
-        shortest = max(SHORTEST * narrowest, SHORTEST_OF_RUN * run.length)
-        ends += [_graded(run, part, shortest)[1:] for part in counted]
-    positions = np.concatenate(ends)
+    blocks = _blocks(_parts(run, touched))
+    pieces = _evened([_divided(run, block) for block in blocks], around=run.closed and not blocks[0][0].low_free)
+    positions = np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
     if not run.closed:
         return positions
     wrapped = np.sort(np.mod(positions[:-1], run.length))
     wrapped = wrapped[(wrapped > SAME * run.length) & (wrapped < (1 - SAME) * run.length)]
     return np.concatenate([[0.0], wrapped, [run.length]])
+
+
+def _divided(run: ZoneRun, block: Sequence[_Part]) -> Array:
+    """Element ends of the parts of a block."""
+    counted = _counted(run, _shared(block))
+    narrowest = min((part.reach for part in counted if part.touched and part.sides), default=0.0)
+    shortest = max(SHORTEST * narrowest, SHORTEST_OF_RUN * run.length)
+    ends = [_graded(run, part, shortest) for part in counted]
+    return np.concatenate([ends[0], *(positions[1:] for positions in ends[1:])])
+
+
+def _evened(pieces: Sequence[Array], *, around: bool) -> list[Array]:
+    """Halve long elements that meet short ones across a corner at which contact ends; around, the last the first."""
+    evened = [*pieces]
+    for i, j in pairwise([*range(len(pieces)), *([0] * around)]):
+        before, after = np.diff(evened[i])[-1], np.diff(evened[j])[0]
+        evened[i] = halved(evened[i], after, -1)
+        evened[j] = halved(evened[j], before, 0)
+    return evened
 
 
 def movement(run: ZoneRun, touched: Sequence[Touched], fitted_to: Sequence[Touched] | None) -> float | None:
@@ -250,7 +265,10 @@ def _shared(block: Sequence[_Part]) -> list[_Part]:
     of collocation loses its definiteness where elements of very different lengths meet under pressure.
     """
     shares = [CONTACT_SHARE * part.sides if part.touched else 0.0 for part in block]
-    for (i, one), (j, other) in pairwise(enumerate(block)):
+    around = [*enumerate(block)]
+    if block[0].low_free:  # all round a closed run: the last part is beside the first
+        around.append(around[0])
+    for (i, one), (j, other) in pairwise(around):
         (k, side), beside = ((i, one), other) if other.touched else ((j, other), one)
         shares[k] += max(1.0, (side.reach / beside.reach) ** (1 / 3))
     return [replace(part, share=share) for part, share in zip(block, shares, strict=True)]
@@ -265,8 +283,10 @@ def _counted(run: ZoneRun, block: Sequence[_Part]) -> list[_Part]:
         return [*block]
     whole = block[0].low_free  # all round a closed run
     stated = len(run.ends) - 1 if whole else 1 + len(_inside(run.ends, run, block[0].low, block[-1].high))
-    counts = [max(LEAST * part.sides, 1 + len(_inside(run.joints, run, part.low, part.high))) for part in block]
-    fair = ceil(LEAST / CONTACT_SHARE * sum(part.share for part in block))  # with the least in contact, enough outside
+    least = [(LEAST_TOUCHED if part.touched else LEAST_OPEN) * part.sides for part in block]
+    pieces = [1 + len(_inside(run.joints, run, part.low, part.high)) for part in block]
+    counts = [max(pair) for pair in zip(least, pieces, strict=True)]
+    fair = ceil(LEAST_TOUCHED / CONTACT_SHARE * sum(part.share for part in block))  # enough outside for these
     left = max(max(stated, fair) - sum(counts), 0)
     rivals = list(range(len(block)))
     while left:

@@ -73,8 +73,9 @@ def test_no_element_is_longer_than_those_stated_in_its_place(elements, start, en
     assert np.diff(np.interp(ends, run.ends, np.arange(len(run.ends)))).max() <= 1 + 1e-8
 
 
-@given(st.floats(0.05, 0.45), st.floats(0.5, 0.95), st.integers(14, 60))
+@given(st.floats(0.05, 0.45), st.floats(0.5, 0.95), st.integers(20, 60))
 def test_a_mirrored_run_is_divided_in_the_mirror(start, end, elements):
+    """From 20 elements on, of which eight in a narrow contact and enough outside are half as many again."""
     ends = ends_of(run_of([1.0], [elements]), touched(start, end))
     mirrored = ends_of(run_of([1.0], [elements]), touched(1 - end, 1 - start))
     np.testing.assert_allclose(mirrored, 1 - ends[::-1], atol=1e-12)
@@ -109,10 +110,10 @@ def test_contact_that_ends_at_a_joint_all_but_is_graded_to_the_joint():
 
 
 def test_a_corner_at_which_contact_ends_divides_the_zone():
-    """Contact from 1.2 to the corner at 2: the edge beyond stays as it was stated."""
+    """Contact from 1.2 to the corner at 2: beyond, all stay as stated but the first: 0.5 beside 0.19 is halved."""
     run = run_of([2.0, 3.0], [10, 6], corner=np.array([False, True, False]))
     ends = ends_of(run, touched(1.2, 2.0, end_free=False))
-    np.testing.assert_allclose(ends[ends >= 2], np.linspace(2, 5, 7), rtol=1e-15)
+    np.testing.assert_allclose(ends[ends >= 2], [2, 2.25, *np.linspace(2.5, 5, 6)], rtol=1e-15)
     assert 1.2 in ends
 
 
@@ -153,11 +154,32 @@ def test_a_closed_run_with_a_corner_where_contact_ends():
     assert {4.0, 6.0} <= set(ends.tolist())
 
 
+@pytest.mark.parametrize("closed", [False, True])
+def test_beyond_a_corner_at_which_contact_ends_elements_are_halved(closed):
+    """From 0.5 to at most twice the 0.1/64 at the other side, though nothing ends beyond."""
+    run = run_of([6.0, 6.0], [12, 12], closed=closed, corner=np.array([closed, True, closed]))
+    ends = fitted_ends(run, [touched(6, 6.1, start_free=False)])
+    at = int(np.flatnonzero(ends == 6)[0])
+    before, after = np.diff(ends[at - 1 : at + 2])
+    assert after <= before <= 2 * after
+    assert np.diff(ends).max() <= 0.5 * (1 + 1e-9)
+
+
 def test_a_zone_gets_the_elements_that_it_takes():
-    """Three on each side of each end of contact, of which the first are 1/27 of what they are graded over."""
+    """Four inside each end of contact and three outside: the first are 1/64 and 1/27 of what they are graded over."""
     ends = fitted_ends(run_of([4.0], [2]), [touched(1, 3)])
-    assert len(ends) == 13
-    np.testing.assert_allclose(ends[3:5], [1, 1 + 1 / 27], rtol=1e-12)
+    assert len(ends) == 15
+    np.testing.assert_allclose(ends[2:5], [1 - 1 / 27, 1, 1 + 1 / 64], rtol=1e-12)
+
+
+@pytest.mark.parametrize("seam", [0.0, 5.0, 30.0])
+def test_what_is_open_on_a_closed_run_has_elements_for_both_its_ends(seam):
+    """So the shortest is at most `CONTACT_SHARE`³ times as long as that in contact; twice, as numbers are whole."""
+    run = run_of([60.0], [30], closed=True)
+    ends = fitted_ends(run, [touched(10 + seam, 27 + seam)])
+    at = int(np.argmin(abs(ends - (10 + seam))))
+    before, after = np.diff(ends[at - 1 : at + 2])
+    assert before / after <= 2 * CONTACT_SHARE**3
 
 
 def test_a_very_short_contact_has_no_element_that_would_be_refused():
