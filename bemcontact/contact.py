@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linprog
 
 from bemcontact import archive
-from bemcontact.actions import Change, LoadCases, Tools
+from bemcontact.actions import Change, LoadCases, Pinned, Tools
 from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.choices import Weights
 from bemcontact.errors import ProblemError, SingularSystemError
@@ -76,6 +76,7 @@ class CondensedContact:
     motion_names : k descriptions of the free motions, for people: those of the body, then those of tools
     tools : rigid surfaces that move; where they are displaced to is part of ε, and what they are loaded by of the load
     cases : load cases; those in effect are part of Δ1, the load and ε
+    pinned : motions that no contact point sees, in which what acts must balance
     notes : what was decided on the way and should be known
     name, zone_names, units : labels
     """
@@ -103,6 +104,7 @@ class CondensedContact:
     held_points: Array | None = None
     tools: Tools = field(default_factory=lambda: Tools.none(0, 0))
     cases: LoadCases = field(default_factory=lambda: LoadCases.none(0, 0, 0))
+    pinned: Pinned = field(default_factory=lambda: Pinned.none(0, 0))
 
     def __post_init__(self) -> None:
         """Check shapes, refuse numbers that are not finite, make arrays read-only."""
@@ -132,11 +134,14 @@ class CondensedContact:
             object.__setattr__(self, "tools", Tools.none(n, k))
         if not len(self.cases):
             object.__setattr__(self, "cases", LoadCases.none(n, k, len(self.tools)))
-        c, t = len(self.cases), 3 * len(self.tools)
+        c, t, j = len(self.cases), 3 * len(self.tools), len(self.pinned.motions)
+        if not j:
+            object.__setattr__(self, "pinned", Pinned.none(c, len(self.tools)))
         shapes = {
             "cases.displacement": (n, c), "cases.motion_load": (k, c), "cases.position": (t, c), "cases.force": (t, c),
             "cases.factors": (c,), "tools.motions": (n, t), "tools.amplitudes": (t, k), "tools.position": (t,),
-            "tools.free": (t,), "tools.force": (t,), "tools.point": (t // 3, 2),
+            "tools.free": (t,), "tools.force": (t,), "tools.point": (t // 3, 2), "pinned.load": (j, 1 + c),
+            "pinned.tools": (t, j), "pinned.turns": (j,), "pinned.magnitude": (1 + c,),
         }  # fmt: skip
         for key, shape in shapes.items():
             if (found := attrgetter(key)(self).shape) != shape:
@@ -275,7 +280,7 @@ class CondensedContact:
         Raises
         ------
         ProblemError
-            If there is no such case, or a factor is no finite number.
+            If there is no such case, a factor is no finite number, or loads act along a motion that nothing resists.
         """
         if unknown := [name for name in factors if name not in self.cases.names]:
             known = ", ".join(self.cases.names) or "none"
@@ -288,7 +293,7 @@ class CondensedContact:
             free_displacement=self.free_displacement + self.cases.displacement @ step,
             motion_load=moved.motion_load + self.cases.motion_load @ step,
             cases=replace(self.cases, factors=found),
-        )
+        )._balanced()
 
     def with_tools(self, position: ArrayLike | None = None, force: ArrayLike | None = None) -> Self:
         """Displace and load the tools otherwise; nothing is condensed anew.
@@ -305,7 +310,7 @@ class CondensedContact:
         Raises
         ------
         ProblemError
-            If the shapes do not fit.
+            If the shapes do not fit, a number is not finite, or forces act along a motion that nothing resists.
         """
         tools, steps = self.tools, []
         for new, now, used in ((position, tools.position, ~tools.free), (force, tools.force, tools.free)):
@@ -313,7 +318,13 @@ class CondensedContact:
             if given.size != now.size:
                 raise ProblemError(f"tools have {len(tools)} x 3 components; found an array of shape {given.shape}")
             steps.append(np.where(used, given.ravel() - now, 0.0))
-        return self._moved(*steps)
+        return self._moved(*steps)._balanced()
+
+    def _balanced(self) -> Self:
+        """Refuse what acts along a motion that nothing resists."""
+        if complaint := self.pinned.complaint(np.append(1.0, self.cases.factors), self.tools.force):
+            raise ProblemError(complaint)
+        return self
 
     def _moved(self, position: Array, force: Array) -> Self:
         """Move the tools by some more (3 t,), and add to their forces (3 t,)."""
