@@ -15,6 +15,8 @@ class AnyReference(Stated):
 
     zone: Name | None = None
     """The contact zone that is meant; all zones if left out."""
+    case: Name | None = None
+    """The load case or combination of which it is known, and judged only where that acts; any if left out."""
     tolerance: Tolerance | None = None
     """Relative difference up to which the answer agrees, such as 0.02; a default of the kind if left out."""
     reason: Text = ""

@@ -126,7 +126,10 @@ class Problem(Stated):
         boundary, conditions, zones = (written.below(cls, key) for key in ("boundary", "conditions", "contact_zones"))
         cases = [case.below(LoadCase, "conditions") for case in written.below(cls, "load_cases").each()]
         complaints = name_complaints(boundary, [conditions, *cases], zones)
-        references = reference_complaints(written.below(cls, "reference"), zones)
+        names = [
+            str(case.path[-1]) for key in ("load_cases", "combinations") for case in written.below(cls, key).each()
+        ]
+        references = reference_complaints(written.below(cls, "reference"), zones, names)
         references += cls._wrong_actions(written, zones)
         body = boundary.read(Boundary)
         if body is None:

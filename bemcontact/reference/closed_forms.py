@@ -74,6 +74,11 @@ class PunchOnHalfPlane:
     eccentricity: float = 0.0
 
     @property
+    def lifts_off(self) -> bool:
+        """Whether one edge does."""
+        return abs(self.eccentricity) > self.half_width / 2
+
+    @property
     def touching_half_width(self) -> float:
         """Half the width h [L] of what touches, a or 2 (a - |e|)."""
         return min(self.half_width, 2 * (self.half_width - abs(self.eccentricity)))
@@ -97,8 +102,7 @@ class PunchOnHalfPlane:
         edge = 1e-12 * self.half_width
         inside = np.abs(y) < h - edge
         pressure = self.load * tilted / (pi * np.where(inside, np.sqrt(np.maximum(h**2 - y**2, 0.0)), np.nan))
-        lifted = self.touching_half_width < self.half_width
-        away = (np.abs(y) > h + edge) | (lifted & (y * copysign(1.0, self.eccentricity) < edge - h))
+        away = (np.abs(y) > h + edge) | (self.lifts_off & (y * copysign(1.0, self.eccentricity) < edge - h))
         return np.where(away, 0.0, pressure)
 
 
