@@ -285,6 +285,8 @@ class CondensedContact:
         if unknown := [name for name in factors if name not in self.cases.names]:
             known = ", ".join(self.cases.names) or "none"
             raise ProblemError(f"there is no load case '{unknown[0]}'; there are: {known}")
+        if wrong := [name for name, factor in factors.items() if not np.isfinite(factor)]:
+            raise ProblemError(f"the factor of '{wrong[0]}' must be a finite number, found {factors[wrong[0]]}")
         found = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
         step = found - self.cases.factors
         moved = self._moved(self.cases.position @ step, self.cases.force @ step)
@@ -317,6 +319,8 @@ class CondensedContact:
             given = now if new is None else np.array(new, float)
             if given.size != now.size:
                 raise ProblemError(f"tools have {len(tools)} x 3 components; found an array of shape {given.shape}")
+            if not np.isfinite(given).all():
+                raise ProblemError("displacements of tools, and forces on them, must be finite numbers")
             steps.append(np.where(used, given.ravel() - now, 0.0))
         return self._moved(*steps)._balanced()
 

@@ -49,8 +49,9 @@ class PlacedTools:
         poles = self.point.copy()
         for tool, (x, y, turns) in enumerate(self.free.reshape(-1, 3)):
             moved = np.any(self.motions[:, 3 * tool : 3 * tool + 3], axis=1)
-            middle = points.mesh.nodes[points.node[moved]].mean(axis=0) if moved.any() else poles[tool]
-            poles[tool] = np.where([y and turns, x and turns], middle, poles[tool])
+            if turns and moved.any():
+                middle = np.average(points.mesh.nodes[points.node[moved]], axis=0, weights=points.tributary[moved])
+                poles[tool] = np.where([y, x], middle, poles[tool])
         return poles
 
 
