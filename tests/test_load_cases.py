@@ -108,6 +108,13 @@ def test_results_of_all_cases():
     assert f"largest peak pressure in '{found.worst}'" in repr(found)
 
 
+def test_a_case_costs_one_right_side():
+    """Columns of the solution: what is permanent, each case, and a unit pressure at each contact point."""
+    with_cases, without = condense(body_of(made(HELD, **HELD_CASES))), condense(body_of(made(HELD)))
+    assert with_cases.response.shape[1] == 1 + 5 + with_cases.contact.size
+    assert with_cases.response.shape == (without.response.shape[0], without.response.shape[1] + 5)
+
+
 def test_boundary_under_a_case_agrees_with_the_condensed_equation():
     """n·u = u_n at the contact points, where the motion of tools is part of the gap and not of u."""
     for stated, cases in ((HELD, HELD_CASES), (FREE, FREE_CASES)):
@@ -434,6 +441,7 @@ def test_fitted_mesh_is_fitted_to_each_case():
         assert result.mesh_fit is not None
         (interval,) = result.footprint.intervals
         widths.append(interval.end_arc - interval.start_arc)
+        assert result.footprint.peak is not None
         assert result.footprint.peak.pressure == pytest.approx(
             np.sqrt(force * contact_modulus(problem.material) / (np.pi * 2)), rel=0.01
         )
