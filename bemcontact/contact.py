@@ -317,7 +317,7 @@ class CondensedContact:
         tools, steps = self.tools, []
         for new, now, used in ((position, tools.position, ~tools.free), (force, tools.force, tools.free)):
             given = now if new is None else np.array(new, float)
-            if given.size != now.size:
+            if given.shape not in ((len(tools), 3), now.shape):
                 raise ProblemError(f"tools have {len(tools)} x 3 components; found an array of shape {given.shape}")
             if not np.isfinite(given).all():
                 raise ProblemError("displacements of tools, and forces on them, must be finite numbers")
@@ -342,16 +342,27 @@ class CondensedContact:
 
     @property
     def changes(self) -> dict[str, Change]:
-        """What may change without condensing anew, by key path, each per unit: factors of load cases, tools."""
-        cases, tools = self.cases, self.tools
+        """What may change without condensing anew, by key path, each per unit: factors of load cases, tools.
+
+        Left out is what changes nothing, and what by itself would drive a motion that nothing resists.
+        """
+        cases, tools, pinned = self.cases, self.tools, self.pinned
+        unit, units = np.eye(1 + len(cases))[1:], np.eye(3 * len(tools))
         offsets = cases.displacement + tools.motions @ cases.position
         loads = cases.motion_load + tools.amplitudes.T @ cases.force
         found = {
             f"load_cases.{name}": Change(offset, load)
-            for name, offset, load in zip(cases.names, offsets.T, loads.T, strict=True)
+            for name, offset, load, alone, force in zip(
+                cases.names, offsets.T, loads.T, unit, cases.force.T, strict=True
+            )
+            if pinned.complaint(alone, force) is None
         }
-        moves = zip(tools.keys, np.where(tools.free, 0.0, tools.motions).T, tools.amplitudes, strict=True)
-        return found | {key: Change(offset, load) for key, offset, load in moves if offset.any() or load.any()}
+        moves = zip(tools.keys, np.where(tools.free, 0.0, tools.motions).T, tools.amplitudes, units, strict=True)
+        return found | {
+            key: Change(offset, load)
+            for key, offset, load, alone in moves
+            if (offset.any() or load.any()) and pinned.complaint(np.zeros(1 + len(cases)), alone) is None
+        }
 
     @cached_property
     def stiffness_rows(self) -> StiffnessRows:

@@ -130,6 +130,10 @@ def test_keys_are_those_of_the_spec():
         ),
         (lambda contact: contact.with_factors({"wind": np.inf}), "factor of 'wind' must be a finite number, found inf"),
         (lambda contact: contact.with_tools(position=[[0, 0, 0]]), r"tools have 2 x 3 components.* of shape \(1, 3\)"),
+        (
+            lambda contact: contact.with_tools(position=np.zeros((3, 2))),
+            r"tools have 2 x 3 components.* of shape \(3, 2\)",
+        ),
         (lambda contact: contact.with_tools(force=[[0, np.nan, 0]] * 2), "forces on them, must be finite numbers"),
     ],
 )
@@ -157,6 +161,7 @@ def test_forces_that_nothing_resists_are_refused_after_condensing_too():
         contact.with_tools(force=[[2, -10, 0], [0, 10, 0]])
     with pytest.raises(ProblemError, match=r"together against the translation along \(0, 1\).*resultant -6\)"):
         contact.with_factors({"weight": 1})
+    assert {key for key in contact.changes if "rotation" not in key} == {"load_cases.more"}
     balanced = contact.with_factors({"more": 1}).with_tools(force=[[0, -15, 0], [0, 15, 0]])
     assert balanced.motion_load @ balanced.motion_load > 0
 

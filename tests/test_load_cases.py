@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tool_problems import (
+    FLOOR,
     FREE,
     FREE_BY_HAND,
     FREE_CASES,
@@ -88,6 +89,24 @@ def test_cases_condensed_together_are_those_condensed_alone(name: str):
     assert same(together.solution.pressure, alone.solution.pressure, 1e-13)
     assert together.problem == alone.problem
     assert together.contact.name == alone.contact.name == f"held block, {name}"
+
+
+def test_notes_are_those_of_the_case():
+    """Pushed down only, the block may go away from the wall, which nothing presses it on; pushed aside too, not."""
+    corner = {"table": {"edges": "foot", "surface": FLOOR}, "wall": {
+        "edges": "left", "surface": {"kind": "plane", "point": [0, 0], "normal": [1, 0]}}}  # fmt: skip
+    cases = {
+        "down": {"conditions": {"top": {"pressure": 1}, "head": {"pressure": 1}}},
+        "aside": {"conditions": {"right": {"pressure": 1}}},
+    }
+    stated = made(
+        FREE, contact_zones=corner, tools={}, load_cases=cases, combinations={"both": {"down": 1, "aside": 1}}
+    )
+    together = bemcontact.solve_cases(stated)
+    for name in ("down", "aside", "both"):
+        told = together.results[name].notes
+        assert told == bemcontact.solve(stated.with_case(name)).notes
+        assert any("contact leaves open how far it goes" in note for note in told) is (name == "down")
 
 
 @cache

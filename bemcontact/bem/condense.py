@@ -241,7 +241,8 @@ class Condensation:
         body = replace(self.body, problem=problem)
         ensure_held(body)
         contact = self.contact.with_factors(problem.factors())
-        return replace(self, body=body, contact=replace(contact, name=f"{problem.name}, {problem.case}"))
+        named = replace(contact, name=f"{problem.name}, {problem.case}", notes=body.notes)
+        return replace(self, body=body, contact=named)
 
     @property
     def factors(self) -> Array:

@@ -201,7 +201,7 @@ def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTool
 def _to_points(levers: Array, radius: float) -> Array:
     """Motion (3 t, 3 t) of tools about their points from that about their poles, at levers (t, 2) from these."""
     blocks = [[[1.0, 0.0, -y / radius], [0.0, 1.0, x / radius], [0.0, 0.0, 1 / radius]] for x, y in levers]
-    return block_diag(np.zeros((0, 0)), *blocks)
+    return np.asarray(block_diag(np.zeros((0, 0)), *blocks), float)
 
 
 def _split(basis: Array, motions: Array) -> tuple[Array, Array]:
