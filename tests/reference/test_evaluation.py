@@ -244,7 +244,7 @@ def test_a_reference_of_a_load_case_speaks_where_that_acts(case: str | None, nam
 
 
 def test_punch_whose_edge_lifts_off_touches_a_part():
-    """With e = 0.7 to the left it touches from -1 to 3 - 4 · 0.7 = 0.2; compared off both ends, where it is open too."""
+    """With e = 0.7 to the left it touches from -1 to 3 - 4 · 0.7; compared off both ends, where it is open too."""
     problem = bemcontact.loads(TILTING).with_case("far")
     _, one = expected(problem, contact := bemcontact.condense(problem))
     x = contact.points[:, 0]
