@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 
 from bemcontact.arrays import Array, freeze_arrays
 
+BALANCED = 1e-9
+"""Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as none."""
+
 
 class Change(NamedTuple):
     """A direction in which a contact problem changes, per unit of what changes.
@@ -127,3 +130,53 @@ class Tools:
         )
         ways = zip(self.free.reshape(-1, 3), self.names, strict=True)
         return tuple(f"tools.{name}.{(forces if free[i] else moves)[i]}" for free, name in ways for i in range(3))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pinned:
+    """j rigid motions of the body and of tools that no contact point sees: what acts must balance in them.
+
+    Parameters
+    ----------
+    motions : j descriptions, "the body against the translation along (1, 0)"
+    turns : (j,) whether work in it is a moment [p L²] and not a force [p L]
+    load : (j, 1 + c) work of what is permanent on the body, and of each load case
+    tools : (3 t, j) motion of the tools
+    magnitude : (1 + c,) sum of the magnitudes of what is permanent on the body, and of each load case [p L]
+    length : by which a moment is divided to compare it with forces [L]
+    """
+
+    motions: tuple[str, ...]
+    turns: NDArray[np.bool_]
+    load: Array
+    tools: Array
+    magnitude: Array
+    length: float
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    @classmethod
+    def none(cls, cases: int, tools: int) -> Self:
+        """No pinned motion, for c cases and t tools."""
+        return cls(
+            motions=(), turns=np.zeros(0, bool), load=np.zeros((0, 1 + cases)), tools=np.zeros((3 * tools, 0)),
+            magnitude=np.zeros(1 + cases), length=1.0,
+        )  # fmt: skip
+
+    def total(self, factors: Array, force: Array) -> float:
+        """Sum of the magnitudes of all that acts [p L], for factors (1 + c,) and forces on tools (3 t,)."""
+        x, y, moment = force.reshape(-1, 3).T
+        return float(self.magnitude @ abs(factors) + (np.hypot(x, y) + abs(moment) / self.length).sum())
+
+    def complaint(self, factors: Array, force: Array) -> str | None:
+        """Say what the loads drive along a motion in which nothing resists them; None if they balance."""
+        work, total = self.load @ factors + self.tools.T @ force, self.total(factors, force)
+        for motion, turns, done in zip(self.motions, self.turns, work, strict=True):
+            if abs(done) > BALANCED * total * (self.length if turns else 1.0):
+                return (
+                    f"nothing holds {motion}, and the loads act along it ({'moment' if turns else 'resultant'} "
+                    f"{done:.6g}); prescribe a displacement that holds it, or balance the loads"
+                )
+        return None

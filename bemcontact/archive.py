@@ -13,7 +13,7 @@ from bemcontact.errors import ProblemError
 
 Kind = TypeVar("Kind")
 
-FILE_FORMAT = "bemcontact.condensed.2"
+FILE_FORMAT = "bemcontact.condensed.3"
 
 
 def write(path: Path, stored: Any) -> None:

@@ -20,8 +20,8 @@ from bemcontact.problem.problem import Problem
 from bemcontact.stopwatch import Progress, Stopwatch
 from bemcontact.study import MeshLevel, Study
 
-HARMLESS = ("name", "description", "mesh", "reference")
-"""Keys of a spec that may change without changing the answer that is sought."""
+HARMLESS = ("name", "description", "mesh", "reference", "case")
+"""Keys of a spec that may change without changing the answers that are known; a reference says of which case it is."""
 MESHING = ("elements", "grading", "ratio", "towards")
 """Keys of an edge of which that is true."""
 COMMENTS = (("tolerance",), ("reason",), ("source",))

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bemcontact import archive
-from bemcontact.actions import Change, LoadCases, Tools
+from bemcontact.actions import Change, LoadCases, Pinned, Tools
 from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.choices import Weights
 from bemcontact.contact_scales import ContactScales, typical_scales
@@ -58,6 +58,7 @@ class CondensedContact:
     motion_names : k descriptions of the free motions, for people: those of the body, then those of tools
     tools : rigid surfaces that move; where they are displaced to is part of ε, and what they are loaded by of the load
     cases : load cases; those in effect are part of Δ1, the load and ε
+    pinned : motions that no contact point sees, in which what acts must balance
     notes : what was decided on the way and should be known
     name, zone_names, units : labels
     """
@@ -85,6 +86,7 @@ class CondensedContact:
     held_points: Array | None = None
     tools: Tools = field(default_factory=lambda: Tools.none(0, 0))
     cases: LoadCases = field(default_factory=lambda: LoadCases.none(0, 0, 0))
+    pinned: Pinned = field(default_factory=lambda: Pinned.none(0, 0))
 
     def __post_init__(self) -> None:
         """Check shapes, refuse numbers that are not finite, make arrays read-only."""
@@ -114,11 +116,14 @@ class CondensedContact:
             object.__setattr__(self, "tools", Tools.none(n, k))
         if not len(self.cases):
             object.__setattr__(self, "cases", LoadCases.none(n, k, len(self.tools)))
-        c, t = len(self.cases), 3 * len(self.tools)
+        c, t, j = len(self.cases), 3 * len(self.tools), len(self.pinned.motions)
+        if not j:
+            object.__setattr__(self, "pinned", Pinned.none(c, len(self.tools)))
         shapes = {
             "cases.displacement": (n, c), "cases.motion_load": (k, c), "cases.position": (t, c), "cases.force": (t, c),
             "cases.factors": (c,), "tools.motions": (n, t), "tools.amplitudes": (t, k), "tools.position": (t,),
-            "tools.free": (t,), "tools.force": (t,), "tools.point": (t // 3, 2),
+            "tools.free": (t,), "tools.force": (t,), "tools.point": (t // 3, 2), "pinned.load": (j, 1 + c),
+            "pinned.tools": (t, j), "pinned.turns": (j,), "pinned.magnitude": (1 + c,),
         }  # fmt: skip
         for key, shape in shapes.items():
             if (found := attrgetter(key)(self).shape) != shape:
@@ -242,11 +247,13 @@ class CondensedContact:
         Raises
         ------
         ProblemError
-            If there is no such case, or a factor is no finite number.
+            If there is no such case, a factor is no finite number, or loads act along a motion that nothing resists.
         """
         if unknown := [name for name in factors if name not in self.cases.names]:
             known = ", ".join(self.cases.names) or "none"
             raise ProblemError(f"there is no load case '{unknown[0]}'; there are: {known}")
+        if wrong := [name for name, factor in factors.items() if not np.isfinite(factor)]:
+            raise ProblemError(f"the factor of '{wrong[0]}' must be a finite number, found {factors[wrong[0]]}")
         found = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
         step = found - self.cases.factors
         moved = self._moved(self.cases.position @ step, self.cases.force @ step)
@@ -255,7 +262,7 @@ class CondensedContact:
             free_displacement=self.free_displacement + self.cases.displacement @ step,
             motion_load=moved.motion_load + self.cases.motion_load @ step,
             cases=replace(self.cases, factors=found),
-        )
+        )._balanced()
 
     def with_tools(self, position: ArrayLike | None = None, force: ArrayLike | None = None) -> Self:
         """Displace and load the tools otherwise; nothing is condensed anew.
@@ -272,15 +279,23 @@ class CondensedContact:
         Raises
         ------
         ProblemError
-            If the shapes do not fit.
+            If the shapes do not fit, a number is not finite, or forces act along a motion that nothing resists.
         """
         tools, steps = self.tools, []
         for new, now, used in ((position, tools.position, ~tools.free), (force, tools.force, tools.free)):
             given = now if new is None else np.array(new, float)
-            if given.size != now.size:
+            if given.shape not in ((len(tools), 3), now.shape):
                 raise ProblemError(f"tools have {len(tools)} x 3 components; found an array of shape {given.shape}")
+            if not np.isfinite(given).all():
+                raise ProblemError("displacements of tools, and forces on them, must be finite numbers")
             steps.append(np.where(used, given.ravel() - now, 0.0))
-        return self._moved(*steps)
+        return self._moved(*steps)._balanced()
+
+    def _balanced(self) -> Self:
+        """Refuse what acts along a motion that nothing resists."""
+        if complaint := self.pinned.complaint(np.append(1.0, self.cases.factors), self.tools.force):
+            raise ProblemError(complaint)
+        return self
 
     def _moved(self, position: Array, force: Array) -> Self:
         """Move the tools by some more (3 t,), and add to their forces (3 t,)."""
@@ -294,16 +309,27 @@ class CondensedContact:
 
     @property
     def changes(self) -> dict[str, Change]:
-        """What may change without condensing anew, by key path, each per unit: factors of load cases, tools."""
-        cases, tools = self.cases, self.tools
+        """What may change without condensing anew, by key path, each per unit: factors of load cases, tools.
+
+        Left out is what changes nothing, and what by itself would drive a motion that nothing resists.
+        """
+        cases, tools, pinned = self.cases, self.tools, self.pinned
+        unit, units = np.eye(1 + len(cases))[1:], np.eye(3 * len(tools))
         offsets = cases.displacement + tools.motions @ cases.position
         loads = cases.motion_load + tools.amplitudes.T @ cases.force
         found = {
             f"load_cases.{name}": Change(offset, load)
-            for name, offset, load in zip(cases.names, offsets.T, loads.T, strict=True)
+            for name, offset, load, alone, force in zip(
+                cases.names, offsets.T, loads.T, unit, cases.force.T, strict=True
+            )
+            if pinned.complaint(alone, force) is None
         }
-        moves = zip(tools.keys, np.where(tools.free, 0.0, tools.motions).T, tools.amplitudes, strict=True)
-        return found | {key: Change(offset, load) for key, offset, load in moves if offset.any() or load.any()}
+        moves = zip(tools.keys, np.where(tools.free, 0.0, tools.motions).T, tools.amplitudes, units, strict=True)
+        return found | {
+            key: Change(offset, load)
+            for key, offset, load, alone in moves
+            if (offset.any() or load.any()) and pinned.complaint(np.zeros(1 + len(cases)), alone) is None
+        }
 
     @cached_property
     def stiffness_rows(self) -> StiffnessRows:

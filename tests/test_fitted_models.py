@@ -20,10 +20,18 @@ def problem(name: str) -> Problem:
     return bemcontact.load(MODELS[name])
 
 
+CASES = [(name, case) for name in MODELS for case in problem(name).case_names or (None,)]
+"""Each file with each of its load cases and combinations, or with none."""
+
+
 @cache
-def solved(name: str, *, fit: bool, refine: int = 1, zone: tuple[str, int] | None = None) -> Result:
-    """A shipped problem, with another number of elements in its zone if that is given."""
+def solved(
+    name: str, *, fit: bool, refine: int = 1, case: str | None = None, zone: tuple[str, int] | None = None
+) -> Result:
+    """A shipped problem under a load case, with another number of elements in its zone if that is given."""
     stated = problem(name).with_value("mesh.fit_contact_edges", fit).refined(refine)
+    if case is not None:
+        stated = stated.with_case(case)
     if zone is not None:
         stated = stated.with_value(f"boundary.outer.{zone[0]}.elements", zone[1])
     return bemcontact.solve(stated, "complementarity")
@@ -39,19 +47,19 @@ def differences(result: Result) -> dict[tuple[str, str], tuple[float, float]]:
 
 
 @pytest.mark.parametrize("refine", [1, 2])
-@pytest.mark.parametrize("name", MODELS)
-def test_what_is_known_still_holds(name, refine):
-    result = solved(name, fit=True, refine=refine)
+@pytest.mark.parametrize(("name", "case"), CASES)
+def test_what_is_known_still_holds(name: str, case: str | None, refine: int):
+    result = solved(name, fit=True, refine=refine, case=case)
     assert result.certified
     assert result.mesh_fit is not None
     assert differences(result)
     assert {key: pair for key, pair in differences(result).items() if pair[0] > pair[1]} == {}
 
 
-@pytest.mark.parametrize("name", MODELS)
-def test_pressures_are_no_farther_from_what_is_known(name):
+@pytest.mark.parametrize(("name", "case"), CASES)
+def test_pressures_are_no_farther_from_what_is_known(name: str, case: str | None):
     """In the mean square, and up to a tenth of what a reference is good for."""
-    fitted, unfitted = (differences(solved(name, fit=fit)) for fit in (True, False))
+    fitted, unfitted = (differences(solved(name, fit=fit, case=case)) for fit in (True, False))
     for (reference, quantity), (difference, tolerance) in fitted.items():
         if quantity == "pressure (mean square)":
             assert difference <= unfitted[reference, quantity][0] + tolerance / 10

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
-from bemcontact.actions import LoadCases, Tools
+from bemcontact.actions import BALANCED, LoadCases, Pinned, Tools
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.deflection import deflections
 from bemcontact.bem.factorisation import solve
-from bemcontact.bem.free_motions import UNSEEN, FreeMotions, PlacedTools, free_motions, placed_tools
+from bemcontact.bem.free_motions import BODY, UNSEEN, FreeMotions, PlacedTools, free_motions, placed_tools
 from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
@@ -28,8 +28,6 @@ from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-BALANCED = 1e-9
-"""Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as none."""
 IDLE = 1e-7
 """Normal displacement in a motion that opens gaps, over that of the motion, from which it is one."""
 
@@ -73,17 +71,23 @@ class Body:
         on_body = np.column_stack([loading.work(self.mesh, motions.body) for loading in self.loadings])
         return on_body + motions.tools.T @ self.tools.force
 
-    def true_motion_load(self, motions: FreeMotions) -> Array:
-        """Work (k,) of what acts, to round-off: whether loads balance is no matter of the mesh."""
-        on_tools = motions.tools.T @ (self.tools.force @ self.factors)
-        return self.acting.true_work(self.mesh, motions.body) + on_tools
+    @cached_property
+    def pinned(self) -> Pinned:
+        """The motions that no contact point sees, with true loads: whether they balance is no matter of the mesh."""
+        motions = self.unseen.in_user_units()
+        return Pinned(
+            motions=tuple(f"{motions.who(j)} against the {motions.way(j)}" for j in range(len(motions))),
+            turns=np.array([motions.turns(j) for j in range(len(motions))], bool),
+            load=np.column_stack([item.true_work(self.mesh, motions.body) for item in self.loadings]),
+            tools=motions.tools,
+            magnitude=np.array([item.magnitude(self.mesh) for item in self.loadings]),
+            length=self.motions.radius,
+        )
 
     @cached_property
-    def load_magnitude(self) -> float:
-        """Sum of the magnitudes of all loads that act [p L]."""
-        x, y, moment = (self.tools.force @ self.factors).reshape(-1, 3).T
-        on_tools = np.hypot(x, y) + abs(moment) / self.motions.radius
-        return self.acting.magnitude(self.mesh) + float(on_tools.sum())
+    def forces(self) -> Array:
+        """What the tools (3 t,) are loaded by."""
+        return self.tools.force @ self.factors
 
     def normal_motion(self, motions: FreeMotions) -> Array:
         """R (n, k): what free motions add to the gaps."""
@@ -94,7 +98,7 @@ class Body:
         """R (n, k) without round-off, and the load (k,) that acts in the seen motions, relative to the largest."""
         R, load = self.normal_motion(self.seen), self.motion_load(self.seen) @ self.factors
         largest = abs(load).max(initial=0.0)
-        none = largest <= BALANCED * self.load_magnitude
+        none = largest <= BALANCED * self.pinned.total(self.factors, self.forces)
         return np.where(abs(R) > UNSEEN, R, 0.0), np.zeros_like(load) if none else load / largest
 
     @cached_property
@@ -117,17 +121,17 @@ class Body:
     def notes(self) -> tuple[str, ...]:
         """What was decided and should be known."""
         pinned = tuple(
-            f"the {motion} is seen by no contact point and loaded by nothing: {_who(motion)} pinned against it"
-            for motion in self.unseen.describe()
+            f"the {motion} is seen by no contact point and loaded by nothing: {_pinned(self.unseen.who(j))} against it"
+            for j, motion in enumerate(self.unseen.describe())
         )
         idle = self.idle_motion if self.relative_load[1].any() else None
         left_open = f"the loads do no work in the {idle}, which only opens gaps: contact leaves open how far it goes"
         return pinned if idle is None else (*pinned, left_open)
 
 
-def _who(motion: str) -> str:
+def _pinned(who: str) -> str:
     """Tell who is pinned."""
-    return "it is" if " of the tool " in motion else "the body is"
+    return "they are pinned" if who.endswith(" together") else f"{who} is pinned"
 
 
 def body_of(problem: Problem) -> Body:
@@ -173,7 +177,8 @@ def each_case(body: Body) -> Iterator[Body]:
 def ensure_held(body: Body) -> None:
     """Refuse what acts on a body if contact cannot hold it; `ProblemError` as of `body_of`."""
     try:
-        _check_unseen(body)
+        if complaint := body.pinned.complaint(body.factors, body.forces):
+            raise ProblemError(complaint)
         _check_support(body)
     except ProblemError as error:
         case = body.problem.case
@@ -183,33 +188,30 @@ def ensure_held(body: Body) -> None:
         raise ProblemError(Complaint(path=path, message=str(error))) from None
 
 
-def _check_unseen(body: Body) -> None:
-    """Refuse a load that works on a motion which no contact sees."""
-    work = body.true_motion_load(body.unseen)
-    for motion, done in zip(body.unseen.describe(), work, strict=True):
-        if abs(done) > BALANCED * body.load_magnitude:
-            what = "the tool" if " of the tool " in motion else "the body"
-            raise ProblemError(
-                f"nothing holds {what} against the {motion}, and the loads act along it (resultant {done:.6g}); "
-                "prescribe a displacement that holds it, or balance the loads"
-            )
-
-
 def _check_support(body: Body) -> None:
     """Refuse loads that no pressure p >= 0 can balance, and what nothing presses on."""
     R, load = body.relative_load
     forces, residual = nnls(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
     if residual > BALANCED:
         pull = body.seen.combined((R.T @ forces + load)[:, None])
+        who, off = pull.who(0), "its support" if pull.who(0) == BODY else "what it touches"
         raise ProblemError(
-            f"the load pulls the body off its support: it drives the {pull.describe()[0]}, which no contact resists; "
-            "turn the load around, or prescribe a displacement that holds the body"
+            f"the load pulls {who} off {off}: it drives the {pull.way(0)}, which no contact resists; "
+            f"turn the load around, or prescribe a displacement that holds {who if off == 'its support' else 'it'}"
         )
     if not load.any() and body.idle_motion is not None:
         raise ProblemError(
-            f"only contact holds the body against the {' and the '.join(body.seen.describe())}, but no load presses it "
-            "onto its support, so that its position is not determined; apply a load, or prescribe a displacement"
+            f"only contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
+            "is not determined; apply a load, or prescribe a displacement"
         )
+
+
+def _against(motions: FreeMotions) -> str:
+    """What is free to move, and how: the body against one motion and another, and a tool against a third."""
+    ways: dict[str, list[str]] = {}
+    for j in range(len(motions)):
+        ways.setdefault(motions.who(j), []).append(f"the {motions.way(j)}")
+    return ", and ".join(f"{who} against {' and '.join(way)}" for who, way in ways.items())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -239,7 +241,8 @@ class Condensation:
         body = replace(self.body, problem=problem)
         ensure_held(body)
         contact = self.contact.with_factors(problem.factors())
-        return replace(self, body=body, contact=replace(contact, name=f"{problem.name}, {problem.case}"))
+        named = replace(contact, name=f"{problem.name}, {problem.case}", notes=body.notes)
+        return replace(self, body=body, contact=named)
 
     @property
     def factors(self) -> Array:
@@ -312,6 +315,7 @@ def condense(body: Body) -> Condensation:
             position=tools.position[:, 0],
             force=tools.force[:, 0],
         ),
+        pinned=body.pinned,
         cases=LoadCases(
             names=tuple(body.problem.load_cases),
             displacement=gauge.free_displacement[:, 1:],

@@ -146,7 +146,7 @@ def contact_points(
     ContactPoints
     """
     halves = _half_lengths(mesh)
-    moving = {zone for tool in problem.tools.values() for zone in tool.zones}
+    tool_of = {zone: tool for tool, stated in problem.tools.items() for zone in stated.zones}
     pieces: list[_Piece] = []
     for number, (name, zone) in enumerate(problem.contact_zones.items()):
         in_zone = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in zone.edges])
@@ -155,14 +155,14 @@ def contact_points(
             gap, normals = _closest(zone.surface, mesh, nodes, deflections.get(name))
             free = ~_held_along(normals, values.displacement_given[nodes])
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
-            fixed = not closed and name not in moving
+            fixed = not closed and name not in tool_of
             on_surface = _on_surface(mesh, (values, *cases), nodes, normals, gap)
             goes_on = _goes_on(mesh, values, elements, normals, on_surface) if fixed else (False, False)
             held = np.where(~free & on_surface & fixed, arc, np.nan)[[0, -1]]
             pieces.append(
                 _Piece(
-                    number, elements, length, goes_on, nodes[free], arc[free], normals[free], gap[free],
-                    held, mesh.nodes[nodes[[0, -1]]],
+                    number, tool_of.get(name), elements, length, goes_on, nodes[free], arc[free], normals[free],
+                    gap[free], held, mesh.nodes[nodes[[0, -1]]],
                 )
             )  # fmt: skip
     return _joined(mesh, pieces)
@@ -196,9 +196,10 @@ def _goes_on(
 
 
 class _Piece(NamedTuple):
-    """One run: its zone, elements and length, whether contact goes on beyond its ends, its points, its held ends."""
+    """One run: zone, tool, elements and length, whether contact goes on beyond its ends, its points, its held ends."""
 
     zone: int
+    tool: str | None
     elements: IntArray
     length: float
     goes_on: tuple[bool, bool]
@@ -216,7 +217,8 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
     node, normals, gap = (
         np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("nodes", "normals", "gap")
     )
-    first_alike = _first_alike(mesh, node, normals, gap)
+    tool = [piece.tool for piece, size in zip(pieces, sizes, strict=True) for _ in range(size)]
+    first_alike = _first_alike(mesh, node, normals, gap, tool)
     own = first_alike == np.arange(len(node))
     number = (np.cumsum(own) - 1)[first_alike]
     elements, points = [], []
@@ -248,12 +250,12 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
     )
 
 
-def _first_alike(mesh: Mesh, node: IntArray, normals: Array, gap: Array) -> IntArray:
-    """The first point (n,) with the same node, normal and gap: zones that meet on one surface share it."""
+def _first_alike(mesh: Mesh, node: IntArray, normals: Array, gap: Array, tool: Sequence[str | None]) -> IntArray:
+    """The first point (n,) with the same node, normal, gap and tool: zones that meet on one surface share it."""
     first = np.arange(len(node))
     order = np.argsort(node, kind="stable")
     for i, j in pairwise(order):
-        alike = node[i] == node[j] and np.hypot(*(normals[i] - normals[j])) <= ALIKE
+        alike = node[i] == node[j] and tool[i] == tool[j] and np.hypot(*(normals[i] - normals[j])) <= ALIKE
         if alike and abs(gap[i] - gap[j]) <= ALIKE * mesh.size:
             first[j] = first[i]
     return first

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.rigid_motions import RigidMotions, echelon
@@ -15,6 +16,8 @@ Array = NDArray[np.float64]
 
 UNSEEN = 1e-9
 """Largest normal displacement, relative to the motion's own, of a rigid motion that no contact point sees."""
+BODY = "the body"
+"""What moves where no tool does."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,6 +40,19 @@ class PlacedTools:
     free: NDArray[np.bool_]
     position: Array
     force: Array
+
+    def poles(self, points: ContactPoints) -> Array:
+        """About which (t, 2) to turn: the middle of a tool's contact points as far as it is free to go there [L].
+
+        About a point far away a rotation can hardly be told from a translation.
+        """
+        poles = self.point.copy()
+        for tool, (x, y, turns) in enumerate(self.free.reshape(-1, 3)):
+            moved = np.any(self.motions[:, 3 * tool : 3 * tool + 3], axis=1)
+            if turns and moved.any():
+                middle = np.average(points.mesh.nodes[points.node[moved]], axis=0, weights=points.tributary[moved])
+                poles[tool] = np.where([y, x], middle, poles[tool])
+        return poles
 
 
 def placed_tools(problem: Problem, points: ContactPoints) -> PlacedTools:
@@ -74,15 +90,17 @@ class FreeMotions:
     Parameters
     ----------
     coefficients : (k, 3 + 3 t) x, y and rotation times radius of the body about its center, then of each tool about its
-        own point
+        pole
     names : of the tools
-    centers : (1 + t, 2) center and points [L]
+    centers : (1 + t, 2) center and poles [L]
+    to_points : (3 t, 3 t) motion of the tools, x, y and rotation [rad/L] about their own points, from that about poles
     radius : [L]
     """
 
     coefficients: Array
     names: tuple[str, ...]
     centers: Array
+    to_points: Array
     radius: float
 
     def __len__(self) -> int:
@@ -96,32 +114,53 @@ class FreeMotions:
 
     @property
     def tools(self) -> Array:
-        """What the tools do, (3 t, k): x, y and rotation [rad/L], tool by tool."""
-        unit = np.tile([1.0, 1.0, 1 / self.radius], len(self.names))
-        return unit[:, None] * self.coefficients[:, 3:].T
+        """What the tools do, (3 t, k): x, y and rotation [rad/L] about their points, tool by tool."""
+        return self.to_points @ self.coefficients[:, 3:].T
 
     def combined(self, factors: Array) -> "FreeMotions":
         """Combinations of these motions by the columns of factors (k, j)."""
         return replace(self, coefficients=factors.T @ self.coefficients)
 
     def describe(self) -> tuple[str, ...]:
-        """Say each motion in words."""
-        return tuple(" with the ".join(self._parts(j)) for j in range(len(self)))
+        """Say each motion in words, and of what it is unless of the body alone."""
+        return tuple(f"{self.way(j)}{'' if self.who(j) == BODY else f' of {self.who(j)}'}" for j in range(len(self)))
+
+    def who(self, motion: int) -> str:
+        """Say what moves: the body, tools, or some of them together."""
+        *others, last = (("the tool '" + self.names[part - 1] + "'") if part else BODY for part in self._moving(motion))
+        return f"{', '.join(others)} and {last} together" if others else last
+
+    def way(self, motion: int) -> str:
+        """Say how that moves, without what."""
+        ways = [self._part(part).described(self._of(motion, part)) for part in self._moving(motion)]
+        return " and ".join(dict.fromkeys(ways))
+
+    def in_user_units(self) -> "FreeMotions":
+        """The same motions, so that work in them is a force [p L] along a translation, or else a moment [p L²]."""
+        scales = []
+        for motion in range(len(self)):
+            x, y, turn = abs(self.coefficients[motion]).reshape(-1, 3).T
+            scales.append(self.radius / turn.max() if self.turns(motion) else 1 / np.hypot(x, y).max())
+        return self.combined(np.diag(scales))
+
+    def turns(self, motion: int) -> bool:
+        """Whether something turns in a motion."""
+        size = abs(self.coefficients[motion]).max()
+        return bool(abs(self.coefficients[motion, 2::3]).max() > UNSEEN * size)
 
     def _part(self, number: int) -> RigidMotions:
         """What the body (0) or a tool does in each of them."""
         its = self.coefficients[:, 3 * number : 3 * number + 3]
         return RigidMotions(coefficients=its, center=self.centers[number], radius=self.radius)
 
-    def _parts(self, motion: int) -> list[str]:
-        """Say of the body and of each tool that moves what it does."""
+    def _of(self, motion: int, part: int) -> Array:
+        """Coefficients (3,) of the body (0) or a tool in one of them."""
+        return self.coefficients[motion, 3 * part : 3 * part + 3]
+
+    def _moving(self, motion: int) -> list[int]:
+        """The body (0) and tools that move in one of them."""
         size = abs(self.coefficients[motion]).max()
-        parts = []
-        for number, name in enumerate(("", *self.names)):
-            its = self._part(number)
-            if abs(its.coefficients[motion]).max() > UNSEEN * size:
-                parts.append(its.describe()[motion] + (f" of the tool '{name}'" if name else ""))
-        return parts
+        return [part for part in range(1 + len(self.names)) if abs(self._of(motion, part)).max() > UNSEEN * size]
 
 
 def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTools) -> tuple[FreeMotions, FreeMotions]:
@@ -139,12 +178,14 @@ def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTool
     unseen : those in which nothing changes its gap, or body and tools go together
     """
     t = len(tools.names)
-    unit = np.tile([1.0, 1.0, 1 / of_body.radius], t)
-    basis = np.hstack([points.along_normals(replace(of_body, coefficients=np.eye(3))), tools.motions * unit])
+    poles = tools.poles(points)
+    to_points = _to_points(tools.point - poles, of_body.radius)
+    basis = np.hstack([points.along_normals(replace(of_body, coefficients=np.eye(3))), tools.motions @ to_points])
     every = FreeMotions(
         coefficients=np.zeros((0, 3 + 3 * t)),
         names=tools.names,
-        centers=np.vstack([of_body.center, tools.point]),
+        centers=np.vstack([of_body.center, poles]),
+        to_points=to_points,
         radius=of_body.radius,
     )
     held = np.pad(of_body.coefficients, ((0, 0), (0, 3 * t)))
@@ -155,6 +196,12 @@ def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTool
     apart = _null_vectors(together[: len(body)].T)
     seen, unseen = np.vstack([echelon(apart.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
     return replace(every, coefficients=seen), replace(every, coefficients=unseen)
+
+
+def _to_points(levers: Array, radius: float) -> Array:
+    """Motion (3 t, 3 t) of tools about their points from that about their poles, at levers (t, 2) from these."""
+    blocks = [[[1.0, 0.0, -y / radius], [0.0, 1.0, x / radius], [0.0, 0.0, 1 / radius]] for x, y in levers]
+    return np.asarray(block_diag(np.zeros((0, 0)), *blocks), float)
 
 
 def _split(basis: Array, motions: Array) -> tuple[Array, Array]:

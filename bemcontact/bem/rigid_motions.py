@@ -50,9 +50,10 @@ class RigidMotions:
 
     def describe(self) -> tuple[str, ...]:
         """Say each motion in words: its direction, or the point about which it turns."""
-        return tuple(map(self._describe, self.coefficients))
+        return tuple(map(self.described, self.coefficients))
 
-    def _describe(self, coefficients: Array) -> str:
+    def described(self, coefficients: Array) -> str:
+        """Say the motion with such coefficients (3,), which are not all zero, in words."""
         a, b, c = np.where(abs(coefficients) > 1e-9 * abs(coefficients).max(), coefficients, 0.0)
         if c == 0:
             length = np.hypot(a, b)

@@ -87,7 +87,7 @@ def solve(
       bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
       bemcontact solve models/cylinder_on_plane.yaml --fit-edges
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
-      bemcontact solve models/gallery/punch_and_block.yaml --case eccentric
+      bemcontact solve models/gallery/roller_in_v_block.yaml --case aside
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp1
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --starts 20
     """

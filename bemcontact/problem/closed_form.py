@@ -15,6 +15,8 @@ class AnyReference(Stated):
 
     zone: Name | None = None
     """The contact zone that is meant; all zones if left out."""
+    case: Name | None = None
+    """The load case or combination of which it is known, and judged only where that acts; any if left out."""
     tolerance: Tolerance | None = None
     """Relative difference up to which the answer agrees, such as 0.02; a default of the kind if left out."""
     reason: Text = ""
@@ -77,12 +79,12 @@ class Hertz(AnyReference):
 
 
 class FlatPunch(AnyReference):
-    """A rigid punch with a flat face and sharp edges, pressed without friction on a half-plane.
+    """A rigid punch with a flat face and sharp edges, free to tilt, pressed without friction on a half-plane.
 
     Raises
     ------
     ProblemError
-        If the load acts so far out that an edge of the punch lifts off.
+        If the load acts beyond an edge of the punch, or off the middle where one half is modelled.
     """
 
     kind: Literal["flat_punch"] = "flat_punch"
@@ -96,17 +98,18 @@ class FlatPunch(AnyReference):
     half: Flag = False
     """Whether only one half of the punch is modelled, up to a line of symmetry through its middle."""
     eccentricity: Number = 0.0
-    """How far from the middle the load acts, positive to the right (upwards along a vertical face)."""
+    """How far from the middle the load acts, positive to the right (upwards along a vertical face); beyond
+    half_width/2 the other edge lifts off."""
 
     @field_validator("eccentricity")
     @classmethod
-    def _presses_everywhere(cls, value: float, info: ValidationInfo) -> float:
-        """Refuse a load that tilts the punch off the plane, and one off the line of symmetry."""
+    def _acts_on_the_punch(cls, value: float, info: ValidationInfo) -> float:
+        """Refuse a load beyond the edges, and one off the line of symmetry."""
         if value and info.data.get("half"):
             raise complain("must be 0 where only one half is modelled (half: true)")
         half_width = info.data.get("half_width")
-        if half_width is not None and abs(value) > half_width / 2:
-            raise complain(f"must be at most half_width/2 = {half_width / 2:g} either way, found {value:g}")
+        if half_width is not None and not abs(value) < half_width:
+            raise complain(f"must be less than half_width = {half_width:g} either way, found {value:g}")
         return value
 
 

@@ -126,7 +126,7 @@ class Problem(Stated):
         boundary, conditions, zones = (written.below(cls, key) for key in ("boundary", "conditions", "contact_zones"))
         cases = [case.below(LoadCase, "conditions") for case in written.below(cls, "load_cases").each()]
         complaints = name_complaints(boundary, [conditions, *cases], zones)
-        references = reference_complaints(written.below(cls, "reference"), zones)
+        references = reference_complaints(written.below(cls, "reference"), zones, cls._written_cases(written))
         references += cls._wrong_actions(written, zones)
         body = boundary.read(Boundary)
         if body is None:
@@ -143,10 +143,16 @@ class Problem(Stated):
         parts = {key: written.below(cls, key) for key in ("conditions", "tools", "load_cases", "combinations", "case")}
         cases, combinations, case = parts["load_cases"], parts["combinations"], parts["case"]
         complaints = [*tool_complaints(parts["tools"], zones), *case_complaints(cases, combinations, parts)]
-        names = [str(item.path[-1]) for part in (cases, combinations) for item in part.each()]
+        names = cls._written_cases(written)
         if isinstance(case.value, str) and case.value not in names:
             complaints.append(Complaint(path=case.path, message=unknown_word("load case", case.value, names)))
         return complaints
+
+    @classmethod
+    def _written_cases(cls, written: Written) -> list[str]:
+        """Names of load cases and combinations, right or wrong."""
+        parts = (written.below(cls, key) for key in ("load_cases", "combinations"))
+        return [str(item.path[-1]) for part in parts for item in part.each()]
 
     @property
     def case_names(self) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 Forces are per thickness and lengths are in the units of the problem. Nothing here acts on the body.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import Annotated, Literal, Self
 
@@ -156,17 +156,20 @@ StatedReference = Annotated[
 """A reference as it is written; `kind` says which."""
 
 
-def reference_complaints(references: Written, zones: Written) -> list[Complaint]:
-    """Check that references mean contact zones that there are, and say which one where there are several.
+def reference_complaints(references: Written, zones: Written, cases: Sequence[str]) -> list[Complaint]:
+    """Check that references mean zones and load cases that there are, and say which zone where there are several.
 
     Parameters
     ----------
     references, zones : these parts of a problem, right or wrong; what is unreadable in them is passed over
+    cases : names of load cases and combinations
     """
     names = [str(zone.path[-1]) for zone in zones.each()]
     complaints = []
     for reference in references.each():
-        zone = reference.below(Hertz, "zone")
+        zone, case = reference.below(Hertz, "zone"), reference.below(Hertz, "case")
+        if isinstance(case.value, str) and case.value not in cases:
+            complaints.append(Complaint(path=case.path, message=unknown_word("load case", case.value, cases)))
         if isinstance(zone.value, str) and names and zone.value not in names:
             complaints.append(Complaint(path=zone.path, message=unknown_word("contact zone", zone.value, names)))
         elif zone.value is None and len(names) > 1 and _needs_one_zone(reference):

@@ -28,7 +28,7 @@ from bemcontact.reference.closed_forms import (
     contact_modulus,
 )
 from bemcontact.reference.expectation import Expected, Point
-from bemcontact.reference.positions import Frame, coordinates, in_zone, reach, spacing
+from bemcontact.reference.positions import BoolArray, Frame, coordinates, in_zone, reach, spacing
 
 HERTZ_RANGE = 0.1
 """Largest b/R for which Hertz is held against an answer; its peak is off by 0.23 % then."""
@@ -80,7 +80,7 @@ def expected(problem: Problem, contact: CondensedContact) -> tuple[Expected, ...
     Returns
     -------
     tuple of Expected
-        In the order of the spec; empty if it has no reference.
+        In the order of the spec; empty if it has no reference. Those of load cases that do not act are left out.
 
     Raises
     ------
@@ -92,7 +92,8 @@ def expected(problem: Problem, contact: CondensedContact) -> tuple[Expected, ...
             f"the contact points are in the zones {', '.join(contact.zone_names)}, those of the problem are "
             f"{', '.join(problem.contact_zones)}; condense this problem"
         )
-    return tuple(_expected(name, stated, problem, contact) for name, stated in problem.reference.items())
+    acting = {name: stated for name, stated in problem.reference.items() if stated.case in (None, problem.case)}
+    return tuple(_expected(name, stated, problem, contact) for name, stated in acting.items())
 
 
 def _expected(name: str, stated: Reference, problem: Problem, contact: CondensedContact) -> Expected:
@@ -169,7 +170,7 @@ def _beyond_hertz(stated: Hertz, form: HertzContact, size: float) -> str:
 
 
 def _flat_punch(silent: Expected, stated: FlatPunch, problem: Problem, contact: CondensedContact) -> Expected:
-    """The punch away from its edges, in range for a body ten times as large as its half-width."""
+    """The punch away from the ends of contact, in range for a body ten times as large as its half-width."""
     form = PunchOnHalfPlane(load=stated.load, half_width=stated.half_width, eccentricity=stated.eccentricity)
     frame = Frame.at(contact, stated.zone, stated.center)
     x = frame.distances(contact.points)
@@ -180,13 +181,23 @@ def _flat_punch(silent: Expected, stated: FlatPunch, problem: Problem, contact: 
     return replace(
         silent,
         pressure=pressure,
-        compared=np.isfinite(pressure) & (np.abs(x) <= INTERIOR * stated.half_width),
+        compared=np.isfinite(pressure) & _off_the_ends(form, x),
         half_width=stated.half_width,
+        contact_length=2 * form.touching_half_width if form.lifts_off else None,
         center=_point(frame),
         resultant=stated.load / (2 if stated.half else 1),
         in_range=in_range,
         remark="" if in_range else _shown(remark),
     )
+
+
+def _off_the_ends(form: PunchOnHalfPlane, x: Array) -> BoolArray:
+    """Which places (k,) are not near an end of contact; beyond an edge that lifts off they are."""
+    away = (x - form.middle) / form.touching_half_width
+    if not form.lifts_off:
+        return np.abs(away) <= INTERIOR
+    away *= np.sign(form.eccentricity)
+    return (away <= INTERIOR) & (np.abs(away + 1) >= 1 - INTERIOR)
 
 
 def _crack(silent: Expected, stated: Crack, problem: Problem, contact: CondensedContact) -> Expected:

@@ -311,7 +311,9 @@ def _zone_table(body: Body) -> Table:
 def _total_load(body: Body) -> str:
     """Write the resultant of the prescribed tractions and of the body forces."""
     x, y = body.acting.resultant(body.mesh)
-    return vector((float(x), float(y)), per_thickness(body.problem.units), scale=body.load_magnitude)
+    return vector(
+        (float(x), float(y)), per_thickness(body.problem.units), scale=body.pinned.total(body.factors, body.forces)
+    )
 
 
 def _residuals(result: Result) -> str:

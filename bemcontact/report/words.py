@@ -241,9 +241,10 @@ def convexity_in_words(contender: Contender) -> str:
 
 
 def reference_in_words(reference: Reference) -> str:
-    """Say what is known of an answer: a closed form by its name, or where values come from."""
+    """Say what is known of an answer, and in which load case: a closed form by its name, or where values come from."""
+    of_case = "" if reference.case is None else f", load case '{reference.case}'"
     match reference:
         case Values() | Table():
-            return reference.source
+            return f"{reference.source}{of_case}"
         case _:
-            return f"closed form, {reference.kind.replace('_', ' ')}"
+            return f"closed form, {reference.kind.replace('_', ' ')}{of_case}"

@@ -107,10 +107,15 @@ REFUSED = {
         "0}",
         "reference.it.surface_radius: must not be 0",
     ),
-    "lifts off": (
-        "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0], eccentricity: 1.5}",
-        "1.5}",
-        "reference.it.eccentricity: must be at most half_width/2 = 1 either way, found 1.5",
+    "beside the punch": (
+        "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0], eccentricity: -2}",
+        "-2}",
+        "reference.it.eccentricity: must be less than half_width = 2 either way, found -2",
+    ),
+    "of no case": (
+        "{kind: uniform, pressure: 1, case: wind}",
+        "wind}",
+        "reference.it.case: unknown load case 'wind'",
     ),
     "half and eccentric": (
         "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0], eccentricity: 1, half: true}",

@@ -65,19 +65,65 @@ def test_hertz_carries_its_load_and_bends_to_the_curvature():
     assert form.pressure(np.array([form.half_width, 2 * form.half_width, np.inf])) == pytest.approx(0.0, abs=1e-7)
 
 
-@pytest.mark.parametrize("eccentricity", [0.0, 0.4, -1.0])
+ECCENTRICITIES = [0.0, 0.4, -1.0, 1.2, -1.7]
+"""Of a punch of half-width 2, whose edge lifts off beyond 1."""
+
+
+def seen_from_the_middle(form: PunchOnHalfPlane):
+    return lambda y: form.pressure(y + form.middle)
+
+
+@pytest.mark.parametrize("eccentricity", ECCENTRICITIES)
 def test_punch_carries_load_and_moment_and_leaves_a_straight_face(eccentricity: float):
     """With x = a cos θ both integrals are smooth; a face that turns as a whole has the same slope everywhere."""
     form = PunchOnHalfPlane(load=7.0, half_width=2.0, eccentricity=eccentricity)
-    theta = (np.arange(64) + 0.5) * pi / 64
-    x = 2.0 * np.cos(theta)
-    carried = form.pressure(x) * 2.0 * np.sin(theta) * pi / 64
+    theta, h = (np.arange(64) + 0.5) * pi / 64, form.touching_half_width
+    x = form.middle + h * np.cos(theta)
+    carried = form.pressure(x) * h * np.sin(theta) * pi / 64
     assert carried.sum() == pytest.approx(7.0, rel=1e-13)
     assert carried @ x == pytest.approx(7.0 * eccentricity, rel=1e-12, abs=1e-12)
     assert form.pressure(x).min() >= 0
-    slopes = [slope(form.pressure, 2.0, x, 900.0) for x in (-1.3, 0.2, 1.1)]
-    assert slopes == pytest.approx([slopes[0]] * 3, abs=1e-8)
-    assert abs(slopes[0]) == pytest.approx(4 * 7.0 * abs(eccentricity) / (pi * 900.0 * 2.0**2), abs=1e-8)
+    slopes = [slope(seen_from_the_middle(form), h, y * h, 900.0) for y in (-0.65, 0.1, 0.55)]
+    assert np.abs(slopes) == pytest.approx(abs(form.tilt(900.0)), abs=1e-8)
+    assert np.sign(form.tilt(900.0)) == np.sign(eccentricity)
+
+
+@pytest.mark.parametrize("eccentricity", [1.2, 1.5, 1.99, -1.3])
+def test_what_lifts_off_is_clear_of_the_half_plane(eccentricity: float):
+    """Outside, the slope of the surface is an ordinary integral; what the tilted face rises above it grows outwards."""
+    form = PunchOnHalfPlane(load=7.0, half_width=2.0, eccentricity=eccentricity)
+    side, h = np.sign(eccentricity), form.touching_half_width
+    assert (form.middle - side * h) * side == pytest.approx(4 * abs(eccentricity) - 3 * 2.0)
+    assert (form.middle + side * h) * side == pytest.approx(2.0)
+    touches = seen_from_the_middle(form)
+
+    def surface_slope(y: float) -> float:
+        """Along the direction of the load, y from the middle of what touches."""
+        found, _ = quad(
+            lambda t: touches(side * np.array([h * np.cos(t)]))[0] * h * np.sin(t) / (y - h * np.cos(t)), 0, pi
+        )
+        return 2 / (pi * 900.0) * found
+
+    face = -abs(form.tilt(900.0))
+    for y in (1.05, 1.5, 3.0):
+        assert surface_slope(-y * h) > face
+    assert surface_slope(-1.0001 * h) == pytest.approx(face, rel=0.03)
+    assert form.pressure(np.array([form.middle - side * 1.01 * h])) == [0.0]
+    assert form.pressure(np.array([form.middle - side * h])) == pytest.approx([0.0], abs=1e-12)
+
+
+def test_punch_about_to_lift_off_is_one_form_from_both_sides():
+    """At e = a/2 the pressure of the far edge is 0, tilt and pressure go on continuously."""
+    before, after = (
+        PunchOnHalfPlane(load=7.0, half_width=2.0, eccentricity=e) for e in (1.0 * (1 - 1e-9), 1.0 * (1 + 1e-9))
+    )
+    x = np.linspace(-1.9, 1.9, 20)
+    assert before.pressure(x) == pytest.approx(after.pressure(x), rel=1e-7)
+    assert before.tilt(900.0) == pytest.approx(after.tilt(900.0), rel=1e-8)
+    assert (before.lifts_off, after.lifts_off) == (False, True)
+    assert PunchOnHalfPlane(load=7.0, half_width=2.0, eccentricity=1.0).tilt(900.0) == pytest.approx(
+        2 * 7.0 / (pi * 900.0 * 2.0)
+    )
 
 
 def test_punch_says_nothing_at_its_edges_and_zero_beyond():

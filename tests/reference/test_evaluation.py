@@ -207,3 +207,57 @@ def test_all_of_it_is_ready_for_json():
         data = json.loads(json.dumps(item.to_dict(), allow_nan=False))
         assert data["name"] == item.name
         assert [p is None for p in data["pressure"]] == np.isnan(item.pressure).tolist()
+
+
+TILTING = """
+name: punch with an eccentric force
+material: {young_modulus: 1000, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: base, start: [-12, -12], elements: 4}
+    - {name: right, start: [12, -12], elements: 4}
+    - {name: free right, start: [12, 0], elements: 6, grading: {ratio: 50, towards: end}}
+    - {name: face, start: [1, 0], elements: 10}
+    - {name: free left, start: [-1, 0], elements: 6, grading: {ratio: 50, towards: start}}
+    - {name: left, start: [-12, 0], elements: 4}
+conditions: {base: {displacement: {x: 0, y: 0}}}
+contact_zones: {punch: {edges: face, surface: {kind: plane, point: [0, 0], normal: [0, -1]}}}
+tools: {punch: {zones: punch, point: [0, 0], force: {y: -2, moment: 0}}}
+load_cases:
+  near: {tools: {punch: {force: {moment: -0.6}}}}
+  far: {tools: {punch: {force: {moment: 1.4}}}}
+combinations: {opposite: {near: 1, far: 1}}
+reference:
+  any: {kind: values, source: statics, resultant: 2}
+  near: {kind: flat_punch, case: near, load: 2, half_width: 1, center: [0, 0], eccentricity: 0.3}
+  far: {kind: flat_punch, case: far, load: 2, half_width: 1, center: [0, 0], eccentricity: -0.7}
+"""
+
+
+@pytest.mark.parametrize(
+    ("case", "names"),
+    [("near", ["any", "near"]), ("far", ["any", "far"]), ("opposite", ["any"]), (None, ["any"])],
+)
+def test_a_reference_of_a_load_case_speaks_where_that_acts(case: str | None, names: list[str]):
+    problem = bemcontact.loads(TILTING) if case is None else bemcontact.loads(TILTING).with_case(case)
+    assert [one.name for one in expected(problem, bemcontact.condense(problem))] == names
+
+
+def test_punch_whose_edge_lifts_off_touches_a_part():
+    """With e = 0.7 to the left it touches from -1 to 3 - 4 · 0.7; compared off both ends, where it is open too."""
+    problem = bemcontact.loads(TILTING).with_case("far")
+    _, one = expected(problem, contact := bemcontact.condense(problem))
+    x = contact.points[:, 0]
+    assert one.in_range
+    assert one.contact_length == pytest.approx(1.2)
+    assert one.half_width == 1.0
+    near_an_end = (x < -1 + 0.1 * 0.6 - 1e-9) | (np.abs(x - 0.2) < 0.1 * 0.6 - 1e-9)
+    assert one.compared.tolist() == (~near_an_end).tolist()
+    assert (one.pressure[x > 0.3] == 0).all()
+
+
+def test_punch_that_presses_everywhere_has_no_contact_length():
+    problem = bemcontact.loads(TILTING).with_case("near")
+    _, one = expected(problem, contact := bemcontact.condense(problem))
+    assert one.contact_length is None
+    assert one.compared.tolist() == (np.abs(contact.points[:, 0]) <= 0.9 + 1e-9).tolist()

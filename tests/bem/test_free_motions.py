@@ -1,0 +1,155 @@
+"""Motions of body and tools that no condition prevents: which contact sees, and what they are called."""
+
+import numpy as np
+import pytest
+from tool_problems import FREE, HELD, ROLLER, WEDGE, Spec, made
+
+from bemcontact.bem.condense import Body, body_of
+from bemcontact.bem.free_motions import FreeMotions
+from bemcontact.bem.rigid_motions import RigidMotions
+
+WIDE = {"table": FREE["contact_zones"]["table"], "press": {
+    "edges": ["head", "top"], "surface": FREE["contact_zones"]["punch"]["surface"]}}  # fmt: skip
+PRESS = {"zones": "press", "point": [1, 1], "force": {"y": -10, "moment": 0}}
+TABLE = {"zones": "table", "point": [1, 0], "force": {"y": 10, "moment": 0}}
+
+
+def between(**tools) -> Body:
+    return body_of(made(FREE, loads={}, contact_zones=WIDE, tools=tools))
+
+
+def roller(**tools) -> Body:
+    return body_of(made(ROLLER, tools=tools))
+
+
+UP, TURN, SIDE = "translation along (0, 1)", "rotation anticlockwise about", "translation along (1, 0)"
+
+
+@pytest.mark.parametrize(
+    ("body", "seen", "unseen"),
+    [
+        (body_of(made(HELD)), (f"{UP} of the tool 'punch'", f"{TURN} (1.5, 1) of the tool 'punch'"), ()),
+        (
+            between(press=PRESS),
+            (UP, f"{TURN} (1, 0.5)", f"{UP} of the tool 'press'", f"{TURN} (1, 1) of the tool 'press'"),
+            (SIDE,),
+        ),
+        (
+            between(press={"zones": "press", "force": {"x": 0, "y": -10}}),
+            (UP, f"{TURN} (1, 0.5)", f"{UP} of the tool 'press'"),
+            (SIDE, f"{SIDE} of the tool 'press'"),
+        ),
+        (
+            between(press=PRESS, table=TABLE),
+            (
+                f"{UP} of the tool 'press'",
+                f"{TURN} (1, 1) of the tool 'press'",
+                f"{UP} of the tool 'table'",
+                f"{TURN} (1, 0) of the tool 'table'",
+            ),
+            (
+                SIDE,
+                f"{UP} of the body, the tool 'press' and the tool 'table' together",
+                f"{TURN} (1, 0.5) and {TURN} (1, 1) and {TURN} (1, 0) of the body, the tool 'press' and the tool "
+                "'table' together",
+            ),
+        ),
+        (
+            roller(block={"zones": ["left flank", "right flank"], "force": {"x": 0, "y": 20}}),
+            (UP, f"{TURN} (0, 0)", f"{SIDE} of the tool 'block'", f"{UP} of the tool 'block'"),
+            (f"{SIDE} of the body and the tool 'block' together",),
+        ),
+    ],
+)
+def test_what_is_seen_and_what_is_not(body: Body, seen: tuple[str, ...], unseen: tuple[str, ...]):
+    """By hand: along a plane nothing changes a gap, and where all that touches goes along, neither."""
+    assert body.seen.describe()[-2:] == seen[-2:]
+    assert sorted(body.seen.describe()) == sorted(seen)
+    assert body.unseen.describe() == unseen
+
+
+BODIES = {
+    "held": body_of(made(HELD)),
+    "free": body_of(made(FREE)),
+    "groove": body_of(made(WEDGE)),
+    "press and table": between(press=PRESS, table=TABLE),
+    "block": roller(block={"zones": ["left flank", "right flank"], "force": {"x": 0, "y": 20}}),
+    "far point": between(press={"zones": "press", "point": [1e6, 1], "force": {"y": -10, "moment": 10 * (1e6 - 1)}}),
+}
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_seen_motions_are_independent_and_unseen_ones_are_not_seen(name: str):
+    body = BODIES[name]
+    R, none = body.normal_motion(body.seen), body.normal_motion(body.unseen)
+    values = np.linalg.svd(R, compute_uv=False)
+    assert values[-1] > 1e-2 * values[0]  # also where a tool is stated about a point far away
+    assert abs(none).max(initial=0.0) < 1e-9
+    together = np.vstack([body.seen.coefficients, body.unseen.coefficients])
+    free = len(body.motions) + int(body.tools.free.sum())
+    assert np.linalg.matrix_rank(together) == len(together) == free
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_tools_move_only_where_they_are_free(name: str):
+    body = BODIES[name]
+    for motions in (body.seen, body.unseen):
+        assert abs(motions.tools[~body.tools.free]).max(initial=0.0) < 1e-12
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_what_a_tool_adds_to_the_gaps_is_its_rigid_motion(name: str):
+    """-n·w with w = (x - θ (Y - Py), y + θ (X - Px)) at contact points of its zones, 0 at others."""
+    body = BODIES[name]
+    points, zones = body.points, list(body.problem.contact_zones)
+    at = body.mesh.nodes[points.node]
+    for index, (point, tool) in enumerate(zip(body.tools.point, body.problem.tools.values(), strict=True)):
+        x, y = (at - point).T
+        own = np.isin(points.zone, [zones.index(zone) for zone in tool.zones])
+        columns = body.tools.motions[:, 3 * index : 3 * index + 3]
+        n_x, n_y = points.normals.T
+        expected = -np.column_stack([n_x, n_y, n_y * x - n_x * y])
+        assert columns == pytest.approx(np.where(own[:, None], expected, 0.0), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_work_of_forces_is_force_times_displacement_of_the_point(name: str):
+    body = BODIES[name]
+    on_tools = body.motion_load(body.seen)[:, 0] - body.loadings[0].work(body.mesh, body.seen.body)
+    moved = body.seen.tools
+    by_hand = sum(np.array(tool.load) @ moved[3 * i : 3 * i + 3] for i, tool in enumerate(body.problem.tools.values()))
+    assert on_tools == pytest.approx(by_hand, rel=1e-12)
+
+
+def test_units_of_the_user():
+    """Work in a translation is a force, in a rotation a moment, however the motion was normalised."""
+    motions = FreeMotions(
+        coefficients=np.array([[0, 3.0, 0, 0, 3, 0], [0, 0, 0.2, 0, 0, 0.2], [0, 0, 0, 0.6, 0.8, 0]]),
+        names=("a",),
+        centers=np.array([[0.0, 0], [0, 0]]),
+        to_points=np.diag([1, 1, 1 / 5]),
+        radius=5.0,
+    ).in_user_units()
+    force, moment = np.array([7.0, 2.0]), 4.0
+    assert motions.body.work_of(force, moment) == pytest.approx([2, 4, 0])
+    assert pytest.approx([2, 4, 0.6 * 7 + 0.8 * 2]) == motions.tools.T @ [7.0, 2.0, 4.0]
+    assert [motions.turns(j) for j in range(3)] == [False, True, False]
+    assert [motions.who(j) for j in range(3)] == ["the body and the tool 'a' together"] * 2 + ["the tool 'a'"]
+
+
+def test_a_motion_is_described_without_warning():
+    assert RigidMotions(coefficients=np.eye(3), center=np.array([1.0, 2]), radius=3.0).describe() == (
+        SIDE, UP, f"{TURN} (1, 2)",
+    )  # fmt: skip
+
+
+def hinged(stated: Spec = HELD) -> Body:
+    """A punch that turns about a hinge at x = 1.8 and moves up and down with it, but not sideways."""
+    punch = {**stated["tools"]["punch"], "point": [1.8, 3], "force": {"moment": 0}}
+    return body_of(made(stated, tools={"punch": punch}, loads={}))
+
+
+def test_hinged_tool_turns_about_its_hinge_only():
+    body = hinged()
+    assert body.seen.describe() == (f"{TURN} (1.8, 3) of the tool 'punch'",)
+    assert body.seen.tools[:2] == pytest.approx(np.zeros((2, 1)))

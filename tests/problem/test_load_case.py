@@ -1,0 +1,200 @@
+"""What a spec may say of load cases and combinations, and where and in which words each mistake is refused."""
+
+import pytest
+
+import bemcontact
+from bemcontact.errors import ProblemError
+from bemcontact.problem import Problem
+
+BODY = """\
+name: block on a plane
+material: {young_modulus: 1000, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: bottom, start: [0, 0], elements: 2}
+    - {name: right, start: [2, 0], elements: 2}
+    - {name: top, start: [2, 1], elements: 2}
+    - {name: left, start: [0, 1], elements: 2}
+conditions: {top: {pressure: 5}, left: {displacement: {x: 0}}}
+contact_zones:
+  foot: {edges: bottom, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}
+tools:
+  pad: {zones: foot, displacement: {x: 0}, force: {y: 10}}
+"""
+
+
+def spec(case: str, after: str = "") -> str:
+    return f"{BODY}load_cases:\n  it: {case}\n{after}"
+
+
+SUM = "combinations:\n  both: {it: 1.5}\n  none: {it: 0}\n"
+GOOD = {
+    "pressure": "{conditions: {top: {pressure: 1}}}",
+    "traction beside a displacement": "{conditions: {left: {traction: {y: 1}}, right: {traction: {x: 2, y: 1}}}}",
+    "displacement where there is one": "{conditions: {left: {displacement: {x: 0.1}}}}",
+    "gravity": "{description: weight, loads: {gravity: {density: 1, acceleration: [0, -1]}}}",
+    "tool": "{tools: {pad: {displacement: {x: 1}, force: {y: -2}}}}",
+    "displacement of a tool that is fixed there": "{tools: {pad: {displacement: {x: 1}}}}",
+    "all": "{conditions: {top: {pressure: 1}}, loads: {temperature: {expansion: 1e-5, change: 9}}, "
+    "tools: {pad: {force: {y: 0}}}}",
+}
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_each_is_read(name: str):
+    problem = bemcontact.loads(spec(GOOD[name], SUM))
+    assert problem.case_names == ("it", "both", "none")
+    assert problem.case is None
+    assert problem.factors() == {}
+    assert (problem.factors("it"), problem.factors("both"), problem.factors("none")) == (
+        {"it": 1},
+        {"it": 1.5},
+        {"it": 0},
+    )
+    assert problem.with_case("both").factors() == {"it": 1.5}
+    assert Problem(**problem.model_dump()) == problem
+
+
+def test_the_case_that_acts_stands_in_the_spec():
+    assert bemcontact.loads(spec(GOOD["pressure"], "case: it\n")).factors() == {"it": 1}
+    with pytest.raises(ProblemError, match="case: unknown load case 'wind'; there is: it"):
+        bemcontact.loads(spec(GOOD["pressure"])).with_case("wind")
+
+
+def test_a_variant_sets_values_of_load_cases_and_names_the_one_that_acts():
+    text = spec(GOOD["pressure"], "variants:\n  more: {set: {load_cases.it.conditions.top.pressure: 7, case: it}}\n")
+    more = bemcontact.loads(text).variant("more")
+    assert more.case == "it"
+    assert more.load_cases["it"].conditions["top"].pressure.constant == 7
+    with pytest.raises(bemcontact.SpecError, match=r"variants\.more.*unknown load case 'wind'"):
+        bemcontact.loads(text.replace("case: it}", "case: wind}"))
+
+
+REFUSED = {
+    "nothing": ("{}", "{}", "load_cases.it: it states nothing; give conditions, loads or tools"),
+    "words only": ("{description: wind}", "{desc", "load_cases.it: it states nothing"),
+    "unknown edge": (
+        "{conditions: {topp: {pressure: 1}}}",
+        "topp",
+        "load_cases.it.conditions.topp: unknown edge 'topp'; did you mean 'top'?",
+    ),
+    "edge of a zone": (
+        "{conditions: {bottom: {pressure: 1}}}",
+        "bottom",
+        "load_cases.it.conditions.bottom: edge 'bottom' is in the contact zone 'foot' and can carry no "
+        "condition; remove one",
+    ),
+    "held in addition": (
+        "{conditions: {left: {displacement: {x: 0, y: 0.1}}}}",
+        "0.1",
+        "load_cases.it.conditions.left.displacement.y: a load case cannot hold an edge that the problem leaves free "
+        "along y; give the displacement 0 along y among the problem's own conditions, and this one in addition",
+    ),
+    "held where nothing is": (
+        "{conditions: {right: {displacement: {x: 0.1}}}}",
+        "0.1",
+        "load_cases.it.conditions.right.displacement.x: a load case cannot hold an edge that the problem leaves free "
+        "along x",
+    ),
+    "traction on what is held": (
+        "{conditions: {left: {traction: {x: 1}}}}",
+        "1}}}}",
+        "load_cases.it.conditions.left.traction.x: the problem prescribes the displacement of this edge along x, which "
+        "leaves no room for it",
+    ),
+    "pressure on what is held": (
+        "{conditions: {left: {pressure: 1}}}",
+        "1}}}",
+        "load_cases.it.conditions.left.pressure: the problem prescribes the displacement of this edge along x",
+    ),
+    "unknown tool": (
+        "{tools: {pda: {force: {y: 1}}}}",
+        "pda",
+        "load_cases.it.tools.pda: unknown tool 'pda'; did you mean",
+    ),
+    "idle tool": (
+        "{tools: {pad: {}}}",
+        "{}",
+        "load_cases.it.tools.pad: it states nothing; give a displacement or a force",
+    ),
+    "displacement of what is free": (
+        "{tools: {pad: {displacement: {y: 1}}}}",
+        "1}}}}",
+        "load_cases.it.tools.pad.displacement.y: the tool is free along y, as the problem loads it there; give a force",
+    ),
+    "force on what is held": (
+        "{tools: {pad: {force: {x: 1}}}}",
+        "1}}}}",
+        "load_cases.it.tools.pad.force.x: the tool is held along x; give x: 0 among the problem's own forces on "
+        "it to set it free",
+    ),
+    "moment on what is held": (
+        "{tools: {pad: {force: {moment: 1}}}}",
+        "1}}}}",
+        "load_cases.it.tools.pad.force.moment: the tool is held in rotation; give moment: 0 among the problem's "
+        "own forces",
+    ),
+    "rotation about nothing": (
+        "{tools: {pad: {displacement: {rotation: 1}}}}",
+        "1}}}}",
+        "load_cases.it.tools.pad.displacement.rotation: a rotation is about a point; give the tool its point: [x, y]",
+    ),
+    "unknown key": (
+        "{conditons: {top: {pressure: 1}}}",
+        "conditons",
+        "load_cases.it.conditons: unknown key 'conditons'",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_each_mistake_is_refused_with_its_place(case: str):
+    """The entry stands in line 15 and begins in column 7; the place is that of what is wrong in it."""
+    text, wrong, words = REFUSED[case]
+    with pytest.raises(bemcontact.SpecError) as caught:
+        bemcontact.loads(spec(text), "body.yaml")
+    [line] = str(caught.value).splitlines()
+    assert line.startswith(f"body.yaml:15:{text.index(wrong) + 7}: load_cases.it")
+    assert words in line
+
+
+@pytest.mark.parametrize(
+    ("after", "words"),
+    [
+        (
+            "combinations: {it: {it: 1}}",
+            "combinations.it: there is a load case 'it' already; give the combination another",
+        ),
+        ("combinations: {sum: {it: 1, wind: 2}}", "combinations.sum.wind: unknown load case 'wind'; there is: it"),
+        (
+            "combinations: {sum: {}}",
+            "combinations.sum: nothing is combined; give load cases with their factors, such as",
+        ),
+        ("combinations: {sum: {it: big}}", "combinations.sum.it: expected a number, found the text"),
+        ("case: wind", "case: unknown load case 'wind'; there is: it"),
+    ],
+)
+def test_combinations_and_the_acting_case_fit_the_load_cases(after: str, words: str):
+    with pytest.raises(bemcontact.SpecError) as caught:
+        bemcontact.loads(spec(GOOD["pressure"], after), "body.yaml")
+    [line] = str(caught.value).splitlines()
+    assert line.startswith("body.yaml:16:")
+    assert words in line
+
+
+def test_a_case_without_load_cases_is_refused():
+    with pytest.raises(bemcontact.SpecError, match="case: unknown load case 'wind'; there is: none"):
+        bemcontact.loads(BODY + "case: wind\n")
+
+
+def test_all_mistakes_are_told_at_once():
+    text = spec(
+        "{conditions: {left: {pressure: 1}}, tools: {pda: {force: {y: 1}}}}", "combinations: {sum: {wind: 2}}\n"
+    )
+    with pytest.raises(bemcontact.SpecError) as caught:
+        bemcontact.loads(text)
+    assert [line.split()[1] for line in str(caught.value).splitlines()] == [
+        "load_cases.it.conditions.left.pressure:",
+        "load_cases.it.tools.pda:",
+        "combinations.sum.wind:",
+    ]

@@ -1,0 +1,109 @@
+"""The table of load cases, and what check and solve say of tools: the numbers are those of the results."""
+
+import dataclasses
+from functools import cache
+from io import StringIO
+
+import pytest
+from rich.console import Console, RenderableType
+from tool_problems import FREE, FREE_CASES, HELD, HELD_CASES, made
+
+import bemcontact
+from bemcontact.assessment.certificate import CertificateKind
+from bemcontact.bem.condense import body_of
+from bemcontact.load_cases import CaseResults
+from bemcontact.report import cases_text, text, words
+
+UNITS = {"units": {"length": "mm", "force": "N"}}
+
+
+@cache
+def found() -> CaseResults:
+    return bemcontact.solve_cases(made(FREE, **FREE_CASES, **UNITS))
+
+
+def printed(renderable: RenderableType, width: int = 160) -> str:
+    stream = StringIO()
+    Console(file=stream, width=width, markup=False, highlight=False).print(renderable)
+    return stream.getvalue()
+
+
+def rows(text: str) -> dict[str, str]:
+    """Lines that begin with the name of a case."""
+    return {line.split()[0]: line for line in text.splitlines() if line.split() and line.split()[0] in found().results}
+
+
+def test_each_case_has_a_row_with_its_own_numbers():
+    lines = rows(printed(cases_text.cases_summary(found())))
+    assert [*lines] == ["wind", "heat", "push", "all"]
+    for name, result in found().results.items():
+        peak = result.footprint.peak
+        assert peak is not None
+        assert f"{words.number(peak.pressure)} N/mm²" in lines[name]
+        assert "certified" in lines[name]
+
+
+def test_the_worst_case_is_named():
+    told = printed(cases_text.cases_summary(found()))
+    assert f"in {found().worst}; pressures are per UNDEFORMED length" in told
+    assert "all certified." in told
+
+
+def test_a_note_of_all_cases_is_told_once_and_one_of_some_with_their_names():
+    one = found().results["wind"]
+    results = {**found().results, "wind": dataclasses.replace(one, notes=(*one.notes, "the wind turns"))}
+    told = printed(cases_text.cases_summary(dataclasses.replace(found(), results=results)))
+    assert told.count("the body is pinned against it") == 1
+    assert "wind: the wind turns" in told
+
+
+def test_a_case_that_is_not_certified_is_told_with_the_reason():
+    one = found().results["heat"]
+    doubtful = dataclasses.replace(one.certificate, kind=CertificateKind.NOT_A_SOLUTION, words="Pressures pull.")
+    results = {**found().results, "heat": dataclasses.replace(one, certificate=doubtful)}
+    told = printed(cases_text.cases_summary(dataclasses.replace(found(), results=results)))
+    assert "NOT certified" in rows(told)["heat"]
+    assert "NOT all certified. heat: Pressures pull." in told
+
+
+def test_where_nothing_touches_nothing_is_worst():
+    """A table far below a held block, and no load."""
+    far = {"table": {"edges": "foot", "surface": {"kind": "plane", "point": [0, -9], "normal": [0, 1]}}}
+    case = {"light": {"conditions": {"top": {"pressure": 1e-3}}}}
+    none = bemcontact.solve_cases(made(HELD, contact_zones=far, tools={}, load_cases=case))
+    told = printed(cases_text.cases_summary(none))
+    assert none.worst is None
+    assert "nowhere" in told
+    assert "Largest peak" not in told
+
+
+def test_check_tells_tools_cases_and_combinations():
+    told = printed(text.problem_summary(body_of(made(HELD, **HELD_CASES))))
+    assert "punch: loaded by y = -40, moment = 3" in told
+    assert "table: displaced by y = 0.002, rotation = 0.001" in told
+    assert "wind: acts on right, top" in told
+    assert "push: acts on punch, table" in told
+    assert "heat: acts on temperature" in told
+    assert "all: 1.5 wind + -0.5 heat + 2 settle + 4 spin + 0.7 push" in told
+    assert "rotation anticlockwise about (1.5, 1) of the tool 'punch'" in told
+
+
+def test_check_tells_of_which_case_a_reference_is():
+    reference = {"it": {"kind": "uniform", "pressure": 1, "zone": "table", "case": "wind"}}
+    told = printed(text.problem_summary(body_of(made(HELD, **HELD_CASES, reference=reference))))
+    assert "it: closed form, uniform, load case 'wind'" in told
+
+
+def test_solve_tells_where_the_tools_are_and_what_presses_on_them():
+    """Nothing holds the block but a table and the punch: 40 and 3 on the punch are held up by -40 and -3."""
+    result = bemcontact.solve(made(FREE, **UNITS))
+    told = " ".join(printed(text.result_summary(result)).split())
+    x, y, turn = result.contact.tools.displacement(result.solution.rigid_amplitudes)[0]
+    assert f"punch: moves by {words.vector((x, y), 'mm')}, turns by {turn:g}" in told
+    assert "the body presses on it with (0, 40) N/mm, moment -3" in told
+
+
+@pytest.mark.parametrize("width", [100, 60])
+def test_no_line_is_wider_than_the_terminal(width: int):
+    lines = printed(cases_text.cases_summary(found()), width).splitlines()
+    assert max(map(len, lines)) <= width
