@@ -1,6 +1,14 @@
-"""Every run of the tests tries the same random examples, so that a failure is the change's and not the day's."""
+"""Every run of the tests tries the same random examples, so that a failure is the change's and not the day's.
 
-from hypothesis import settings
+Tests run side by side, one on each core; what NumPy calls must not take the cores from one another.
+"""
+
+import os
+
+for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(threads, "1")  # before the first import of NumPy
+
+from hypothesis import settings  # noqa: E402
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")

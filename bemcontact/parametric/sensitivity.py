@@ -294,7 +294,7 @@ def _at_rest(contact: CondensedContact, state: ContactSolution) -> Iterator[str]
     """Which ends of contact have no rate, as they are kept at a point."""
     for x, y in resting_ends(contact, state):
         yield (
-            f"the end of contact at ({x:.6g}, {y:.6g}) is read at a point, where it rests as parameters change a little: "
+            f"the end of contact at ({x:.6g}, {y:.6g}) is read at a point, where it rests while little changes: "
             "its rates are zero; between two points the reading moves unevenly, so follow a path to see it move"
         )
 
