@@ -20,6 +20,7 @@ from bemcontact.report.words import (
     case_in_words,
     convexity_in_words,
     deflected_by,
+    heading,
     held_by,
     number,
     per_thickness,
@@ -73,7 +74,8 @@ def problem_summary(body: Body) -> RenderableType:
         if isinstance(zone.surface, DeflectedContour):
             add(facts, "Contour", f"of {name}, deflected by {deflected_by(zone.surface, problem)}")
     for name, tool in problem.tools.items():
-        add(facts, "Tool", f"{name}: {tool_in_words(tool)}")
+        action = tool_in_words(problem.tool_action(name), units)
+        add(facts, "Tool", f"{name}, the surface of {' and '.join(tool.zones)}: {action}")
     add(facts, "Total load", f"{_total_load(body)}, reactions not counted")
     add(facts, "Held by conditions", "all rigid motions" if not len(body.motions) else "all but those below")
     for motion in body.seen.describe():
@@ -89,7 +91,7 @@ def problem_summary(body: Body) -> RenderableType:
         add(facts, "Variant", f"{name}: {told}")
     for note in body.notes:
         add(facts, "Note", note)
-    return Group(Text(problem.name, "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)
+    return Group(Text(heading(problem), "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)
 
 
 def result_summary(result: Result) -> RenderableType:
@@ -276,10 +278,12 @@ def _add_tools(facts: Table, result: Result) -> None:
     pressed = float(contact.weights @ np.abs(result.solution.pressure))
     places = contact.tools.displacement(result.solution.rigid_amplitudes)
     forces = contact.tools.reaction(contact.weights * result.solution.pressure)
-    for name, (x, y, turn), (fx, fy, moment) in zip(contact.tools.names, places, forces, strict=True):
+    each = zip(contact.tools.names, contact.tools.point.tolist(), places, forces, strict=True)
+    for name, point, (x, y, turn), (fx, fy, moment) in each:
         moved = f"moves by {vector((x, y), units.length, scale=contact.scales.displacement)}, turns by {turn:.6g}"
         force = vector((fx, fy), per_thickness(units), scale=pressed)
-        add(facts, "Tool", f"{name}: {moved}; the body presses on it with {force}, moment {moment:.6g}")
+        turning = f"moment {with_unit(f'{moment:.6g}', units.force)}"
+        add(facts, "Tool", f"{name}: {moved}; the body presses on it with {force}, {turning} about {vector(point)}")
 
 
 def _edge_table(problem: Problem) -> Table:
