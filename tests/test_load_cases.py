@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tool_problems import (
+    BETWEEN,
     FLOOR,
     FREE,
     FREE_BY_HAND,
@@ -219,11 +220,6 @@ def test_block_that_is_pressed_up_is_the_plate_pressed_down():
     assert any(pinned in note and "they are pinned against it" in note for note in up.notes)
 
 
-BETWEEN = {**FREE, "loads": {}, "contact_zones": {"table": FREE["contact_zones"]["table"], "press": {
-    "edges": ["head", "top"], "surface": FREE["contact_zones"]["punch"]["surface"]}}}  # fmt: skip
-"""The free block between a table and a press, both as wide as it is."""
-
-
 def bent(x: np.ndarray, force: float, e: float) -> np.ndarray:
     """Pressure P/w (1 + 12 e x/w²) of bending and compression over a width w = 2, x from its middle."""
     return force / 2 * (1 + 12 * e * x / 4)
@@ -386,7 +382,9 @@ def test_case_that_contact_cannot_hold_is_refused_by_its_name():
 
 
 def test_a_case_must_be_chosen_where_one_is_solved():
-    with pytest.raises(ProblemError, match="say which one acts, case: wind or heat or push or all, or solve all"):
+    with pytest.raises(
+        ProblemError, match="say which one acts, by case or --case: wind, heat, push, all; or solve all"
+    ):
         bemcontact.solve(made(FREE, **FREE_CASES))
     with pytest.raises(ProblemError, match="states no load cases"):
         bemcontact.solve_cases(made(FREE))

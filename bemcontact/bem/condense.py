@@ -241,7 +241,7 @@ class Condensation:
         body = replace(self.body, problem=problem)
         ensure_held(body)
         contact = self.contact.with_factors(problem.factors())
-        named = replace(contact, name=f"{problem.name}, {problem.case}", notes=body.notes)
+        named = replace(contact, name=problem.title, notes=body.notes)
         return replace(self, body=body, contact=named)
 
     @property

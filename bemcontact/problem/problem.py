@@ -159,6 +159,11 @@ class Problem(Stated):
         """Names of the load cases, then of the combinations."""
         return (*self.load_cases, *self.combinations)
 
+    @property
+    def title(self) -> str:
+        """Its name, with that of the load case or combination that acts."""
+        return self.name if self.case is None else f"{self.name}, {self.case}"
+
     def factors(self, case: str | None = None) -> dict[str, float]:
         """Factors by load case of a case or combination, of the one that acts if None; none of them acts by itself."""
         name = self.case if case is None else case

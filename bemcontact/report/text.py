@@ -20,7 +20,6 @@ from bemcontact.report.words import (
     case_in_words,
     convexity_in_words,
     deflected_by,
-    heading,
     held_by,
     number,
     per_thickness,
@@ -91,7 +90,7 @@ def problem_summary(body: Body) -> RenderableType:
         add(facts, "Variant", f"{name}: {told}")
     for note in body.notes:
         add(facts, "Note", note)
-    return Group(Text(heading(problem), "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)
+    return Group(Text(problem.title, "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)
 
 
 def result_summary(result: Result) -> RenderableType:

@@ -108,11 +108,6 @@ def _acting(case: str, factor: float) -> str:
     return case if factor == 1 else f"{factor:g} {case}"
 
 
-def heading(problem: Problem) -> str:
-    """Name a problem with the load case that acts, as its results are named."""
-    return problem.name if problem.case is None else f"{problem.name}, {problem.case}"
-
-
 def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
     """Say what loads do to the volume of the body."""
     if loads.gravity:

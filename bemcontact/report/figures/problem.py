@@ -44,7 +44,7 @@ from bemcontact.report.figures.page import (
     wrapped,
 )
 from bemcontact.report.figures.tool_marks import draw_tools
-from bemcontact.report.words import heading, prescribed, volume_loads
+from bemcontact.report.words import prescribed, volume_loads
 
 Array = NDArray[np.float64]
 
@@ -65,7 +65,7 @@ def figure_of_problem(problem: Problem, mesh: Mesh) -> Figure:
     inches = 3.6 + 7.0 * max(width, 0.5)
     figure = new_page(inches, 1.8 + 7.0 * max(height, 0.3))
     axes = figure.add_subplot()
-    axes.set_title(wrapped(heading(problem), int(7 * inches)), loc="left", fontweight="bold")
+    axes.set_title(wrapped(problem.title, int(7 * inches)), loc="left", fontweight="bold")
     draw_problem(axes, problem, mesh)
     return figure
 
