@@ -28,6 +28,7 @@ from bemcontact.report.words import (
     search_in_words,
     seconds_in_words,
     sentence_case,
+    settled,
     size_of,
     span,
     surface_in_words,
@@ -274,15 +275,18 @@ def _add_footprint(facts: Table, result: Result) -> None:
 def _add_tools(facts: Table, result: Result) -> None:
     """Add where the tools are, and what the body presses on them with."""
     contact, units = result.contact, units_of(result.contact)
+    size, moves = size_of(contact), contact.scales.displacement
     pressed = float(contact.weights @ np.abs(result.solution.pressure))
     places = contact.tools.displacement(result.solution.rigid_amplitudes)
     forces = contact.tools.reaction(contact.weights * result.solution.pressure)
     each = zip(contact.tools.names, contact.tools.point.tolist(), places, forces, strict=True)
     for name, point, (x, y, turn), (fx, fy, moment) in each:
-        moved = f"moves by {vector((x, y), units.length, scale=contact.scales.displacement)}, turns by {turn:.6g}"
+        turned = settled(turn * size, moves) / (size or 1.0)
+        moved = f"moves by {vector((x, y), units.length, scale=moves)}, turns by {turned:.6g}"
         force = vector((fx, fy), per_thickness(units), scale=pressed)
-        turning = f"moment {with_unit(f'{moment:.6g}', units.force)}"
-        add(facts, "Tool", f"{name}: {moved}; the body presses on it with {force}, {turning} about {vector(point)}")
+        about = with_unit(f"{settled(moment, pressed * size):.6g}", units.force)
+        told = f"{name}: {moved}; the body presses on it with {force}, moment {about} about {vector(point)}"
+        add(facts, "Tool", told)
 
 
 def _edge_table(problem: Problem) -> Table:
