@@ -323,7 +323,8 @@ REFUSED = {
         BETWEEN,
         {"press": {"zones": "press", "force": {"y": 10}}},
         "the load pulls the tool 'press' off what it touches: it drives the translation along (0, 1), which no contact "
-        "resists; turn the load around, or prescribe a displacement that holds it",
+        "resists; turn the load around, or move it to where contact can hold it, or prescribe a "
+        "displacement that holds it",
     ),
     "force that nothing resists": (
         BETWEEN,
@@ -335,7 +336,8 @@ REFUSED = {
         BETWEEN,
         {"press": {"zones": "press", "point": [1, 1], "force": {"y": -10, "moment": 11}}},
         "the load pulls the tool 'press' off what it touches: it drives the rotation anticlockwise about (0, 1), which "
-        "no contact resists; turn the load around, or prescribe a displacement that holds it",
+        "no contact resists; turn the load around, or move it to where contact can hold it, or prescribe a "
+        "displacement that holds it",
     ),
     "forces that do not balance": (
         BETWEEN,

@@ -38,6 +38,7 @@ from bemcontact.report.words import (
     verdict,
     volume_loads,
     with_unit,
+    zone_forces,
 )
 from bemcontact.result import Result
 from bemcontact.study import MeshLevel, Study
@@ -270,6 +271,8 @@ def _add_footprint(facts: Table, result: Result) -> None:
     pressed = float(contact.weights @ np.abs(result.solution.pressure))
     force = vector(found.resultant.force, per_thickness(units), scale=pressed)
     add(facts, "Resultant", f"{force}, of the rigid surfaces on the body")
+    for told in zone_forces(result):
+        add(facts, "Resultant", f"of {told}")
 
 
 def _add_tools(facts: Table, result: Result) -> None:

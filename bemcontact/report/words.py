@@ -237,6 +237,18 @@ def span(contact: CondensedContact, interval: ContactInterval) -> str:
     return f"all round, {along}" if all_round else f"{start} to {end}, {along} long"
 
 
+def zone_forces(result: Result) -> list[str]:
+    """Say with which force each rigid surface presses on the body, where there are several: ``foot: (0, 3) N/mm``."""
+    contact, unit = result.contact, per_thickness(units_of(result.contact))
+    if len(contact.zone_names) == 1:
+        return []
+    forces = (contact.weights * result.solution.pressure)[:, None] * contact.normals
+    scale = float(np.abs(forces).sum())
+    sums = [forces[contact.zone == i].sum(axis=0) for i in range(len(contact.zone_names))]
+    named = zip(contact.zone_names, sums, strict=True)
+    return [f"{zone}: {vector((float(x), float(y)), unit, scale=scale)}" for zone, (x, y) in named]
+
+
 def held_by(condensed: CondensedContact) -> str:
     """Say which rigid motions contact alone holds."""
     if not condensed.free_motions:

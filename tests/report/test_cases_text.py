@@ -6,7 +6,7 @@ from io import StringIO
 
 import pytest
 from rich.console import Console, RenderableType
-from tool_problems import FREE, FREE_CASES, HELD, HELD_CASES, made
+from tool_problems import BETWEEN, FREE, FREE_CASES, HELD, HELD_CASES, made
 
 import bemcontact
 from bemcontact.assessment.certificate import CertificateKind
@@ -64,6 +64,18 @@ def test_a_case_that_is_not_certified_is_told_with_the_reason():
     told = printed(cases_text.cases_summary(dataclasses.replace(found(), results=results)))
     assert "NOT certified" in rows(told)["heat"]
     assert "NOT all certified. heat: Pressures pull." in told
+
+
+def test_of_several_zones_the_force_of_each_is_told():
+    """A press of 40 on a free block above a table: 40 down on top, 40 up below; nothing is left of both."""
+    tools = {"press": {"zones": "press", "force": {"y": -40}}}
+    problem = made(BETWEEN, tools=tools, load_cases={"more": {"tools": {"press": {"force": {"y": -10}}}}}, **UNITS)
+    told = printed(text.result_summary(bemcontact.solve(problem.with_case("more")))).split()
+    assert "Resultant (0, 0) N/mm, of the rigid surfaces" in " ".join(told)
+    assert "Resultant of table: (0, 50) N/mm Resultant of press: (0, -50) N/mm" in " ".join(told)
+    listed = printed(cases_text.cases_summary(bemcontact.solve_cases(problem)))
+    assert "table: (0, 50) N/mm" in listed
+    assert "press: (0, -50) N/mm" in listed
 
 
 def test_where_nothing_touches_nothing_is_worst():
