@@ -66,7 +66,7 @@ def ensure_acting(problem: Problem | CondensedContact) -> None:
     """Refuse what is no problem, and one with load cases of which none acts, with a `ProblemError`."""
     ensure_kind(problem)
     if isinstance(problem, Problem) and problem.load_cases and problem.case is None:
-        message = f"say which one acts, case: {' or '.join(problem.case_names)}, or solve all of them"
+        message = f"say which one acts, by case or --case: {', '.join(problem.case_names)}; or solve all of them"
         raise ProblemError(Complaint(path=("load_cases",), message=message))
 
 

@@ -8,6 +8,8 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import isfinite
+from numbers import Real
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, Self
@@ -249,11 +251,13 @@ class CondensedContact:
         ProblemError
             If there is no such case, a factor is no finite number, or loads act along a motion that nothing resists.
         """
+        if not isinstance(factors, Mapping):
+            raise ProblemError(f"factors by load case are needed, such as {{'wind': 1.5}}; found {factors!r}")
         if unknown := [name for name in factors if name not in self.cases.names]:
             known = ", ".join(self.cases.names) or "none"
             raise ProblemError(f"there is no load case '{unknown[0]}'; there are: {known}")
-        if wrong := [name for name, factor in factors.items() if not np.isfinite(factor)]:
-            raise ProblemError(f"the factor of '{wrong[0]}' must be a finite number, found {factors[wrong[0]]}")
+        if wrong := [name for name, factor in factors.items() if not isinstance(factor, Real) or not isfinite(factor)]:
+            raise ProblemError(f"the factor of '{wrong[0]}' must be a finite number, found {factors[wrong[0]]!r}")
         found = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
         step = found - self.cases.factors
         moved = self._moved(self.cases.position @ step, self.cases.force @ step)
@@ -283,7 +287,13 @@ class CondensedContact:
         """
         tools, steps = self.tools, []
         for new, now, used in ((position, tools.position, ~tools.free), (force, tools.force, tools.free)):
-            given = now if new is None else np.array(new, float)
+            try:
+                given = now if new is None else np.array(new, float)
+            except (TypeError, ValueError):
+                raise ProblemError(
+                    f"tools, {', '.join(tools.names) or 'none'}, have x, y and rotation or moment each, in an array "
+                    f"({len(tools)}, 3); found {new!r}"
+                ) from None
             if given.shape not in ((len(tools), 3), now.shape):
                 raise ProblemError(f"tools have {len(tools)} x 3 components; found an array of shape {given.shape}")
             if not np.isfinite(given).all():

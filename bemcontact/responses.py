@@ -20,8 +20,13 @@ from bemcontact.parametric.sensitivity import Sensitivities, modulus_change
 from bemcontact.parametric.sensitivity import sensitivities as sensitivities_of_contact
 from bemcontact.problem.key_path import existing_path, parsed_path
 from bemcontact.problem.problem import Problem
+from bemcontact.problem.stated import described, unknown_word
 
 MODULUS = "material.young_modulus"
+BODY = ("material", "boundary", "mesh")
+"""Parts of a spec that make the body, so that more than gaps and loads depends on them."""
+HALVINGS = tuple(2**k for k in range(1, 11))
+"""Parts of a path of which the first is tried where its end cannot be condensed."""
 NOTHING = 1e-13
 """Part of the largest entry that is the round-off of an entry that should be zero."""
 
@@ -48,13 +53,13 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
         contact state at either end.
     """
     ensure_kind(problem, Problem)
+    begin = stated_value(problem, key) if start is None else float(start)
     if _case_of(problem, key) is None:
         ensure_acting(problem)
-    begin = stated_value(problem, key) if start is None else float(start)
     end = float(to)
     if not (np.isfinite(begin) and np.isfinite(end)) or begin == end:
         raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
-    ends = between(fitted(problem)[0], key, begin, end)
+    ends = (replace(contact, name=problem.title) for contact in between(fitted(problem)[0], key, begin, end))
     return ParameterPath(key=key, start=begin, end=end, path=load_path(*ends))
 
 
@@ -120,11 +125,17 @@ def stated_value(problem: Problem, key: str) -> float:
     data: Any = problem.model_dump()
     path = existing_path(data, parsed_path(key))
     for step in path:
-        data = data.get(step) if isinstance(data, Mapping) else None if data is None else data[step]
+        if isinstance(data, Mapping) and step not in data:
+            message = f"there is no number to vary: {unknown_word('entry', str(step), map(str, data))}"
+            raise ProblemError(Complaint(path=path, message=message))
+        data = None if data is None else data[step]
     if isinstance(data, Mapping) and "constant" in data and not any(data[name] for name in data if name != "constant"):
         data = data["constant"]
     if not isinstance(data, Real) or isinstance(data, bool):
-        message = "there is no number to vary; give a path to one, or the value to begin with"
+        found = "it is left out; state it, or give the value to begin with"
+        if data is not None:
+            found = f"it is {described(data)}; give a path to a number, or the value to begin with"
+        message = f"there is no number to vary, {found}"
         raise ProblemError(Complaint(path=path, message=message))
     return float(data)
 
@@ -136,8 +147,8 @@ def between(problem: Problem, key: str, start: float, end: float) -> tuple[Conde
     ----------
     problem : whose mesh is not to be fitted any more
     key : path to the value
-    start, end : its values. One of them may leave a body without a load that presses it onto its support; this end is
-        then found from the middle and the other end
+    start, end : its values. At one of them the load may pull the body off its support, or not press it on; this end is
+        then found from the other and a state between them
 
     Returns
     -------
@@ -148,19 +159,28 @@ def between(problem: Problem, key: str, start: float, end: float) -> tuple[Conde
     ProblemError
         If neither end can be condensed, more than gaps and loads depend on the value, or these not linearly.
     """
-    middle = _at(problem, key, (start + end) / 2)
+    if parsed_path(key)[0] in BODY:
+        raise ProblemError(Complaint(path=parsed_path(key), message=f"the compliance depends on it; {EXACT}"))
     first, last = (_attempted(problem, key, value) for value in (start, end))
-    if isinstance(first, ProblemError) and isinstance(last, ProblemError):
-        raise last
-    if isinstance(first, ProblemError):
-        assert isinstance(last, CondensedContact)
-        _ensure_linear(key, middle, _at(problem, key, (start + 3 * end) / 4), last)
-        return _beyond(middle, last), last
-    if isinstance(last, ProblemError):
-        _ensure_linear(key, middle, _at(problem, key, (3 * start + end) / 4), first)
-        return first, _beyond(middle, first)
-    _ensure_linear(key, first, middle, last)
-    return first, last
+    if isinstance(first, CondensedContact) and isinstance(last, CondensedContact):
+        _ensure_linear(key, first, _at(problem, key, (start + end) / 2), last)
+        return first, last
+    if isinstance(last, CondensedContact):
+        return _continued(problem, key, last, end, start), last
+    if isinstance(first, CondensedContact):
+        return first, _continued(problem, key, first, start, end)
+    raise last
+
+
+def _continued(problem: Problem, key: str, first: CondensedContact, start: float, end: float) -> CondensedContact:
+    """The problem at an end where it cannot be condensed, found from the other and from a state nearer to that one."""
+    for times in HALVINGS:
+        value = start + (end - start) / times
+        inner = _attempted(problem, key, value)
+        if isinstance(inner, CondensedContact):
+            _ensure_linear(key, first, _at(problem, key, (start + value) / 2), inner)
+            return _beyond(first, inner, times)
+    return condense(_varied(problem, key, end))
 
 
 def _at(problem: Problem, key: str, value: float) -> CondensedContact:
@@ -196,7 +216,7 @@ def _ensure_linear(key: str, first: CondensedContact, middle: CondensedContact, 
             ensure_same_body(middle, end)
         except ProblemError:
             found = next(what for name, what in COMMON.items() if _differs(getattr(middle, name), getattr(end, name)))
-            message = f"the {found} depends on it; a path is exact only for loads, gaps and tools"
+            message = f"the {found} depends on it; {EXACT}"
             raise ProblemError(Complaint(path=parsed_path(key), message=message)) from None
     displacement, pressure = np.max([first.scales, last.scales], axis=0)
     least = {"offset": displacement, "motion_load": pressure * np.abs(middle.equilibrium).sum(axis=0)}
@@ -208,6 +228,7 @@ def _ensure_linear(key: str, first: CondensedContact, middle: CondensedContact, 
             raise ProblemError(Complaint(path=parsed_path(key), message=message))
 
 
+EXACT = "a path is exact only for loads, gaps and tools"
 LINEAR = "a path is exact only for what enters gaps and loads linearly, as forces, pressures and displacements do"
 
 
@@ -215,21 +236,22 @@ def _differs(one: Array, other: Array) -> bool:
     return one.shape != other.shape or bool(np.abs(one - other).max(initial=0.0) > SAME * np.abs(one).max(initial=0.0))
 
 
-def _beyond(middle: CondensedContact, end: CondensedContact) -> CondensedContact:
-    """The problem as far on the other side of the middle as an end is on this one."""
+def _beyond(first: CondensedContact, inner: CondensedContact, times: int) -> CondensedContact:
+    """The problem so many times as far from the first as another one is."""
 
-    def mirrored(one: Array, other: Array) -> Array:
-        found = 2 * one - other
-        return np.where(np.abs(found) <= NOTHING * np.abs(other).max(initial=0.0), 0.0, found)
+    def continued(one: Array, other: Array) -> Array:
+        found = one + times * (other - one)
+        return np.where(np.abs(found) <= NOTHING * times * np.abs(one).max(initial=0.0), 0.0, found)
 
     return replace(
-        middle,
-        free_displacement=mirrored(middle.free_displacement, end.free_displacement),
-        initial_gap=mirrored(middle.initial_gap, end.initial_gap),
-        motion_load=mirrored(middle.motion_load, end.motion_load),
+        inner,
+        free_displacement=continued(first.free_displacement, inner.free_displacement),
+        initial_gap=continued(first.initial_gap, inner.initial_gap),
+        motion_load=continued(first.motion_load, inner.motion_load),
         tools=replace(
-            middle.tools,
-            position=mirrored(middle.tools.position, end.tools.position),
-            force=mirrored(middle.tools.force, end.tools.force),
+            inner.tools,
+            position=continued(first.tools.position, inner.tools.position),
+            force=continued(first.tools.force, inner.tools.force),
         ),
+        cases=replace(inner.cases, factors=continued(first.cases.factors, inner.cases.factors)),
     )

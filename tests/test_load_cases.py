@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tool_problems import (
+    BETWEEN,
     FLOOR,
     FREE,
     FREE_BY_HAND,
@@ -219,11 +220,6 @@ def test_block_that_is_pressed_up_is_the_plate_pressed_down():
     assert any(pinned in note and "they are pinned against it" in note for note in up.notes)
 
 
-BETWEEN = {**FREE, "loads": {}, "contact_zones": {"table": FREE["contact_zones"]["table"], "press": {
-    "edges": ["head", "top"], "surface": FREE["contact_zones"]["punch"]["surface"]}}}  # fmt: skip
-"""The free block between a table and a press, both as wide as it is."""
-
-
 def bent(x: np.ndarray, force: float, e: float) -> np.ndarray:
     """Pressure P/w (1 + 12 e x/w²) of bending and compression over a width w = 2, x from its middle."""
     return force / 2 * (1 + 12 * e * x / 4)
@@ -327,7 +323,8 @@ REFUSED = {
         BETWEEN,
         {"press": {"zones": "press", "force": {"y": 10}}},
         "the load pulls the tool 'press' off what it touches: it drives the translation along (0, 1), which no contact "
-        "resists; turn the load around, or prescribe a displacement that holds it",
+        "resists; turn the load around, or move it to where contact can hold it, or prescribe a "
+        "displacement that holds it",
     ),
     "force that nothing resists": (
         BETWEEN,
@@ -339,7 +336,8 @@ REFUSED = {
         BETWEEN,
         {"press": {"zones": "press", "point": [1, 1], "force": {"y": -10, "moment": 11}}},
         "the load pulls the tool 'press' off what it touches: it drives the rotation anticlockwise about (0, 1), which "
-        "no contact resists; turn the load around, or prescribe a displacement that holds it",
+        "no contact resists; turn the load around, or move it to where contact can hold it, or prescribe a "
+        "displacement that holds it",
     ),
     "forces that do not balance": (
         BETWEEN,
@@ -386,7 +384,9 @@ def test_case_that_contact_cannot_hold_is_refused_by_its_name():
 
 
 def test_a_case_must_be_chosen_where_one_is_solved():
-    with pytest.raises(ProblemError, match="say which one acts, case: wind or heat or push or all, or solve all"):
+    with pytest.raises(
+        ProblemError, match="say which one acts, by case or --case: wind, heat, push, all; or solve all"
+    ):
         bemcontact.solve(made(FREE, **FREE_CASES))
     with pytest.raises(ProblemError, match="states no load cases"):
         bemcontact.solve_cases(made(FREE))

@@ -1,10 +1,12 @@
 """Paths and sensitivities by the key paths of a spec."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from tool_problems import BETWEEN, made
 
 import bemcontact
 from bemcontact.contact import CondensedContact
@@ -69,20 +71,43 @@ def test_free_body_without_load_is_found_from_the_other_end(cylinder: Problem, b
     assert apart(problem, problem, found.path.at(t).pressure) <= 1e-9
 
 
+@pytest.mark.parametrize("end", [20.25, 50.625, 5062.5])
+def test_path_ends_where_the_load_no_longer_presses_the_body_on(cylinder: Problem, end: float):
+    """A pull of any size: the cylinder is free at pressure 0, whether the middle of the path is beyond or not."""
+    found = follow(cylinder, PRESSURE, -end)
+    assert found.reaches == pytest.approx((50.625, 0.0), abs=1e-9)
+    assert "carries the body off" in " ".join(found.notes)
+    assert repr(found).startswith(f"<ParameterPath of {PRESSURE} from 50.625 to -{end:g}: ")
+
+
+def test_path_of_a_factor_ends_where_the_tool_lifts_off_and_is_named_after_the_problem():
+    """A force of -10 + 4 f on a press that nothing else holds: none at f = 2.5, and the path is asked for up to 40."""
+    cases = {"lift": {"tools": {"press": {"force": {"y": 4}}}}}
+    tools = {"press": {"zones": "press", "force": {"y": -10}}}
+    found = follow(made(BETWEEN, tools=tools, load_cases=cases), "load_cases.lift", 40)
+    assert found.reaches == pytest.approx((0.0, 2.5))
+    assert found.contact.name == BETWEEN["name"]
+    assert found.path.end.cases.factors == pytest.approx([40])
+
+
 @pytest.mark.parametrize(
     ("key", "to", "words"),
     [
         ("material.young_modulus", 2e3, "young_modulus: the compliance depends on it; a path is exact only for loads"),
-        ("boundary.outer.top.elements", 8, "elements: expected a whole number"),
+        ("boundary.outer.top.elements", 8, "elements: the compliance depends on it"),
         ("name", 1.0, "name: there is no number to vary"),
-        ("material.colour", 1.0, "there is no number to vary"),
+        ("material.colour", 1.0, "there is no number to vary: unknown entry 'colour'; there is: "),
+        ("conditions.tpo.pressure", 1.0, "there is no number to vary: unknown entry 'tpo'; did you mean 'top'?"),
+        ("conditions.top.traction.x", 1.0, "there is no number to vary, it is left out; state it, or give the value"),
+        ("contact_zones.foot.surface.point", 1.0, "there is no number to vary, it is a list of 2; give a path to a"),
+        ("contact_zones.foot.surface.point.1", 1.0, "a list has places, not keys: write [1] for '1'"),
         (PRESSURE, 50.625, "a path needs two different finite values; found 50.625 and 50.625"),
         (PRESSURE, np.nan, "a path needs two different finite values"),
         ("no path[", 1.0, "is not a key path"),
     ],
 )
 def test_what_cannot_be_followed_is_refused(cylinder: Problem, key: str, to: float, words: str):
-    with pytest.raises(ProblemError, match=words.replace("[", r"\[")):
+    with pytest.raises(ProblemError, match=re.escape(words)):
         follow(cylinder, key, to)
 
 

@@ -162,3 +162,8 @@ def displaced(problem: Problem, name: str, position: np.ndarray) -> Problem:
     return problem.with_value(
         f"tools.{name}", {"zones": tool["zones"], "point": tool["point"] or [0, 0], "displacement": moves}
     )
+
+
+BETWEEN: Spec = {**FREE, "loads": {}, "contact_zones": {"table": FREE["contact_zones"]["table"], "press": {
+    "edges": ["head", "top"], "surface": FREE["contact_zones"]["punch"]["surface"]}}}  # fmt: skip
+"""The free block between a table and a press, both as wide as it is."""

@@ -197,7 +197,8 @@ def _check_support(body: Body) -> None:
         who, off = pull.who(0), "its support" if pull.who(0) == BODY else "what it touches"
         raise ProblemError(
             f"the load pulls {who} off {off}: it drives the {pull.way(0)}, which no contact resists; "
-            f"turn the load around, or prescribe a displacement that holds {who if off == 'its support' else 'it'}"
+            "turn the load around, or move it to where contact can hold it, or prescribe a displacement that holds "
+            f"{who if off == 'its support' else 'it'}"
         )
     if not load.any() and body.idle_motion is not None:
         raise ProblemError(
@@ -241,7 +242,7 @@ class Condensation:
         body = replace(self.body, problem=problem)
         ensure_held(body)
         contact = self.contact.with_factors(problem.factors())
-        named = replace(contact, name=f"{problem.name}, {problem.case}", notes=body.notes)
+        named = replace(contact, name=problem.title, notes=body.notes)
         return replace(self, body=body, contact=named)
 
     @property

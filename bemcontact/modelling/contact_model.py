@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 
 import cvxpy as cp
 import numpy as np
@@ -170,8 +171,14 @@ class ContactModel:
         Raises
         ------
         ProblemError
-            If what is added is not convex, or parameters enter it so that each change of them is a new problem.
+            If what is added is of another kind, is not convex, or parameters enter it so that each change of them is a
+            new problem.
         """
+        if extra_objective is not None and not isinstance(extra_objective, cp.Expression | Real):
+            found = type(extra_objective).__name__
+            raise ProblemError(f"extra_objective is an expression, which is added to F3 and minimised; found {found}")
+        if isinstance(extra_constraints, cp.Constraint):
+            raise ProblemError("extra_constraints is a list of constraints; put the one that is given into brackets")
         goal = self.objective if extra_objective is None else self.objective + extra_objective
         problem = cp.Problem(cp.Minimize(goal), [*self.constraints.values(), *extra_constraints])
         ensure_convex(problem)
@@ -210,7 +217,9 @@ class ContactModel:
         SolverError
             If Clarabel cannot state the model, or breaks down.
         """
-        added = extra_objective is not None or len(extra_constraints) > 0
+        added = (
+            extra_objective is not None or isinstance(extra_constraints, cp.Constraint) or len(extra_constraints) > 0
+        )
         if problem is not None and added:
             raise ProblemError("give either a problem that was made before, or what is to be added, not both")
         chosen = problem or (self.problem(extra_objective, extra_constraints) if added else self._pure)

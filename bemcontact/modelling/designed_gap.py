@@ -1,5 +1,6 @@
 """A designed gap: the profile, the contact states without and with it, and what is proved of it."""
 
+import json
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any
@@ -220,6 +221,10 @@ class GapDesign:
             "verified": self.verified,
             "words": self.words,
         }
+
+    def to_json(self) -> str:
+        """Write `to_dict` as JSON; every number in it is finite."""
+        return json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
 
 
 def relieved(contact: CondensedContact, profile: Array) -> CondensedContact:

@@ -86,7 +86,9 @@ class ParameterPath:
 
     def __repr__(self) -> str:
         """One line: key, values, the path."""
-        return f"<ParameterPath of {self.key} from {self.start:g} to {self.end:g}: {self.path!r}>"
+        counts = f"{len(self.path.parameter)} breakpoints, {self.path.pivots} pivots"
+        told = "".join(f"; {note}" for note in self.notes)
+        return f"<ParameterPath of {self.key} from {self.start:g} to {self.end:g}: {counts}{told}>"
 
     @property
     def contact(self) -> CondensedContact:

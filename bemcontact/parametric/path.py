@@ -264,8 +264,13 @@ def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:
     Raises
     ------
     ProblemError
-        If the two differ in something else, or neither has a contact state from which a path leads.
+        If they are no condensed problems, differ in something else, or neither has a contact state from which a path
+        leads.
     """
+    for given in (start, end):
+        if not isinstance(given, CondensedContact):
+            found = type(given).__name__
+            raise ProblemError(f"a path leads between two CondensedContact, which condense makes; found {found}")
     ensure_same_body(start, end)
     trail, note = _followed(start, end)
     if trail is None or len(trail.states) == 1:

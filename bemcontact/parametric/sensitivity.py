@@ -1,5 +1,6 @@
 """Sensitivities: exact derivatives of a contact state, from the points in contact and one factorisation for all."""
 
+import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -144,6 +145,10 @@ class Sensitivities:
             "notes": list(self.notes),
             "sensitivities": [item.to_dict() for item in self.each.values()],
         }
+
+    def to_json(self) -> str:
+        """Write `to_dict` as JSON; every number in it is finite."""
+        return json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
 
 
 def sensitivities(

@@ -67,7 +67,10 @@ def _place(data: list[Any] | tuple[Any, ...], step: str | int, found: Path) -> i
     if step in names:
         return names.index(step)
     known = [name for name in names if isinstance(name, str)]
-    message = unknown_word("entry", step, known) if known else f"a list has places, not keys: write [0] for {step!r}"
+    place = step if step.isdecimal() else "0"
+    message = (
+        unknown_word("entry", step, known) if known else f"a list has places, not keys: write [{place}] for {step!r}"
+    )
     raise ProblemError(Complaint(path=found, message=message))
 
 

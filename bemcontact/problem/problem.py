@@ -25,7 +25,7 @@ from bemcontact.problem.load_case import Combination, LoadCase, case_complaints,
 from bemcontact.problem.loads import Loads
 from bemcontact.problem.material import Material
 from bemcontact.problem.reference import StatedReference, Words, reference_complaints
-from bemcontact.problem.rigid_tool import RigidTool
+from bemcontact.problem.rigid_tool import RigidTool, ToolAction
 from bemcontact.problem.stated import Count, Flag, Name, Stated, Text, complain, complaints_of, unknown_word
 from bemcontact.problem.variant import Variant, blamed
 from bemcontact.problem.written import Written
@@ -159,6 +159,11 @@ class Problem(Stated):
         """Names of the load cases, then of the combinations."""
         return (*self.load_cases, *self.combinations)
 
+    @property
+    def title(self) -> str:
+        """Its name, with that of the load case or combination that acts."""
+        return self.name if self.case is None else f"{self.name}, {self.case}"
+
     def factors(self, case: str | None = None) -> dict[str, float]:
         """Factors by load case of a case or combination, of the one that acts if None; none of them acts by itself."""
         name = self.case if case is None else case
@@ -167,6 +172,14 @@ class Problem(Stated):
         if name in self.combinations:
             return dict(self.combinations[name])
         raise ProblemError(Complaint(path=("case",), message=unknown_word("load case", name, self.case_names)))
+
+    def tool_action(self, tool: str) -> ToolAction:
+        """What a tool is displaced and loaded by, with the load cases that act."""
+        found: ToolAction = self.tools[tool]
+        for case, factor in self.factors().items():
+            if tool in self.load_cases[case].tools:
+                found = found.plus(factor, self.load_cases[case].tools[tool])
+        return found
 
     def with_case(self, name: str) -> Self:
         """Let a load case or a combination act, and no other; `ProblemError` if there is none of that name."""

@@ -73,6 +73,21 @@ class ToolAction(Stated):
         """Force along x and y, and moment, zero where none is given."""
         return tuple(getattr(self.force, force) or 0.0 for _, force, _ in WAYS)
 
+    def plus(self, factor: float, other: "ToolAction") -> "ToolAction":
+        """Add a multiple of another action; what is given in either is given in the sum."""
+        displacement = ToolDisplacement(**_sum(self.displacement, factor, other.displacement))
+        return ToolAction(displacement=displacement, force=ToolForce(**_sum(self.force, factor, other.force)))
+
+
+def _sum(one: Stated, factor: float, other: Stated) -> dict[str, float]:
+    """Add a multiple of components that are given to those of the same kind, by name."""
+    found: dict[str, float] = {}
+    for weight, part in ((1.0, one), (factor, other)):
+        for key, value in part:
+            if value is not None:
+                found[key] = found.get(key, 0.0) + weight * value
+    return found
+
 
 def _each_once(value: tuple[str, ...]) -> tuple[str, ...]:
     """Refuse a zone that is listed twice."""

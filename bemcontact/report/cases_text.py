@@ -1,11 +1,24 @@
 """The table of all load cases for the terminal."""
 
+from collections.abc import Iterator
+
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from bemcontact.load_cases import CaseResults
 from bemcontact.report.tables import add, list_of_facts, table_of
-from bemcontact.report.words import number, per_thickness, size_of, span, units_of, vector, verdict, with_unit
+from bemcontact.report.words import (
+    number,
+    per_thickness,
+    size_of,
+    span,
+    units_of,
+    vector,
+    verdict,
+    with_unit,
+    zone_forces,
+)
+from bemcontact.result import Result
 
 
 def cases_summary(found: CaseResults) -> RenderableType:
@@ -25,14 +38,13 @@ def cases_summary(found: CaseResults) -> RenderableType:
         units, peak = units_of(result.contact), result.footprint.peak
         pressed = float(result.contact.weights @ result.solution.pressure)
         force = vector(result.footprint.resultant.force, per_thickness(units), scale=pressed)
-        places = [f"{item.zone}: {span(result.contact, item)}" for item in result.footprint.intervals]
         cells = [
             name,
             "certified" if result.certified else "NOT certified",
             with_unit(number(peak.pressure), units.stress) if peak else "",
             vector(peak.at, units.length, scale=size_of(result.contact)) if peak else "",
-            force,
-            "\n".join(places) or "nowhere",
+            "\n".join(zone_forces(result)) or force,
+            "\n".join(_places(result)) or "nowhere",
         ]
         table.add_row(*map(Text, cells), style="" if result.certified else "red")
     notes = {note: [key for key, item in found.results.items() if note in item.notes] for note in _notes(found)}
@@ -48,6 +60,14 @@ def cases_summary(found: CaseResults) -> RenderableType:
 def uncertified(found: CaseResults) -> str:
     """Say of each case that is not certified why."""
     return " ".join(f"{name}: {verdict(item)}" for name, item in found.results.items() if not item.certified)
+
+
+def _places(result: Result) -> Iterator[str]:
+    """Where the body touches; of several zones along what length alone, so that the table is no wider than a page."""
+    contact = result.contact
+    for item in result.footprint.intervals:
+        length = with_unit(number(item.end_arc - item.start_arc), units_of(contact).length)
+        yield f"{item.zone}: {span(contact, item) if len(contact.zone_names) == 1 else length}"
 
 
 def _notes(found: CaseResults) -> list[str]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from bemcontact.problem import Units
 from bemcontact.report.markup import NOTHING, Picture, Record, percent, picture, small, statement, template
-from bemcontact.report.words import NEGLIGIBLE, number, per_thickness, vector, with_unit
+from bemcontact.report.words import number, per_thickness, settled, vector, with_unit
 
 OUTCOMES = {
     "solves it": "good",
@@ -83,6 +83,9 @@ def _contents(report: Record) -> dict[str, Any]:
         "scores": [*_scores(level, units)],
         "certificate": _certificate(reference["answer"], units),
         "penalties": {item["label"]: _penalty(item, units) for item in contenders},
+        "acting": " + ".join(
+            f"{factor:g} {case}" for case, factor in compared["contact"]["load_factors"].items() if factor
+        ),
         "uncertified": [item["refine"] for item in report["levels"][:-1] if not item["comparison"]["certified"]],
         "stages": [*dict.fromkeys(stage for item in report["levels"] for stage in item["seconds"])],
     }
@@ -118,10 +121,20 @@ def _facts(level: Record, units: Units) -> Iterator[tuple[str, str]]:
         yield f"Contact in {item['zone']}", where
     force = vector(answer["resultant"], per_thickness(units), scale=pressed)
     yield "Resultant", f"{force}, of the rigid surfaces on the body"
-    moment = answer["resultant_moment"] if abs(answer["resultant_moment"]) > NEGLIGIBLE * pressed * size else 0.0
+    moment = settled(answer["resultant_moment"], pressed * size)
     yield "Its moment about (0, 0)", with_unit(number(moment), units.force)
     for name, amplitude in zip(contact["motion_names"], answer["rigid_amplitudes"], strict=True):
         yield f"Free {name}", with_unit(number(amplitude), units.length if name.startswith("translation") else "")
+    for tool in answer["tools"]:
+        moved = vector(tool["displacement"], units.length, scale=contact["scales"]["displacement"])
+        force = vector(tool["force_of_body"], per_thickness(units), scale=pressed)
+        moment = with_unit(number(settled(tool["moment_of_body"], pressed * size)), units.force)
+        turned = number(settled(tool["rotation"] * size, contact["scales"]["displacement"]) / (size or 1.0))
+        about = vector(tool["point"], scale=size)
+        yield (
+            f"Tool {tool['name']}",
+            f"moves by {moved}, turns by {turned}; the body presses on it with {force}, moment {moment} about {about}",
+        )
     if level["force_balance"] is not None:
         yield "Force balance of the whole body", f"{small(level['force_balance'])} of the forces on it"
 

@@ -28,6 +28,7 @@ from bemcontact.report.words import (
     search_in_words,
     seconds_in_words,
     sentence_case,
+    settled,
     size_of,
     span,
     surface_in_words,
@@ -37,6 +38,7 @@ from bemcontact.report.words import (
     verdict,
     volume_loads,
     with_unit,
+    zone_forces,
 )
 from bemcontact.result import Result
 from bemcontact.study import MeshLevel, Study
@@ -73,7 +75,8 @@ def problem_summary(body: Body) -> RenderableType:
         if isinstance(zone.surface, DeflectedContour):
             add(facts, "Contour", f"of {name}, deflected by {deflected_by(zone.surface, problem)}")
     for name, tool in problem.tools.items():
-        add(facts, "Tool", f"{name}: {tool_in_words(tool)}")
+        action = tool_in_words(problem.tool_action(name), units)
+        add(facts, "Tool", f"{name}, the surface of {' and '.join(tool.zones)}: {action}")
     add(facts, "Total load", f"{_total_load(body)}, reactions not counted")
     add(facts, "Held by conditions", "all rigid motions" if not len(body.motions) else "all but those below")
     for motion in body.seen.describe():
@@ -89,7 +92,7 @@ def problem_summary(body: Body) -> RenderableType:
         add(facts, "Variant", f"{name}: {told}")
     for note in body.notes:
         add(facts, "Note", note)
-    return Group(Text(problem.name, "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)
+    return Group(Text(problem.title, "bold"), "", _edge_table(problem), "", _zone_table(body), "", facts)
 
 
 def result_summary(result: Result) -> RenderableType:
@@ -268,18 +271,25 @@ def _add_footprint(facts: Table, result: Result) -> None:
     pressed = float(contact.weights @ np.abs(result.solution.pressure))
     force = vector(found.resultant.force, per_thickness(units), scale=pressed)
     add(facts, "Resultant", f"{force}, of the rigid surfaces on the body")
+    for told in zone_forces(result):
+        add(facts, "Resultant", f"of {told}")
 
 
 def _add_tools(facts: Table, result: Result) -> None:
     """Add where the tools are, and what the body presses on them with."""
     contact, units = result.contact, units_of(result.contact)
+    size, moves = size_of(contact), contact.scales.displacement
     pressed = float(contact.weights @ np.abs(result.solution.pressure))
     places = contact.tools.displacement(result.solution.rigid_amplitudes)
     forces = contact.tools.reaction(contact.weights * result.solution.pressure)
-    for name, (x, y, turn), (fx, fy, moment) in zip(contact.tools.names, places, forces, strict=True):
-        moved = f"moves by {vector((x, y), units.length, scale=contact.scales.displacement)}, turns by {turn:.6g}"
+    each = zip(contact.tools.names, contact.tools.point.tolist(), places, forces, strict=True)
+    for name, point, (x, y, turn), (fx, fy, moment) in each:
+        turned = settled(turn * size, moves) / (size or 1.0)
+        moved = f"moves by {vector((x, y), units.length, scale=moves)}, turns by {turned:.6g}"
         force = vector((fx, fy), per_thickness(units), scale=pressed)
-        add(facts, "Tool", f"{name}: {moved}; the body presses on it with {force}, moment {moment:.6g}")
+        about = with_unit(f"{settled(moment, pressed * size):.6g}", units.force)
+        told = f"{name}: {moved}; the body presses on it with {force}, moment {about} about {vector(point)}"
+        add(facts, "Tool", told)
 
 
 def _edge_table(problem: Problem) -> Table:

@@ -39,10 +39,15 @@ def number(value: float) -> str:
     return f"{value:.5g}" if value else "0"
 
 
+def settled(value: float, scale: float) -> float:
+    """The value, or zero where it is negligible beside the scale."""
+    return value if abs(value) > NEGLIGIBLE * scale else 0.0
+
+
 def vector(components: tuple[float, float], unit: str = "", *, scale: float = 0.0) -> str:
     """Write a point or a force: (2.7685, 0.48) cm; what is negligible beside it, or beside the scale, is zero."""
     largest = max(*map(abs, components), scale)
-    x, y = (number(value if abs(value) > NEGLIGIBLE * largest else 0.0) for value in components)
+    x, y = (number(settled(value, largest)) for value in components)
     return with_unit(f"({x}, {y})", unit)
 
 
@@ -77,6 +82,9 @@ def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
     yield from (f"may touch in {name}" for name, zone in problem.contact_zones.items() if edge.name in zone.edges)
     if edge.name in problem.conditions:
         yield from _conditions(problem.conditions[edge.name], edge, problem.units)
+    for case, factor in problem.factors().items():
+        if (condition := problem.load_cases[case].conditions.get(edge.name)) is not None:
+            yield from (f"{told} ({_acting(case, factor)})" for told in _conditions(condition, edge, problem.units))
 
 
 def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]:
@@ -93,8 +101,16 @@ def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]
 
 
 def volume_loads(problem: Problem) -> Iterator[str]:
-    """Say what acts on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0)``."""
-    return _volume_loads(problem.loads, problem)
+    """Say what acts on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0) (1.5 spinning)``."""
+    yield from _volume_loads(problem.loads, problem)
+    for case, factor in problem.factors().items():
+        told = _volume_loads(problem.load_cases[case].loads, problem)
+        yield from (f"{load} ({_acting(case, factor)})" for load in told)
+
+
+def _acting(case: str, factor: float) -> str:
+    """Name a load case with the factor by which it acts, if it is not one."""
+    return case if factor == 1 else f"{factor:g} {case}"
 
 
 def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
@@ -108,17 +124,27 @@ def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
         yield f"temperature change {_range(loads.temperature.change.at(points))}"
 
 
-def tool_in_words(tool: ToolAction) -> str:
-    """Say how a tool is displaced, and what it is loaded by: ``displaced by x = 0.1; loaded by y = -10``."""
-    ways = (("displaced by", tool.displacement), ("loaded by", tool.force))
-    told = [(way, [f"{key} = {number(value)}" for key, value in part if value is not None]) for way, part in ways]
+def tool_in_words(action: ToolAction, units: Units) -> str:
+    """Say how a tool is displaced, and what it is loaded by: ``displaced by x = 0.1 mm; loaded by y = -10 N/mm``."""
+    labels = {"moment": units.force, "rotation": ""}
+    ways = (
+        ("displaced by", action.displacement, units.length),
+        ("loaded by", action.force, per_thickness(units)),
+    )
+    told = [
+        (
+            way,
+            [f"{key} = {with_unit(number(value), labels.get(key, unit))}" for key, value in part if value is not None],
+        )
+        for way, part, unit in ways
+    ]
     return "; ".join(f"{way} {', '.join(values)}" for way, values in told if values)
 
 
 def case_in_words(case: LoadCase) -> str:
     """Say what a load case is: what its author says of it, or else what it acts on."""
     parts = [*case.conditions, *case.tools, *(key for key, load in case.loads if load is not None)]
-    return case.description.strip() or f"acts on {', '.join(parts)}"
+    return case.description.strip() or f"adds to {', '.join(parts)}"
 
 
 def surface_in_words(surface: RigidSurface) -> str:
@@ -209,6 +235,18 @@ def span(contact: CondensedContact, interval: ContactInterval) -> str:
     along = with_unit(number(length), unit)
     all_round = (np.isfinite(contact.run_length) & np.isclose(contact.run_length, length)).any()
     return f"all round, {along}" if all_round else f"{start} to {end}, {along} long"
+
+
+def zone_forces(result: Result) -> list[str]:
+    """Say with which force each rigid surface presses on the body, where there are several: ``foot: (0, 3) N/mm``."""
+    contact, unit = result.contact, per_thickness(units_of(result.contact))
+    if len(contact.zone_names) == 1:
+        return []
+    forces = (contact.weights * result.solution.pressure)[:, None] * contact.normals
+    scale = float(np.abs(forces).sum())
+    sums = [forces[contact.zone == i].sum(axis=0) for i in range(len(contact.zone_names))]
+    named = zip(contact.zone_names, sums, strict=True)
+    return [f"{zone}: {vector((float(x), float(y)), unit, scale=scale)}" for zone, (x, y) in named]
 
 
 def held_by(condensed: CondensedContact) -> str:

@@ -192,6 +192,10 @@ def test_what_cannot_be_modelled_is_refused():
         model.problem(cp.exp(model.initial_gap[0]) * cp.Parameter(nonneg=True) * model.pressure[0])
     with pytest.raises(ProblemError, match="not both"):
         model.solve(cp.sum(model.pressure), problem=model.problem())
+    with pytest.raises(ProblemError, match="extra_constraints is a list of constraints"):
+        model.solve(extra_constraints=model.pressure <= 1)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(ProblemError, match=r"extra_objective is an expression.* found Minimize"):
+        model.solve(cp.Minimize(cp.sum(model.pressure)))  # pyright: ignore[reportArgumentType]
     with pytest.raises(ProblemError, match="has not been solved"):
         model.result(model.problem())
     with pytest.raises(bemcontact.SolverError, match="Clarabel cannot solve this model"):

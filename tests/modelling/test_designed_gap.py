@@ -83,7 +83,7 @@ def test_words_and_numbers():
     assert "The largest pressure goes from" in design.words
     assert "Whether another profile does better is not proved" in design.words
     assert "Solved again with the profile and certified" in design.words
-    told = json.loads(json.dumps(design.to_dict(), allow_nan=False))
+    told = json.loads(design.to_json())
     assert told["profile"] == design.profile[design.points].tolist()
     assert told["after"][0]["peak"]["pressure"] == design.peak
     assert told["verified"] is True

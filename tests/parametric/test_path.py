@@ -308,6 +308,10 @@ def test_ends_that_are_not_of_one_body_are_refused():
         load_path(start, replace(end, compliance=end.compliance * 1.5))
     with pytest.raises(ProblemError, match="weights of start and end differ"):
         load_path(start, replace(end, weights=end.weights * 2))
+    with pytest.raises(
+        ProblemError, match="a path leads between two CondensedContact, which condense makes; found str"
+    ):
+        load_path("block.yaml", "block.yaml")  # pyright: ignore[reportArgumentType]
     with pytest.raises(ProblemError, match=r"compliance of start and end differ in shape, \(6, 6\) and \(7, 7\)"):
         load_path(start, random_contact(0, 7, 1))
 

@@ -208,7 +208,7 @@ def test_words_and_numbers():
     found: Sensitivities = sensitivities(between_tools())
     assert repr(found).startswith("<Sensitivities to load_cases.wind, tools.punch.displacement.x")
     assert repr(found["load_cases.wind"]).startswith("<Sensitivity to load_cases.wind: peak ")
-    told = json.loads(json.dumps(found.to_dict()))
+    told = json.loads(found.to_json())
     assert [item["key"] for item in told["sensitivities"]] == list(found)
     with pytest.raises(ProblemError, match=r"no sensitivity to 'wind'; there are: load_cases\.wind"):
         found["wind"]

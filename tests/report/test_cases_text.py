@@ -6,7 +6,7 @@ from io import StringIO
 
 import pytest
 from rich.console import Console, RenderableType
-from tool_problems import FREE, FREE_CASES, HELD, HELD_CASES, made
+from tool_problems import BETWEEN, FREE, FREE_CASES, HELD, HELD_CASES, made
 
 import bemcontact
 from bemcontact.assessment.certificate import CertificateKind
@@ -66,6 +66,18 @@ def test_a_case_that_is_not_certified_is_told_with_the_reason():
     assert "NOT all certified. heat: Pressures pull." in told
 
 
+def test_of_several_zones_the_force_of_each_is_told():
+    """A press of 40 on a free block above a table: 40 down on top, 40 up below; nothing is left of both."""
+    tools = {"press": {"zones": "press", "force": {"y": -40}}}
+    problem = made(BETWEEN, tools=tools, load_cases={"more": {"tools": {"press": {"force": {"y": -10}}}}}, **UNITS)
+    told = printed(text.result_summary(bemcontact.solve(problem.with_case("more")))).split()
+    assert "Resultant (0, 0) N/mm, of the rigid surfaces" in " ".join(told)
+    assert "Resultant of table: (0, 50) N/mm Resultant of press: (0, -50) N/mm" in " ".join(told)
+    listed = printed(cases_text.cases_summary(bemcontact.solve_cases(problem)))
+    assert "table: (0, 50) N/mm" in listed
+    assert "press: (0, -50) N/mm" in listed
+
+
 def test_where_nothing_touches_nothing_is_worst():
     """A table far below a held block, and no load."""
     far = {"table": {"edges": "foot", "surface": {"kind": "plane", "point": [0, -9], "normal": [0, 1]}}}
@@ -79,11 +91,11 @@ def test_where_nothing_touches_nothing_is_worst():
 
 def test_check_tells_tools_cases_and_combinations():
     told = printed(text.problem_summary(body_of(made(HELD, **HELD_CASES))))
-    assert "punch: loaded by y = -40, moment = 3" in told
-    assert "table: displaced by y = 0.002, rotation = 0.001" in told
-    assert "wind: acts on right, top" in told
-    assert "push: acts on punch, table" in told
-    assert "heat: acts on temperature" in told
+    assert "punch, the surface of punch: loaded by y = -40, moment = 3" in told
+    assert "table, the surface of table: displaced by y = 0.002, rotation = 0.001" in told
+    assert "wind: adds to right, top" in told
+    assert "push: adds to punch, table" in told
+    assert "heat: adds to temperature" in told
     assert "all: 1.5 wind + -0.5 heat + 2 settle + 4 spin + 0.7 push" in told
     assert "rotation anticlockwise about (1.5, 1) of the tool 'punch'" in told
 
@@ -100,10 +112,20 @@ def test_solve_tells_where_the_tools_are_and_what_presses_on_them():
     told = " ".join(printed(text.result_summary(result)).split())
     x, y, turn = result.contact.tools.displacement(result.solution.rigid_amplitudes)[0]
     assert f"punch: moves by {words.vector((x, y), 'mm')}, turns by {turn:g}" in told
-    assert "the body presses on it with (0, 40) N/mm, moment -3" in told
+    assert "the body presses on it with (0, 40) N/mm, moment -3 N about (1.5, 1)" in told
 
 
 @pytest.mark.parametrize("width", [100, 60])
 def test_no_line_is_wider_than_the_terminal(width: int):
     lines = printed(cases_text.cases_summary(found()), width).splitlines()
     assert max(map(len, lines)) <= width
+
+
+def test_check_tells_of_the_case_that_acts_what_it_adds_by_which_factor():
+    """all: 1.5 wind - 0.5 heat + 2 settle + 4 spin + 0.7 push; on the punch -40 - 0.7 · 30 and 3 - 0.7 · 4."""
+    told = printed(text.problem_summary(body_of(made(HELD, **HELD_CASES, case="all"))))
+    assert told.startswith("held block, all\n")
+    assert "pressure 2, t_x = 1 (1.5 wind), t_y = -2 (1.5 wind)" in told
+    assert "temperature change 20 … 50 (-0.5 heat)" in told
+    assert "punch, the surface of punch: loaded by y = -61, moment = 0.2" in told
+    assert "table, the surface of table: displaced by y = 0.004, rotation = 0.00065" in told

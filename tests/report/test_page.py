@@ -9,7 +9,10 @@ from typing import Any
 import pytest
 from page_reader import ensure_self_contained, read
 from studies import ALL, block, not_unique, of_many_settings, on_one_mesh, on_three_meshes, without_a_body
+from tool_problems import BETWEEN, made
 
+from bemcontact import comparing
+from bemcontact.formulations.plan import planned_comparison
 from bemcontact.report import words
 from bemcontact.report.page import render
 from bemcontact.study import Study
@@ -145,3 +148,13 @@ def test_the_spec_is_shown_as_it_ran():
     page = render(report_of(on_one_mesh()), {}, spec)
     assert spec.strip() in "".join(re.findall(r"<pre>(.*?)</pre>", page, re.DOTALL)).replace("&#39;", "'")
     assert block().name in read(page).text
+
+
+def test_the_page_tells_which_load_cases_act_and_where_the_tools_are():
+    """A press of 40 + 0.5 · 20 on a free block, which the body holds up; one half of "more" and none of the other."""
+    cases = {name: {"tools": {"press": {"force": {"y": -20}}}} for name in ("more", "most")}
+    tools = {"press": {"zones": "press", "point": [1, 1], "force": {"y": -40}}}
+    problem = made(BETWEEN, tools=tools, load_cases=cases, combinations={"half": {"more": 0.5}}, case="half")
+    page = read(render(report_of(comparing.study(planned_comparison(), problem)), {}, None)).text
+    assert "Beside what is permanent act the load cases 0.5 more." in page
+    assert "the body presses on it with (0, 50), moment 0 about (1, 1)" in page

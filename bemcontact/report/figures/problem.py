@@ -43,6 +43,7 @@ from bemcontact.report.figures.page import (
     without_glyph_warnings,
     wrapped,
 )
+from bemcontact.report.figures.tool_marks import draw_tools
 from bemcontact.report.words import prescribed, volume_loads
 
 Array = NDArray[np.float64]
@@ -64,7 +65,7 @@ def figure_of_problem(problem: Problem, mesh: Mesh) -> Figure:
     inches = 3.6 + 7.0 * max(width, 0.5)
     figure = new_page(inches, 1.8 + 7.0 * max(height, 0.3))
     axes = figure.add_subplot()
-    axes.set_title(wrapped(problem.name, int(7 * inches)), loc="left", fontweight="bold")
+    axes.set_title(wrapped(problem.title, int(7 * inches)), loc="left", fontweight="bold")
     draw_problem(axes, problem, mesh)
     return figure
 
@@ -82,24 +83,47 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     _draw_mesh(axes, problem, mesh)
     outline = [edge.points(np.linspace(0, 1, 60)) for edge in problem.boundary.edges]
     marks = [*_draw_supports(axes, problem), *_draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
-    drawn = np.concatenate([*outline, *marks])
+    tools = [*draw_tools(axes, problem)]
+    drawn = np.concatenate([*outline, *marks, *(covered for covered, _ in tools)])
     frame_plan(axes, drawn, problem.units.length)
     _draw_legend(axes, problem)
     names = [_name(problem, edge) for edge in problem.boundary.edges]
     with without_glyph_warnings():
-        taken = place_names(axes, [*names, *_draw_rotation(axes, problem)], drawn, _polygons(problem))
-        if problem.loads.gravity and any(problem.loads.gravity.acceleration):
-            place_arrow(axes, "$g$", np.array(problem.loads.gravity.acceleration), drawn, taken)
+        taken = place_names(
+            axes, [*names, *(name for _, name in tools), *_draw_rotation(axes, problem)], drawn, _polygons(problem)
+        )
+        if (weight := _weight(problem)).any():
+            place_arrow(axes, "$g$", weight, drawn, taken)
 
 
 def role(problem: Problem, edge: str) -> str:
     """Say what an edge is for: one of `ROLES`."""
     if any(edge in zone.edges for zone in problem.contact_zones.values()):
         return "may touch"
-    condition = problem.conditions.get(edge)
-    if condition is None:
+    conditions = [condition for _, condition in _acting(problem, edge)]
+    if not conditions:
         return "free"
-    return "held" if condition.displacement.given else "loaded"
+    return "held" if any(condition.displacement.given for condition in conditions) else "loaded"
+
+
+def _acting(problem: Problem, edge: str) -> Iterator[tuple[float, Condition]]:
+    """What is prescribed on an edge, by the problem itself and by the load cases that act, each with its factor."""
+    if edge in problem.conditions:
+        yield 1.0, problem.conditions[edge]
+    for case, factor in problem.factors().items():
+        if edge in problem.load_cases[case].conditions:
+            yield factor, problem.load_cases[case].conditions[edge]
+
+
+def _weight(problem: Problem) -> Array:
+    """The weight (2,) of a unit of volume, with the load cases that act."""
+    cases = ((factor, problem.load_cases[case].loads) for case, factor in problem.factors().items())
+    pulls = [
+        factor * loads.gravity.density * np.array(loads.gravity.acceleration)
+        for factor, loads in ((1.0, problem.loads), *cases)
+        if loads.gravity
+    ]
+    return np.sum(pulls, axis=0) if pulls else np.zeros(2)
 
 
 def _fill_body(axes: Axes, problem: Problem) -> None:
@@ -255,7 +279,8 @@ def _surface_line(surface: Shape, facing: Array, size: float) -> tuple[Array, Ar
 
 def _traction(problem: Problem, edge: str, points: Array, normals: Array) -> Array:
     """Prescribed traction (k, 2) at points of an edge with these outward normals."""
-    return applied_traction(problem.conditions.get(edge, FREE), points, normals)
+    acting = [factor * applied_traction(condition, points, normals) for factor, condition in _acting(problem, edge)]
+    return np.sum(acting, axis=0) if acting else np.zeros_like(points)
 
 
 def _name(problem: Problem, edge: Edge) -> Name:
