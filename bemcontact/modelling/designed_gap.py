@@ -150,7 +150,14 @@ class GapDesign:
                 f"The contact states with the profile are not as designed: pressures differ by {self.difference:.0e} "
                 f"of the peak. {' '.join(state.certificate.words for state in self.after)}"
             )
-        return f"{told} {proof} {check}"
+        return f"{told}{self._elsewhere} {proof} {check}"
+
+    @property
+    def _elsewhere(self) -> str:
+        """Say if the largest pressure is where the profile is not."""
+        highest = max(self.after, key=lambda state: state.peak)
+        inside = self.goal is not Goal.PEAK or int(np.argmax(highest.pressure)) in self.points
+        return "" if inside else " It is now outside of the interval: there the profile can lower it no more."
 
     def surface(self, kind: str = "spline") -> Spline | Polyline:
         """Make a rigid surface of the zone's own and the profile, through the feet of all its contact points.

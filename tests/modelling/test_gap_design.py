@@ -244,3 +244,12 @@ def test_what_is_no_design_is_refused():
         design_gap(replace(resting(), motion_load=np.ones(1)), relief)
     with pytest.raises(ProblemError, match="no profile keeps the bounds on values and slope"):
         design_gap(contact, Relief(lower=(0, 5, 0, 0, 0, 0), upper=(1, 6, 1, 1, 1, 1), slope=0.1))
+
+
+@pytest.mark.parametrize(("arc", "told"), [((1.0, 2.0), True), ((0.0, 2.0), False)])
+def test_a_peak_outside_of_the_interval_is_told(arc, told):
+    """Three springs by themselves, the first compressed by 3 and out of reach of the profile, or not."""
+    contact = CondensedContact.from_compliance(np.eye(3), [-3.0, -1.0, -1.0])
+    design = design_gap(contact, Relief(lower=0, upper=1.5), arc=arc)
+    assert design.peak == pytest.approx(3.0 if told else 1.5)
+    assert ("outside of the interval" in design.words) is told
