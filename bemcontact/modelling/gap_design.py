@@ -84,7 +84,8 @@ def _carried_out(
 ) -> GapDesign:
     """Solve the contact problems with the profile of a piece, and put the design together."""
     profiles = shared.profiles
-    profile = profiles.shapes @ piece.coefficients
+    coefficients = profiles.kept(piece.coefficients)
+    profile = profiles.shapes @ coefficients
     after = tuple(_solved(state, profile) for state in states)
     reached = shared.measure(state.pressure for state in after)
     return GapDesign(
@@ -92,7 +93,7 @@ def _carried_out(
         zone=states[0].zone_names[states[0].zone[profiles.points[0]]],
         points=profiles.points,
         profile=profile,
-        coefficients=piece.coefficients / profiles.sizes if profiles.shaped else None,
+        coefficients=coefficients / profiles.sizes if profiles.shaped else None,
         before=before,
         after=after,
         designed=piece.pressures,

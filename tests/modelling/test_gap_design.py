@@ -120,18 +120,19 @@ def test_design_is_verified_and_keeps_its_bounds(name):
     g, s = design.profile[at], contact.arc_position[at]
     same_run = np.diff(contact.run[at]) == 0
     slope = np.diff(g)[same_run] / np.diff(s)[same_run]
-    room = 1e-8 * max(abs(g).max(), 1e-12)
+    room = 1e-15 * max(abs(g).max(), 1e-12)  # nothing but round-off, in slope that of a difference as well
     if relief.lower is not None:
         assert relief.lower - room <= g.min()
         assert g.max() <= relief.upper + room
     if relief.slope is not None:
-        assert abs(slope).max() <= relief.slope * (1 + 1e-7)
+        assert abs(slope).max() <= relief.slope + 4 * room / np.diff(s)[same_run].min()
     if relief.curvature is not None:
-        assert abs(np.diff(slope) / ((s[2:] - s[:-2]) / 2)).max() <= relief.curvature * (1 + 1e-6)
+        shortest = np.diff(s).min()
+        assert abs(np.diff(slope) / ((s[2:] - s[:-2]) / 2)).max() <= relief.curvature + 8 * room / shortest**2
     if relief.shapes is not None:
         assert design.coefficients is not None
         np.testing.assert_allclose(
-            sum(c * f(s) for c, f in zip(design.coefficients, POWERS, strict=True)), g, atol=room
+            sum(c * f(s) for c, f in zip(design.coefficients, POWERS, strict=True)), g, atol=4 * room
         )
         assert (design.coefficients >= -1e-9).all()
 
