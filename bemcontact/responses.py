@@ -22,6 +22,8 @@ from bemcontact.problem.key_path import existing_path, parsed_path
 from bemcontact.problem.problem import Problem
 
 MODULUS = "material.young_modulus"
+SHARES = 1 / 2, 1 / 4, 1 / 8, 1 / 16, 1 / 32
+"""Of the way between two values, at which one looks whether gaps and loads change linearly."""
 NOTHING = 1e-13
 """Part of the largest entry that is the round-off of an entry that should be zero."""
 
@@ -137,7 +139,7 @@ def between(problem: Problem, key: str, start: float, end: float) -> tuple[Conde
     problem : whose mesh is not to be fitted any more
     key : path to the value
     start, end : its values. One of them may leave a body without a load that presses it onto its support; this end is
-        then found from the middle and the other end
+        then found from the other one and what is on the way
 
     Returns
     -------
@@ -148,24 +150,30 @@ def between(problem: Problem, key: str, start: float, end: float) -> tuple[Conde
     ProblemError
         If neither end can be condensed, more than gaps and loads depend on the value, or these not linearly.
     """
-    middle = _at(problem, key, (start + end) / 2)
     first, last = (_attempted(problem, key, value) for value in (start, end))
-    if isinstance(first, ProblemError) and isinstance(last, ProblemError):
-        raise last
     if isinstance(first, ProblemError):
-        assert isinstance(last, CondensedContact)
-        _ensure_linear(key, middle, _at(problem, key, (start + 3 * end) / 4), last)
-        return _beyond(middle, last), last
+        if isinstance(last, ProblemError):
+            raise last
+        return _extended(problem, key, last, end, start), last
     if isinstance(last, ProblemError):
-        _ensure_linear(key, middle, _at(problem, key, (3 * start + end) / 4), first)
-        return first, _beyond(middle, first)
-    _ensure_linear(key, first, middle, last)
+        return first, _extended(problem, key, first, start, end)
+    share, middle = _farthest(problem, key, start, end)
+    _ensure_linear(key, first, middle, last, share)
     return first, last
 
 
-def _at(problem: Problem, key: str, value: float) -> CondensedContact:
-    """Condense the problem at a value."""
-    return condense(_varied(problem, key, value))
+def _farthest(problem: Problem, key: str, start: float, end: float) -> tuple[float, CondensedContact]:
+    """The largest of `SHARES` of the way to the end at which something presses the body onto its support, and that.
+
+    `ProblemError` as of half of the way if there is none.
+    """
+    refused: list[ProblemError] = []
+    for share in SHARES:
+        found = _attempted(problem, key, start + share * (end - start))
+        if isinstance(found, CondensedContact):
+            return share, found
+        refused.append(found)
+    raise refused[0]
 
 
 def _varied(problem: Problem, key: str, value: float) -> Problem:
@@ -189,8 +197,10 @@ def _attempted(problem: Problem, key: str, value: float) -> CondensedContact | P
         return error
 
 
-def _ensure_linear(key: str, first: CondensedContact, middle: CondensedContact, last: CondensedContact) -> None:
-    """Refuse a value on which more than gaps and loads depends, or these not linearly."""
+def _ensure_linear(
+    key: str, first: CondensedContact, middle: CondensedContact, last: CondensedContact, share: float
+) -> None:
+    """Refuse a value on which more than gaps and loads depends, or these not linearly up to a share of the way."""
     for end in (first, last):
         try:
             ensure_same_body(middle, end)
@@ -201,9 +211,9 @@ def _ensure_linear(key: str, first: CondensedContact, middle: CondensedContact, 
     displacement, pressure = np.max([first.scales, last.scales], axis=0)
     least = {"offset": displacement, "motion_load": pressure * np.abs(middle.equilibrium).sum(axis=0)}
     for name, what in (("offset", "gap"), ("motion_load", "load")):
-        one, half, other = (getattr(item, name) for item in (first, middle, last))
+        one, inner, other = (getattr(item, name) for item in (first, middle, last))
         size = np.maximum(np.abs([one, other]).max(axis=0), least[name])
-        if (bend := float((np.abs(half - (one + other) / 2) / size).max(initial=0.0))) > SAME:
+        if (bend := float((np.abs(inner - (1 - share) * one - share * other) / size).max(initial=0.0))) > SAME:
             message = f"the {what} does not change in proportion to it, it bends by {bend:.2g}; {LINEAR}"
             raise ProblemError(Complaint(path=parsed_path(key), message=message))
 
@@ -215,21 +225,24 @@ def _differs(one: Array, other: Array) -> bool:
     return one.shape != other.shape or bool(np.abs(one - other).max(initial=0.0) > SAME * np.abs(one).max(initial=0.0))
 
 
-def _beyond(middle: CondensedContact, end: CondensedContact) -> CondensedContact:
-    """The problem as far on the other side of the middle as an end is on this one."""
+def _extended(problem: Problem, key: str, first: CondensedContact, start: float, end: float) -> CondensedContact:
+    """The problem at an end at which nothing presses the body onto its support, from the start and the way there."""
+    reached, there = _farthest(problem, key, start, end)
+    share, middle = _farthest(problem, key, start, start + reached * (end - start))
+    _ensure_linear(key, first, middle, there, share)
 
-    def mirrored(one: Array, other: Array) -> Array:
-        found = 2 * one - other
-        return np.where(np.abs(found) <= NOTHING * np.abs(other).max(initial=0.0), 0.0, found)
+    def beyond(one: Array, other: Array) -> Array:
+        found = one + (other - one) / reached
+        return np.where(np.abs(found) <= NOTHING * np.abs(one).max(initial=0.0), 0.0, found)
 
+    tools, cases = first.tools, first.cases
     return replace(
-        middle,
-        free_displacement=mirrored(middle.free_displacement, end.free_displacement),
-        initial_gap=mirrored(middle.initial_gap, end.initial_gap),
-        motion_load=mirrored(middle.motion_load, end.motion_load),
+        first,
+        free_displacement=beyond(first.free_displacement, there.free_displacement),
+        initial_gap=beyond(first.initial_gap, there.initial_gap),
+        motion_load=beyond(first.motion_load, there.motion_load),
         tools=replace(
-            middle.tools,
-            position=mirrored(middle.tools.position, end.tools.position),
-            force=mirrored(middle.tools.force, end.tools.force),
+            tools, position=beyond(tools.position, there.tools.position), force=beyond(tools.force, there.tools.force)
         ),
+        cases=replace(cases, factors=beyond(cases.factors, there.cases.factors)),
     )
