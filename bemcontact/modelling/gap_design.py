@@ -75,7 +75,8 @@ def design_gap(
     if best.value * shared.scales.pressure > bound * (1 + MET):
         others = (_descended(shared, some) for some in (sets, _state(states, profiles.shapes @ coefficients)[1]))
         best = min((piece for piece in (best, *others) if piece is not None), key=_value)
-    gentle = _carried_out(shared, states, before, shared.gentlest(best), bound)
+    best, gentlest = _gently_descended(shared, best)
+    gentle = _carried_out(shared, states, before, gentlest, bound)
     return gentle if gentle.verified else _carried_out(shared, states, before, best, bound)
 
 
@@ -215,6 +216,18 @@ def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:
             break
         piece = better
     return piece
+
+
+def _gently_descended(shared: SharedProfile, best: Piece) -> tuple[Piece, Piece]:
+    """Go on from the gentlest of equally good profiles: others may lie off an edge of contact that leads on."""
+    gentlest = shared.gentlest(best)
+    for _ in range(STEPS):
+        better = _next(shared, gentlest)
+        if better is None:
+            break
+        best = _descended(shared, better.touching) or better
+        gentlest = shared.gentlest(best)
+    return best, gentlest
 
 
 def _next(shared: SharedProfile, piece: Piece) -> Piece | None:
