@@ -9,6 +9,8 @@ from bemcontact.arrays import Array
 
 INTERFERENCE = 1e-6
 """Part of the widest gap that counts as interference; a linear program knows no less."""
+ROUND_OFF = 64 * float(np.finfo(float).eps)
+"""The same for a body that is held: less is a gap that has just closed."""
 
 
 class ContactScales(NamedTuple):
@@ -43,7 +45,8 @@ def _interference(offset: Array, rigid_motions: Array, widest: float) -> float:
     """Least s >= 0 [L] with q + R a >= -s for some a: a linear program; below 1e-6 of the widest gap it is none."""
     n, k = rigid_motions.shape
     if k == 0 or widest == 0:
-        return float(np.maximum(-offset, 0.0).max(initial=0.0))
+        deepest = float(np.maximum(-offset, 0.0).max(initial=0.0))
+        return deepest if deepest > ROUND_OFF * widest else 0.0
     columns = np.column_stack([rigid_motions, np.ones(n)])
     cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
     found = linprog(cost, A_ub=-columns, b_ub=offset / widest, bounds=bounds)

@@ -25,8 +25,8 @@ from bemcontact.problem.stated import described, unknown_word
 MODULUS = "material.young_modulus"
 BODY = ("material", "boundary", "mesh")
 """Parts of a spec that make the body, so that more than gaps and loads depends on them."""
-HALVINGS = tuple(2**k for k in range(1, 11))
-"""Parts of a path of which the first is tried where its end cannot be condensed."""
+SHARES = tuple(0.5**k for k in range(1, 11))
+"""Of the way between two values, at which one looks whether gaps and loads change linearly."""
 NOTHING = 1e-13
 """Part of the largest entry that is the round-off of an entry that should be zero."""
 
@@ -148,7 +148,7 @@ def between(problem: Problem, key: str, start: float, end: float) -> tuple[Conde
     problem : whose mesh is not to be fitted any more
     key : path to the value
     start, end : its values. At one of them the load may pull the body off its support, or not press it on; this end is
-        then found from the other and a state between them
+        then found from the other one and what is on the way
 
     Returns
     -------
@@ -162,30 +162,29 @@ def between(problem: Problem, key: str, start: float, end: float) -> tuple[Conde
     if parsed_path(key)[0] in BODY:
         raise ProblemError(Complaint(path=parsed_path(key), message=f"the compliance depends on it; {EXACT}"))
     first, last = (_attempted(problem, key, value) for value in (start, end))
-    if isinstance(first, CondensedContact) and isinstance(last, CondensedContact):
-        _ensure_linear(key, first, _at(problem, key, (start + end) / 2), last)
-        return first, last
-    if isinstance(last, CondensedContact):
-        return _continued(problem, key, last, end, start), last
-    if isinstance(first, CondensedContact):
-        return first, _continued(problem, key, first, start, end)
-    raise last
+    if isinstance(first, ProblemError):
+        if isinstance(last, ProblemError):
+            raise last
+        return _extended(problem, key, last, end, start), last
+    if isinstance(last, ProblemError):
+        return first, _extended(problem, key, first, start, end)
+    share, middle = _farthest(problem, key, start, end)
+    _ensure_linear(key, first, middle, last, share)
+    return first, last
 
 
-def _continued(problem: Problem, key: str, first: CondensedContact, start: float, end: float) -> CondensedContact:
-    """The problem at an end where it cannot be condensed, found from the other and from a state nearer to that one."""
-    for times in HALVINGS:
-        value = start + (end - start) / times
-        inner = _attempted(problem, key, value)
-        if isinstance(inner, CondensedContact):
-            _ensure_linear(key, first, _at(problem, key, (start + value) / 2), inner)
-            return _beyond(first, inner, times)
-    return condense(_varied(problem, key, end))
+def _farthest(problem: Problem, key: str, start: float, end: float) -> tuple[float, CondensedContact]:
+    """The largest of `SHARES` of the way to the end at which something presses the body onto its support, and that.
 
-
-def _at(problem: Problem, key: str, value: float) -> CondensedContact:
-    """Condense the problem at a value."""
-    return condense(_varied(problem, key, value))
+    `ProblemError` as of half of the way if there is none.
+    """
+    refused: list[ProblemError] = []
+    for share in SHARES:
+        found = _attempted(problem, key, start + share * (end - start))
+        if isinstance(found, CondensedContact):
+            return share, found
+        refused.append(found)
+    raise refused[0]
 
 
 def _varied(problem: Problem, key: str, value: float) -> Problem:
@@ -209,8 +208,10 @@ def _attempted(problem: Problem, key: str, value: float) -> CondensedContact | P
         return error
 
 
-def _ensure_linear(key: str, first: CondensedContact, middle: CondensedContact, last: CondensedContact) -> None:
-    """Refuse a value on which more than gaps and loads depends, or these not linearly."""
+def _ensure_linear(
+    key: str, first: CondensedContact, middle: CondensedContact, last: CondensedContact, share: float
+) -> None:
+    """Refuse a value on which more than gaps and loads depends, or these not linearly up to a share of the way."""
     for end in (first, last):
         try:
             ensure_same_body(middle, end)
@@ -221,9 +222,9 @@ def _ensure_linear(key: str, first: CondensedContact, middle: CondensedContact, 
     displacement, pressure = np.max([first.scales, last.scales], axis=0)
     least = {"offset": displacement, "motion_load": pressure * np.abs(middle.equilibrium).sum(axis=0)}
     for name, what in (("offset", "gap"), ("motion_load", "load")):
-        one, half, other = (getattr(item, name) for item in (first, middle, last))
+        one, inner, other = (getattr(item, name) for item in (first, middle, last))
         size = np.maximum(np.abs([one, other]).max(axis=0), least[name])
-        if (bend := float((np.abs(half - (one + other) / 2) / size).max(initial=0.0))) > SAME:
+        if (bend := float((np.abs(inner - (1 - share) * one - share * other) / size).max(initial=0.0))) > SAME:
             message = f"the {what} does not change in proportion to it, it bends by {bend:.2g}; {LINEAR}"
             raise ProblemError(Complaint(path=parsed_path(key), message=message))
 
@@ -236,22 +237,24 @@ def _differs(one: Array, other: Array) -> bool:
     return one.shape != other.shape or bool(np.abs(one - other).max(initial=0.0) > SAME * np.abs(one).max(initial=0.0))
 
 
-def _beyond(first: CondensedContact, inner: CondensedContact, times: int) -> CondensedContact:
-    """The problem so many times as far from the first as another one is."""
+def _extended(problem: Problem, key: str, first: CondensedContact, start: float, end: float) -> CondensedContact:
+    """The problem at an end at which nothing presses the body onto its support, from the start and the way there."""
+    reached, there = _farthest(problem, key, start, end)
+    share, middle = _farthest(problem, key, start, start + reached * (end - start))
+    _ensure_linear(key, first, middle, there, share)
 
-    def continued(one: Array, other: Array) -> Array:
-        found = one + times * (other - one)
-        return np.where(np.abs(found) <= NOTHING * times * np.abs(one).max(initial=0.0), 0.0, found)
+    def beyond(one: Array, other: Array) -> Array:
+        found = one + (other - one) / reached
+        return np.where(np.abs(found) <= NOTHING / reached * np.abs(one).max(initial=0.0), 0.0, found)
 
+    tools, cases = first.tools, first.cases
     return replace(
-        inner,
-        free_displacement=continued(first.free_displacement, inner.free_displacement),
-        initial_gap=continued(first.initial_gap, inner.initial_gap),
-        motion_load=continued(first.motion_load, inner.motion_load),
+        first,
+        free_displacement=beyond(first.free_displacement, there.free_displacement),
+        initial_gap=beyond(first.initial_gap, there.initial_gap),
+        motion_load=beyond(first.motion_load, there.motion_load),
         tools=replace(
-            inner.tools,
-            position=continued(first.tools.position, inner.tools.position),
-            force=continued(first.tools.force, inner.tools.force),
+            tools, position=beyond(tools.position, there.tools.position), force=beyond(tools.force, there.tools.force)
         ),
-        cases=replace(inner.cases, factors=continued(first.cases.factors, inner.cases.factors)),
+        cases=replace(cases, factors=beyond(cases.factors, there.cases.factors)),
     )

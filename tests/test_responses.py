@@ -3,12 +3,14 @@
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from tool_problems import BETWEEN, made
 
 import bemcontact
+from bemcontact.analysis import condense
 from bemcontact.contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
@@ -148,6 +150,34 @@ def test_gap_that_is_all_round_off_is_no_bend():
 def test_two_ends_that_nothing_presses_are_refused(cylinder: Problem):
     with pytest.raises(ProblemError, match="only contact holds the body"):
         between(cylinder.with_value(PRESSURE, 0.0), "contact_zones.foot.surface.point[1]", 0.0, 1.0)
+
+
+@pytest.mark.parametrize("to", [2000.0, 6000.0, 9000.0])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_load_that_turns_around_is_followed_to_where_the_tool_lifts_off(to: float, backwards: bool):
+    """At no load, wherever that is between the ends: also half-way, or nearer to the end that presses."""
+    problem = bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("off the middle")
+    problem = problem.with_value("load_cases.off the middle.tools.punch.force.moment", 0.0)
+    key, ends = "tools.punch.force.y", (-2000.0, to)
+    path = follow(problem, key, *(ends if backwards else ends[::-1])).path
+    none = 2000.0 / (2000.0 + to)
+    reached, half = (path.begins_at, 1 - none / 2) if backwards else (path.ends_at, none / 2)
+    assert reached == pytest.approx(1 - none if backwards else none, rel=1e-13)
+    assert apart(path.contact(half), condense(problem.with_value(key, -1000.0)), path.at(half).pressure) <= 1e-10
+
+
+def test_factor_of_a_load_case_is_known_all_along_a_path_from_where_nothing_presses():
+    """(1 - t) 0 + t 1, which `with_factors` builds on, though the state at factor 0 cannot be condensed by itself."""
+    problem = bemcontact.load(MODELS / "gallery" / "roller_in_v_block.yaml")
+    data: dict[str, Any] = problem.model_dump(exclude={"reference"}) | {"combinations": {}}
+    data["tools"]["plate"]["force"]["y"] = 0.0
+    data["load_cases"] = {"press": {"tools": {"plate": {"force": {"y": -400.0}}}}}
+    problem = Problem(**data).with_case("press")
+    path = follow(problem, "load_cases.press", 1.0, 0.0).path
+    for t in (0.0, 0.3, 1.0):
+        assert path.contact(t).cases.factors == pytest.approx([t], abs=1e-15)
+    full = path.contact(0.3).with_factors({"press": 1.0})
+    np.testing.assert_allclose(full.motion_load, condense(problem).motion_load, rtol=1e-13)
 
 
 def test_stated_values_are_read(cylinder: Problem):

@@ -75,7 +75,8 @@ def design_gap(
     if best.value * shared.scales.pressure > bound * (1 + MET):
         others = (_descended(shared, some) for some in (sets, _state(states, profiles.shapes @ coefficients)[1]))
         best = min((piece for piece in (best, *others) if piece is not None), key=_value)
-    gentle = _carried_out(shared, states, before, shared.gentlest(best), bound)
+    best, gentlest = _gently_descended(shared, best)
+    gentle = _carried_out(shared, states, before, gentlest, bound)
     return gentle if gentle.verified else _carried_out(shared, states, before, best, bound)
 
 
@@ -84,7 +85,8 @@ def _carried_out(
 ) -> GapDesign:
     """Solve the contact problems with the profile of a piece, and put the design together."""
     profiles = shared.profiles
-    profile = profiles.shapes @ piece.coefficients
+    coefficients = profiles.kept(piece.coefficients)
+    profile = profiles.shapes @ coefficients
     after = tuple(_solved(state, profile) for state in states)
     reached = shared.measure(state.pressure for state in after)
     return GapDesign(
@@ -92,7 +94,7 @@ def _carried_out(
         zone=states[0].zone_names[states[0].zone[profiles.points[0]]],
         points=profiles.points,
         profile=profile,
-        coefficients=piece.coefficients / profiles.sizes if profiles.shaped else None,
+        coefficients=coefficients / profiles.sizes if profiles.shaped else None,
         before=before,
         after=after,
         designed=piece.pressures,
@@ -214,6 +216,18 @@ def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:
             break
         piece = better
     return piece
+
+
+def _gently_descended(shared: SharedProfile, best: Piece) -> tuple[Piece, Piece]:
+    """Go on from the gentlest of equally good profiles: others may lie off an edge of contact that leads on."""
+    gentlest = shared.gentlest(best)
+    for _ in range(STEPS):
+        better = _next(shared, gentlest)
+        if better is None:
+            break
+        best = _descended(shared, better.touching) or better
+        gentlest = shared.gentlest(best)
+    return best, gentlest
 
 
 def _next(shared: SharedProfile, piece: Piece) -> Piece | None:

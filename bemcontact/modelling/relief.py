@@ -148,6 +148,27 @@ class Profiles:
         found = linprog(cost, A_ub=matrix, b_ub=np.append(limits, np.zeros(len(below))), bounds=(None, None))
         return self._unit * found.x[:-1]
 
+    def kept(self, coefficients: Array) -> Array:
+        """Draw coefficients (s,) [L] that keep the bounds to a solver's tolerance inwards, to where they do exactly."""
+        inner, now = self.rows @ self._innermost, self.rows @ coefficients
+        over = np.stack([now - self.high, self.low - now])
+        ways = np.stack([now - inner, inner - now])
+        outside = (over > 0) & (ways > over)  # not where both limits are one
+        share = float((over[outside] / ways[outside]).max(initial=0.0))
+        return coefficients + share * (self._innermost - coefficients)
+
+    @cached_property
+    def _innermost(self) -> Array:
+        """The c (s,) [L] that keeps farthest from all limits between which there is room."""
+        rows, limits = self._one_sided(range(len(self.families)))
+        bounded = np.isfinite(np.concatenate([self.high, -self.low]))
+        room = np.tile(self.high > self.low, 2)[bounded, None].astype(float)
+        cost = np.append(np.zeros(rows.shape[1]), -1.0)
+        found = linprog(
+            cost, A_ub=np.hstack([rows, room]), b_ub=limits, bounds=[(None, None)] * rows.shape[1] + [(0, 1)]
+        )
+        return self._unit * found.x[:-1]
+
     @cached_property
     def value_range(self) -> tuple[Array, Array]:
         """Least and largest g (n,) [L] that each point by itself may have."""

@@ -107,8 +107,11 @@ def follow(problem: ScaledContact, line: Line, pressure: Array, amplitudes: Arra
         except (ProblemError, SingularSystemError) as error:
             stop = str(error)
             break
-        if following is None:
+        if following is None:  # nor do the places to which it has tipped before hold it
             escape = motion
+            while len(states) > 1 and states[-2].s == state.s:
+                states.pop()
+                touching.pop()
             break
         if following.s == 0.0:
             states.clear()

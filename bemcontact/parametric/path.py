@@ -29,6 +29,8 @@ SAME = 1e-11
 """Difference of two compliances, motions or weights, over the largest entry, that is round-off."""
 SAME_LOAD = 1e-14
 """Difference of two loads, over the largest component, that is round-off."""
+CANCELLED = 4 * float(np.finfo(float).eps)
+"""What is left where two ends of opposite sign cancel each other, over the larger one: none."""
 SOLVER = "parametric pivoting"
 NOT_PROVED = "the compliance does not rule out other contact states beside those of this path"
 
@@ -146,8 +148,12 @@ class LoadPath:
         first, last = self.start, self.end
 
         def between(one: Array, other: Array) -> Array:
-            return (1 - t) * one + t * other
+            found = (1 - t) * one + t * other
+            return np.where(np.abs(found) <= CANCELLED * np.maximum(np.abs(one), np.abs(other)), 0.0, found)
 
+        load = between(first.motion_load, last.motion_load)
+        largest = np.abs([first.motion_load, last.motion_load]).max(initial=0.0)
+        none = np.abs(load).max(initial=0.0) <= CANCELLED * largest
         tools, cases = last.tools, last.cases
         if len(tools):
             position = between(first.tools.position, tools.position)
@@ -159,7 +165,7 @@ class LoadPath:
             first,
             free_displacement=between(first.free_displacement, last.free_displacement),
             initial_gap=between(first.initial_gap, last.initial_gap),
-            motion_load=between(first.motion_load, last.motion_load),
+            motion_load=np.zeros_like(load) if none else load,
             tools=tools,
             cases=replace(cases, factors=factors) if same else LoadCases.none(n, k, len(tools)),
         )

@@ -120,18 +120,19 @@ def test_design_is_verified_and_keeps_its_bounds(name):
     g, s = design.profile[at], contact.arc_position[at]
     same_run = np.diff(contact.run[at]) == 0
     slope = np.diff(g)[same_run] / np.diff(s)[same_run]
-    room = 1e-8 * max(abs(g).max(), 1e-12)
+    room = 1e-15 * max(abs(g).max(), 1e-12)  # nothing but round-off, in slope that of a difference as well
     if relief.lower is not None:
         assert relief.lower - room <= g.min()
         assert g.max() <= relief.upper + room
     if relief.slope is not None:
-        assert abs(slope).max() <= relief.slope * (1 + 1e-7)
+        assert abs(slope).max() <= relief.slope + 4 * room / np.diff(s)[same_run].min()
     if relief.curvature is not None:
-        assert abs(np.diff(slope) / ((s[2:] - s[:-2]) / 2)).max() <= relief.curvature * (1 + 1e-6)
+        shortest = np.diff(s).min()
+        assert abs(np.diff(slope) / ((s[2:] - s[:-2]) / 2)).max() <= relief.curvature + 8 * room / shortest**2
     if relief.shapes is not None:
         assert design.coefficients is not None
         np.testing.assert_allclose(
-            sum(c * f(s) for c, f in zip(design.coefficients, POWERS, strict=True)), g, atol=room
+            sum(c * f(s) for c, f in zip(design.coefficients, POWERS, strict=True)), g, atol=4 * room
         )
         assert (design.coefficients >= -1e-9).all()
 
@@ -253,3 +254,14 @@ def test_a_peak_outside_of_the_interval_is_told(arc, told):
     design = design_gap(contact, Relief(lower=0, upper=1.5), arc=arc)
     assert design.peak == pytest.approx(3.0 if told else 1.5)
     assert ("outside of the interval" in design.words) is told
+
+
+def test_uniform_design_goes_on_where_the_best_profile_of_a_contact_set_is_not_the_only_one():
+    """With one point more in contact 1074.8 is reached, by the optimum of the program of that set; without, 1105.
+
+    That point is open in the best profile that a solver finds first, and about to touch in the gentlest of them.
+    """
+    contact, relief = condensed("hertz_small"), Relief(lower=0, upper=0.00207155, slope=0.0588938)
+    design = design_gap(contact, relief, goal="uniform")
+    assert design.verified
+    assert design.value <= 1074.8

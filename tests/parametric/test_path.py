@@ -193,6 +193,25 @@ def test_every_breakpoint_is_certified(full_load: LoadPath):
         assert certificate.certified, (t, certificate.words)
 
 
+@pytest.mark.parametrize("name", ["cantilever_flat_surface", "gallery/three_zones"])
+def test_unloading_ends_certified_where_nothing_touches_any_more(name):
+    """Down to -1/4 of the load, t = 0.8 is no load: the free link ends there, by statics, without tipping in the air.
+
+    The gap at a point that has just closed, and a load that has just gone, are round-off, by which nothing is judged.
+    """
+    contact = bemcontact.condense(bemcontact.load(MODELS / f"{name}.yaml"))
+    reversed_load = replace(
+        contact, free_displacement=-contact.free_displacement / 4, motion_load=-contact.motion_load / 4
+    )
+    path = load_path(contact, reversed_load)
+    assert path.ends_at == pytest.approx(0.8 if contact.free_motions else 1.0, rel=1e-14)
+    assert (np.diff(path.parameter) > 0).all()
+    for i, t in enumerate(path.parameter):
+        there, state = path.contact(t), path.breakpoint(i)
+        certificate = certify(there, state, residuals(there, state))
+        assert certificate.certified, (t, certificate.words)
+
+
 def test_contact_sets_of_the_path_are_those_of_its_states(full_load: LoadPath):
     """Half-way between two breakpoints a point is in contact if it bears a pressure."""
     for t, touching in zip((full_load.parameter[1:] + full_load.parameter[:-1]) / 2, full_load.touching, strict=True):
