@@ -3,6 +3,7 @@
 import dataclasses
 import re
 from collections.abc import Callable
+from pathlib import Path
 from xml.etree import ElementTree
 
 import matplotlib.colors
@@ -21,7 +22,7 @@ from studies import (
 )
 from test_figures import block_in_a_corner
 
-from bemcontact import comparing
+from bemcontact import comparing, spec
 from bemcontact.assessment.comparison import Contender
 from bemcontact.formulations.plan import planned_comparison
 from bemcontact.report import figures
@@ -88,6 +89,15 @@ def test_gaps_are_drawn_beside_the_initial_gap():
     assert drawn(found["QP2"]) == pytest.approx(
         contact.initial_gap + level.answer.solution.displacement, abs=1e-9 * contact.scales.displacement
     )
+
+
+def test_gaps_that_are_closed_everywhere_are_told_and_their_round_off_is_not_blown_up():
+    """A block in a corner under uniform pressure touches both planes with all of its edges."""
+    problem = spec.load(Path(__file__).parents[2] / "models" / "gallery" / "block_in_corner.yaml")
+    level, axes = comparing.study(planned_comparison(["qp3"]), problem).finest, Figure().add_subplot()
+    figures.draw_gaps(axes, level)
+    assert "closed everywhere" in [text.get_text() for text in axes.texts]
+    assert axes.get_ylim()[1] == level.answer.contact.scales.displacement
 
 
 def test_differences_are_relative_to_the_peak():

@@ -14,7 +14,7 @@ from bemcontact.choices import FormulationName
 from bemcontact.contact import CondensedContact
 from bemcontact.report.figures.course import COLOURS, legend_below, show_decades
 from bemcontact.report.figures.page import BLACK, GREY, PURPLE, labelled, plain, shortened
-from bemcontact.report.figures.result import Piece, pieces_of
+from bemcontact.report.figures.result import Piece, pieces_of, tell_closed
 from bemcontact.report.words import number, units_of, with_unit
 from bemcontact.solution import ContactSolution
 from bemcontact.study import MeshLevel
@@ -97,6 +97,8 @@ def draw_gaps(axes: Axes, level: MeshLevel) -> None:
     _cut_off(axes, found, BEYOND * largest, unit)
     axes.set_ylabel(labelled("gap", unit))
     along.finish(axes)
+    widest = max(float(np.abs(contact.initial_gap).max(initial=0.0)), *map(abs, found.values()))
+    tell_closed(axes, widest, contact.scales.displacement)
 
 
 def draw_differences(axes: Axes, level: MeshLevel) -> None:
