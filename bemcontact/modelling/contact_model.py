@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
+from typing import Any
 
 import cvxpy as cp
 import numpy as np
@@ -19,6 +20,14 @@ from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
 from bemcontact.modelling.clarabel import minimise
 from bemcontact.modelling.model_result import ModelResult, judged, solution_at, taken_out
 from bemcontact.modelling.parameters import Parameters, Value
+
+
+class ContactProblem(cp.Problem):
+    """A problem of cvxpy that Clarabel solves unless another solver is named: OSQP, cvxpy's choice, ends far off."""
+
+    def solve(self, *args: Any, **options: Any) -> Any:
+        """Solve as `cvxpy.Problem.solve` does, which tells of arguments and options."""
+        return super().solve(*args, **{"solver": cp.CLARABEL, **options})
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -180,7 +189,7 @@ class ContactModel:
         if isinstance(extra_constraints, cp.Constraint):
             raise ProblemError("extra_constraints is a list of constraints; put the one that is given into brackets")
         goal = self.objective if extra_objective is None else self.objective + extra_objective
-        problem = cp.Problem(cp.Minimize(goal), [*self.constraints.values(), *extra_constraints])
+        problem = ContactProblem(cp.Minimize(goal), [*self.constraints.values(), *extra_constraints])
         ensure_convex(problem)
         return problem
 

@@ -267,3 +267,16 @@ def test_a_slightly_indefinite_objective_is_told_and_polished():
     found = model.solve()
     assert found.contact_state
     same_pressure(found.pressure, contact)
+
+
+@pytest.mark.parametrize("contact", CONTACTS.values(), ids=CONTACTS)
+def test_a_problem_solved_the_way_of_cvxpy_is_the_contact_state(contact):
+    """`problem.solve()` without a solver named; the polish does the rest, which the certificate proves."""
+    model = contact.model()
+    problem = model.problem()
+    problem.solve()
+    assert problem.solver_stats.solver_name == "CLARABEL"
+    found = model.result(problem)
+    assert found.contact_state
+    assert found.certificate.certified
+    same_pressure(found.pressure, contact)
