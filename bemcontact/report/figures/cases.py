@@ -23,6 +23,8 @@ def figure_of_cases(found: CaseResults) -> Figure:
     """Compose a page with the pressures and the peak pressures of all load cases."""
     figure = new_page(INCHES, 6)
     above, below = figure.subplots(2, 1, height_ratios=(3, 1))
+    for axes in (above, below):
+        axes.spines[["top", "right"]].set_visible(False)
     draw_case_pressures(above, found)
     draw_case_peaks(below, found)
     verdict = "all certified" if found.certified else "NOT all certified"
@@ -47,7 +49,7 @@ def draw_case_pressures(axes: Axes, found: CaseResults) -> None:
     axes.axhline(0, color=GREY, linewidth=0.8)
     axes.set_xlabel(labelled("distance along the contact zone", units_of(first.contact).length))
     axes.set_ylabel(labelled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
-    axes.legend()
+    axes.legend(frameon=False, fontsize=8.5)
 
 
 def draw_case_peaks(axes: Axes, found: CaseResults) -> None:
