@@ -282,7 +282,7 @@ def _overridden(document: Document, override: str) -> Document:
         entry = _parsed(text, start)
     except SpecError as error:
         raise SpecError(f"{start}: {str(error).removeprefix(start).partition(': ')[2]}") from None
-    return document.changed(path, entry, Mark(0, 0, start))
+    return document.changed(path, entry, Mark(0, 0, f"--case {entry.data}" if path == ("case",) else start))
 
 
 def _stated(stages: Sequence[Document]) -> Problem:

@@ -282,7 +282,10 @@ def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int, what: s
     """Least and largest (count,), infinite where not given."""
     limits = []
     for given, otherwise in zip(pair, (-np.inf, np.inf), strict=True):
-        numbers = np.asarray(otherwise if given is None else given, float)
+        stated = np.asarray(otherwise if given is None else given)
+        if stated.dtype.kind not in "iuf":
+            raise ProblemError(f"bounds on {what} are numbers; found {given!r}")
+        numbers = stated.astype(float)
         if numbers.ndim and numbers.shape != (count,):
             raise ProblemError(f"bounds on {what} are a number or {count} of them; found an array {numbers.shape}")
         limits.append(np.broadcast_to(numbers, count).astype(float))
