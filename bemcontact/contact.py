@@ -260,13 +260,7 @@ class CondensedContact:
             raise ProblemError(f"the factor of '{wrong[0]}' must be a finite number, found {factors[wrong[0]]!r}")
         found = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
         step = found - self.cases.factors
-        moved = self._moved(self.cases.position @ step, self.cases.force @ step)
-        return replace(
-            moved,
-            free_displacement=self.free_displacement + self.cases.displacement @ step,
-            motion_load=moved.motion_load + self.cases.motion_load @ step,
-            cases=replace(self.cases, factors=found),
-        )._balanced()
+        return self.stepped(step, self.cases.position @ step, self.cases.force @ step).balanced()
 
     def with_tools(self, position: ArrayLike | None = None, force: ArrayLike | None = None) -> Self:
         """Displace and load the tools otherwise; nothing is condensed anew.
@@ -299,21 +293,23 @@ class CondensedContact:
             if not np.isfinite(given).all():
                 raise ProblemError("displacements of tools, and forces on them, must be finite numbers")
             steps.append(np.where(used, given.ravel() - now, 0.0))
-        return self._moved(*steps)._balanced()
+        return self.stepped(np.zeros(len(self.cases)), *steps).balanced()
 
-    def _balanced(self) -> Self:
-        """Refuse what acts along a motion that nothing resists."""
+    def balanced(self) -> Self:
+        """Refuse what acts along a motion that nothing resists, with a `ProblemError`."""
         if complaint := self.pinned.complaint(np.append(1.0, self.cases.factors), self.tools.force):
             raise ProblemError(complaint)
         return self
 
-    def _moved(self, position: Array, force: Array) -> Self:
-        """Move the tools by some more (3 t,), and add to their forces (3 t,)."""
-        tools = self.tools
+    def stepped(self, factors: Array, position: Array, force: Array) -> Self:
+        """Add to the factors (c,), and to the displacements (3 t,) and forces (3 t,) of tools, balanced or not."""
+        cases, tools = self.cases, self.tools
         return replace(
             self,
+            free_displacement=self.free_displacement + cases.displacement @ factors,
             initial_gap=self.initial_gap + tools.motions @ position,
-            motion_load=self.motion_load + tools.amplitudes.T @ force,
+            motion_load=self.motion_load + cases.motion_load @ factors + tools.amplitudes.T @ force,
+            cases=replace(cases, factors=cases.factors + factors),
             tools=replace(tools, position=tools.position + position, force=tools.force + force),
         )
 

@@ -307,7 +307,9 @@ def typical_scales(condensed: CondensedContact) -> ContactScales:
     -------
     ContactScales
     """
-    states = [condensed, *(condensed.with_factors({name: 1.0}) for name in condensed.cases.names)]
+    cases = condensed.cases
+    steps = np.eye(len(cases)) - cases.factors
+    states = [condensed, *(condensed.stepped(step, cases.position @ step, cases.force @ step) for step in steps)]
     told = [state for state in states if state.offset.any() or state.motion_load.any()]
     return max((state.scales for state in told), default=condensed.scales)
 

@@ -81,16 +81,14 @@ class Parameters:
 
     def contact(self) -> CondensedContact:
         """The contact problem with the present values."""
-        rest, tools = self.rest, len(self.rest.tools)
-        contact = replace(rest, initial_gap=value_of(self.initial_gap))
-        if self.case_factors is not None:
-            contact = contact.with_factors(dict(zip(rest.cases.names, value_of(self.case_factors), strict=True)))
-        if self.tool_position is None or self.tool_force is None:
-            return contact
-        own = value_of(self.tool_position).ravel(), value_of(self.tool_force).ravel()
-        added = contact.cases.position @ contact.cases.factors, contact.cases.force @ contact.cases.factors
-        position, force = ((one + other).reshape(tools, 3) for one, other in zip(own, added, strict=True))
-        return contact.with_tools(position, force)
+        rest, none = self.rest, np.zeros(3 * len(self.rest.tools))
+        factors = np.zeros(0) if self.case_factors is None else value_of(self.case_factors)
+        position = none if self.tool_position is None else value_of(self.tool_position).ravel()
+        force = none if self.tool_force is None else value_of(self.tool_force).ravel()
+        position = np.where(rest.tools.free, 0.0, position + rest.cases.position @ factors)
+        force = np.where(rest.tools.free, force + rest.cases.force @ factors, 0.0)
+        undisplaced = replace(rest, initial_gap=value_of(self.initial_gap))
+        return undisplaced.stepped(factors, position, force).balanced()
 
 
 def value_of(expression: cp.Expression) -> Array:

@@ -1,7 +1,5 @@
 """A condensed contact on which nothing acts that may change."""
 
-import numpy as np
-
 from bemcontact.contact import CondensedContact
 
 
@@ -16,5 +14,4 @@ def at_rest(condensed: CondensedContact) -> CondensedContact:
     -------
     CondensedContact
     """
-    none = np.zeros((len(condensed.tools), 3))
-    return condensed.with_factors({}).with_tools(none, none)
+    return condensed.stepped(-condensed.cases.factors, -condensed.tools.position, -condensed.tools.force)

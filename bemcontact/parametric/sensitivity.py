@@ -24,6 +24,9 @@ EXACT = 1e-9
 INVERSE = 1e-10
 """Part by which a compliance may differ from twice that at twice the modulus."""
 
+NAMED = 4
+"""Points that a note names; the others are counted."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Rates:
@@ -306,5 +309,6 @@ def _at_rest(contact: CondensedContact, state: ContactSolution) -> Iterator[str]
 
 def _placed(contact: CondensedContact, points: IntArray) -> str:
     """Name points by number and place."""
-    told = (f"{i} at ({x:g}, {y:g})" for i, (x, y) in zip(points, contact.points[points], strict=True))
-    return f"{'points' if len(points) > 1 else 'point'} {', '.join(told)}"
+    told = [f"{i} at ({x:g}, {y:g})" for i, (x, y) in zip(points, contact.points[points], strict=True)]
+    more = f" and {len(told) - NAMED} more" if len(told) > NAMED else ""
+    return f"{'points' if len(points) > 1 else 'point'} {', '.join(told[:NAMED])}{more}"

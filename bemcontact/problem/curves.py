@@ -245,12 +245,6 @@ class Edge:
         """Largest angle in radians by which one element turns."""
         return float(np.abs(np.diff(self.curve.tangent_angle(self.breakpoints(refine)))).max())
 
-    @property
-    def turning_per_length(self) -> float:
-        """Mean curvature [1/L], whichever way the edge bends."""
-        first, last = self.curve.tangent_angle(np.array([0.0, 1.0]))
-        return float(abs(last - first)) / self.length
-
     def polyline(self) -> Array:
         """Points (k, 2) from start to end between which the edge is as good as straight."""
         points = self.curve.polyline()

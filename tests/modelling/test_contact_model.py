@@ -280,3 +280,35 @@ def test_a_problem_solved_the_way_of_cvxpy_is_the_contact_state(contact):
     assert found.contact_state
     assert found.certificate.certified
     same_pressure(found.pressure, contact)
+
+
+def test_loads_of_two_cases_that_balance_each_other_may_act_together():
+    """Each alone would drive block and tools up or down; together they press with 10 on a width of 10, uniformly."""
+    edges = {"bottom": [-5, 0], "right": [5, 0], "top": [5, 4], "left": [-5, 4]}
+    problem = bemcontact.Problem(
+        name="between",
+        material={"young_modulus": 1000, "poisson_ratio": 0.3},
+        boundary={"outer": [{"name": name, "start": start, "elements": 4} for name, start in edges.items()]},
+        conditions={"left": {"displacement": {"x": 0}}},
+        contact_zones={
+            "up": {"edges": "top", "surface": {"kind": "plane", "point": [0, 4], "normal": [0, -1]}},
+            "down": {"edges": "bottom", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+        },
+        tools={name: {"zones": zone, "force": {"y": 0}} for name, zone in (("a", "up"), ("b", "down"))},
+        load_cases={
+            "one": {"tools": {"a": {"force": {"y": -10}}}},
+            "two": {"tools": {"b": {"force": {"y": 10}}}},
+        },
+        combinations={"both": {"one": 1, "two": 1}},
+        case="both",
+    )
+    contact = bemcontact.condense(problem)
+    model = contact.model()
+    np.testing.assert_allclose(model.solve().pressure, 1.0, rtol=1e-10)
+    model.case_factors.value = [2, 2]
+    np.testing.assert_allclose(model.solve().pressure, 2.0, rtol=1e-10)
+    model.case_factors.value = [2, 1]
+    with pytest.raises(ProblemError, match="nothing holds the body"):
+        model.solve()
+    with pytest.raises(ProblemError, match="nothing holds the body"):
+        contact.with_factors({"one": 1})
