@@ -14,7 +14,8 @@ from bemcontact.choices import FormulationName
 from bemcontact.contact import CondensedContact
 from bemcontact.report.figures.course import COLOURS, legend_below, show_decades
 from bemcontact.report.figures.page import BLACK, GREY, PURPLE, labelled, plain, shortened
-from bemcontact.report.figures.result import Piece, pieces_of, tell_closed
+from bemcontact.report.figures.pieces import Piece, pieces_of
+from bemcontact.report.figures.result import tell_closed
 from bemcontact.report.words import number, units_of, with_unit
 from bemcontact.solution import ContactSolution
 from bemcontact.study import MeshLevel
