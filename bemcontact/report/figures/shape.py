@@ -83,7 +83,8 @@ def extent(state: BoundaryState) -> tuple[float, float]:
 
 def outline_of(state: BoundaryState, curves: Array) -> Path:
     """Join curves (m, c, 2) to one path of closed loops; holes run the other way round and so stay empty."""
-    return Path.make_compound_path(*(Path(loop.reshape(-1, 2), closed=True) for loop in loops_of(state, curves)))
+    loops = (np.vstack([loop[:, :-1].reshape(-1, 2), loop[:1, 0]]) for loop in loops_of(state, curves))
+    return Path.make_compound_path(*(Path(loop, closed=True) for loop in loops))
 
 
 def loops_of(state: BoundaryState, curves: Array) -> list[Array]:
