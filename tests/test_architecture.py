@@ -18,7 +18,7 @@ ROOMS = {
     "options": (),
     "version": (),
     "files": ("errors",),
-    "problem": ("errors", "options"),
+    "problem": ("errors", "arrays", "options"),
     "spec": ("errors", "files", "problem"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problem", "contact"),

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from bemcontact.contact.condensed_contact import Array, CondensedContact
+from bemcontact.arrays import Array
+from bemcontact.contact.condensed_contact import CondensedContact
 
 
 def sawing(contact: CondensedContact, pressure: Array) -> float | None:

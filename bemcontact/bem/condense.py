@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
+from bemcontact.arrays import Array
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.deflection import deflections
 from bemcontact.bem.factorisation import solve
@@ -26,8 +26,6 @@ from bemcontact.contact.load_cases import LoadCases
 from bemcontact.contact.tools import BALANCED, Pinned, Tools
 from bemcontact.errors import Complaint, ProblemError
 from bemcontact.problem.problem import Problem
-
-Array = NDArray[np.float64]
 
 IDLE = 1e-7
 """Normal displacement in a motion that opens gaps, over that of the motion, from which it is one."""

@@ -1,14 +1,12 @@
 """The bordered system of a body set up, factorised and solved."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
+from bemcontact.arrays import Array
 from bemcontact.bem.influence import Block
 from bemcontact.bem.system import System
 from bemcontact.errors import SingularSystemError
-
-Array = NDArray[np.float64]
 
 SINGULAR = 1e-15
 """Reciprocal condition number below which the system counts as singular."""

@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
 from bemcontact.contact import archive
 from bemcontact.contact.gauge import fix_gauge
 from bemcontact.contact.load_cases import Change, LoadCases
@@ -352,7 +352,7 @@ class CondensedContact:
         """δ = ε + Δ1 + M p + R a, (n,) [L], from p (n,) [p] and a (k,)."""
         return self.offset + self.compliance @ pressure + self.rigid_motions @ rigid_amplitudes
 
-    def touching(self, pressure: Array, displacement: Array) -> NDArray[np.bool_]:
+    def touching(self, pressure: Array, displacement: Array) -> BoolArray:
         """Which points (n,) are in contact, p/T > δ/U, from p (n,) [p] and u_n (n,) [L]: unmoved by a solver's dust."""
         U, T = self.scales
         return pressure / T > (self.initial_gap + displacement) / U

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, freeze_arrays
+from bemcontact.arrays import Array, BoolArray, freeze_arrays
 
 BALANCED = 1e-9
 """Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as none."""
@@ -35,7 +34,7 @@ class Tools:
     point: Array
     motions: Array
     amplitudes: Array
-    free: NDArray[np.bool_]
+    free: BoolArray
     position: Array
     force: Array
 
@@ -89,7 +88,7 @@ class Pinned:
     """
 
     motions: tuple[str, ...]
-    turns: NDArray[np.bool_]
+    turns: BoolArray
     load: Array
     tools: Array
     magnitude: Array

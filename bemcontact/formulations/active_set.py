@@ -7,13 +7,10 @@ it stops, a handful of steps on contact problems, but it may cycle.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.formulations.scaling import ScaledContact
-
-BoolArray = NDArray[np.bool_]
 
 EPS = float(np.finfo(float).eps)
 STEP_LIMIT = 100

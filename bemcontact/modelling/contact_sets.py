@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import cvxpy as cp
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.scales import ContactScales
 from bemcontact.errors import SolverError
@@ -24,8 +23,6 @@ from bemcontact.modelling.clarabel import minimise
 from bemcontact.modelling.designed_gap import Goal
 from bemcontact.modelling.parameters import value_of
 from bemcontact.modelling.relief import Profiles
-
-BoolArray = NDArray[np.bool_]
 
 WEAK = 1e-6
 """Scaled pressure or gap that is none to the tolerance of the solver."""

@@ -6,10 +6,9 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import SingularSystemError
-from bemcontact.formulations.active_set import BoolArray
 from bemcontact.formulations.scaling import ScaledContact
 
 EPS = float(np.finfo(float).eps)

@@ -14,10 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
-from bemcontact.formulations.active_set import BoolArray
 from bemcontact.formulations.scaling import ScaledContact
 from bemcontact.parametric.contact_block import ContactBlock
 from bemcontact.parametric.derivative import RANK, STILL, WEAK, Tangent, is_monotone, size_of

@@ -5,9 +5,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, freeze_arrays
+from bemcontact.arrays import Array, BoolArray, freeze_arrays
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change, LoadCases
@@ -59,7 +58,7 @@ class LoadPath:
     pressure: Array
     gap: Array
     rigid_amplitudes: Array
-    touching: NDArray[np.bool_]
+    touching: BoolArray
     unique: bool
     note: str
 
@@ -111,7 +110,7 @@ class LoadPath:
         """For each breakpoint, the points that leave contact there, as t rises."""
         return self._changed(self.touching[:-1] & ~self.touching[1:])
 
-    def _changed(self, masks: NDArray[np.bool_]) -> tuple[tuple[int, ...], ...]:
+    def _changed(self, masks: BoolArray) -> tuple[tuple[int, ...], ...]:
         """Indices of points at the breakpoints between the first and the last."""
         found = (tuple(np.flatnonzero(mask).tolist()) for mask in masks)
         return ((), *found, ())[: len(self.parameter)]

@@ -3,14 +3,12 @@
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Problem, Table, Values
 
 Point = tuple[float, float]
-BoolArray = NDArray[np.bool_]
 
 LEVEL = 1e-9
 """Part of the size of the contact below which two places are the same."""

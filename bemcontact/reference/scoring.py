@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Table, Values
 from bemcontact.reference.expectation import Expected
-from bemcontact.reference.positions import LEVEL, BoolArray, Frame, coordinates, in_zone
+from bemcontact.reference.positions import LEVEL, Frame, coordinates, in_zone
 
 
 @dataclass(frozen=True, kw_only=True)

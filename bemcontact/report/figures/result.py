@@ -9,9 +9,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
-from numpy.typing import NDArray
 
 from bemcontact.analysis.result import Result
+from bemcontact.arrays import Array, IntArray
 from bemcontact.bem import shape_functions
 from bemcontact.bem.recovery import BoundaryState
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -35,8 +35,6 @@ from bemcontact.report.figures.page import (
 )
 from bemcontact.report.formatting import number, units_of, with_unit
 
-Array = NDArray[np.float64]
-
 PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 VISIBLE = 0.05
 """Share of the body's size at which the largest displacement can be seen well; smaller ones are magnified."""
@@ -54,7 +52,7 @@ class Piece:
 
     label: str
     order: int
-    index: NDArray[np.int64]
+    index: IntArray
 
     @property
     def colour(self) -> str:
