@@ -63,8 +63,7 @@ def stretches(
 
 def _points(run: ZoneRun, contact: CondensedContact, solution: ContactSolution) -> tuple[Array, BoolArray]:
     """Arc lengths of the points of a run in order, and which of them touch; of a closed run all several times over."""
-    own = np.flatnonzero(contact.run == run.number)
-    own = own[np.argsort(contact.arc_position[own], kind="stable")]
+    own = contact.points_of_run(run.number)
     touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
     arcs, touching = contact.arc_position[own], touching[own]
     if not run.closed:

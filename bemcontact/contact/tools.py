@@ -58,10 +58,6 @@ class Tools:
         """Where the tools are (t, 3): x, y [L] and rotation [rad], for amplitudes a (k,)."""
         return (self.position + self.amplitudes @ rigid_amplitudes).reshape(-1, 3)
 
-    def reaction(self, contact_forces: Array) -> Array:
-        """Force (t, 3) of the body on each tool: x, y [p L] and moment [p L²], from w p at the points (n,) [p L]."""
-        return (self.motions.T @ contact_forces).reshape(-1, 3)
-
     @property
     def keys(self) -> tuple[str, ...]:
         """Key paths (3 t) of the components: of the displacement where it is given, of the force where it is free."""

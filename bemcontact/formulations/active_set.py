@@ -42,10 +42,10 @@ def first_active_set(problem: ScaledContact) -> BoolArray:
 
     "Close" is in the least squares of the weights: q is replaced by P q, P = I - R(ℓᵀR)⁻¹ℓᵀ.
     """
-    R, ell = problem.rigid_motions, problem.equilibrium
+    R = problem.rigid_motions
     if not R.shape[1]:
         return problem.offset < 0
-    return problem.offset <= R @ np.linalg.solve(ell.T @ R, ell.T @ problem.offset)
+    return problem.offset <= R @ problem.amplitudes_of(problem.offset)
 
 
 def primal_dual(problem: ScaledContact, active: BoolArray, limit: int = STEP_LIMIT) -> ActiveSetEnd:

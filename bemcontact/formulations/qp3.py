@@ -89,16 +89,13 @@ def objective(problem: ScaledContact, J: Array) -> Objective:
     -------
     Objective
     """
-    M, R, ell, load = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.motion_load
-    weighted = J @ M
+    weighted, project, p0 = J @ problem.compliance, problem.projector, problem.balancing_pressure
     hessian = weighted + weighted.T
-    project = np.eye(len(M)) - R @ np.linalg.solve(ell.T @ R, ell.T)
-    p0 = -R @ np.linalg.solve(ell.T @ R, load)
-    share = np.linalg.lstsq(ell, J @ R, rcond=None)[0]
+    share = np.linalg.lstsq(problem.equilibrium, J @ problem.rigid_motions, rcond=None)[0]
     return Objective(
         hessian=project.T @ hessian @ project,
         pressure=J @ problem.offset + project.T @ (hessian @ p0),
-        amplitudes=-share.T @ load,
+        amplitudes=-share.T @ problem.motion_load,
         constant=float(p0 @ weighted @ p0),
     )
 

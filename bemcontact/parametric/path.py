@@ -128,7 +128,7 @@ class LoadPath:
     @property
     def resultant(self) -> Array:
         """(b, zones, 2) force Σ w p n of each rigid surface on the body at the breakpoints [p L]."""
-        return resultants(self.start, self.pressure)
+        return self.start.resultants(self.pressure)
 
     @cached_property
     def residual(self) -> float:
@@ -244,12 +244,6 @@ class LoadPath:
                 f"the path reaches from {self.begins_at:g} to {self.ends_at:g}, there is nothing at {t:g}"
                 + (f": {self.note}" if self.note else "")
             )
-
-
-def resultants(contact: CondensedContact, pressure: Array) -> Array:
-    """Σ w p n over each zone, (..., zones, 2) [p L], of pressures (..., n)."""
-    forces = (contact.weights * pressure)[..., None] * contact.normals
-    return np.stack([forces[..., contact.zone == i, :].sum(axis=-2) for i in range(len(contact.zone_names))], axis=-2)
 
 
 def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:

@@ -88,7 +88,7 @@ def coordinates(stated: Values | Table, points: Array, arc: Array) -> Array:
 
 def spacing(contact: CondensedContact) -> Array:
     """Arc length (n,) [L] from each contact point to the farther of its neighbours in the run."""
-    order = np.lexsort((contact.arc_position, contact.run))
+    order = contact.in_order(np.arange(contact.size))
     step = np.diff(contact.arc_position[order])
     step[np.diff(contact.run[order]) != 0] = 0.0
     farther = np.empty(contact.size)

@@ -139,7 +139,7 @@ def _course(along: Values | Table, contact: CondensedContact, interval: ContactI
 
 def _force(contact: CondensedContact, pressure: Array, here: BoolArray) -> float:
     """Magnitude |Σ w p n| [p L] of the force of the rigid surface, over some of the contact points."""
-    force = (contact.weights * pressure)[here] @ contact.normals[here]
+    force = contact.forces(pressure)[here].sum(axis=0)
     return float(np.hypot(*force))
 
 

@@ -242,10 +242,9 @@ def zone_forces(result: Result) -> list[str]:
     contact, unit = result.contact, per_thickness(units_of(result.contact))
     if len(contact.zone_names) == 1:
         return []
-    forces = (contact.weights * result.solution.pressure)[:, None] * contact.normals
-    scale = float(np.abs(forces).sum())
-    sums = [forces[contact.zone == i].sum(axis=0) for i in range(len(contact.zone_names))]
-    named = zip(contact.zone_names, sums, strict=True)
+    pressure = result.solution.pressure
+    scale = float(np.abs(contact.forces(pressure)).sum())
+    named = zip(contact.zone_names, contact.resultants(pressure), strict=True)
     return [f"{zone}: {vector((float(x), float(y)), unit, scale=scale)}" for zone, (x, y) in named]
 
 

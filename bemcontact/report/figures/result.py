@@ -203,8 +203,7 @@ def _magnification(state: BoundaryState) -> float:
 def pieces_of(contact: CondensedContact) -> Iterator[Piece]:
     """List the unbroken pieces of all contact zones, in the order of the contact points."""
     for order, run in enumerate(np.unique(contact.run)):
-        index = np.flatnonzero(contact.run == run)
-        index = index[np.argsort(contact.arc_position[index], kind="stable")]
+        index = contact.points_of_run(run)
         zone = int(contact.zone[index[0]])
         label = shortened(contact.zone_names[zone], 24)
         if len(np.unique(contact.run[contact.zone == zone])) > 1:
