@@ -14,9 +14,9 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.scales import ContactScales
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import qp3
+from bemcontact.formulations.clarabel import minimize
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
 from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
-from bemcontact.modelling.clarabel import minimise
 from bemcontact.modelling.model_result import ModelResult, judged, solution_at, taken_out
 from bemcontact.modelling.parameters import Parameters, Value
 from bemcontact.options import Weights
@@ -191,7 +191,7 @@ class ContactModel:
         chosen = problem or (self.problem(extra_objective, extra_constraints) if added else self._pure)
         if chosen is self._pure and (found := self._from_last()) is not None:
             return found
-        minimise(chosen, max_iterations)
+        minimize(chosen, max_iterations)
         return self.result(chosen)
 
     def _from_last(self) -> ModelResult | None:

@@ -15,7 +15,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
 from bemcontact.options import FormulationName
-from bemcontact.parametric.following import Line, Trail, follow
+from bemcontact.parametric.pivoting import Line, Trail, follow
 
 COMMON = {
     "compliance": "compliance",
