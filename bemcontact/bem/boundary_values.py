@@ -4,15 +4,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.mesh import Mesh
 from bemcontact.errors import Complaint, ProblemError
 from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.problem import Problem
-
-Array = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 CONTRADICTION = 1e-9
 """Difference of two displacements prescribed at one corner, relative to the largest prescribed one, that is refused."""

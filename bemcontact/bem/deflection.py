@@ -2,9 +2,7 @@
 
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from bemcontact.arrays import Array
 from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.factorisation import solve
@@ -16,8 +14,6 @@ from bemcontact.bem.volume_loads import particular_solution
 from bemcontact.errors import Complaint, Path, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
-
-Array = NDArray[np.float64]
 
 
 def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:

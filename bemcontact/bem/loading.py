@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array
 from bemcontact.bem.boundary_values import BoundaryValues, applied_traction, boundary_values
 from bemcontact.bem.mesh import Mesh, along_curve
 from bemcontact.bem.rigid_motions import RigidMotions
@@ -15,8 +15,6 @@ from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.loads import Loads
 from bemcontact.problem.problem import Problem
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

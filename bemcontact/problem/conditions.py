@@ -4,14 +4,12 @@ from collections.abc import Mapping
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
+from bemcontact.arrays import Array
 from bemcontact.problem.validation import Number, Stated, complain, described
-
-Array = NDArray[np.float64]
 
 
 class Field(Stated):

@@ -6,12 +6,11 @@ from math import atan2, cos, degrees, hypot, pi, radians, sin
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipeinc
 
+from bemcontact.arrays import Array
 from bemcontact.problem.element_ends import graded_ends
 
-Array = NDArray[np.float64]
 Pair = tuple[float, float]
 
 

@@ -5,9 +5,8 @@ from itertools import pairwise
 from math import fsum, log
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from bemcontact.arrays import Array
 
 
 def graded_ends(elements: int, ratio: float, towards: str | float, places: Sequence[float] = ()) -> Array:

@@ -4,12 +4,10 @@ from collections.abc import Iterator, Sequence
 from math import dist
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.errors import Complaint, Path
 from bemcontact.problem.curves import Edge
-
-Array = NDArray[np.float64]
 
 TOUCHING = 1e-9
 """Distance over the size of the body below which two edges touch."""
@@ -116,7 +114,7 @@ def _meetings(p: Array, p_end: Array, q: Array, q_end: Array, tolerance: float) 
     return crossing | overlapping, p + np.where(parallel, (low + high) / 2, t)[:, None] * r
 
 
-def _share_a_corner(ends: tuple[Array, Array], others: tuple[Array, Array]) -> NDArray[np.bool_]:
+def _share_a_corner(ends: tuple[Array, Array], others: tuple[Array, Array]) -> BoolArray:
     """Tell which sides (m,) begin or end in an end of a side, in the very same numbers."""
     return np.any([(end == other).all(axis=1) for end in ends for other in others], axis=0)
 

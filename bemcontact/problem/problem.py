@@ -208,7 +208,7 @@ class Problem(Stated):
 
     def refined(self, parts: int) -> Self:
         """Cut each element into so many equal parts."""
-        return self.with_value("mesh.refine", self.mesh.refine * parts)
+        return self if parts == 1 else self.with_value("mesh.refine", self.mesh.refine * parts)
 
     def variant(self, name: str) -> Self:
         """Take a variant: its values set, its name added to that of the problem, and no variants any more.

@@ -6,17 +6,14 @@ from itertools import pairwise
 from typing import Annotated, Any, Literal, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 from scipy.interpolate import CubicSpline
 
+from bemcontact.arrays import Array
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.loads import Loads
 from bemcontact.problem.tagged_union import ByKind
 from bemcontact.problem.validation import Name, Point, Positive, Stated, complain
-
-Array = NDArray[np.float64]
-
 
 ON_CORNER = 1e-9
 """Distance from a corner, over the extent of line and points, below which a point is on it."""

@@ -281,7 +281,7 @@ def _add_tools(facts: Table, result: Result) -> None:
     size, moves = size_of(contact), contact.scales.displacement
     pressed = float(contact.weights @ np.abs(result.solution.pressure))
     places = contact.tools.displacement(result.solution.rigid_amplitudes)
-    forces = contact.tools.reaction(contact.weights * result.solution.pressure)
+    forces = contact.tool_reactions(result.solution.pressure)
     each = zip(contact.tools.names, contact.tools.point.tolist(), places, forces, strict=True)
     for name, point, (x, y, turn), (fx, fy, moment) in each:
         turned = settled(turn * size, moves) / (size or 1.0)

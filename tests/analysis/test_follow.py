@@ -240,3 +240,22 @@ def test_public_names_are_there(cylinder: Problem):
     assert isinstance(path, bemcontact.LoadPath)
     assert isinstance(bemcontact.sensitivities(contact), bemcontact.Sensitivities)
     assert isinstance(bemcontact.follow(cylinder, PRESSURE, 25), bemcontact.ParameterPath)
+
+
+@pytest.mark.parametrize(("key", "to"), [("load_cases.lift", 2.0), ("tools.press.force.y", -7.0)])
+def test_factors_and_tools_are_followed_with_one_condensation(monkeypatch: pytest.MonkeyPatch, key: str, to: float):
+    """Only gaps and loads change; the state at the end is that of the problem condensed anew."""
+    cases = {"lift": {"tools": {"press": {"force": {"y": 4}}}}}
+    tools = {"press": {"zones": "press", "force": {"y": -10}}}
+    problem = made(BETWEEN, tools=tools, load_cases=cases).with_factors({"lift": 1.0})
+    calls: list[Problem] = []
+
+    def counted(varied: Problem) -> CondensedContact:
+        calls.append(varied)
+        return condense(varied)
+
+    monkeypatch.setattr("bemcontact.analysis.follow.condense", counted)
+    path = follow(problem, key, to).path
+    assert len(calls) == 1
+    varied = problem.with_factors({"lift": to}) if key.startswith("load_cases") else problem.with_value(key, to)
+    assert apart(path.end, condense(varied), path.at(1.0).pressure) <= 1e-10

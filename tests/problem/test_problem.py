@@ -62,6 +62,7 @@ def test_stress_has_a_label_if_force_and_length_have():
 
 def test_refining_multiplies():
     problem = Problem(**parts()).refined(2).refined(3)
+    assert problem.refined(1) is problem
     assert problem.mesh == MeshDensity(refine=6)
 
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import PathPatch
-from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from bemcontact.analysis.result import Result
+from bemcontact.arrays import Array
 from bemcontact.bem import shape_functions
 from bemcontact.bem.recovery import BoundaryState
 from bemcontact.problem import DeflectedContour, Problem
@@ -19,8 +19,6 @@ from bemcontact.report.figures.pieces import pieces_of
 from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
 from bemcontact.report.figures.shape import ground_of, loops_of, outline_of
 from bemcontact.report.formatting import number, units_of, with_unit
-
-Array = NDArray[np.float64]
 
 VISIBLE = 0.005
 """Largest displacement over the size of the body from which on the undeformed outline is drawn."""
