@@ -7,15 +7,15 @@ An error means that the question has no answer as asked. A solver that does not 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-Path = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 """Keys and list positions from the top of a spec to a value, such as ``("conditions", "top", "pressure")``."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Complaint:
+class Issue:
     """One thing that is wrong with a problem: where (path of keys) and what, in a sentence that says the way out."""
 
-    path: Path
+    path: KeyPath
     message: str
 
     def __str__(self) -> str:
@@ -23,7 +23,7 @@ class Complaint:
         return f"{dotted(self.path)}: {self.message}" if self.path else self.message
 
 
-def dotted(path: Path) -> str:
+def dotted(path: KeyPath) -> str:
     """Write a path of keys as a person does: ``contact_zones.foot.edges[1]``."""
     text = ""
     for key in path:
@@ -40,15 +40,15 @@ class ProblemError(BemContactError):
 
     Parameters
     ----------
-    complaints : Complaint, sequence of Complaint, or str
+    issues : Issue, sequence of Issue, or str
         All that was found, each with the path of keys it belongs to.
     """
 
-    def __init__(self, complaints: Complaint | Sequence[Complaint] | str) -> None:
-        if isinstance(complaints, str):
-            complaints = Complaint(path=(), message=complaints)
-        self.complaints = (complaints,) if isinstance(complaints, Complaint) else tuple(complaints)
-        super().__init__("\n".join(map(str, self.complaints)))
+    def __init__(self, issues: Issue | Sequence[Issue] | str) -> None:
+        if isinstance(issues, str):
+            issues = Issue(path=(), message=issues)
+        self.issues = (issues,) if isinstance(issues, Issue) else tuple(issues)
+        super().__init__("\n".join(map(str, self.issues)))
 
 
 class OptionError(ProblemError):

@@ -133,6 +133,4 @@ def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase) -> Lo
     try:
         return _loading(problem, mesh, conditions, case.loads)
     except ProblemError as error:
-        raise ProblemError(
-            [replace(item, path=("load_cases", name, *item.path)) for item in error.complaints]
-        ) from None
+        raise ProblemError([replace(item, path=("load_cases", name, *item.path)) for item in error.issues]) from None

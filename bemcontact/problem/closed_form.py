@@ -4,13 +4,13 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, Strict, ValidationInfo, field_validator, model_validator
 
-from bemcontact.problem.validation import Flag, Name, Number, Point, Positive, Stated, Text, complain
+from bemcontact.problem.validation import Flag, Name, Number, Point, Positive, SpecModel, Text, invalid
 
 Tolerance = Annotated[float, Strict(), Field(gt=0, lt=1)]
 """A relative difference, 0.02 for two per cent."""
 
 
-class AnyReference(Stated):
+class ReferenceBase(SpecModel):
     """What every reference states."""
 
     zone: Name | None = None
@@ -26,11 +26,11 @@ class AnyReference(Stated):
     def _reason_of_something(self) -> Self:
         """Refuse a reason for a tolerance that is not given."""
         if self.reason and self.tolerance is None:
-            raise complain("a reason without a tolerance explains nothing; give tolerance too")
+            raise invalid("a reason without a tolerance explains nothing; give tolerance too")
         return self
 
 
-class Hertz(AnyReference):
+class Hertz(ReferenceBase):
     """Line contact of an elastic cylinder with a rigid plane or cylinder, as Hertz has it.
 
     Raises
@@ -57,7 +57,7 @@ class Hertz(AnyReference):
     def _is_round(cls, value: float | None) -> float | None:
         """Refuse a radius of nothing."""
         if value == 0:
-            raise complain("must not be 0: positive where it bulges, negative where it is hollow")
+            raise invalid("must not be 0: positive where it bulges, negative where it is hollow")
         return value
 
     @field_validator("surface_radius")
@@ -67,18 +67,18 @@ class Hertz(AnyReference):
         radius = info.data.get("radius")
         if value and radius and not 1 / radius + 1 / value > 0:
             found = f"must be greater than 0, found 1/{radius:g} + 1/{value:g}"
-            raise complain(f"1/radius + 1/surface_radius {found}; a hollow is wider than what lies in it")
+            raise invalid(f"1/radius + 1/surface_radius {found}; a hollow is wider than what lies in it")
         return value
 
     @model_validator(mode="after")
     def _bulges(self) -> Self:
         """Refuse a hollow body on a plane."""
         if self.surface_radius is None and self.radius < 0:
-            raise complain("a hollow body (radius < 0) needs the surface_radius of what lies in it")
+            raise invalid("a hollow body (radius < 0) needs the surface_radius of what lies in it")
         return self
 
 
-class FlatPunch(AnyReference):
+class FlatPunch(ReferenceBase):
     """A rigid punch with a flat face and sharp edges, free to tilt, pressed without friction on a half-plane.
 
     Raises
@@ -106,14 +106,14 @@ class FlatPunch(AnyReference):
     def _acts_on_the_punch(cls, value: float, info: ValidationInfo) -> float:
         """Refuse a load beyond the edges, and one off the line of symmetry."""
         if value and info.data.get("half"):
-            raise complain("must be 0 where only one half is modelled (half: true)")
+            raise invalid("must be 0 where only one half is modelled (half: true)")
         half_width = info.data.get("half_width")
         if half_width is not None and not abs(value) < half_width:
-            raise complain(f"must be less than half_width = {half_width:g} either way, found {value:g}")
+            raise invalid(f"must be less than half_width = {half_width:g} either way, found {value:g}")
         return value
 
 
-class ShrinkFit(AnyReference):
+class ShrinkFit(ReferenceBase):
     """An elastic ring forced on a rigid pin, or a ring or disc forced into a rigid bore.
 
     Raises
@@ -138,7 +138,7 @@ class ShrinkFit(AnyReference):
     def _leaves_room(cls, value: float, info: ValidationInfo) -> float:
         """Refuse a pin in a disc without a hole."""
         if value == 0 and info.data.get("rigid") == "pin":
-            raise complain("must be greater than 0 on a pin; a disc without a hole needs rigid: bore")
+            raise invalid("must be greater than 0 on a pin; a disc without a hole needs rigid: bore")
         return value
 
     @field_validator("outer_radius")
@@ -147,11 +147,11 @@ class ShrinkFit(AnyReference):
         """Refuse a ring without wall."""
         inner = info.data.get("inner_radius")
         if inner is not None and value <= inner:
-            raise complain(f"must be greater than inner_radius = {inner:g}, found {value:g}")
+            raise invalid(f"must be greater than inner_radius = {inner:g}, found {value:g}")
         return value
 
 
-class Uniform(AnyReference):
+class Uniform(ReferenceBase):
     """The same pressure everywhere, as under a block between planes."""
 
     kind: Literal["uniform"] = "uniform"
@@ -160,7 +160,7 @@ class Uniform(AnyReference):
     """The pressure."""
 
 
-class Crack(AnyReference):
+class Crack(ReferenceBase):
     """An elliptical opening in a wide panel, closed by compression across it; half of the panel on a rigid plane."""
 
     kind: Literal["crack"] = "crack"
@@ -177,7 +177,7 @@ class Crack(AnyReference):
     """How it is modelled: ellipse, or slit for a straight edge with the gap of the ellipse."""
 
 
-class ProppedBeam(AnyReference):
+class ProppedBeam(ReferenceBase):
     """A beam on two end supports, evenly loaded, that may sink onto a prop in its middle; all supports rigid."""
 
     kind: Literal["propped_beam"] = "propped_beam"

@@ -9,12 +9,12 @@ from pydantic import GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from bemcontact.problem.validation import Number, Stated, complain, described
+from bemcontact.problem.validation import Number, SpecModel, described, invalid
 
 Array = NDArray[np.float64]
 
 
-class Field(Stated):
+class Field(SpecModel):
     """A quantity over the plane, constant + x X + y Y + xx X² + xy X Y + yy Y²; a number alone is constant."""
 
     constant: Number = 0.0
@@ -38,9 +38,9 @@ class Field(Stated):
             return {"constant": data}
         if not isinstance(data, Mapping | Field):
             keys = ", ".join(cls.model_fields)
-            raise complain(f"expected a number, or a mapping with keys out of {keys}; found {described(data)}")
+            raise invalid(f"expected a number, or a mapping with keys out of {keys}; found {described(data)}")
         if not data if isinstance(data, Mapping) else False:
-            raise complain("an empty mapping states nothing; give a number")
+            raise invalid("an empty mapping states nothing; give a number")
         return data
 
     @classmethod
@@ -54,7 +54,7 @@ class Field(Stated):
         return self.constant + self.x * x + self.y * y + self.xx * x * x + self.xy * x * y + self.yy * y * y
 
 
-class AxisFields(Stated):
+class AxisFields(SpecModel):
     """A field for each axis; an axis that is left out is not prescribed."""
 
     x: Field | None = None
@@ -68,7 +68,7 @@ class AxisFields(Stated):
         return tuple(axis for axis, field in (("x", self.x), ("y", self.y)) if field is not None)
 
 
-class Condition(Stated):
+class Condition(SpecModel):
     """What is prescribed on an edge; along an axis that it leaves out, the edge is free of traction.
 
     Raises
@@ -90,10 +90,10 @@ class Condition(Stated):
         displacement, traction = self.displacement.given, self.traction.given
         if self.pressure is not None and (displacement or traction):
             company = "displacement" if displacement else "traction"
-            raise complain(f"pressure acts on both axes and leaves no room for {company}; give one of them only")
+            raise invalid(f"pressure acts on both axes and leaves no room for {company}; give one of them only")
         for axis in displacement:
             if axis in traction:
-                raise complain(f"both displacement and traction are given along {axis}; give one of them only")
+                raise invalid(f"both displacement and traction are given along {axis}; give one of them only")
         if self.pressure is None and not displacement and not traction:
-            raise complain("it states nothing; give displacement, traction or pressure, or leave the edge out")
+            raise invalid("it states nothing; give displacement, traction or pressure, or leave the edge out")
         return self

@@ -4,8 +4,8 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from bemcontact.problem.rigid_surface import StatedSurface
-from bemcontact.problem.validation import Name, Stated
+from bemcontact.problem.rigid_surface import SurfaceSpec
+from bemcontact.problem.validation import Name, SpecModel
 
 
 def _as_list(value: Any) -> Any:
@@ -21,10 +21,10 @@ EdgeNames = Annotated[
 ]
 
 
-class ContactZone(Stated):
+class ContactZone(SpecModel):
     """Edges of the body that may touch a rigid surface without friction."""
 
     edges: EdgeNames
     """The name of the edge, or a list of names of edges, that may touch the surface."""
-    surface: StatedSurface
+    surface: SurfaceSpec
     """The rigid surface."""

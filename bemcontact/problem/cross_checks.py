@@ -6,7 +6,7 @@ from math import degrees, radians
 
 import numpy as np
 
-from bemcontact.errors import Complaint, Path
+from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import Edge
@@ -20,7 +20,7 @@ ALONG = 0.5
 """Cosine between two normals above which they point the same way, for an edge that should face its surface."""
 
 
-def mesh_complaints(boundary: Boundary, path: Path, refine: int) -> list[Complaint]:
+def mesh_issues(boundary: Boundary, path: KeyPath, refine: int) -> list[Issue]:
     """Check that elements are neither too many for a dense matrix, nor too few for the curves.
 
     Parameters
@@ -32,15 +32,15 @@ def mesh_complaints(boundary: Boundary, path: Path, refine: int) -> list[Complai
     total = refine * sum(edge.elements for edge in boundary.edges)
     if total > MOST_ELEMENTS:
         message = f"{total} elements are more than a dense matrix can hold; take at most {MOST_ELEMENTS}"
-        return [Complaint(path=("mesh", "refine") if refine > 1 else path, message=message)]
+        return [Issue(path=("mesh", "refine") if refine > 1 else path, message=message)]
     return [
-        Complaint(path=(*path, *place, "elements"), message=_turns_too_much(edge, refine))
+        Issue(path=(*path, *place, "elements"), message=_turns_too_much(edge, refine))
         for edge, place in _placed_edges(boundary)
         if edge.turning(refine) > LARGEST_TURNING * (1 + 1e-9)
     ]
 
 
-def _placed_edges(boundary: Boundary) -> Iterator[tuple[Edge, Path]]:
+def _placed_edges(boundary: Boundary) -> Iterator[tuple[Edge, KeyPath]]:
     """List all edges with their paths in the boundary."""
     for path, loop in zip(boundary.loop_paths, boundary.loops, strict=True):
         for i, edge in enumerate(loop):
@@ -57,7 +57,7 @@ def _turns_too_much(edge: Edge, refine: int) -> str:
     return f"{found}, more than {limit}; give it more elements, and grade them towards the bend"
 
 
-def facing_complaints(boundary: Boundary, zones: Mapping[Path, ContactZone]) -> list[Complaint]:
+def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> list[Issue]:
     """Check that the normal of each rigid surface points into the body, where they are closest to each other.
 
     The direction of a deflected contour, which is close to its own body, must nowhere point out of it.
@@ -68,7 +68,7 @@ def facing_complaints(boundary: Boundary, zones: Mapping[Path, ContactZone]) -> 
     zones : contact zones by their path of keys
     """
     edges = {edge.name: edge for edge in boundary.edges}
-    complaints = []
+    issues = []
     for path, zone in zones.items():
         members = [edges[name] for name in zone.edges]
         if isinstance(zone.surface, DeflectedContour):
@@ -76,8 +76,8 @@ def facing_complaints(boundary: Boundary, zones: Mapping[Path, ContactZone]) -> 
         else:
             _, cosine, name = min((*_facing(edge, zone.surface), edge.name) for edge in members)
         if cosine > ALONG:
-            complaints.append(Complaint(path=(*path, "surface"), message=_faces_away(name, zone.surface)))
-    return complaints
+            issues.append(Issue(path=(*path, "surface"), message=_faces_away(name, zone.surface)))
+    return issues
 
 
 def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:

@@ -5,9 +5,9 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_validator
 
-from bemcontact.errors import Path
+from bemcontact.errors import KeyPath
 from bemcontact.problem.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
-from bemcontact.problem.tagged_union import ByKind
+from bemcontact.problem.tagged_union import TaggedUnion
 from bemcontact.problem.validation import (
     Count,
     Flag,
@@ -16,9 +16,9 @@ from bemcontact.problem.validation import (
     Point,
     Positive,
     PositivePair,
-    Stated,
-    complain,
+    SpecModel,
     described,
+    invalid,
 )
 
 MOST_ELEMENTS = 10_000
@@ -26,20 +26,20 @@ MOST_ELEMENTS = 10_000
 
 
 SIDES = ("start", "end", "both", "middle")
-"""Words for where the short elements of an edge are."""
+"""NonEmptyText for where the short elements of an edge are."""
 
 
 def _place(value: Any) -> float | Point:
     """Read a place on an edge, a fraction of its length or a point."""
     numbers = value if isinstance(value, list | tuple) else [value]
     if not all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers):
-        raise complain(f"expected a fraction of the length such as 0.4, or a point [x, y]; found {described(value)}")
+        raise invalid(f"expected a fraction of the length such as 0.4, or a point [x, y]; found {described(value)}")
     if isinstance(value, list | tuple):
         if len(value) != 2 or not all(map(isfinite, value)):
-            raise complain(f"a point has two coordinates such as [0.0, 1.5]; found {described(value)}")
+            raise invalid(f"a point has two coordinates such as [0.0, 1.5]; found {described(value)}")
         return float(value[0]), float(value[1])
     if not 0 < value < 1:
-        raise complain(f"a fraction of the length lies between 0 and 1, where the edge itself ends; found {value:g}")
+        raise invalid(f"a fraction of the length lies between 0 and 1, where the edge itself ends; found {value:g}")
     return float(value)
 
 
@@ -48,7 +48,7 @@ def _towards(value: Any) -> str | float | Point:
     if isinstance(value, str):
         if value not in SIDES:
             words = f"{', '.join(SIDES)}, a fraction of the length, or a point [x, y]"
-            raise complain(f"expected one of {words}; found {described(value)}")
+            raise invalid(f"expected one of {words}; found {described(value)}")
         return value
     return _place(value)
 
@@ -71,7 +71,7 @@ Towards = Annotated[
 """Where the short elements are."""
 
 
-class Grading(Stated):
+class Grading(SpecModel):
     """Element lengths in geometric progression along an edge."""
 
     ratio: Annotated[float, Strict(), Field(ge=1, le=1e6)]
@@ -81,7 +81,7 @@ class Grading(Stated):
     length of the edge, or a point [x, y] on it."""
 
 
-class _StatedEdge(Stated):
+class _EdgeBase(SpecModel):
     """What every edge states, whatever its shape."""
 
     name: Name
@@ -95,15 +95,15 @@ class _StatedEdge(Stated):
     element ends are moved there, the others in proportion."""
 
     @property
-    def places(self) -> tuple[tuple[Path, Place], ...]:
+    def places(self) -> tuple[tuple[KeyPath, Place], ...]:
         """All places at which elements must end, each with its path of keys."""
-        stated: list[tuple[Path, Place]] = [(("ends_at", i), place) for i, place in enumerate(self.ends_at)]
+        stated: list[tuple[KeyPath, Place]] = [(("ends_at", i), place) for i, place in enumerate(self.ends_at)]
         if self.grading is not None and not isinstance(self.grading.towards, str):
             stated.append((("grading", "towards"), self.grading.towards))
         return tuple(stated)
 
 
-class Line(_StatedEdge):
+class Line(_EdgeBase):
     """A straight edge. An end that is left out is where the neighbouring edge begins or ends."""
 
     kind: Literal["line"] = "line"
@@ -117,7 +117,7 @@ class Line(_StatedEdge):
         """Both ends as far as this edge knows them by itself."""
         return self.start, self.end
 
-    def states_points(self) -> bool:
+    def has_coordinates(self) -> bool:
         """Tell that the ends are written as coordinates, and not computed from angles."""
         return True
 
@@ -126,7 +126,7 @@ class Line(_StatedEdge):
         return Segment(start=start, end=end)
 
 
-class Arc(_StatedEdge):
+class Arc(_EdgeBase):
     """A circular edge: a centre, and either radius and angles, or start, end and the sense of rotation."""
 
     kind: Literal["arc"] = "arc"
@@ -150,10 +150,10 @@ class Arc(_StatedEdge):
         by_angles, by_points = "radius and angles", "start, end and clockwise"
         if (self.radius is None) != (self.angles is None):
             given, missing = ("angles", "radius") if self.radius is None else ("radius", "angles")
-            raise complain(f"an arc with {given} needs {missing} too; or give {by_points} instead")
+            raise invalid(f"an arc with {given} needs {missing} too; or give {by_points} instead")
         if self.angles is not None:
             if self.start is not None or self.end is not None or self.clockwise:
-                raise complain(f"give either {by_angles}, or {by_points}, not both")
+                raise invalid(f"give either {by_angles}, or {by_points}, not both")
             _check_sweep(self.angles)
         return self
 
@@ -164,7 +164,7 @@ class Arc(_StatedEdge):
         first, last = (_moved(self.center, self.radius, unit_vector(angle)) for angle in self.angles)
         return first, last
 
-    def states_points(self) -> bool:
+    def has_coordinates(self) -> bool:
         """Tell whether the ends are written as coordinates."""
         return self.angles is None
 
@@ -182,7 +182,7 @@ class Arc(_StatedEdge):
         return CircularArc(center=self.center, radii=radii, start_angle=first, sweep=sweep)
 
 
-class EllipseArc(_StatedEdge):
+class EllipseArc(_EdgeBase):
     """A piece of an ellipse: center + rotated (a cos t, b sin t)."""
 
     kind: Literal["ellipse"] = "ellipse"
@@ -210,7 +210,7 @@ class EllipseArc(_StatedEdge):
             ends.append((self.center[0] + c * a * x - s * b * y, self.center[1] + s * a * x + c * b * y))
         return ends[0], ends[1]
 
-    def states_points(self) -> bool:
+    def has_coordinates(self) -> bool:
         """Tell that the ends are computed from angles."""
         return False
 
@@ -230,7 +230,7 @@ def _check_sweep(angles: Point) -> None:
     """Refuse an arc of no length, or of more than a full turn."""
     sweep = abs(angles[1] - angles[0])
     if not 0 < sweep <= 360:
-        raise complain(f"angles must differ by more than 0 and at most 360 degrees; found {list(angles)}")
+        raise invalid(f"angles must differ by more than 0 and at most 360 degrees; found {list(angles)}")
 
 
 def _moved(center: Point, distance: float, direction: Point) -> Point:
@@ -239,9 +239,9 @@ def _moved(center: Point, distance: float, direction: Point) -> Point:
 
 AnyEdge = Line | Arc | EllipseArc
 """An edge of any shape."""
-StatedEdge = Annotated[
-    AnyEdge, ByKind(what="an edge", kinds={"line": Line, "arc": Arc, "ellipse": EllipseArc}, default="line")
+EdgeSpec = Annotated[
+    AnyEdge, TaggedUnion(what="an edge", kinds={"line": Line, "arc": Arc, "ellipse": EllipseArc}, default="line")
 ]
 """An edge as it is written; `kind` says which."""
-StatedLoop = Annotated[tuple[StatedEdge, ...], Field(min_length=1)]
+LoopSpec = Annotated[tuple[EdgeSpec, ...], Field(min_length=1)]
 """Edges in order, each of which begins where the one before ends, the last closing the loop."""

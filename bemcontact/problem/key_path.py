@@ -4,13 +4,13 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from bemcontact.errors import Complaint, Path, ProblemError, dotted
+from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.validation import described, unknown_word
 
 _STEP = re.compile(r"\.([^.\[\]=]+)|\[(\d+)\]")
 
 
-def parsed_path(text: str) -> Path:
+def parsed_path(text: str) -> KeyPath:
     """Read a path such as ``boundary.outer[2].elements``; `ProblemError` if it is none."""
     path: list[str | int] = []
     position = 0
@@ -24,7 +24,7 @@ def parsed_path(text: str) -> Path:
     return tuple(path)
 
 
-def existing_path(data: Any, path: Path) -> Path:
+def existing_path(data: Any, path: KeyPath) -> KeyPath:
     """Follow a path as far as there is something, with names of list entries replaced by their places.
 
     Parameters
@@ -42,7 +42,7 @@ def existing_path(data: Any, path: Path) -> Path:
     ProblemError
         If the path leads into something that has no entries, or to a place that a list does not have.
     """
-    found: Path = ()
+    found: KeyPath = ()
     for step in path:
         if isinstance(data, list | tuple):
             step = _place(data, step, found)
@@ -51,18 +51,18 @@ def existing_path(data: Any, path: Path) -> Path:
             data = (data or {}).get(step)
         else:
             message = f"has no entry {dotted((step,))}, it is {described(data)}; give a path to a value"
-            raise ProblemError(Complaint(path=found, message=message))
+            raise ProblemError(Issue(path=found, message=message))
         found = (*found, step)
     return found
 
 
-def _place(data: list[Any] | tuple[Any, ...], step: str | int, found: Path) -> int:
+def _place(data: list[Any] | tuple[Any, ...], step: str | int, found: KeyPath) -> int:
     """Find the place in a list that a number or a name means."""
     if isinstance(step, int):
         if step < len(data):
             return step
         message = f"there is no entry [{step}], the list has {len(data)}; count from 0"
-        raise ProblemError(Complaint(path=found, message=message))
+        raise ProblemError(Issue(path=found, message=message))
     names = [entry.get("name") if isinstance(entry, Mapping) else None for entry in data]
     if step in names:
         return names.index(step)
@@ -71,10 +71,10 @@ def _place(data: list[Any] | tuple[Any, ...], step: str | int, found: Path) -> i
     message = (
         unknown_word("entry", step, known) if known else f"a list has places, not keys: write [{place}] for {step!r}"
     )
-    raise ProblemError(Complaint(path=found, message=message))
+    raise ProblemError(Issue(path=found, message=message))
 
 
-def with_entry(data: Any, path: Path, value: Any) -> Any:
+def with_entry(data: Any, path: KeyPath, value: Any) -> Any:
     """Copy nested data with one entry replaced or added; the path is one that `existing_path` returned."""
     if not path:
         return value

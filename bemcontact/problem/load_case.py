@@ -5,15 +5,15 @@ from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from bemcontact.errors import Complaint
+from bemcontact.errors import Issue
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.loads import Loads
-from bemcontact.problem.partial import Written
+from bemcontact.problem.partial import RawValue
 from bemcontact.problem.rigid_tool import WAYS, RigidTool, ToolAction
-from bemcontact.problem.validation import KeyComplaint, Name, Number, Stated, Text, complain, unknown_word
+from bemcontact.problem.validation import KeyIssue, Name, Number, SpecModel, Text, invalid, unknown_word
 
 
-class LoadCase(Stated):
+class LoadCase(SpecModel):
     """Values of conditions, loads and tools that act in addition to those of the problem itself.
 
     A load case does not change what holds the body: a displacement may be given only where the problem has one, and a
@@ -38,14 +38,14 @@ class LoadCase(Stated):
     def _states_something(self) -> Self:
         """Refuse emptiness."""
         if not self.conditions and self.loads == Loads() and not self.tools:
-            raise complain("it states nothing; give conditions, loads or tools")
+            raise invalid("it states nothing; give conditions, loads or tools")
         return self
 
 
 def _not_empty(value: dict[str, float]) -> dict[str, float]:
     """Refuse a combination of nothing."""
     if not value:
-        raise complain("nothing is combined; give load cases with their factors, such as wind: 1.5")
+        raise invalid("nothing is combined; give load cases with their factors, such as wind: 1.5")
     return value
 
 
@@ -53,7 +53,7 @@ Combination = Annotated[dict[Name, Number], AfterValidator(_not_empty), Field(js
 """Factors by load case."""
 
 
-def tool_complaints(tools: Written, zones: Written) -> Iterator[Complaint]:
+def tool_issues(tools: RawValue, zones: RawValue) -> Iterator[Issue]:
     """Check that tools refer to contact zones that there are, and share none.
 
     Parameters
@@ -68,13 +68,13 @@ def tool_complaints(tools: Written, zones: Written) -> Iterator[Complaint]:
         for member in listed:
             zone, name = member.value, str(tool.path[-1])
             if names and isinstance(zone, str) and zone not in names:
-                yield Complaint(path=member.path, message=unknown_word("contact zone", zone, names))
+                yield Issue(path=member.path, message=unknown_word("contact zone", zone, names))
             elif isinstance(zone, str) and tool_of.setdefault(zone, name) != name:
                 message = f"zone '{zone}' belongs to the tool '{tool_of[zone]}' already; a surface moves with one tool"
-                yield Complaint(path=member.path, message=message)
+                yield Issue(path=member.path, message=message)
 
 
-def case_complaints(cases: Written, combinations: Written, parts: Mapping[str, Written]) -> Iterator[Complaint]:
+def case_issues(cases: RawValue, combinations: RawValue, parts: Mapping[str, RawValue]) -> Iterator[Issue]:
     """Check that load cases fit what holds the body and its tools, and combinations the load cases.
 
     Parameters
@@ -86,24 +86,24 @@ def case_complaints(cases: Written, combinations: Written, parts: Mapping[str, W
     tools = {str(item.path[-1]): item.read(RigidTool) for item in parts["tools"].each()}
     for case in cases.each():
         for item in case.below(LoadCase, "conditions").each():
-            yield from _condition_complaints(item, conditions.get(str(item.path[-1])), str(item.path[-1]) in conditions)
+            yield from _condition_issues(item, conditions.get(str(item.path[-1])), str(item.path[-1]) in conditions)
         for item in case.below(LoadCase, "tools").each():
             name = str(item.path[-1])
             if name not in tools:
-                yield KeyComplaint(path=item.path, message=unknown_word("tool", name, tools))
+                yield KeyIssue(path=item.path, message=unknown_word("tool", name, tools))
             elif (tool := tools[name]) is not None:
-                yield from _action_complaints(item, tool)
+                yield from _action_issues(item, tool)
     names = [str(case.path[-1]) for case in cases.each()]
     for combination in combinations.each():
         if (name := str(combination.path[-1])) in names:
             message = f"there is a load case '{name}' already; give the combination another name"
-            yield KeyComplaint(path=combination.path, message=message)
+            yield KeyIssue(path=combination.path, message=message)
         for factor in combination.each():
             if (name := str(factor.path[-1])) not in names:
-                yield KeyComplaint(path=factor.path, message=unknown_word("load case", name, names))
+                yield KeyIssue(path=factor.path, message=unknown_word("load case", name, names))
 
 
-def _condition_complaints(item: Written, base: Condition | None, stated: bool) -> Iterator[Complaint]:
+def _condition_issues(item: RawValue, base: Condition | None, stated: bool) -> Iterator[Issue]:
     """Refuse a condition of a load case that would change how the edge is held."""
     condition = item.read(Condition)
     if condition is None or (stated and base is None):
@@ -115,15 +115,15 @@ def _condition_complaints(item: Written, base: Condition | None, stated: bool) -
                 f"a load case cannot hold an edge that the problem leaves free along {axis}; give the displacement "
                 f"0 along {axis} among the problem's own conditions, and this one in addition"
             )
-            yield Complaint(path=(*item.path, "displacement", axis), message=message)
+            yield Issue(path=(*item.path, "displacement", axis), message=message)
     axes = ("x", "y") if condition.pressure is not None else condition.traction.given
     for axis in sorted({*axes} & {*held}):
         key = ("pressure",) if condition.pressure is not None else ("traction", axis)
         message = f"the problem prescribes the displacement of this edge along {axis}, which leaves no room for it"
-        yield Complaint(path=(*item.path, *key), message=message)
+        yield Issue(path=(*item.path, *key), message=message)
 
 
-def _action_complaints(item: Written, tool: RigidTool) -> Iterator[Complaint]:
+def _action_issues(item: RawValue, tool: RigidTool) -> Iterator[Issue]:
     """Refuse an action of a load case that would change how the tool is guided."""
     action = item.read(ToolAction)
     if action is None:
@@ -132,10 +132,10 @@ def _action_complaints(item: Written, tool: RigidTool) -> Iterator[Complaint]:
         if moved and free:
             what = "moment" if force == "moment" else "force"
             message = f"the tool is free {where}, as the problem loads it there; give a {what}"
-            yield Complaint(path=(*item.path, "displacement", move), message=message)
+            yield Issue(path=(*item.path, "displacement", move), message=message)
         if loaded and not free:
             message = f"the tool is held {where}; give {force}: 0 among the problem's own forces on it to set it free"
-            yield Complaint(path=(*item.path, "force", force), message=message)
+            yield Issue(path=(*item.path, "force", force), message=message)
         if move == "rotation" and moved and tool.point is None:
             message = "a rotation is about a point; give the tool its point: [x, y]"
-            yield Complaint(path=(*item.path, "displacement", "rotation"), message=message)
+            yield Issue(path=(*item.path, "displacement", "rotation"), message=message)

@@ -5,10 +5,10 @@ from typing import Self
 from pydantic import model_validator
 
 from bemcontact.problem.conditions import Field
-from bemcontact.problem.validation import Number, Point, Positive, Stated, complain
+from bemcontact.problem.validation import Number, Point, Positive, SpecModel, invalid
 
 
-class Gravity(Stated):
+class Gravity(SpecModel):
     """Weight: the body force density · acceleration."""
 
     density: Positive
@@ -17,7 +17,7 @@ class Gravity(Stated):
     """Acceleration of gravity [gx, gy], such as [0, -9.81]."""
 
 
-class Centrifugal(Stated):
+class Centrifugal(SpecModel):
     """The body force density · angular_velocity² · (x - center) of a body that rotates steadily."""
 
     density: Positive
@@ -28,7 +28,7 @@ class Centrifugal(Stated):
     """The axis of rotation [x, y]."""
 
 
-class Temperature(Stated):
+class Temperature(SpecModel):
     """Thermal strain expansion · change in all directions.
 
     Raises
@@ -47,11 +47,11 @@ class Temperature(Stated):
         """Refuse a field for which the thermal displacement has no simple closed form."""
         change = self.change
         if excess := [term for term in ("xx", "xy", "yy") if getattr(change, term) != 0]:
-            raise complain(f"change of temperature may have constant, x and y only; leave out {', '.join(excess)}")
+            raise invalid(f"change of temperature may have constant, x and y only; leave out {', '.join(excess)}")
         return self
 
 
-class Loads(Stated):
+class Loads(SpecModel):
     """All volume loads; they add up."""
 
     gravity: Gravity | None = None

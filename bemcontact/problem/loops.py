@@ -6,7 +6,7 @@ from math import dist
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.errors import Complaint, Path
+from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.curves import Edge
 
 Array = NDArray[np.float64]
@@ -15,7 +15,7 @@ TOUCHING = 1e-9
 """Distance over the size of the body below which two edges touch."""
 
 
-def loop_complaints(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> list[Complaint]:
+def loop_issues(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> list[Issue]:
     """Check closed loops; which side they bound is asked only where none crosses another.
 
     Parameters
@@ -25,7 +25,7 @@ def loop_complaints(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> l
 
     Returns
     -------
-    list of Complaint
+    list of Issue
         Each names the edges concerned.
     """
     return [*_crossings(loops, paths)] or [*_orientations(loops, paths)] or [*_nestings(loops, paths)]
@@ -51,7 +51,7 @@ def contains(corners: Array, point: Array) -> bool:
     return bool(np.count_nonzero(straddles & right) % 2)
 
 
-def _crossings(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> Iterator[Complaint]:
+def _crossings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iterator[Issue]:
     """Find edges that meet an earlier one, or themselves, elsewhere than in a common joint; each is named once."""
     placed = [(edge, (*path, i)) for loop, path in zip(loops, paths, strict=True) for i, edge in enumerate(loop)]
     lines = [edge.polyline() for edge, _ in placed]
@@ -69,7 +69,7 @@ def _crossings(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> Iterat
             what = "itself" if i == j else f"'{one.name}'"
             where = f"at ({point[0]:.6g}, {point[1]:.6g})"
             message = f"'{other.name}' crosses or touches {what} {where}; only neighbours may meet, in their common end"
-            yield Complaint(path=path, message=message)
+            yield Issue(path=path, message=message)
 
 
 def _pairs_close_by(lines: Sequence[Array], tolerance: float) -> list[tuple[int, int]]:
@@ -125,7 +125,7 @@ def _cross(a: Array, b: Array) -> Array:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
-def _orientations(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> Iterator[Complaint]:
+def _orientations(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iterator[Issue]:
     """Find loops that have the body on their right."""
     for number, (loop, path) in enumerate(zip(loops, paths, strict=True)):
         anticlockwise = signed_area(polygon(loop)) > 0
@@ -135,7 +135,7 @@ def _orientations(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> Ite
             message = "a hole must run clockwise, it runs anticlockwise; "
         else:
             continue
-        yield Complaint(path=path, message=message + _way_round(loop))
+        yield Issue(path=path, message=message + _way_round(loop))
 
 
 def _way_round(loop: Sequence[Edge]) -> str:
@@ -145,14 +145,14 @@ def _way_round(loop: Sequence[Edge]) -> str:
     return "list its edges in the opposite order and exchange the start and end (or the angles) of each"
 
 
-def _nestings(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> Iterator[Complaint]:
+def _nestings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iterator[Issue]:
     """Find holes that are outside the body, or inside one another."""
     outlines = [polygon(loop) for loop in loops]
     for i in range(1, len(loops)):
         name = loops[i][0].name
         if not contains(outlines[0], outlines[i][0]):
-            yield Complaint(path=paths[i], message=f"the hole of '{name}' is outside the outer loop; move it inside")
+            yield Issue(path=paths[i], message=f"the hole of '{name}' is outside the outer loop; move it inside")
         for j in range(1, len(loops)):
             if i != j and contains(outlines[j], outlines[i][0]):
                 message = f"the hole of '{name}' is inside the hole of '{loops[j][0].name}'; leave it out"
-                yield Complaint(path=paths[i], message=message)
+                yield Issue(path=paths[i], message=message)

@@ -4,10 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from bemcontact.problem.validation import Number, Positive, Stated, complain
+from bemcontact.problem.validation import Number, Positive, SpecModel, invalid
 
 
-class Material(Stated):
+class Material(SpecModel):
     """An isotropic linear elastic material in plane strain or plane stress.
 
     Raises
@@ -28,9 +28,9 @@ class Material(Stated):
     def _in_range(cls, value: float, info: ValidationInfo) -> float:
         """Refuse ν beyond positive energy, and ν = 0.5 in plane strain, where the volume could not change."""
         if not -1 < value <= 0.5:
-            raise complain(f"must be greater than -1 and less than 0.5, found {value:g}")
+            raise invalid(f"must be greater than -1 and less than 0.5, found {value:g}")
         if value == 0.5 and info.data.get("state") == "plane_strain":
-            raise complain("must be less than 0.5 in plane strain, found 0.5; take 0.499, or state: plane_stress")
+            raise invalid("must be less than 0.5 in plane strain, found 0.5; take 0.499, or state: plane_stress")
         return value
 
     @property

@@ -5,19 +5,19 @@ from typing import Any, NamedTuple, Self, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from bemcontact.errors import Path
-from bemcontact.problem.validation import Stated, misspelled
+from bemcontact.errors import KeyPath
+from bemcontact.problem.validation import SpecModel, misspelled
 
-Part = TypeVar("Part", bound=Stated)
+Part = TypeVar("Part", bound=SpecModel)
 
 
-class Written(NamedTuple):
+class RawValue(NamedTuple):
     """A value in a problem and the path of keys to it, in the author's spelling."""
 
-    path: Path
+    path: KeyPath
     value: Any
 
-    def below(self, model: type[Stated], key: str) -> Self:
+    def below(self, model: type[SpecModel], key: str) -> Self:
         """Go to what stands under a key of the model, misspelled or not; the value is None if there is nothing."""
         if isinstance(self.value, BaseModel):
             return self._replace(path=(*self.path, key), value=getattr(self.value, key, None))

@@ -12,26 +12,26 @@ from pydantic import (
     model_validator,
 )
 
-from bemcontact.errors import Complaint, ProblemError
+from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.contact_zone import ContactZone
-from bemcontact.problem.cross_checks import facing_complaints, mesh_complaints
+from bemcontact.problem.cross_checks import facing_issues, mesh_issues
 from bemcontact.problem.curves import Edge
-from bemcontact.problem.edge_names import name_complaints
+from bemcontact.problem.edge_names import name_issues
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.key_path import existing_path, parsed_path, with_entry
-from bemcontact.problem.load_case import Combination, LoadCase, case_complaints, tool_complaints
+from bemcontact.problem.load_case import Combination, LoadCase, case_issues, tool_issues
 from bemcontact.problem.loads import Loads
 from bemcontact.problem.material import Material
-from bemcontact.problem.partial import Written
-from bemcontact.problem.reference import StatedReference, Words, reference_complaints
+from bemcontact.problem.partial import RawValue
+from bemcontact.problem.reference import NonEmptyText, ReferenceSpec, reference_issues
 from bemcontact.problem.rigid_tool import RigidTool, ToolAction
-from bemcontact.problem.validation import Count, Flag, Name, Stated, Text, complain, complaints_of, unknown_word
+from bemcontact.problem.validation import Count, Flag, Name, SpecModel, Text, invalid, issues_of, unknown_word
 from bemcontact.problem.variant import Variant, blamed
 
 
-class Units(Stated):
+class Units(SpecModel):
     """Labels of the units that all numbers are in; nothing is converted."""
 
     length: Text = ""
@@ -45,7 +45,7 @@ class Units(Stated):
         return f"{self.force}/{self.length}²" if self.force and self.length else ""
 
 
-class MeshDensity(Stated):
+class MeshDensity(SpecModel):
     """How fine the mesh is, beyond the elements that each edge states."""
 
     refine: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] = 1
@@ -57,17 +57,17 @@ class MeshDensity(Stated):
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
     """Refuse a problem without contact."""
     if not value:
-        raise complain("there is no contact zone; name at least one, with its edges and its surface")
+        raise invalid("there is no contact zone; name at least one, with its edges and its surface")
     return value
 
 
-class Problem(Stated):
+class Problem(SpecModel):
     """A body in plane strain or plane stress, its conditions and loads, and where it may touch rigid surfaces.
 
     Raises
     ------
     ProblemError
-        With a complaint, and the path of keys it belongs to, for everything that is wrong. Whether the body is held
+        With an issue, and the path of keys it belongs to, for everything that is wrong. Whether the body is held
         at all is not asked here but when it is condensed.
     """
 
@@ -99,7 +99,7 @@ class Problem(Stated):
     """The load case or combination that acts; if left out, all of them are solved one after the other."""
     mesh: MeshDensity = MeshDensity()
     """Refinement of the mesh."""
-    reference: dict[Words, StatedReference] = Field(default_factory=dict)
+    reference: dict[NonEmptyText, ReferenceSpec] = Field(default_factory=dict)
     """What is known of the answer, by name: closed forms and published values, with which it is compared."""
     variants: dict[Name, Variant] = Field(default_factory=dict)
     """The same problem with other values, such as another mesh, by the name of the variant."""
@@ -110,46 +110,46 @@ class Problem(Stated):
         """Check the parts against each other too; where some are wrong, those that are right."""
         try:
             made = handler(data)
-            written, complaints = Written((), made), []
+            written, issues = RawValue((), made), []
         except ValidationError as error:
-            made, written, complaints = None, Written((), data), complaints_of(error)
-        complaints += cls._mismatches(written)
-        if made is not None and not complaints:
-            complaints += made._broken_variants()
-        if made is None or complaints:
-            raise ProblemError(complaints)
+            made, written, issues = None, RawValue((), data), issues_of(error)
+        issues += cls._mismatches(written)
+        if made is not None and not issues:
+            issues += made._broken_variants()
+        if made is None or issues:
+            raise ProblemError(issues)
         return made
 
     @classmethod
-    def _mismatches(cls, written: Written) -> list[Complaint]:
+    def _mismatches(cls, written: RawValue) -> list[Issue]:
         """Find parts that do not fit each other: names first, then the geometry of what is right by itself."""
         boundary, conditions, zones = (written.below(cls, key) for key in ("boundary", "conditions", "contact_zones"))
         cases = [case.below(LoadCase, "conditions") for case in written.below(cls, "load_cases").each()]
-        complaints = name_complaints(boundary, [conditions, *cases], zones)
-        references = reference_complaints(written.below(cls, "reference"), zones, cls._written_cases(written))
+        issues = name_issues(boundary, [conditions, *cases], zones)
+        references = reference_issues(written.below(cls, "reference"), zones, cls._written_cases(written))
         references += cls._wrong_actions(written, zones)
         body = boundary.read(Boundary)
         if body is None:
-            return [*complaints, *references]
-        if not complaints:  # an edge that is in a zone by mistake need not face the surface
+            return [*issues, *references]
+        if not issues:  # an edge that is in a zone by mistake need not face the surface
             surfaces = {zone.path: made for zone in zones.each() if (made := zone.read(ContactZone))}
-            complaints += facing_complaints(body, surfaces)
+            issues += facing_issues(body, surfaces)
         density = written.below(cls, "mesh").read(MeshDensity) or MeshDensity()
-        return [*complaints, *references, *mesh_complaints(body, boundary.path, density.refine)]
+        return [*issues, *references, *mesh_issues(body, boundary.path, density.refine)]
 
     @classmethod
-    def _wrong_actions(cls, written: Written, zones: Written) -> list[Complaint]:
+    def _wrong_actions(cls, written: RawValue, zones: RawValue) -> list[Issue]:
         """Find tools and load cases that do not fit the rest."""
         parts = {key: written.below(cls, key) for key in ("conditions", "tools", "load_cases", "combinations", "case")}
         cases, combinations, case = parts["load_cases"], parts["combinations"], parts["case"]
-        complaints = [*tool_complaints(parts["tools"], zones), *case_complaints(cases, combinations, parts)]
+        issues = [*tool_issues(parts["tools"], zones), *case_issues(cases, combinations, parts)]
         names = cls._written_cases(written)
         if isinstance(case.value, str) and case.value not in names:
-            complaints.append(Complaint(path=case.path, message=unknown_word("load case", case.value, names)))
-        return complaints
+            issues.append(Issue(path=case.path, message=unknown_word("load case", case.value, names)))
+        return issues
 
     @classmethod
-    def _written_cases(cls, written: Written) -> list[str]:
+    def _written_cases(cls, written: RawValue) -> list[str]:
         """Names of load cases and combinations, right or wrong."""
         parts = (written.below(cls, key) for key in ("load_cases", "combinations"))
         return [str(item.path[-1]) for part in parts for item in part.each()]
@@ -171,7 +171,7 @@ class Problem(Stated):
             return {} if name is None else {name: 1.0}
         if name in self.combinations:
             return dict(self.combinations[name])
-        raise ProblemError(Complaint(path=("case",), message=unknown_word("load case", name, self.case_names)))
+        raise ProblemError(Issue(path=("case",), message=unknown_word("load case", name, self.case_names)))
 
     def tool_action(self, tool: str) -> ToolAction:
         """What a tool is displaced and loaded by, with the load cases that act."""
@@ -204,7 +204,7 @@ class Problem(Stated):
             if edge.name == name:
                 return edge
         known = [edge.name for edge in self.boundary.edges]
-        raise ProblemError(Complaint(path=("boundary",), message=unknown_word("edge", name, known)))
+        raise ProblemError(Issue(path=("boundary",), message=unknown_word("edge", name, known)))
 
     def refined(self, parts: int) -> Self:
         """Cut each element into so many equal parts."""
@@ -219,7 +219,7 @@ class Problem(Stated):
             If there is no such variant.
         """
         if name not in self.variants:
-            raise ProblemError(Complaint(path=("variants",), message=unknown_word("variant", name, self.variants)))
+            raise ProblemError(Issue(path=("variants",), message=unknown_word("variant", name, self.variants)))
         values, data = self.variants[name], self.model_dump(exclude={"variants"})
         paths = values.paths(data)
         for key, path in paths.items():
@@ -229,13 +229,13 @@ class Problem(Stated):
         except ProblemError as error:
             raise ProblemError([*blamed(error, paths)]) from None
 
-    def _broken_variants(self) -> Iterator[Complaint]:
+    def _broken_variants(self) -> Iterator[Issue]:
         """Try all variants, so that a mistake in one is found before somebody asks for it."""
         for name in self.variants:
             try:
                 self.variant(name)
             except ProblemError as error:
-                yield from (replace(item, path=("variants", name, *item.path)) for item in error.complaints)
+                yield from (replace(item, path=("variants", name, *item.path)) for item in error.issues)
 
     def with_element_ends(self, ends: Mapping[str, Sequence[float]]) -> Self:
         """State all element ends of some edges; no mesh is fitted any more, and variants are left out.
@@ -255,8 +255,8 @@ class Problem(Stated):
             If an edge does not exist, or its elements cannot end there, would turn too much or are too many.
         """
         boundary = self.boundary.with_element_ends(ends)
-        if complaints := mesh_complaints(boundary, ("boundary",), self.mesh.refine):
-            raise ProblemError(complaints)
+        if issues := mesh_issues(boundary, ("boundary",), self.mesh.refine):
+            raise ProblemError(issues)
         mesh = self.mesh.model_copy(update={"fit_contact_edges": False})
         return self.model_copy(update={"boundary": boundary, "mesh": mesh, "variants": {}})
 

@@ -9,16 +9,16 @@ from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from bemcontact.errors import Complaint
-from bemcontact.problem.closed_form import AnyReference, Crack, FlatPunch, Hertz, ProppedBeam, ShrinkFit, Uniform
-from bemcontact.problem.partial import Written
-from bemcontact.problem.tagged_union import ByKind
+from bemcontact.errors import Issue
+from bemcontact.problem.closed_form import Crack, FlatPunch, Hertz, ProppedBeam, ReferenceBase, ShrinkFit, Uniform
+from bemcontact.problem.partial import RawValue
+from bemcontact.problem.tagged_union import TaggedUnion
 from bemcontact.problem.validation import (
     Number,
     Point,
     Positive,
     Text,
-    complain,
+    invalid,
     listed,
     unknown_word,
     validation_error,
@@ -28,15 +28,15 @@ from bemcontact.problem.validation import (
 def _not_blank(value: str) -> str:
     """Refuse a text without a word."""
     if not value.strip():
-        raise complain("an empty text tells nothing")
+        raise invalid("an empty text tells nothing")
     return value
 
 
-Words = Annotated[Text, AfterValidator(_not_blank)]
+NonEmptyText = Annotated[Text, AfterValidator(_not_blank)]
 """Text that says something; unlike a `Name`, it may contain dots and brackets."""
 
 
-class _Along(AnyReference):
+class _PositionedReference(ReferenceBase):
     """A reference that names places of the contact by a coordinate."""
 
     against: Literal["x", "y", "arc", "angle"] = "x"
@@ -50,15 +50,15 @@ class _Along(AnyReference):
     def _angle_and_its_center(self) -> Self:
         """Refuse an angle without centre, and a centre without angle."""
         if self.against == "angle" and self.center is None:
-            raise complain("angles are measured around a centre; give center: [x, y]")
+            raise invalid("angles are measured around a centre; give center: [x, y]")
         if self.against != "angle" and (self.center or self.zero):
-            raise complain("center and zero belong to angles; leave them out, or write against: angle")
+            raise invalid("center and zero belong to angles; leave them out, or write against: angle")
         if self.zero == (0.0, 0.0):
-            raise complain("zero: [0, 0] has no direction; let it point to where the angle is 0")
+            raise invalid("zero: [0, 0] has no direction; let it point to where the angle is 0")
         return self
 
 
-class Values(_Along):
+class Values(_PositionedReference):
     """Single values that somebody found.
 
     Raises
@@ -69,7 +69,7 @@ class Values(_Along):
 
     kind: Literal["values"] = "values"
     """The form of the reference: values."""
-    source: Words
+    source: NonEmptyText
     """Where the values come from."""
     peak: Positive | None = None
     """The largest pressure."""
@@ -89,14 +89,14 @@ class Values(_Along):
         """Refuse a reference that says nothing, and ends in the wrong order."""
         quantities = ("peak", "half_width", "contact_length", "start", "end", "resultant")
         if all(getattr(self, quantity) is None for quantity in quantities):
-            raise complain(f"it states no value; give one or more of {listed(quantities)}")
+            raise invalid(f"it states no value; give one or more of {listed(quantities)}")
         if self.start is not None and self.end is not None and not self.start < self.end:
             message = f"must be greater than start = {self.start:g}, found {self.end:g}"
-            raise validation_error("values", [Complaint(path=("end",), message=message)])
+            raise validation_error("values", [Issue(path=("end",), message=message)])
         return self
 
 
-class Table(_Along):
+class Table(_PositionedReference):
     """A curve of pressure that somebody found, as points between which it is straight; beyond them it says nothing.
 
     Raises
@@ -107,7 +107,7 @@ class Table(_Along):
 
     kind: Literal["table"] = "table"
     """The form of the reference: table."""
-    source: Words
+    source: NonEmptyText
     """Where the values come from."""
     pressure: Annotated[tuple[Point, ...], Field(min_length=2)]
     """Pairs [position, pressure] in any order."""
@@ -115,31 +115,31 @@ class Table(_Along):
     @model_validator(mode="after")
     def _is_a_curve(self) -> Self:
         """Refuse pairs that are no curve of pressure."""
-        if complaints := list(self._wrong_pairs()):
-            raise validation_error("table", complaints)
+        if issues := list(self._wrong_pairs()):
+            raise validation_error("table", issues)
         return self
 
-    def _wrong_pairs(self) -> Iterator[Complaint]:
+    def _wrong_pairs(self) -> Iterator[Issue]:
         """Complain about single pairs, then about two at one position."""
         for i, (position, pressure) in enumerate(self.pressure):
             if pressure < 0:
                 message = f"a contact pressure is not negative, found {pressure:g}"
-                yield Complaint(path=("pressure", i, 1), message=message)
+                yield Issue(path=("pressure", i, 1), message=message)
             if self.against == "angle" and abs(position) > 180:
                 message = f"angles go from -180 to 180 degrees, found {position:g}"
-                yield Complaint(path=("pressure", i, 0), message=message)
+                yield Issue(path=("pressure", i, 0), message=message)
         order = sorted(range(len(self.pressure)), key=lambda i: (self.pressure[i][0], i))
         for before, after in pairwise(order):
             if self.pressure[before][0] == self.pressure[after][0]:
                 message = f"the position {self.pressure[after][0]:g} stands in pressure[{before}] too; keep one"
-                yield Complaint(path=("pressure", after, 0), message=message)
+                yield Issue(path=("pressure", after, 0), message=message)
 
 
 Reference = Hertz | FlatPunch | ShrinkFit | Uniform | Crack | ProppedBeam | Values | Table
 """Anything that is known of the answer."""
-StatedReference = Annotated[
+ReferenceSpec = Annotated[
     Reference,
-    ByKind(
+    TaggedUnion(
         what="a reference",
         kinds={
             "hertz": Hertz,
@@ -156,7 +156,7 @@ StatedReference = Annotated[
 """A reference as it is written; `kind` says which."""
 
 
-def reference_complaints(references: Written, zones: Written, cases: Sequence[str]) -> list[Complaint]:
+def reference_issues(references: RawValue, zones: RawValue, cases: Sequence[str]) -> list[Issue]:
     """Check that references mean zones and load cases that there are, and say which zone where there are several.
 
     Parameters
@@ -165,20 +165,20 @@ def reference_complaints(references: Written, zones: Written, cases: Sequence[st
     cases : names of load cases and combinations
     """
     names = [str(zone.path[-1]) for zone in zones.each()]
-    complaints = []
+    issues = []
     for reference in references.each():
         zone, case = reference.below(Hertz, "zone"), reference.below(Hertz, "case")
         if isinstance(case.value, str) and case.value not in cases:
-            complaints.append(Complaint(path=case.path, message=unknown_word("load case", case.value, cases)))
+            issues.append(Issue(path=case.path, message=unknown_word("load case", case.value, cases)))
         if isinstance(zone.value, str) and names and zone.value not in names:
-            complaints.append(Complaint(path=zone.path, message=unknown_word("contact zone", zone.value, names)))
+            issues.append(Issue(path=zone.path, message=unknown_word("contact zone", zone.value, names)))
         elif zone.value is None and len(names) > 1 and _needs_one_zone(reference):
             message = f"there are {len(names)} contact zones; say which one is meant, zone: {' or '.join(names)}"
-            complaints.append(Complaint(path=reference.path, message=message))
-    return complaints
+            issues.append(Issue(path=reference.path, message=message))
+    return issues
 
 
-def _needs_one_zone(reference: Written) -> bool:
+def _needs_one_zone(reference: RawValue) -> bool:
     """Tell that a reference makes no sense of several contacts at once."""
     kind, against = (reference.below(Table, key).value for key in ("kind", "against"))
     foot = reference.below(Values, "half_width").value is not None and kind == "values"

@@ -12,8 +12,8 @@ from scipy.interpolate import CubicSpline
 
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.loads import Loads
-from bemcontact.problem.tagged_union import ByKind
-from bemcontact.problem.validation import Name, Point, Positive, Stated, complain
+from bemcontact.problem.tagged_union import TaggedUnion
+from bemcontact.problem.validation import Name, Point, Positive, SpecModel, invalid
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class Closest(NamedTuple):
     normals: Array
 
 
-class Plane(Stated):
+class Plane(SpecModel):
     """A straight surface without end."""
 
     kind: Literal["plane"] = "plane"
@@ -51,7 +51,7 @@ class Plane(Stated):
     def _directed(self) -> Self:
         """Refuse a normal without direction."""
         if not np.hypot(*self.normal) > 0:
-            raise complain("the normal [0, 0] has no direction; let it point from the surface into the body")
+            raise invalid("the normal [0, 0] has no direction; let it point from the surface into the body")
         return self
 
     @property
@@ -66,7 +66,7 @@ class Plane(Stated):
         return Closest(offset @ normal, np.tile(normal, (len(offset), 1)))
 
 
-class Circle(Stated):
+class Circle(SpecModel):
     """A rigid disc with the body outside, or a rigid hole with the body inside."""
 
     kind: Literal["circle"] = "circle"
@@ -85,7 +85,7 @@ class Circle(Stated):
         return Closest(side * (np.hypot(*offset.T) - self.radius), side * _unit(offset, np.array([0.0, 1.0])))
 
 
-class Polyline(Stated):
+class Polyline(SpecModel):
     """Straight pieces from point to point, the first and the last going on without end, the body on the left."""
 
     kind: Literal["polyline"] = "polyline"
@@ -131,7 +131,7 @@ class Polyline(Stated):
         return Closest(np.einsum("ki,ki->k", offset, normals), normals)
 
 
-class Spline(Stated):
+class Spline(SpecModel):
     """A smooth curve through points, straight at both ends and going on so without end, the body on the left.
 
     Both coordinates are natural cubic splines of the length along the chords.
@@ -206,7 +206,7 @@ class Spline(Stated):
 def _says_something(value: Any) -> Any:
     """Refuse a condition of the contour that states nothing: here, it may be meant to take a load away."""
     if isinstance(value, Mapping) and all(part == {} for part in value.values()):
-        raise complain(
+        raise invalid(
             "it states nothing; give traction: {x: 0, y: 0} if nothing acts there while the contour is deflected, or "
             "leave the edge out, which then keeps the condition of the problem"
         )
@@ -217,7 +217,7 @@ OtherCondition = Annotated[Condition, BeforeValidator(_says_something)]
 """A condition in place of the problem's own."""
 
 
-class DeflectedContour(Stated):
+class DeflectedContour(SpecModel):
     """The contour that the body itself is deflected to by other loads, touching nothing.
 
     The gap is measured between the two places of one material point, along a fixed direction d: ε = -u·d, where u is
@@ -238,9 +238,9 @@ class DeflectedContour(Stated):
     def _deflected(self) -> Self:
         """Refuse a direction that is none, and a contour of the very problem."""
         if not np.hypot(*self.direction) > 0:
-            raise complain("the direction [0, 0] is none; let it point from the surface into the body")
+            raise invalid("the direction [0, 0] is none; let it point from the surface into the body")
         if not self.conditions and self.loads == Loads():
-            raise complain("nothing says what deflects the contour; give conditions that differ from the problem's")
+            raise invalid("nothing says what deflects the contour; give conditions that differ from the problem's")
         return self
 
     @property
@@ -259,10 +259,10 @@ def _ensure_simple(points: tuple[Point, ...]) -> None:
     sides = np.diff(np.array(points), axis=0)
     for i, side in enumerate(sides):
         if not np.hypot(*side) > 0:
-            raise complain(f"points {i} and {i + 1} are the same: {list(points[i])}; leave one out")
+            raise invalid(f"points {i} and {i + 1} are the same: {list(points[i])}; leave one out")
     for i, (side, after) in enumerate(pairwise(sides)):
         if side @ after <= -(1 - 1e-12) * np.hypot(*side) * np.hypot(*after):
-            raise complain(f"the line folds back on itself at point {i + 1}: {list(points[i + 1])}")
+            raise invalid(f"the line folds back on itself at point {i + 1}: {list(points[i + 1])}")
 
 
 def _of_length_one(vector: Point) -> Point:
@@ -281,9 +281,9 @@ Shape = Plane | Circle | Polyline | Spline
 """A rigid surface that has a gap at any point of the plane."""
 RigidSurface = Shape | DeflectedContour
 """The surface that the body may touch."""
-StatedSurface = Annotated[
+SurfaceSpec = Annotated[
     RigidSurface,
-    ByKind(
+    TaggedUnion(
         what="a rigid surface",
         kinds={
             "plane": Plane,

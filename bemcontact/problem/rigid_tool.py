@@ -5,10 +5,10 @@ from typing import Annotated, Self
 from pydantic import AfterValidator, model_validator
 
 from bemcontact.problem.contact_zone import EdgeNames
-from bemcontact.problem.validation import Number, Point, Stated, complain
+from bemcontact.problem.validation import Number, Point, SpecModel, invalid
 
 
-class ToolDisplacement(Stated):
+class ToolDisplacement(SpecModel):
     """Where a tool is displaced to; it stays where it is along what is left out."""
 
     x: Number | None = None
@@ -19,7 +19,7 @@ class ToolDisplacement(Stated):
     """Small rotation about the point, in radians, anticlockwise."""
 
 
-class ToolForce(Stated):
+class ToolForce(SpecModel):
     """What a tool is loaded by, per thickness; it is free to move along what is given, be it 0."""
 
     x: Number | None = None
@@ -34,7 +34,7 @@ WAYS = (("x", "x", "along x"), ("y", "y", "along y"), ("rotation", "moment", "in
 """Component of the displacement, that of the force, and both in words."""
 
 
-class ToolAction(Stated):
+class ToolAction(SpecModel):
     """What happens to a tool: a displacement, a force, or one along one axis and the other along another."""
 
     displacement: ToolDisplacement = ToolDisplacement()
@@ -48,9 +48,9 @@ class ToolAction(Stated):
         for move, force, where in WAYS:
             if getattr(self.displacement, move) is not None and getattr(self.force, force) is not None:
                 what = "moment" if force == "moment" else "force"
-                raise complain(f"both displacement and {what} are given {where}; give one of them only")
+                raise invalid(f"both displacement and {what} are given {where}; give one of them only")
         if not any(self.displaced) and not any(self.free):
-            raise complain("it states nothing; give a displacement or a force, or leave the tool out")
+            raise invalid("it states nothing; give a displacement or a force, or leave the tool out")
         return self
 
     @property
@@ -79,7 +79,7 @@ class ToolAction(Stated):
         return ToolAction(displacement=displacement, force=ToolForce(**_sum(self.force, factor, other.force)))
 
 
-def _sum(one: Stated, factor: float, other: Stated) -> dict[str, float]:
+def _sum(one: SpecModel, factor: float, other: SpecModel) -> dict[str, float]:
     """Add a multiple of components that are given to those of the same kind, by name."""
     found: dict[str, float] = {}
     for weight, part in ((1.0, one), (factor, other)):
@@ -93,7 +93,7 @@ def _each_once(value: tuple[str, ...]) -> tuple[str, ...]:
     """Refuse a zone that is listed twice."""
     for i, name in enumerate(value):
         if name in value[:i]:
-            raise complain(f"zone '{name}' is listed twice; list it once")
+            raise invalid(f"zone '{name}' is listed twice; list it once")
     return value
 
 
@@ -117,5 +117,5 @@ class RigidTool(ToolAction):
         """Refuse a rotation or a moment about nowhere."""
         if self.point is None and (self.displaced[2] or self.free[2]):
             what = "rotation" if self.displaced[2] else "moment"
-            raise complain(f"a {what} is about a point; give point: [x, y]")
+            raise invalid(f"a {what} is about a point; give point: [x, y]")
         return self

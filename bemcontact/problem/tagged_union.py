@@ -8,12 +8,12 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
-from bemcontact.errors import Complaint
-from bemcontact.problem.validation import Stated, complain, described, listed, unknown_word, validation_error
+from bemcontact.errors import Issue
+from bemcontact.problem.validation import SpecModel, described, invalid, listed, unknown_word, validation_error
 
 
 @dataclass(frozen=True, kw_only=True)
-class ByKind:
+class TaggedUnion:
     """Annotation of a union: its member is chosen by the key `kind`, here and in the JSON Schema.
 
     Parameters
@@ -24,7 +24,7 @@ class ByKind:
     """
 
     what: str
-    kinds: Mapping[str, type[Stated]]
+    kinds: Mapping[str, type[SpecModel]]
     default: str | None = None
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -47,18 +47,18 @@ class ByKind:
             condition["required"] = ["kind"]
         return {"if": condition, "then": member}
 
-    def _chosen(self, value: Any) -> Stated:
+    def _chosen(self, value: Any) -> SpecModel:
         """Read a mapping as the kind that it says it is."""
         if isinstance(value, tuple(self.kinds.values())):
             return value
         if not isinstance(value, Mapping):
-            raise complain(f"expected a mapping that describes {self.what}, found {described(value)}")
+            raise invalid(f"expected a mapping that describes {self.what}, found {described(value)}")
         kind = value.get("kind", self.default)
         if not isinstance(kind, str) or kind not in self.kinds:
-            raise validation_error(self.what, [Complaint(path=("kind",), message=self._no_kind(value))])
+            raise validation_error(self.what, [Issue(path=("kind",), message=self._no_kind(value))])
         if "kind" not in value and (better := self._fitting(kind, value)):
             message = f"missing; {self.what} with these keys needs {' or '.join(f'kind: {word}' for word in better)}"
-            raise validation_error(self.what, [Complaint(path=("kind",), message=message)])
+            raise validation_error(self.what, [Issue(path=("kind",), message=message)])
         return self.kinds[kind].model_validate(value)
 
     def _no_kind(self, value: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""What all parts of a problem share: they are frozen, strict about types, and complain in the user's words."""
+"""What all parts of a problem share: they are frozen, strict about types, and invalid in the user's words."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -19,7 +19,7 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
-from bemcontact.errors import Complaint, ProblemError
+from bemcontact.errors import Issue, ProblemError
 
 LARGEST_NUMBER = 1e100
 """Its square is still a floating-point number, so that lengths and areas can be computed."""
@@ -27,23 +27,23 @@ _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
 
 
 @dataclass(frozen=True, kw_only=True)
-class KeyComplaint(Complaint):
-    """A complaint about the last key of the path itself, not about what stands there."""
+class KeyIssue(Issue):
+    """An issue about the last key of the path itself, not about what stands there."""
 
 
-def complain(message: str) -> PydanticCustomError:
+def invalid(message: str) -> PydanticCustomError:
     """Make the error that a validator raises about the value it looks at."""
-    return PydanticCustomError("complaint", "{message}", {"message": message})
+    return PydanticCustomError("issue", "{message}", {"message": message})
 
 
-def validation_error(title: str, complaints: Iterable[Complaint]) -> ValidationError:
+def validation_error(title: str, issues: Iterable[Issue]) -> ValidationError:
     """Make the error that a validator raises about several places inside the value it looks at."""
-    return ValidationError.from_exception_data(title, [_line_error(complaint) for complaint in complaints])
+    return ValidationError.from_exception_data(title, [_line_error(issue) for issue in issues])
 
 
-def complaints_of(error: ValidationError) -> list[Complaint]:
-    """Read the complaints back from an error that `Stated` has worded."""
-    return [_complaint(details) for details in error.errors(include_url=False, include_input=False)]
+def issues_of(error: ValidationError) -> list[Issue]:
+    """Read the issues back from an error that `SpecModel` has worded."""
+    return [_issue(details) for details in error.errors(include_url=False, include_input=False)]
 
 
 def near_by(word: str, known: Iterable[str]) -> str | None:
@@ -69,13 +69,13 @@ def described(value: object) -> str:
     return _shortened(str(value))
 
 
-class Stated(BaseModel):
+class SpecModel(BaseModel):
     """Base of everything that a user states.
 
     Raises
     ------
     ProblemError
-        If a part is made from something that it cannot be, with one complaint for each mistake.
+        If a part is made from something that it cannot be, with one issue for each mistake.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
@@ -84,42 +84,42 @@ class Stated(BaseModel):
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise ProblemError(complaints_of(error)) from None
+            raise ProblemError(issues_of(error)) from None
 
-    # A part inside a part is then validated as pydantic does it, so that its complaints get their full path.
+    # A part inside a part is then validated as pydantic does it, so that its issues get their full path.
     __init__.__pydantic_base_init__ = True  # pyright: ignore[reportFunctionMemberAccess]
 
     @model_validator(mode="wrap")
     @classmethod
-    def _complain_in_words(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+    def _translate_errors(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         """Translate what pydantic says about the keys of this very class; inner parts have done so already."""
         try:
             return handler(data)
         except ValidationError as error:
-            complaints = [*_worded(cls, error), *_below_misspelled(cls, data, handler)]
-            raise validation_error(cls.__name__, complaints) from None
+            issues = [*_worded(cls, error), *_below_misspelled(cls, data, handler)]
+            raise validation_error(cls.__name__, issues) from None
 
 
 def _finite(value: float) -> float:
     """Refuse what cannot be computed with."""
     if abs(value) > LARGEST_NUMBER:
-        raise complain(f"{value:.3g} is too large to compute with; choose other units")
+        raise invalid(f"{value:.3g} is too large to compute with; choose other units")
     return value
 
 
 def _pair(value: Any) -> Any:
     """Refuse a list that is not a pair, before its entries are looked at."""
     if not isinstance(value, list | tuple) or len(value) != 2:
-        raise complain(f"expected two numbers such as [0.0, 1.5], found {described(value)}")
+        raise invalid(f"expected two numbers such as [0.0, 1.5], found {described(value)}")
     return value
 
 
 def _usable_name(value: str) -> str:
     """Refuse names that could not stand in a key path."""
     if not value.strip():
-        raise complain("a name must not be empty")
+        raise invalid("a name must not be empty")
     if bad := sorted(set(value) & set(".[]=")):
-        raise complain(f"a name must not contain {' '.join(bad)}, which key paths use; found {value!r}")
+        raise invalid(f"a name must not contain {' '.join(bad)}, which key paths use; found {value!r}")
     return value
 
 
@@ -142,13 +142,13 @@ PositivePair = Annotated[tuple[Positive, Positive], BeforeValidator(_pair)]
 """Two numbers greater than 0."""
 
 
-def _worded(cls: type[BaseModel], error: ValidationError) -> list[Complaint]:
+def _worded(cls: type[BaseModel], error: ValidationError) -> list[Issue]:
     """Put the errors of one class into words; a missing key is not reported beside its misspelling."""
     details = error.errors(include_url=False)
     unknown = {str(item["loc"][-1]) for item in details if item["type"] == "extra_forbidden" and len(item["loc"]) == 1}
     meant = {near_by(key, cls.model_fields) for key in unknown}
     return [
-        _complaint(item) if _is_worded(item) else _translated(cls, item)
+        _issue(item) if _is_worded(item) else _translated(cls, item)
         for item in details
         if not (item["type"] == "missing" and item["loc"][-1] in meant) and not _is_consequence(item)
     ]
@@ -161,15 +161,15 @@ def misspelled(cls: type[BaseModel], data: Mapping[str, Any]) -> dict[str, str]:
     return {key: word for key, word in meant.items() if word is not None and word not in data}
 
 
-def _below_misspelled(cls: type[BaseModel], data: Any, handler: ModelWrapValidatorHandler[Any]) -> list[Complaint]:
+def _below_misspelled(cls: type[BaseModel], data: Any, handler: ModelWrapValidatorHandler[Any]) -> list[Issue]:
     """Complain about what stands under misspelled keys too, as if they were spelled right."""
     found = []
     for key, meant in misspelled(cls, data).items() if isinstance(data, Mapping) else ():
         try:
             handler({meant: data[key]})
         except ValidationError as error:
-            complaints = [complaint for complaint in _worded(cls, error) if complaint.path[:1] == (meant,)]
-            found += [replace(complaint, path=(key, *complaint.path[1:])) for complaint in complaints]
+            issues = [issue for issue in _worded(cls, error) if issue.path[:1] == (meant,)]
+            found += [replace(issue, path=(key, *issue.path[1:])) for issue in issues]
     return found
 
 
@@ -179,34 +179,34 @@ def _is_consequence(details: ErrorDetails) -> bool:
 
 
 def _is_worded(details: ErrorDetails) -> bool:
-    return details["type"] in {"complaint", "key_complaint"}
+    return details["type"] in {"issue", "key_issue"}
 
 
-def _complaint(details: ErrorDetails) -> Complaint:
-    kind = KeyComplaint if details["type"] == "key_complaint" else Complaint
+def _issue(details: ErrorDetails) -> Issue:
+    kind = KeyIssue if details["type"] == "key_issue" else Issue
     return kind(path=details["loc"], message=details["msg"])
 
 
-def _line_error(complaint: Complaint) -> InitErrorDetails:
-    kind = "key_complaint" if isinstance(complaint, KeyComplaint) else "complaint"
-    error = PydanticCustomError(kind, "{message}", {"message": complaint.message})
-    return InitErrorDetails(type=error, loc=complaint.path, input=None)
+def _line_error(issue: Issue) -> InitErrorDetails:
+    kind = "key_issue" if isinstance(issue, KeyIssue) else "issue"
+    error = PydanticCustomError(kind, "{message}", {"message": issue.message})
+    return InitErrorDetails(type=error, loc=issue.path, input=None)
 
 
-def _translated(cls: type[BaseModel], details: ErrorDetails) -> Complaint:
-    """Turn one of pydantic's own errors into a complaint."""
+def _translated(cls: type[BaseModel], details: ErrorDetails) -> Issue:
+    """Turn one of pydantic's own errors into an issue."""
     path = details["loc"]
     if path and path[-1] == "[key]":
         name = str(path[-2])
-        return KeyComplaint(path=path[:-1], message=f"a name must be a text; write it in quotes: '{name}'")
+        return KeyIssue(path=path[:-1], message=f"a name must be a text; write it in quotes: '{name}'")
     if details["type"] == "extra_forbidden":
-        return KeyComplaint(path=path, message=unknown_word("key", str(path[-1]), cls.model_fields))
+        return KeyIssue(path=path, message=unknown_word("key", str(path[-1]), cls.model_fields))
     if details["type"] == "missing":
-        return Complaint(path=path, message=_missing(cls, str(path[-1])))
+        return Issue(path=path, message=_missing(cls, str(path[-1])))
     if details["type"] == "model_type":
         expected = f"a mapping with the keys {listed(cls.model_fields)}"
-        return Complaint(path=path, message=f"expected {expected}; found {described(details['input'])}")
-    return Complaint(path=path, message=_wrong_value(details))
+        return Issue(path=path, message=f"expected {expected}; found {described(details['input'])}")
+    return Issue(path=path, message=_wrong_value(details))
 
 
 def unknown_word(what: str, word: str, known: Iterable[str]) -> str:

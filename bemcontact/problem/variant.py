@@ -5,19 +5,19 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
 
-from bemcontact.errors import Complaint, Path, ProblemError, dotted
+from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.key_path import existing_path, parsed_path
-from bemcontact.problem.validation import Stated, Text, complain
+from bemcontact.problem.validation import SpecModel, Text, invalid
 
 
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
     """Refuse a variant in which nothing varies."""
     if not value:
-        raise complain("nothing is set; give values by their key paths, such as boundary.outer.top.elements: 5")
+        raise invalid("nothing is set; give values by their key paths, such as boundary.outer.top.elements: 5")
     return value
 
 
-class Variant(Stated):
+class Variant(SpecModel):
     """Values that are set in place of others, all of them at once."""
 
     description: Text = ""
@@ -25,23 +25,23 @@ class Variant(Stated):
     set: Annotated[dict[Text, Any], AfterValidator(_not_empty), Field(json_schema_extra={"minProperties": 1})]
     """The values by their key paths, such as boundary.outer.top.elements: 5."""
 
-    def paths(self, data: Mapping[str, Any]) -> dict[str, Path]:
+    def paths(self, data: Mapping[str, Any]) -> dict[str, KeyPath]:
         """Follow the key paths in the data of a problem; `ProblemError` about the key if one leads nowhere."""
-        found, complaints = {}, []
+        found, issues = {}, []
         for key in self.set:
             try:
                 found[key] = existing_path(data, parsed_path(key))
             except ProblemError as error:
-                complaints += [Complaint(path=("set", key), message=str(item)) for item in error.complaints]
+                issues += [Issue(path=("set", key), message=str(item)) for item in error.issues]
                 continue
             if found[key][0] == "variants":
-                complaints.append(Complaint(path=("set", key), message="a variant varies the problem, no variants"))
-        if complaints:
-            raise ProblemError(complaints)
+                issues.append(Issue(path=("set", key), message="a variant varies the problem, no variants"))
+        if issues:
+            raise ProblemError(issues)
         return found
 
 
-def blamed(error: ProblemError, paths: Mapping[str, Path]) -> Iterator[Complaint]:
+def blamed(error: ProblemError, paths: Mapping[str, KeyPath]) -> Iterator[Issue]:
     """Say of what is wrong with a varied problem which of the values is to blame, or that all together are.
 
     Parameters
@@ -51,10 +51,10 @@ def blamed(error: ProblemError, paths: Mapping[str, Path]) -> Iterator[Complaint
 
     Yields
     ------
-    Complaint
+    Issue
         With its path from the variant.
     """
-    for item in error.complaints:
+    for item in error.issues:
         keys = [key for key, path in paths.items() if item.path[: len(path)] == path]
         told = f"{dotted(item.path)}: {item.message}" if item.path else item.message
-        yield Complaint(path=("set", keys[-1]) if keys else (), message=f"with this variant, {told}")
+        yield Issue(path=("set", keys[-1]) if keys else (), message=f"with this variant, {told}")

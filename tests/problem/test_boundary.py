@@ -21,10 +21,10 @@ def circle(name="bore", center=(1.0, 1.0), radius=0.5, angles=(360, 0)):
     return Arc(name=name, center=center, radius=radius, angles=angles, elements=8)
 
 
-def complaints(**loops):
+def issues(**loops):
     with pytest.raises(ProblemError) as caught:
         Boundary(**loops)
-    return [str(complaint) for complaint in caught.value.complaints]
+    return [str(issue) for issue in caught.value.issues]
 
 
 def test_ends_that_are_left_out_are_those_of_the_neighbours():
@@ -82,7 +82,7 @@ def test_no_complaint_depends_on_place_or_unit(radius, x, y, scale):
 def test_open_loop_says_both_points_and_the_distance():
     lines = square()
     lines[0] = Line(name="bottom", start=(0, 0), end=(1.5, 0), elements=2)
-    assert complaints(outer=lines) == [
+    assert issues(outer=lines) == [
         "outer[1].start: the loop is open: 'right' starts at (2, 0), but 'bottom' before it ends at (1.5, 0), "
         "0.5 away; leave the start out to join them"
     ]
@@ -91,7 +91,7 @@ def test_open_loop_says_both_points_and_the_distance():
 def test_all_gaps_are_reported_and_the_line_next_to_an_arc_may_give_way():
     arc = Arc(name="arc", center=(0, 0), radius=1, angles=(0, 90), elements=2)
     lines = [Line(name="down", start=(0, 0.9), end=(0, 0), elements=1), Line(name="along", end=(0.9, 0), elements=1)]
-    first, second = complaints(outer=[arc, *lines])
+    first, second = issues(outer=[arc, *lines])
     assert first.startswith("outer[0].angles: the loop is open: 'arc' starts at (1, 0), but 'along'")
     assert "leave the end of 'along' out" in first
     assert second.startswith("outer[1].start: the loop is open: 'down' starts at (0, 0.9), but 'arc'")
@@ -100,12 +100,12 @@ def test_all_gaps_are_reported_and_the_line_next_to_an_arc_may_give_way():
 def test_open_loop_asks_for_degrees_if_the_angles_may_be_radians():
     lines = [Line(name="down", start=(0, 1), end=(0, 0), elements=1), Line(name="along", end=(1, 0), elements=1)]
     arc = Arc(name="arc", center=(0, 0), radius=1, angles=(0, 1.5708), elements=2)
-    [complaint] = complaints(outer=[arc, *lines])
-    assert complaint.endswith("; angles are in degrees: are those of 'arc' in radians?")
-    full = complaints(outer=square(), holes=[[circle(angles=(6.2832, 0))]])
+    [issue] = issues(outer=[arc, *lines])
+    assert issue.endswith("; angles are in degrees: are those of 'arc' in radians?")
+    full = issues(outer=square(), holes=[[circle(angles=(6.2832, 0))]])
     assert full[0].endswith("are those of 'bore' in radians?")
     degrees = arc.model_copy(update={"angles": (0, 80)})
-    assert "radians" not in complaints(outer=[degrees, *lines])[0]
+    assert "radians" not in issues(outer=[degrees, *lines])[0]
 
 
 def test_gap_within_round_off_is_closed():
@@ -118,7 +118,7 @@ def test_gap_within_round_off_is_closed():
 def test_joint_that_nobody_knows_names_both_edges():
     lines = square()
     lines[1] = Line(name="right", elements=1)
-    assert complaints(outer=lines) == [
+    assert issues(outer=lines) == [
         "outer[1]: neither the start of 'right' nor the end of 'bottom' before it is given; give one"
     ]
 
@@ -139,13 +139,13 @@ def test_joint_that_nobody_knows_names_both_edges():
 )
 def test_degenerate_edges_are_refused(edge, words):
     rest = [Line(name="rise", end=(0, 1), elements=1), Line(name="fall", elements=1)]
-    assert words in complaints(outer=[edge, *rest])[0]
+    assert words in issues(outer=[edge, *rest])[0]
 
 
 def test_loop_that_crosses_itself_names_both_edges_and_the_point():
     corners = [(0, 0), (2, 0), (0, 2), (2, 2)]
     lines = [Line(name=f"side {i}", start=corner, elements=1) for i, corner in enumerate(corners)]
-    assert complaints(outer=lines) == [
+    assert issues(outer=lines) == [
         "outer[3]: 'side 3' crosses or touches 'side 1' at (1, 1); only neighbours may meet, in their common end"
     ]
 
@@ -153,19 +153,19 @@ def test_loop_that_crosses_itself_names_both_edges_and_the_point():
 def test_loop_that_touches_itself_in_a_corner_is_refused():
     corners = [(0, 0), (2, 0), (1, 1), (2, 2), (0, 2), (1, 1)]
     lines = [Line(name=f"side {i}", start=corner, elements=1) for i, corner in enumerate(corners)]
-    assert any("at (1, 1)" in line for line in complaints(outer=lines))
+    assert any("at (1, 1)" in line for line in issues(outer=lines))
 
 
 def test_edge_that_folds_back_on_its_neighbour_is_refused():
     corners = [(0, 0), (2, 0), (2, 2), (2, 1), (0, 1)]
     lines = [Line(name=f"side {i}", start=corner, elements=1) for i, corner in enumerate(corners)]
-    assert "'side 2' crosses or touches 'side 1' at (2, 1.5)" in complaints(outer=lines)[0]
+    assert "'side 2' crosses or touches 'side 1' at (2, 1.5)" in issues(outer=lines)[0]
 
 
 def test_hole_that_cuts_the_outside_or_another_hole_is_refused():
-    assert "'bore' crosses or touches" in complaints(outer=square(), holes=[[circle(center=(2, 1))]])[0]
+    assert "'bore' crosses or touches" in issues(outer=square(), holes=[[circle(center=(2, 1))]])[0]
     holes = [[circle()], [circle(name="other", center=(1.2, 1.0))]]
-    assert complaints(outer=square(), holes=holes)[0].startswith("holes[1][0]: 'other' crosses or touches 'bore' at")
+    assert issues(outer=square(), holes=holes)[0].startswith("holes[1][0]: 'other' crosses or touches 'bore' at")
 
 
 def test_loops_that_run_the_wrong_way_round_are_refused_together():
@@ -173,7 +173,7 @@ def test_loops_that_run_the_wrong_way_round_are_refused_together():
         Line(name=name, start=start, elements=1)
         for name, start in (("left", (0, 0)), ("top", (0, 2)), ("right", (2, 2)), ("bottom", (2, 0)))
     ]
-    outer, hole = complaints(outer=backwards, holes=[[circle(angles=(0, 360))]])
+    outer, hole = issues(outer=backwards, holes=[[circle(angles=(0, 360))]])
     assert outer.startswith(
         "outer: the outer loop must run anticlockwise, it runs clockwise; list its edges in the opp"
     )
@@ -181,17 +181,17 @@ def test_loops_that_run_the_wrong_way_round_are_refused_together():
 
 
 def test_holes_are_inside_the_body():
-    assert "outside the outer loop" in complaints(outer=square(), holes=[[circle(center=(5, 5))]])[0]
+    assert "outside the outer loop" in issues(outer=square(), holes=[[circle(center=(5, 5))]])[0]
     inner = circle(name="inner", radius=0.25)
-    assert "'inner' is inside the hole of 'bore'" in complaints(outer=square(), holes=[[circle()], [inner]])[0]
+    assert "'inner' is inside the hole of 'bore'" in issues(outer=square(), holes=[[circle()], [inner]])[0]
 
 
 def test_edge_names_are_unique():
     hole = circle(name="top")
-    assert complaints(outer=square(), holes=[[hole]]) == [
+    assert issues(outer=square(), holes=[[hole]]) == [
         "holes[0][0].name: the name 'top' is taken by outer[2]; give each edge its own"
     ]
 
 
 def test_loop_without_edges_is_refused():
-    assert complaints(outer=[]) == ["outer: expected at least 1 in the list, found an empty list"]
+    assert issues(outer=[]) == ["outer: expected at least 1 in the list, found an empty list"]

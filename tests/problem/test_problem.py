@@ -1,4 +1,4 @@
-"""A problem as a whole: made in Python, changed value by value, and refused with every complaint at once."""
+"""A problem as a whole: made in Python, changed value by value, and refused with every issue at once."""
 
 import pytest
 
@@ -36,10 +36,10 @@ def parts():
     }
 
 
-def complaints(**changes):
+def issues(**changes):
     with pytest.raises(ProblemError) as caught:
         Problem(**{**parts(), **changes})
-    return [str(complaint) for complaint in caught.value.complaints]
+    return [str(issue) for issue in caught.value.issues]
 
 
 def test_problem_of_objects_is_the_problem_of_its_data():
@@ -90,7 +90,7 @@ def test_with_value_checks_anew():
 
 def test_names_are_checked_in_a_problem_that_has_ill_parts():
     boundary = parts()["boundary"].model_dump()
-    first, second = complaints(boundary=boundary, material={"young_modulus": 1}, conditions={"tip": {"pressure": 1}})
+    first, second = issues(boundary=boundary, material={"young_modulus": 1}, conditions={"tip": {"pressure": 1}})
     assert first.startswith("material.poisson_ratio: missing; give the ratio")
     assert second == "conditions.tip: unknown edge 'tip'; did you mean 'top'?"
 
@@ -99,7 +99,7 @@ def test_geometry_is_checked_in_a_problem_that_has_ill_parts():
     boundary = parts()["boundary"].model_dump()
     boundary["outer"][0]["elements"] = 1
     zone = {"edges": "arc", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, -1]}}
-    found = complaints(boundary=boundary, material={"young_modulus": 1}, contact_zones={"foot": zone})
+    found = issues(boundary=boundary, material={"young_modulus": 1}, contact_zones={"foot": zone})
     assert [line.partition(": ")[0] for line in found] == [
         "material.poisson_ratio",
         "contact_zones.foot.surface",
@@ -113,7 +113,7 @@ def test_what_stands_under_a_misspelled_key_is_checked():
     del data["material"]
     with pytest.raises(ProblemError) as caught:
         Problem(**data)
-    assert [str(complaint) for complaint in caught.value.complaints] == [
+    assert [str(issue) for issue in caught.value.issues] == [
         "materiel: unknown key 'materiel'; did you mean 'material'?",
         "materiel.young_modulus: must be greater than 0, found 0",
         "materiel.poison_ratio: unknown key 'poison_ratio'; did you mean 'poisson_ratio'?",
@@ -123,7 +123,7 @@ def test_what_stands_under_a_misspelled_key_is_checked():
 
 def test_zone_lists_an_edge_once():
     zone = ContactZone(edges=["arc", "arc"], surface=Plane(point=(0, 0), normal=(0, 1)))
-    assert complaints(contact_zones={"foot": zone}) == [
+    assert issues(contact_zones={"foot": zone}) == [
         "contact_zones.foot.edges[1]: edge 'arc' is listed twice in the zone; list it once"
     ]
 
@@ -140,11 +140,9 @@ def test_zone_lists_an_edge_once():
 )
 def test_surface_that_faces_away_is_refused_with_the_way_out(surface, way_out):
     zone = {"edges": ["arc"], "surface": surface}
-    [complaint] = complaints(contact_zones={"foot": zone})
-    assert complaint.startswith(
-        "contact_zones.foot.surface: the rigid surface's normal must point from the surface into"
-    )
-    assert way_out in complaint
+    [issue] = issues(contact_zones={"foot": zone})
+    assert issue.startswith("contact_zones.foot.surface: the rigid surface's normal must point from the surface into")
+    assert way_out in issue
 
 
 @pytest.mark.parametrize("data", [None, 3, [], "block"])
@@ -172,9 +170,9 @@ def test_contour_may_load_the_edges_that_touch():
 
 
 def test_contour_is_checked_with_the_body():
-    assert complaints(contact_zones=on_its_contour(conditions={"tap": {"pressure": 1}})) == [
+    assert issues(contact_zones=on_its_contour(conditions={"tap": {"pressure": 1}})) == [
         "contact_zones.foot.surface.conditions.tap: unknown edge 'tap'; did you mean 'top'?"
     ]
-    (found,) = complaints(contact_zones=on_its_contour(direction=[0, -3]))
+    (found,) = issues(contact_zones=on_its_contour(direction=[0, -3]))
     assert found.startswith("contact_zones.foot.surface: the rigid surface's normal must point from the surface into")
     assert found.endswith("at 'arc' it points out of it; turn the direction round: [0, 3], or make the zone smaller")

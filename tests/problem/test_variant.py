@@ -19,10 +19,10 @@ def block(variants, **more):
     )  # pyright: ignore
 
 
-def complaints(variants):
+def issues(variants):
     with pytest.raises(ProblemError) as caught:
         block(variants)
-    return [str(complaint) for complaint in caught.value.complaints]
+    return [str(issue) for issue in caught.value.issues]
 
 
 FINE = {"description": "more elements", "set": {"boundary.outer.bottom.elements": 8, "boundary.outer[2].elements": 6}}
@@ -81,10 +81,10 @@ def test_an_unknown_variant_is_refused():
     ],
 )
 def test_a_broken_variant_is_found_at_once(values, words):
-    (found,) = complaints({"fine": FINE, "broken": {"set": values}})
+    (found,) = issues({"fine": FINE, "broken": {"set": values}})
     assert words in found
     assert found.startswith("variants.broken")
 
 
 def test_misspelled_keys_are_named():
-    assert "did you mean 'set'" in complaints({"fine": {"sets": {"mesh.refine": 2}}})[0]
+    assert "did you mean 'set'" in issues({"fine": {"sets": {"mesh.refine": 2}}})[0]
