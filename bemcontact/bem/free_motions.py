@@ -9,8 +9,8 @@ from scipy.linalg import block_diag
 
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.rigid_motions import RigidMotions, echelon
+from bemcontact.problem.contact_zone import RigidTool, ToolAction
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_tool import RigidTool, ToolAction
 
 Array = NDArray[np.float64]
 

@@ -11,9 +11,8 @@ from bemcontact.bem.mesh import Mesh, along_curve
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.volume_loads import ParticularSolution, particular_solution, true_resultant
 from bemcontact.errors import ProblemError
-from bemcontact.problem.conditions import AxisFields, Condition, Field
+from bemcontact.problem.conditions import AxisFields, Condition, Field, Loads
 from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.loads import Loads
 from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]

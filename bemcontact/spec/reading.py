@@ -242,7 +242,7 @@ class _Tree:
             elif key.tag != f"{TAG}str":
                 self._find(mark, path, _no_key(key, before))
             elif key.value in data:
-                message = f"the key stands twice, first in line {lines[key.value]}; keep one"
+                message = f"the key occurs twice, first in line {lines[key.value]}; keep one"
                 self._find(mark, (*path, key.value), message)
             else:
                 data[key.value] = self.value(value, (*path, key.value), key)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from bemcontact.errors import ProblemError, SpecError
 from bemcontact.problem import Problem, Variant
-from bemcontact.problem.partial import RawValue
+from bemcontact.problem.key_path import RawValue
 from bemcontact.problem.validation import unknown_word
 from bemcontact.spec.document import Document, error_text
 

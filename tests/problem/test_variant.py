@@ -1,4 +1,4 @@
-"""Variants: values that replace others under a name, checked as soon as they are stated."""
+"""Variants: named sets of values that replace others, checked together with the problem."""
 
 import pytest
 
@@ -57,7 +57,7 @@ def test_values_are_set_all_at_once():
 def test_an_unknown_variant_is_refused():
     with pytest.raises(ProblemError, match=r"^variants: unknown variant 'fime'; did you mean 'fine'\?"):
         block({"fine": FINE}).variant("fime")
-    with pytest.raises(ProblemError, match="unknown variant 'fine'; there is: none"):
+    with pytest.raises(ProblemError, match="unknown variant 'fine'; there are none"):
         block({}).variant("fine")
 
 
@@ -74,9 +74,9 @@ def test_an_unknown_variant_is_refused():
         ),
         ({"boundary.outer.tap.elements": 3}, "set.boundary.outer.tap.elements: boundary.outer: unknown entry 'tap'"),
         ({"a..b": 3}, "set.a..b: 'a..b' is not a key path"),
-        ({"variants.other.set": {}}, "set.variants.other.set: a variant varies the problem, no variants"),
+        ({"variants.other.set": {}}, "set.variants.other.set: a variant cannot change variants"),
         ({"contact_zones.foot.edges": "top"}, ": with this variant, conditions.top: edge 'top' is in the contact zone"),
-        ({}, "set: nothing is set; give values by their key paths"),
+        ({}, "set: the variant sets no value"),
         (None, "set: "),
     ],
 )

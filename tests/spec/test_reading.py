@@ -147,7 +147,7 @@ BROKEN = {
         "  poisson_ratio: .3\n  young_modulus: 2",
         "6:3",
         "material.young_modulus",
-        ("stands twice", "first in line 4"),
+        ("occurs twice", "first in line 4"),
     ),
     "key that is no text": Broken("  top: {pressure", "  3: {pressure", "23:3", "conditions", ("'3'", "in quotes")),
     "name that is no text": Broken(
@@ -249,28 +249,28 @@ BROKEN = {
         "{name: left, elements: 2, ends_at: [[0, 1]]}",
         "19:43",
         "boundary.outer[3].ends_at[0]",
-        ("ends there anyway",),
+        ("ends here already",),
     ),
     "element end twice": Broken(
         "{name: left, elements: 2}",
         "{name: left, elements: 4, ends_at: [0.5, [0, 0.5]]}",
         "19:48",
         "boundary.outer[3].ends_at[1]",
-        ("ends there anyway",),
+        ("ends here already",),
     ),
     "element ends too near to each other": Broken(
         "{name: left, elements: 2}",
         "{name: left, elements: 4, ends_at: [0.5, 0.5000001]}",
         "19:48",
         "boundary.outer[3].ends_at[1]",
-        ("an element of 'left' ends 1e-07 beside it, too near for another", "take another place"),
+        ("an element of 'left' ends 1e-07 away", "too near"),
     ),
     "element end too near to the end of the edge": Broken(
         "{name: left, elements: 2}",
         "{name: left, elements: 4, ends_at: [[0, 0.9999999]]}",
         "19:43",
         "boundary.outer[3].ends_at[0]",
-        ("ends 1e-07 beside it", "leave it out"),
+        ("ends 1e-07 away", "leave this place out"),
     ),
     "element end in words": Broken(
         "{name: left, elements: 2}",
@@ -284,7 +284,7 @@ BROKEN = {
         "{name: left, elements: 2, ends_at: [0.2, 0.4]}",
         "19:30",
         "boundary.outer[3].elements",
-        ("2 places with fewer than 3 elements", "found 2"),
+        ("at least 3 elements", "found 2"),
     ),
     "fit that is no yes or no": Broken(
         "name: block on a plane",
@@ -294,7 +294,7 @@ BROKEN = {
         ("true or false", "found 3"),
     ),
     "name twice": Broken(
-        "name: bore", "name: right", "21:16", "boundary.holes[0][0].name", ("'right' is taken by outer[1]",)
+        "name: bore", "name: right", "21:16", "boundary.holes[0][0].name", ("outer[1] has the name 'right' too",)
     ),
     "unknown edge in a condition": Broken(
         "  top: {pressure", "  tap: {pressure", "23:3", "conditions.tap", ("unknown edge 'tap'", "did you mean 'top'")
@@ -318,7 +318,7 @@ BROKEN = {
         "contact_zones:\n  wall: {edges: bottom, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}\n",
         "28:12",
         "contact_zones.foot.edges",
-        ("'bottom' is in the contact zone 'wall' already",),
+        ("'bottom' is already in the contact zone 'wall'",),
     ),
     "no contact zone": Broken(
         SPEC[SPEC.index("contact_zones:") :],
@@ -354,7 +354,7 @@ BROKEN = {
         "conditions.top",
         ("pressure", "one of"),
     ),
-    "empty condition": Broken("top: {pressure: 5}", "top: {}", "23:8", "conditions.top", ("states nothing",)),
+    "empty condition": Broken("top: {pressure: 5}", "top: {}", "23:8", "conditions.top", ("the condition is empty",)),
     "field that is no number": Broken(
         "pressure: 5", "pressure: [5]", "23:19", "conditions.top.pressure", ("a number, or a mapping", "a list of 1")
     ),
@@ -511,11 +511,11 @@ def test_later_override_wins():
         ("a..b=3", "'a..b' is not a key path"),
         ("boundary.outer[9].elements=3", "boundary.outer: there is no entry [9], the list has 4"),
         ("boundary.outer.tip.elements=3", "boundary.outer: unknown entry 'tip'; did you mean 'top'?"),
-        ("name.first=3", "name: has no entry first, it is the text 'block on a plane'"),
+        ("name.first=3", "name: it has no entry first, because it is the text 'block on a plane'"),
         ("material.young_modulus=[1", "not YAML: "),
-        ("conditions.top={pressure: 1, pressure: 2}", "the key stands twice"),
+        ("conditions.top={pressure: 1, pressure: 2}", "the key occurs twice"),
         ("conditions.topp.pressure=3", "conditions.topp: unknown edge 'topp'; did you mean 'top'?"),
-        ("conditions.top.pressure=", "conditions.top: it states nothing"),
+        ("conditions.top.pressure=", "conditions.top: the condition is empty"),
         ("conditions.left.traction.x=1", "conditions.left: both displacement and traction are given along x"),
         ("contact_zones.foot.edges=top", "conditions.top: edge 'top' is in the contact zone 'foot'"),
     ],
@@ -589,7 +589,7 @@ def test_variant_is_that_of_the_problem(variant, tmp_path):
         ("outer.bottom", "outer.bot", "fine", "block.yaml:32:36: variants.fine.set.boundary.outer.bot.elements: "),
         ("    set:", "    sat:", "fine", "block.yaml:31:5: variants.fine.sat: unknown key 'sat'; did you mean 'set'?"),
         ("", "", "fime", "--variant fime: unknown variant 'fime'; did you mean 'fine'?"),
-        ("", "", "", "--variant '': the name of the variant is empty; there is: fine"),
+        ("", "", "", "--variant '': the name of the variant is empty; there are: fine, steep"),
     ],
 )
 def test_mistakes_in_variants_have_their_place(old, new, variant, line):
@@ -699,7 +699,9 @@ def test_a_condition_of_a_contour_that_states_nothing_is_refused_where_it_stands
     with pytest.raises(SpecError) as caught:
         bemcontact.spec.loads(text, "block.yaml")
     (found,) = str(caught.value).splitlines()
-    assert found.startswith(f"block.yaml:{line}:{column}: contact_zones.foot.surface.conditions.top: it states nothing")
+    assert found.startswith(
+        f"block.yaml:{line}:{column}: contact_zones.foot.surface.conditions.top: the condition is empty"
+    )
     assert "give traction: {x: 0, y: 0}" in found
     bemcontact.spec.loads(text.replace(nothing, "{traction: {x: 0, y: 0}}"))
 

@@ -1,21 +1,21 @@
-"""Edge names in conditions and contact zones, checked as far as they can be read."""
+"""Cross-checks of edge names in conditions and contact zones, also in a problem with other mistakes."""
 
 import pytest
 
-from bemcontact.problem.edge_names import name_issues
-from bemcontact.problem.partial import RawValue
+from bemcontact.problem.cross_checks import edge_name_issues
+from bemcontact.problem.key_path import RawValue
 
 EDGES = {"outer": [{"name": "top"}, {"name": "side"}]}
 
 
 def issues(boundary, conditions=None, zones=None):
-    stated = [RawValue(("conditions",), conditions)]
-    found = name_issues(RawValue(("boundary",), boundary), stated, RawValue(("contact_zones",), zones))
-    return [str(issue) for issue in found]
+    conditions = [RawValue(("conditions",), conditions)]
+    all_issues = edge_name_issues(RawValue(("boundary",), boundary), conditions, RawValue(("contact_zones",), zones))
+    return [str(issue) for issue in all_issues]
 
 
 @pytest.mark.parametrize("boundary", [EDGES, {"outter": [{"nam": "top"}, {"name": "side", "elements": "many"}]}])
-def test_unknown_names_are_found_beside_other_mistakes(boundary):
+def test_unknown_names_are_reported_together_with_other_mistakes(boundary):
     zones = {"foot": {"edges": ["topp", 3], "surface": None}, "wall": {"edge": "sid"}, "none": 7}
     assert issues(boundary, {"tip": 1}, zones) == [
         "conditions.tip: unknown edge 'tip'; did you mean 'top'?",
@@ -27,14 +27,14 @@ def test_unknown_names_are_found_beside_other_mistakes(boundary):
 @pytest.mark.parametrize(
     "boundary", [None, 3, {}, {"outer": 3}, {"outer": [{"elements": 2}, {"name": "top"}]}, {"outer": [{"name": 3}]}]
 )
-def test_no_name_is_called_unknown_while_one_cannot_be_read(boundary):
+def test_no_name_is_unknown_if_an_edge_name_is_unreadable(boundary):
     assert issues(boundary, {"tip": 1}, {"foot": {"edges": "side"}}) == []
 
 
-def test_what_contradicts_itself_needs_no_boundary():
+def test_contradictory_names_are_reported_without_a_boundary():
     zones = {"foot": {"edges": ["side"]}, "wall": {"edges": "side"}}
     assert issues(None, {"side": 1}, zones) == [
-        "contact_zones.wall.edges[0]: edge 'side' is in the contact zone 'foot' already; "
-        "an edge can touch one surface only",
-        "conditions.side: edge 'side' is in the contact zone 'foot' and can carry no condition; remove one",
+        "contact_zones.wall.edges[0]: edge 'side' is already in the contact zone 'foot'; "
+        "an edge can touch only one surface",
+        "conditions.side: edge 'side' is in the contact zone 'foot' and can have no condition; remove one",
     ]
