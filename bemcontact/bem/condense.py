@@ -24,7 +24,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
 from bemcontact.contact.load_cases import LoadCases
 from bemcontact.contact.tools import BALANCED, Pinned, Tools
-from bemcontact.errors import Complaint, ProblemError
+from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.problem import Problem
 
 IDLE = 1e-7
@@ -184,7 +184,7 @@ def ensure_held(body: Body) -> None:
         if case is None:
             raise
         path = ("load_cases" if case in body.problem.load_cases else "combinations", case)
-        raise ProblemError(Complaint(path=path, message=str(error))) from None
+        raise ProblemError(Issue(path=path, message=str(error))) from None
 
 
 def _check_support(body: Body) -> None:

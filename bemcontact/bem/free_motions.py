@@ -9,8 +9,8 @@ from scipy.linalg import block_diag
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.rigid_motions import RigidMotions, echelon
+from bemcontact.problem.contact_zone import RigidTool, ToolAction
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_tool import RigidTool, ToolAction
 
 UNSEEN = 1e-9
 """Largest normal displacement, relative to the motion's own, of a rigid motion that no contact point sees."""

@@ -11,9 +11,8 @@ from bemcontact.bem.mesh import Mesh, along_curve
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.volume_loads import ParticularSolution, particular_solution, true_resultant
 from bemcontact.errors import ProblemError
-from bemcontact.problem.conditions import AxisFields, Condition, Field
+from bemcontact.problem.conditions import AxisFields, Condition, Field, Loads
 from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.loads import Loads
 from bemcontact.problem.problem import Problem
 
 
@@ -131,6 +130,4 @@ def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase) -> Lo
     try:
         return _loading(problem, mesh, conditions, case.loads)
     except ProblemError as error:
-        raise ProblemError(
-            [replace(item, path=("load_cases", name, *item.path)) for item in error.complaints]
-        ) from None
+        raise ProblemError([replace(item, path=("load_cases", name, *item.path)) for item in error.issues]) from None

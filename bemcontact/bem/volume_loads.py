@@ -10,7 +10,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.bem import quadrature, shape_functions
 from bemcontact.bem.mesh import Mesh, along_curve
-from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
+from bemcontact.problem.conditions import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 from bemcontact.problem.problem import Problem
 

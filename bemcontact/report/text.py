@@ -296,7 +296,7 @@ def _edge_table(problem: Problem) -> Table:
     """List the edges, loop by loop."""
     table = table_of("edge", "kind", "length", "elements", "condition")
     boundary = problem.boundary
-    for number_of_loop, (stated, loop) in enumerate(zip(boundary.stated_loops, boundary.loops, strict=True)):
+    for number_of_loop, (stated, loop) in enumerate(zip(boundary.loop_specs, boundary.loops, strict=True)):
         if number_of_loop:
             table.add_row(Text(f"hole {number_of_loop}", "italic"))
         for shape, edge in zip(stated, loop, strict=True):

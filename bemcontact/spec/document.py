@@ -4,27 +4,27 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from bemcontact.errors import Complaint, Path
+from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.key_path import with_entry
-from bemcontact.problem.validation import KeyComplaint
+from bemcontact.problem.validation import KeyIssue
 
 
 @dataclass(frozen=True, order=True)
 class Mark:
-    """A place in a text, or an override; `text` begins the complaint."""
+    """A place in a text, or an override; `text` begins the issue."""
 
     line: int
     column: int
     text: str
 
 
-Finding = tuple[Mark, str]
+LocatedMessage = tuple[Mark, str]
 """What was found wrong, and where."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Place:
-    """Where a complaint about a value points to, and where one about its key does."""
+    """Where an issue about a value points to, and where one about its key does."""
 
     value: Mark
     key: Mark
@@ -39,16 +39,16 @@ class Document:
     ----------
     data : nested mappings and lists
     places : place of each value
-    findings : what was found wrong while reading
+    messages : what was found wrong while reading
     change : the override that made it from another document, if one did
     """
 
     data: Any
-    places: Mapping[Path, Place]
-    findings: tuple[Finding, ...] = ()
+    places: Mapping[KeyPath, Place]
+    messages: tuple[LocatedMessage, ...] = ()
     change: Mark | None = None
 
-    def below(self, path: Path) -> "Document":
+    def below(self, path: KeyPath) -> "Document":
         """Take the value at a path as a document of its own."""
         data = self.data
         for key in path:
@@ -56,7 +56,7 @@ class Document:
         places = {other[len(path) :]: place for other, place in self.places.items() if other[: len(path)] == path}
         return Document(data=data, places=places)
 
-    def changed(self, path: Path, entry: "Document", mark: Mark) -> "Document":
+    def changed(self, path: KeyPath, entry: "Document", mark: Mark) -> "Document":
         """Replace or add one value, all of which comes from the place of the mark."""
         kept = {other: place for other, place in self.places.items() if other[: len(path)] != path}
         added = {
@@ -65,22 +65,22 @@ class Document:
         return Document(
             data=with_entry(self.data, path, entry.data),
             places={**kept, **added},
-            findings=(*self.findings, *((mark, message) for _, message in entry.findings)),
+            messages=(*self.messages, *((mark, message) for _, message in entry.messages)),
             change=mark,
         )
 
-    def located(self, complaint: Complaint) -> Finding:
-        """Find the place of a complaint, or of the nearest thing above that stands in the text."""
-        path = complaint.path
+    def located(self, issue: Issue) -> LocatedMessage:
+        """Find the place of an issue, or of the nearest thing above that stands in the text."""
+        path = issue.path
         while path not in self.places:
             path = path[:-1]
         place = self.places[path]
         if place.scalar:  # its entries exist in the model only: a number as a field, a name as a list of one
-            complaint = replace(complaint, path=path)
-        is_key = isinstance(complaint, KeyComplaint) and path == complaint.path
-        return (place.key if is_key else place.value), str(complaint)
+            issue = replace(issue, path=path)
+        is_key = isinstance(issue, KeyIssue) and path == issue.path
+        return (place.key if is_key else place.value), str(issue)
 
 
-def one_line_each(findings: Iterable[Finding]) -> str:
-    """Write findings in the order of the text, a line each."""
-    return "\n".join(f"{mark.text}: {message}" for mark, message in sorted(findings))
+def error_text(messages: Iterable[LocatedMessage]) -> str:
+    """Write messages in the order of the text, a line each."""
+    return "\n".join(f"{mark.text}: {message}" for mark, message in sorted(messages))

@@ -1,4 +1,4 @@
-"""From a YAML file to a `Problem`; every complaint names file, line, column and the path of keys."""
+"""From a YAML file to a `Problem`; every issue names file, line, column and the path of keys."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -6,12 +6,12 @@ from typing import Any
 
 import yaml
 
-from bemcontact.errors import Complaint, Path, ProblemError, SpecError
+from bemcontact.errors import Issue, KeyPath, ProblemError, SpecError
 from bemcontact.files.text import place_after, text_of
 from bemcontact.problem import Problem
 from bemcontact.problem.key_path import existing_path, parsed_path
 from bemcontact.problem.validation import described, number_hint
-from bemcontact.spec.document import Document, Finding, Mark, Place, one_line_each
+from bemcontact.spec.document import Document, LocatedMessage, Mark, Place, error_text
 from bemcontact.spec.variants import varied
 from bemcontact.spec.yaml_1_2 import READERS, TAG, Loader, written
 
@@ -46,7 +46,7 @@ def load(path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: s
     ------
     SpecError
         If there is no such file or variant, or it states no problem: a line ``file:line:column: key.path: message``
-        for each complaint.
+        for each issue.
     """
     return loads(text_of(path), os.fspath(path), overrides, variant)
 
@@ -57,7 +57,7 @@ def loads(text: str, name: str = "<string>", overrides: Sequence[str] = (), vari
     Parameters
     ----------
     text : YAML
-    name : what to call the text in complaints
+    name : what to call the text in issues
     overrides, variant : as of `load`
 
     Returns
@@ -67,7 +67,7 @@ def loads(text: str, name: str = "<string>", overrides: Sequence[str] = (), vari
     Raises
     ------
     SpecError
-        A line ``name:line:column: key.path: message`` for each complaint.
+        A line ``name:line:column: key.path: message`` for each issue.
     """
     return _stated(_stages(text, name, overrides, variant))
 
@@ -108,13 +108,13 @@ def located(
     Returns
     -------
     SpecError
-        A line ``file:line:column: key.path: message`` for each complaint; ``file: message`` for one about the problem
+        A line ``file:line:column: key.path: message`` for each issue; ``file: message`` for one about the problem
         as a whole.
     """
     name = os.fspath(path)
     document = _stages(text_of(path), name, overrides, variant)[-1]
-    whole = [(Mark(0, 0, name), complaint.message) for complaint in error.complaints if not complaint.path]
-    return SpecError(one_line_each([*whole, *(document.located(item) for item in error.complaints if item.path)]))
+    whole = [(Mark(0, 0, name), issue.message) for issue in error.issues if not issue.path]
+    return SpecError(error_text([*whole, *(document.located(item) for item in error.issues if item.path)]))
 
 
 def schema() -> dict[str, Any]:
@@ -156,7 +156,7 @@ def _parsed(text: str, name: str) -> Document:
         return Document(data=None, places={})
     tree = _Tree(name)
     data = tree.value(node, (), None)
-    return Document(data=data, places=tree.places, findings=tuple(tree.findings))
+    return Document(data=data, places=tree.places, messages=tuple(tree.messages))
 
 
 def _marked(mark: yaml.Mark, name: str) -> Mark:
@@ -187,15 +187,15 @@ def _no_key(node: yaml.Node, before: yaml.Node | None) -> str:
 
 
 class _Tree:
-    """Walks through the nodes of a document and gathers places and findings."""
+    """Walks through the nodes of a document and gathers places and messages."""
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.places: dict[Path, Place] = {}
-        self.findings: list[Finding] = []
+        self.places: dict[KeyPath, Place] = {}
+        self.messages: list[LocatedMessage] = []
         self._above: list[yaml.Node] = []
 
-    def value(self, node: yaml.Node, path: Path, key: yaml.Node | None) -> Any:
+    def value(self, node: yaml.Node, path: KeyPath, key: yaml.Node | None) -> Any:
         """Make plain data of a node and all below it."""
         mark = self._mark(node)
         key_mark = self._mark(key) if key else mark
@@ -211,7 +211,7 @@ class _Tree:
         finally:
             self._above.pop()
 
-    def _content(self, node: yaml.Node, path: Path) -> Any:
+    def _content(self, node: yaml.Node, path: KeyPath) -> Any:
         """Make plain data of what a node contains."""
         match node:
             case yaml.MappingNode(tag=tag) if tag == f"{TAG}map":
@@ -230,7 +230,7 @@ class _Tree:
         self._find(self._mark(node), path, message)
         return None
 
-    def _mapping(self, node: yaml.MappingNode, path: Path) -> dict[str, Any]:
+    def _mapping(self, node: yaml.MappingNode, path: KeyPath) -> dict[str, Any]:
         """Make a dictionary; of equal keys the first counts, and merged ones come last."""
         data: dict[str, Any] = {}
         lines: dict[str, int] = {}
@@ -242,14 +242,14 @@ class _Tree:
             elif key.tag != f"{TAG}str":
                 self._find(mark, path, _no_key(key, before))
             elif key.value in data:
-                message = f"the key stands twice, first in line {lines[key.value]}; keep one"
+                message = f"the key occurs twice, first in line {lines[key.value]}; keep one"
                 self._find(mark, (*path, key.value), message)
             else:
                 data[key.value] = self.value(value, (*path, key.value), key)
                 lines[key.value] = mark.line
         return self._with_merged(data, merged, path)
 
-    def _with_merged(self, data: dict[str, Any], merged: list[yaml.Node], path: Path) -> dict[str, Any]:
+    def _with_merged(self, data: dict[str, Any], merged: list[yaml.Node], path: KeyPath) -> dict[str, Any]:
         """Add the keys that ``<<`` brings along, where they are not given."""
         for node in merged:
             if not isinstance(node, yaml.MappingNode):
@@ -264,8 +264,8 @@ class _Tree:
     def _mark(self, node: yaml.Node) -> Mark:
         return _marked(node.start_mark, self.name)
 
-    def _find(self, mark: Mark, path: Path, message: str) -> None:
-        self.findings.append((mark, str(Complaint(path=path, message=message))))
+    def _find(self, mark: Mark, path: KeyPath, message: str) -> None:
+        self.messages.append((mark, str(Issue(path=path, message=message))))
 
 
 def _overridden(document: Document, override: str) -> Document:
@@ -277,7 +277,7 @@ def _overridden(document: Document, override: str) -> Document:
     try:
         path = existing_path(document.data, parsed_path(keys.strip()))
     except ProblemError as error:
-        raise SpecError("\n".join(f"{start}: {complaint}" for complaint in error.complaints)) from None
+        raise SpecError("\n".join(f"{start}: {issue}" for issue in error.issues)) from None
     try:
         entry = _parsed(text, start)
     except SpecError as error:
@@ -286,33 +286,33 @@ def _overridden(document: Document, override: str) -> Document:
 
 
 def _stated(stages: Sequence[Document]) -> Problem:
-    """Make the problem of the last stage, or gather all complaints in the order of the text."""
+    """Make the problem of the last stage, or gather all issues in the order of the text."""
     document = stages[-1]
     try:
         problem = Problem(**document.data)
     except ProblemError:
-        raise SpecError(one_line_each([*document.findings, *_found(stages)])) from None
-    if document.findings:
-        raise SpecError(one_line_each(document.findings))
+        raise SpecError(error_text([*document.messages, *_found(stages)])) from None
+    if document.messages:
+        raise SpecError(error_text(document.messages))
     return problem
 
 
-def _found(stages: Sequence[Document]) -> Iterator[Finding]:
-    """Place the complaints about the last stage; those that came with an override are complaints about it."""
-    blamed: dict[Complaint, Mark | None] = {}
+def _found(stages: Sequence[Document]) -> Iterator[LocatedMessage]:
+    """Place the issues about the last stage; those that came with an override are issues about it."""
+    blamed: dict[Issue, Mark | None] = {}
     for document in stages:
-        blamed = {complaint: blamed.get(complaint, document.change) for complaint in _complaints(document)}
-    for complaint, override in blamed.items():
-        place, message = stages[-1].located(complaint)
+        blamed = {issue: blamed.get(issue, document.change) for issue in _issues(document)}
+    for issue, override in blamed.items():
+        place, message = stages[-1].located(issue)
         yield override or place, message
 
 
-def _complaints(document: Document) -> tuple[Complaint, ...]:
+def _issues(document: Document) -> tuple[Issue, ...]:
     """List what is wrong with the problem that a document states."""
     try:
         Problem(**document.data)
     except ProblemError as error:
-        return error.complaints
+        return error.issues
     return ()
 
 
@@ -321,8 +321,8 @@ def _check_mapping(document: Document, name: str) -> None:
     if isinstance(document.data, dict):
         return
     needs = f"a spec is a mapping with at least {_REQUIRED}"
-    if document.findings:
-        raise SpecError(one_line_each(document.findings))
+    if document.messages:
+        raise SpecError(error_text(document.messages))
     if document.data is None:
         raise SpecError(f"{name}:1:1: there is nothing in it; {needs}")
     raise SpecError(f"{document.places[()].value.text}: {needs}; found {described(document.data)}")

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 from bemcontact.errors import ProblemError, SpecError
 from bemcontact.problem import Problem, Variant
-from bemcontact.problem.partial import Written
+from bemcontact.problem.key_path import RawValue
 from bemcontact.problem.validation import unknown_word
-from bemcontact.spec.document import Document, one_line_each
+from bemcontact.spec.document import Document, error_text
 
 
 def varied(document: Document, name: str) -> Iterator[Document]:
@@ -22,14 +22,14 @@ def varied(document: Document, name: str) -> Iterator[Document]:
     ------
     Document
         After each value, whose place is that in the variant; none if the variant cannot be read, of which the problem
-        of the spec itself will complain.
+        of the spec itself will invalid.
 
     Raises
     ------
     SpecError
         There is no such variant, or it sets what there is not.
     """
-    stated = {str(item.path[-1]): item for item in Written((), document.data).below(Problem, "variants").each()}
+    stated = {str(item.path[-1]): item for item in RawValue((), document.data).below(Problem, "variants").each()}
     if name not in stated:
         raise SpecError(f"--variant {name or repr(name)}: {unknown_word('variant', name, stated)}")
     variant = stated[name].read(Variant)
@@ -42,8 +42,8 @@ def varied(document: Document, name: str) -> Iterator[Document]:
     try:
         paths = variant.paths(data)
     except ProblemError as error:
-        found = [document.located(replace(item, path=(*path, *item.path))) for item in error.complaints]
-        raise SpecError(one_line_each(found)) from None
+        found = [document.located(replace(item, path=(*path, *item.path))) for item in error.issues]
+        raise SpecError(error_text(found)) from None
     stage = replace(document, data=data)
     for key, target in paths.items():
         here = (*path, "set", key)
