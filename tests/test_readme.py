@@ -103,6 +103,7 @@ def test_the_starts_that_are_told_have_these_fields():
     assert names["result"].solution.search.penalty.value == 0.1
 
 
+@pytest.mark.slow
 def test_the_chapter_on_composing_prints_what_is_told(block: Path, capsys: pytest.CaptureFixture[str]):
     """Each `print` line ends with what it prints, or how that begins."""
     calls, names = chapter("python"), {}
@@ -115,6 +116,7 @@ def test_the_chapter_on_composing_prints_what_is_told(block: Path, capsys: pytes
         assert all(line.startswith(start) for line, start in zip(printed, told, strict=True)), (printed, told)
 
 
+@pytest.mark.slow
 def test_the_commands_run(block: Path):
     commands = re.findall(r"^    (bemcontact .*?)(?: {2,}.*)?$", README, flags=re.MULTILINE)
     assert len(commands) >= 6
