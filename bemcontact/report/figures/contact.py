@@ -35,6 +35,8 @@ CUT = 3.0
 SMALL, AROUND = 0.08, 4.0
 """Extent of the contact over the size of the body below which only the part around it is shown, and over how many
 extents to either side."""
+OVERHANG = 0.14
+"""Length of a rigid surface beyond its contact zone, and beyond the body, over the size of what is shown."""
 LEVEL = 1e-3
 """Difference from the peak pressure, over that, below which a point counts as one at the peak."""
 
@@ -98,8 +100,9 @@ def draw_contact(axes: Axes, result: Result) -> None:
     window, part = _window(fans, np.concatenate(loops))
     width, height = np.ptp(window, axis=0)
     size = float(np.hypot(width, height))
-    surfaces = _surfaces(result, problem, (1.0 if part else 0.12) * size)
-    marks = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in surfaces]
+    reach = size if part else OVERHANG * size
+    grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in _surfaces(result, problem, reach)]
+    marks = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
     if not part:
         displacement = _displacement(state)
         marks += [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
