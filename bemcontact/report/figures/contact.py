@@ -13,7 +13,7 @@ from bemcontact.bem import shape_functions
 from bemcontact.bem.recovery import BoundaryState
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, place_names
-from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
+from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain, without_glyph_warnings
 from bemcontact.report.figures.pieces import pieces_of
 from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
 from bemcontact.report.figures.shape import ground_of, loops_of, outline_of
@@ -116,7 +116,8 @@ def draw_contact(axes: Axes, result: Result) -> None:
         names.append(_label(fan, tips[-1], units.stress, cut=fan.peak > scale * (1 + LEVEL)))
     drawn = np.concatenate([window, *tips] if part else [window, *tips, *marks])
     frame_plan(axes, drawn, units.length)
-    place_names(axes, names, drawn, loops)
+    with without_glyph_warnings():
+        place_names(axes, names, drawn, loops)
     for text in axes.texts:
         text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
 
