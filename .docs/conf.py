@@ -1,0 +1,33 @@
+"""Sphinx settings of the documentation: ``python -m sphinx -W --keep-going -E .docs .docs/build``."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+project = "bemcontact"
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "generated"]
+exclude_patterns = ["build"]
+default_role = "py:obj"  # docstrings name things in single backticks
+highlight_language = "none"
+smartquotes = False  # they would turn the two hyphens of an option into a dash
+nitpicky = False
+
+myst_enable_extensions = ["attrs_inline", "colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 4
+nb_execution_mode = "force"
+nb_execution_in_temp = True
+nb_execution_raise_on_error = True
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # the docstrings give shapes and units, which types cannot
+autodoc_class_signature = "separated"
+autodoc_preserve_defaults = True
+maximum_signature_line_length = 80
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+
+html_theme = "furo"
+html_title = "bemcontact"
+html_static_path = ["static"]
+html_css_files = ["site.css"]
