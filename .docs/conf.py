@@ -26,6 +26,7 @@ autodoc_preserve_defaults = True
 maximum_signature_line_length = 80
 napoleon_google_docstring = False
 napoleon_use_rtype = False
+napoleon_attr_annotations = False  # `generated.tidy` gives them shorter
 
 html_theme = "furo"
 html_title = "bemcontact"

@@ -13,9 +13,11 @@ from typing import Any
 
 import typer
 import typer.main
+from docutils import nodes
 from rich.text import Text
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
+from sphinx.util.typing import stringify_annotation
 from typer.testing import CliRunner
 
 import bemcontact
@@ -27,32 +29,30 @@ COMMANDS = typer.main.get_command(cli.app)
 
 def commands() -> str:
     """Describe each command, its arguments and its options."""
-    root = [_options("", COMMANDS, ["--version", "--help"])]
-    return "\n".join(root + [_command(name, command) for name, command in COMMANDS.commands.items()])
+    return "\n".join([_options("bemcontact", COMMANDS), *map(_command, COMMANDS.commands, COMMANDS.commands.values())])
 
 
 def _command(name: str, command: Any) -> str:
     """Describe one command: its help, with the examples as a block, and its options."""
     text, _, examples = Text.from_markup(inspect.cleandoc(command.help)).plain.partition("\n\nExamples\n")
-    arguments = [parameter.get_help_record(typer.Context(command))[0].split()[0] for parameter in _positional(command)]
+    arguments = [_usage(parameter) for parameter in command.params if parameter.param_type_name == "argument"]
     usage = " ".join(["bemcontact", name, *arguments, "[OPTIONS]"])
     shown = f"```text\n{inspect.cleandoc(examples)}\n```\n" if examples else ""
     return f"(command-{name})=\n## {name}\n\n```text\n{usage}\n```\n\n{text}\n\n{shown}\n{_options(name, command)}"
 
 
-def _positional(command: Any) -> list[Any]:
-    return [parameter for parameter in command.params if parameter.param_type_name == "argument"]
+def _usage(parameter: Any) -> str:
+    """Say how an argument or option is written; an argument by its name alone."""
+    written = parameter.get_help_record(typer.Context(COMMANDS))[0]
+    return written.split()[0] if parameter.param_type_name == "argument" else written
 
 
-def _options(name: str, command: Any, names: list[str] | None = None) -> str:
+def _options(name: str, command: Any) -> str:
     """List the arguments and options of a command, each with an anchor such as ``solve-penalty``."""
     entries = []
-    for parameter in command.get_params(typer.Context(command)):
-        record = parameter.get_help_record(typer.Context(command))
-        if record is None or (names and parameter.opts[0] not in names):
-            continue
-        key = f"{name or 'bemcontact'}-{parameter.opts[0].strip('-')}"
-        entries.append(f"[`{record[0]}`]{{#{key}}}\n: {_escaped(' '.join(record[1].split()))}\n")
+    for parameter in command.params:
+        about = " ".join(parameter.get_help_record(typer.Context(command))[1].split())
+        entries.append(f"[`{_usage(parameter)}`]{{#{name}-{parameter.opts[0].strip('-')}}}\n: {_escaped(about)}\n")
     return "\n".join(entries)
 
 
@@ -206,7 +206,7 @@ def names(words: str) -> str:
         elif isinstance(value, enum.EnumType):
             directive, members = "autoclass", "\n   :members:\n   :undoc-members:\n   :no-show-inheritance:"
         elif isinstance(value, type):
-            directive, members = "autoclass", "\n   :members:\n   :exclude-members: model_config, model_post_init"
+            directive, members = "autoclass", "\n   :members:\n   :exclude-members: __init__, model_config, model_post_init"
         else:
             directive, members = "autofunction", ""
         blocks.append(f"```{{eval-rst}}\n.. {directive}:: bemcontact.{name}{members}\n```\n")
@@ -227,6 +227,8 @@ def fill(app: Sphinx, page: str, source: list[str]) -> None:
 
 def tidy(app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]) -> None:
     """Give a docstring the form that napoleon reads: a parameter's text under its name, no mark of a substitution."""
+    if what in ("attribute", "property"):
+        lines[0] = f": {lines[0]}"  # nothing before the first colon, which napoleon takes for the type
     section, tidied = "", []
     for i, line in enumerate(lines):
         if i + 1 < len(lines) and re.fullmatch("-{3,}", lines[i + 1]):
@@ -235,14 +237,34 @@ def tidy(app: Sphinx, what: str, name: str, value: object, options: object, line
         if section in ("Parameters", "Attributes") and entry:
             below = lines[i + 1] if i + 1 < len(lines) else ""
             stop = "." if re.match(r"    [A-Z0-9\[]", below) else ""
-            tidied += [entry[1], f"    {entry[2]}{stop}"]
+            tidied += [f"{entry[1]}{_annotation(value, entry[1])}", f"    {entry[2]}{stop}"]
+        elif section == "Returns" and line in bemcontact.__all__:
+            tidied.append(f":class:`~bemcontact.{line}`")
         else:
             tidied.append(line)
     lines[:] = [re.sub(r"(?<![`\\])\|", r"\|", line) for line in tidied]
+
+
+def _annotation(value: object, field: str) -> str:
+    """Say of which type a field of a class is, and its default; docstrings of functions say it themselves."""
+    annotation = getattr(value, "__annotations__", {}).get(field) if isinstance(value, type) else None
+    if annotation is None:
+        return ""
+    text = stringify_annotation(annotation, "smart")
+    default = getattr(value, field, None)  # where a dataclass keeps it
+    is_plain = isinstance(default, (bool, int, float, str)) and default != ""
+    return f" : {'array' if 'ndarray' in text else text}" + (f", default {default}" if is_plain else "")
+
+
+def dash(app: Sphinx, doctree: nodes.document) -> None:
+    """Set a dash between the name of a parameter and its text; smart quotes, which are off, would."""
+    for text in [text for text in doctree.findall(nodes.Text) if text.startswith(" -- ")]:
+        text.parent.replace(text, nodes.Text(f" – {text[4:]}"))
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register what is called when a page is read and when a docstring is."""
     app.connect("source-read", fill)
     app.connect("autodoc-process-docstring", tidy, priority=100)  # before napoleon
+    app.connect("doctree-read", dash)
     return {"parallel_read_safe": True}
