@@ -1,6 +1,7 @@
 """What can go wrong, as types: `BemContactError` and its leaves.
 
-Not converging is no error but a `bemcontact.solution.Status`; an error means that the question has no answer as asked.
+An error means that the question has no answer as asked. A solver that does not converge is no error: it returns a
+`bemcontact.Status`.
 """
 
 from collections.abc import Sequence

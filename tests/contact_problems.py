@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 
 
 def random_contact(seed: int, n: int, k: int) -> CondensedContact:

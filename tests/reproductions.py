@@ -3,8 +3,8 @@
 from dataclasses import replace
 from functools import cache
 
-from bemcontact.reproduction.carrying_out import reproduce
-from bemcontact.reproduction.reproduced import Reproduced, Reproduction
+from bemcontact.analysis.reproduced import Reproduced, Reproduction
+from bemcontact.analysis.reproduction import reproduce
 
 
 @cache

@@ -1,7 +1,7 @@
 """What a person can do about an answer that is not the contact state: advice by status and formulation."""
 
-from bemcontact.choices import FormulationName
-from bemcontact.solution import ContactSolution, Status
+from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.options import FormulationName
 
 LOCAL = (FormulationName.QP1, FormulationName.QP2)
 """Those that start somewhere and may end in a local minimum."""

@@ -28,8 +28,8 @@ from scipy.linalg import eigvalsh
 from bemcontact.arrays import Array
 from bemcontact.assessment.advice import advice
 from bemcontact.assessment.residual import Residuals
-from bemcontact.contact import CondensedContact
-from bemcontact.solution import ContactSolution
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
 
 TOLERANCE = 1e-10
 """Residuals allowed: a thousand times above the round-off of the gap, a thousand below what shows in a result."""
@@ -85,13 +85,13 @@ class Certificate:
 
 
 def certify(
-    condensed: CondensedContact, solution: ContactSolution, residuals: Residuals, tolerance: float = TOLERANCE
+    contact: CondensedContact, solution: ContactSolution, residuals: Residuals, tolerance: float = TOLERANCE
 ) -> Certificate:
     """Judge a solution.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     solution : of any formulation
     residuals : of that solution
     tolerance : allowed penetration, tension, complementarity, equilibrium (12) and balance; where the peak pressure is
@@ -101,14 +101,14 @@ def certify(
     -------
     Certificate
     """
-    D, M = _scaled_compliance(condensed)
-    eigenvalue = _smallest_eigenvalue(D, M, condensed.equilibrium)
-    unique = eigenvalue is None or eigenvalue > condensed.size * np.finfo(float).eps
-    bound = _error_bound(condensed, solution, eigenvalue) if unique else None
-    peak = condensed.peak(solution.pressure)
-    complaint = _complaint(residuals, tolerance, max(1.0, peak / condensed.scales.pressure))
+    D, M = _scaled_compliance(contact)
+    eigenvalue = _smallest_eigenvalue(D, M, contact.equilibrium)
+    unique = eigenvalue is None or eigenvalue > contact.size * np.finfo(float).eps
+    bound = _error_bound(contact, solution, eigenvalue) if unique else None
+    peak = contact.peak(solution.pressure)
+    complaint = _complaint(residuals, tolerance, max(1.0, peak / contact.scales.pressure))
     kind = CertificateKind.UNIQUE if unique else CertificateKind.LOCAL
-    if unique and (bound is None or bound > LARGEST_BOUND * (peak or condensed.scales.pressure)):
+    if unique and (bound is None or bound > LARGEST_BOUND * (peak or contact.scales.pressure)):
         kind = CertificateKind.OPEN
     kind = CertificateKind.NOT_A_SOLUTION if complaint else kind
     relative = bound / peak if bound is not None and peak > 0 else None
@@ -122,10 +122,10 @@ def certify(
     )
 
 
-def _scaled_compliance(condensed: CondensedContact) -> tuple[Array, Array]:
+def _scaled_compliance(contact: CondensedContact) -> tuple[Array, Array]:
     """D = J/max J (n,) and M T/U (n, n)."""
-    U, T = condensed.scales
-    return condensed.weights / condensed.weights.max(), condensed.compliance * (T / U)
+    U, T = contact.scales
+    return contact.weights / contact.weights.max(), contact.compliance * (T / U)
 
 
 def _smallest_eigenvalue(D: Array, M: Array, ell: Array) -> float | None:
@@ -138,19 +138,19 @@ def _smallest_eigenvalue(D: Array, M: Array, ell: Array) -> float | None:
     return float(eigvalsh(Z.T @ (weighted + weighted.T) @ Z / 2, subset_by_index=(0, 0))[0])
 
 
-def _error_bound(condensed: CondensedContact, solution: ContactSolution, eigenvalue: float | None) -> float | None:
+def _error_bound(contact: CondensedContact, solution: ContactSolution, eigenvalue: float | None) -> float | None:
     """|p - y| + |s|/λ of the module's head in units of pressure; s includes the round-off of δ."""
-    U, T = condensed.scales
-    D, M = _scaled_compliance(condensed)
+    U, T = contact.scales
+    D, M = _scaled_compliance(contact)
     p = solution.pressure / T
-    gap = (condensed.initial_gap + solution.displacement) / U
-    y = _balanced(condensed, p, p > gap)
+    gap = (contact.initial_gap + solution.displacement) / U
+    y = _balanced(contact, p, p > gap)
     if y is None:
         return None
-    off = float(np.linalg.norm(p - y)) + _round_off_of_equilibrium(condensed, y)
+    off = float(np.linalg.norm(p - y)) + _round_off_of_equilibrium(contact, y)
     if eigenvalue is None:
         return off * T
-    q, R, ell = condensed.offset / U, condensed.rigid_motions, condensed.equilibrium
+    q, R, ell = contact.offset / U, contact.rigid_motions, contact.equilibrium
     a = np.linalg.solve(ell.T @ R, ell.T @ (gap - q - M @ y))
     delta = q + M @ y + R @ a
     s = D * np.where(y > 0, delta, np.minimum(delta, 0.0))
@@ -159,32 +159,32 @@ def _error_bound(condensed: CondensedContact, solution: ContactSolution, eigenva
     return (off + float(np.linalg.norm(s) + np.linalg.norm(round_off)) / eigenvalue) * T
 
 
-def _round_off_of_equilibrium(condensed: CondensedContact, y: Array) -> float:
+def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> float:
     """What ℓᵀy = -load may leave open of a scaled pressure in floating-point numbers: n eps cond(ℓ) |y|."""
-    if not condensed.free_motions:
+    if not contact.free_motions:
         return 0.0
-    spread = float(np.linalg.cond(_unit_rows(condensed)[0]))
+    spread = float(np.linalg.cond(_unit_rows(contact)[0]))
     return len(y) * float(np.finfo(float).eps) * spread * float(np.linalg.norm(y))
 
 
-def _unit_rows(condensed: CondensedContact) -> tuple[Array, Array]:
+def _unit_rows(contact: CondensedContact) -> tuple[Array, Array]:
     """ℓ (n, k) with columns of unit length, and the load (k,) over T to match."""
-    length = np.linalg.norm(condensed.equilibrium, axis=0)
-    return condensed.equilibrium / length, condensed.motion_load / (length * condensed.scales.pressure)
+    length = np.linalg.norm(contact.equilibrium, axis=0)
+    return contact.equilibrium / length, contact.motion_load / (length * contact.scales.pressure)
 
 
-def _balanced(condensed: CondensedContact, p: Array, contact: NDArray[np.bool_]) -> Array | None:
+def _balanced(contact: CondensedContact, p: Array, touching: NDArray[np.bool_]) -> Array | None:
     """A scaled pressure near p in equilibrium: zero off the contact set, or without that if the set carries no load."""
-    ell, load = _unit_rows(condensed)
-    y = _nearest_balanced(p, contact, ell, load)
-    return _nearest_balanced(p, np.ones_like(contact), ell, load) if y is None else y
+    ell, load = _unit_rows(contact)
+    y = _nearest_balanced(p, touching, ell, load)
+    return _nearest_balanced(p, np.ones_like(touching), ell, load) if y is None else y
 
 
-def _nearest_balanced(p: Array, contact: NDArray[np.bool_], ell: Array, load: Array) -> Array | None:
+def _nearest_balanced(p: Array, contact_set: NDArray[np.bool_], ell: Array, load: Array) -> Array | None:
     """The y >= 0 nearest to p with ℓᵀy = -load and y = 0 off the contact set: y = max(p + ℓ b, 0), Newton on b (k,)."""
     b = np.zeros(len(load))
     for _ in range(NEWTON_STEPS):
-        y = np.where(contact, np.maximum(p + ell @ b, 0.0), 0.0)
+        y = np.where(contact_set, np.maximum(p + ell @ b, 0.0), 0.0)
         imbalance = ell.T @ y + load
         if np.abs(imbalance).max(initial=0.0) <= 1e-14 * (1.0 + np.abs(p).sum()):
             return y

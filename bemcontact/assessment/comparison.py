@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-import bemcontact
 from bemcontact.assessment.contender import Contender, Found, contender, recomputed
 from bemcontact.assessment.matrices import WeightedCompliance, condition, weighted_compliance
 from bemcontact.assessment.verdict import Outcome
-from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact
-from bemcontact.record import contact_record
-from bemcontact.solution import ContactSolution
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.record import contact_record
+from bemcontact.contact.solution import ContactSolution
+from bemcontact.options import Weights
+from bemcontact.version import __version__
 
 SAME = 1e-6
 """Difference of two pressures over the peak from which they are two states and not one."""
@@ -134,7 +134,7 @@ class Comparison:
         """Give all of it as numbers, lists and texts, ready for JSON."""
         return {
             "name": self.contact.name,
-            "version": bemcontact.__version__,
+            "version": __version__,
             "certified": self.certified,
             "heading": self.heading,
             "verdict": self.verdict,

@@ -10,11 +10,11 @@ from bemcontact.assessment.matrices import WeightedCompliance
 from bemcontact.assessment.objectives import Objectives, objectives
 from bemcontact.assessment.residual import Residuals, residuals
 from bemcontact.assessment.verdict import Outcome, Reached, Verdict, refused, verdict
-from bemcontact.choices import FormulationName, Setting, Weights
-from bemcontact.contact import CondensedContact
-from bemcontact.ends import RandomStarts
-from bemcontact.record import solution_record
-from bemcontact.solution import ContactSolution
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.multistart import RandomStarts
+from bemcontact.contact.record import solution_record
+from bemcontact.contact.solution import ContactSolution
+from bemcontact.options import FormulationName, Setting, Weights
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.contact import CondensedContact
-from bemcontact.solution import ContactSolution
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
 
 Point = tuple[float, float]
 OPEN_NODES = 3
@@ -91,7 +91,7 @@ class Footprint:
         }
 
 
-def footprint(condensed: CondensedContact, solution: ContactSolution) -> Footprint:
+def footprint(contact: CondensedContact, solution: ContactSolution) -> Footprint:
     """Find contact intervals, peak and resultant of a solution.
 
     A point touches if p/T > δ/U. The end of an interval is read off the gap, which grows like s^(3/2) beyond it: the
@@ -102,7 +102,7 @@ def footprint(condensed: CondensedContact, solution: ContactSolution) -> Footpri
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     solution : of any formulation
 
     Returns
@@ -112,22 +112,22 @@ def footprint(condensed: CondensedContact, solution: ContactSolution) -> Footpri
     return Footprint(
         intervals=tuple(
             interval
-            for zone, path in _paths(condensed, solution)
-            for interval in _intervals(path, condensed.zone_names[zone])
+            for zone, path in _paths(contact, solution)
+            for interval in _intervals(path, contact.zone_names[zone])
         ),
-        peak=_peak(condensed, solution.pressure),
-        resultant=_resultant(condensed, solution.pressure),
+        peak=_peak(contact, solution.pressure),
+        resultant=_resultant(contact, solution.pressure),
     )
 
 
 def end_rates(
-    condensed: CondensedContact, solution: ContactSolution, gap_rate: Array
+    contact: CondensedContact, solution: ContactSolution, gap_rate: Array
 ) -> tuple[tuple[float | None, float | None], ...]:
     """How fast the ends of contact move along the boundary, as `footprint` reads them off the gap.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     solution : of any formulation
     gap_rate : (n,) derivative of the gap per unit of something, [L] over its unit; not a number at points that are
         about to enter or leave contact
@@ -138,17 +138,17 @@ def end_rates(
         For each interval of `footprint` the derivatives of `start_arc` and `end_arc`: zero where an end is kept at a
         point, None beside a point that is about to enter or leave contact.
     """
-    return tuple(pair for _, path in _paths(condensed, solution) for pair in _rates(path, gap_rate[path.index]))
+    return tuple(pair for _, path in _paths(contact, solution) for pair in _rates(path, gap_rate[path.index]))
 
 
-def resting_ends(condensed: CondensedContact, solution: ContactSolution) -> tuple[Point, ...]:
+def resting_ends(contact: CondensedContact, solution: ContactSolution) -> tuple[Point, ...]:
     """Ends of contact that `footprint` keeps at a point, although open points follow: their rates are zero.
 
     There the line through the gaps of the open points would end beyond the two points between which contact ends.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     solution : of any formulation
 
     Returns
@@ -156,7 +156,7 @@ def resting_ends(condensed: CondensedContact, solution: ContactSolution) -> tupl
     tuple of points
     """
     found = []
-    for _, path in _paths(condensed, solution):
+    for _, path in _paths(contact, solution):
         for ends in () if path.closed else _stretches(path):
             for last, step in zip(ends, (-1, +1), strict=True):
                 position = _end(path, last, step)
@@ -190,33 +190,33 @@ class _Path:
         return self.first > 0 and bool(self.touching.all())
 
 
-def _paths(condensed: CondensedContact, solution: ContactSolution) -> list[tuple[int, _Path]]:
+def _paths(contact: CondensedContact, solution: ContactSolution) -> list[tuple[int, _Path]]:
     """All runs, each with the number of its zone."""
-    gap = condensed.initial_gap + solution.displacement
-    touching = condensed.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
-    pieces = sorted(set(zip(condensed.zone.tolist(), condensed.run.tolist(), strict=True)))
-    return [(zone, _path(condensed, zone, run, gap, touching)) for zone, run in pieces]
+    gap = contact.initial_gap + solution.displacement
+    touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
+    pieces = sorted(set(zip(contact.zone.tolist(), contact.run.tolist(), strict=True)))
+    return [(zone, _path(contact, zone, run, gap, touching)) for zone, run in pieces]
 
 
-def _path(condensed: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
+def _path(contact: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
     """Gather the points of a run."""
-    index = np.flatnonzero((condensed.zone == zone) & (condensed.run == run))
-    index = index[np.argsort(condensed.arc_position[index], kind="stable")]
-    perimeter = condensed.run_length[run]
+    index = np.flatnonzero((contact.zone == zone) & (contact.run == run))
+    index = index[np.argsort(contact.arc_position[index], kind="stable")]
+    perimeter = contact.run_length[run]
     turns = np.array([-1.0, 0.0, 1.0]) if np.isfinite(perimeter) else np.zeros(1)
     around = np.tile(index, len(turns))
     m = len(index)
     return _Path(
-        arc=condensed.arc_position[around] + np.repeat(turns, m) * (perimeter if len(turns) > 1 else 0.0),
-        points=condensed.points[around],
+        arc=contact.arc_position[around] + np.repeat(turns, m) * (perimeter if len(turns) > 1 else 0.0),
+        points=contact.points[around],
         gap=np.maximum(gap[around], 0.0),
         touching=touching[around],
         first=m * (len(turns) // 2),
         last=m * (len(turns) // 2 + 1),
         run=run,
         perimeter=float(perimeter),
-        held_arc=np.full(2, np.nan) if condensed.held_arc is None else condensed.held_arc[run],
-        held_points=np.zeros((2, 2)) if condensed.held_points is None else condensed.held_points[run],
+        held_arc=np.full(2, np.nan) if contact.held_arc is None else contact.held_arc[run],
+        held_points=np.zeros((2, 2)) if contact.held_points is None else contact.held_points[run],
         index=around,
     )
 
@@ -306,19 +306,19 @@ def _at(path: _Path, position: float) -> Point:
     return float(x), float(y)
 
 
-def _peak(condensed: CondensedContact, pressure: Array) -> Peak | None:
+def _peak(contact: CondensedContact, pressure: Array) -> Peak | None:
     """The point of largest pressure."""
     i = int(np.argmax(pressure))
     if pressure[i] <= 0:
         return None
-    x, y = condensed.points[i]
+    x, y = contact.points[i]
     return Peak(pressure=float(pressure[i]), at=(float(x), float(y)))
 
 
-def _resultant(condensed: CondensedContact, pressure: Array) -> Resultant:
+def _resultant(contact: CondensedContact, pressure: Array) -> Resultant:
     """Force Σ w p n, its moment, and its line of action."""
-    forces = (condensed.weights * pressure)[:, None] * condensed.normals
-    x, y = condensed.points.T
+    forces = (contact.weights * pressure)[:, None] * contact.normals
+    x, y = contact.points.T
     fx, fy = map(float, forces.sum(axis=0))
     moment = float((x * forces[:, 1] - y * forces[:, 0]).sum())
     square = fx**2 + fy**2

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from scipy.linalg import eigvalsh
 
-from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.options import Weights
 
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR, or part of the largest eigenvalue, that is round-off; by the scaling the numbers are of size one."""
@@ -50,12 +50,12 @@ class WeightedCompliance:
         return {**asdict(self), "weights": self.weights.value, "convex": self.convex}
 
 
-def weighted_compliance(condensed: CondensedContact, weights: Weights) -> WeightedCompliance:
+def weighted_compliance(contact: CondensedContact, weights: Weights) -> WeightedCompliance:
     """Look at J M.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     weights : which J
 
     Returns
@@ -67,14 +67,14 @@ def weighted_compliance(condensed: CondensedContact, weights: Weights) -> Weight
     ProblemError
         The problem does not carry these weights.
     """
-    U, T = condensed.scales
-    J = condensed.weight_matrix(weights)
+    U, T = contact.scales
+    J = contact.weight_matrix(weights)
     J = J / np.abs(J).max()
-    weighted, ell = J @ condensed.compliance * (T / U), condensed.equilibrium
+    weighted, ell = J @ contact.compliance * (T / U), contact.equilibrium
     Z = np.linalg.qr(ell, mode="complete")[0][:, ell.shape[1] :]
     symmetric = weighted + weighted.T
     eigenvalues = eigvalsh(Z.T @ symmetric @ Z / 2) if Z.shape[1] else None
-    motions = condensed.rigid_motions / np.abs(condensed.rigid_motions).max(axis=0, initial=0.0)
+    motions = contact.rigid_motions / np.abs(contact.rigid_motions).max(axis=0, initial=0.0)
     size = float(np.linalg.norm(symmetric))
     return WeightedCompliance(
         weights=weights,
@@ -86,11 +86,11 @@ def weighted_compliance(condensed: CondensedContact, weights: Weights) -> Weight
     )
 
 
-def condition(condensed: CondensedContact) -> float:
+def condition(contact: CondensedContact) -> float:
     """Condition in the 2-norm of [[M, R], [ℓᵀ, 0]], scaled, whose inverse holds the contact stiffness rows of (12)."""
-    U, T = condensed.scales
-    R, k = condensed.rigid_motions, condensed.free_motions
+    U, T = contact.scales
+    R, k = contact.rigid_motions, contact.free_motions
     motions = R / np.abs(R).max(axis=0, initial=0.0)
-    rows = (condensed.weights / condensed.weights.max())[:, None] * motions
-    matrix = np.block([[condensed.compliance * (T / U), motions], [rows.T, np.zeros((k, k))]])
+    rows = (contact.weights / contact.weights.max())[:, None] * motions
+    matrix = np.block([[contact.compliance * (T / U), motions], [rows.T, np.zeros((k, k))]])
     return float(np.linalg.cond(matrix))

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact
-from bemcontact.solution import ContactSolution
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
+from bemcontact.options import Weights
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,13 +43,13 @@ class Objectives:
 
 
 def objectives(
-    condensed: CondensedContact, solution: ContactSolution, weights: Weights, penalties: tuple[float, ...]
+    contact: CondensedContact, solution: ContactSolution, weights: Weights, penalties: tuple[float, ...]
 ) -> Objectives:
     """Evaluate (27), (30) and (40) at a solution.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     solution : of any formulation
     weights : of all three
     penalties : μ of QP2, free of units
@@ -63,16 +63,16 @@ def objectives(
     ProblemError
         The problem does not carry these weights.
     """
-    U, T = condensed.scales
-    J = condensed.weight_matrix(weights)
+    U, T = contact.scales
+    J = contact.weight_matrix(weights)
     p, u = solution.pressure / T, solution.displacement / U
-    K, B, r = condensed.stiffness_rows
+    K, B, r = contact.stiffness_rows
     strange = (K @ solution.displacement - B @ solution.pressure - r) / T
     work = p @ J / np.abs(J).max()
-    qp1 = float(work @ (condensed.initial_gap / U + u))
+    qp1 = float(work @ (contact.initial_gap / U + u))
     return Objectives(
         weights=weights,
         qp1=qp1,
         qp2=tuple((penalty, qp1 + float(strange @ strange) / penalty) for penalty in penalties),
-        qp3=float(work @ condensed.gap(solution.pressure, solution.rigid_amplitudes)) / U,
+        qp3=float(work @ contact.gap(solution.pressure, solution.rigid_amplitudes)) / U,
     )

@@ -5,8 +5,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.contact import CondensedContact
-from bemcontact.solution import ContactSolution
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,12 +42,12 @@ class Residuals:
         return {name: value for name, value in asdict(self).items() if name != "round_off"}
 
 
-def residuals(condensed: CondensedContact, solution: ContactSolution, force_balance: float | None = None) -> Residuals:
+def residuals(contact: CondensedContact, solution: ContactSolution, force_balance: float | None = None) -> Residuals:
     """Recompute all that a solution must satisfy.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     solution : of any formulation
     force_balance : relative, passed through
 
@@ -55,38 +55,38 @@ def residuals(condensed: CondensedContact, solution: ContactSolution, force_bala
     -------
     Residuals
     """
-    U, T = condensed.scales
+    U, T = contact.scales
     p, u_n = solution.pressure, solution.displacement
-    gap = condensed.initial_gap + u_n
-    K, B, r = condensed.stiffness_rows
-    R = condensed.rigid_motions
-    strange = u_n - condensed.free_displacement - condensed.compliance @ p
-    root = np.sqrt(condensed.weights)
+    gap = contact.initial_gap + u_n
+    K, B, r = contact.stiffness_rows
+    R = contact.rigid_motions
+    strange = u_n - contact.free_displacement - contact.compliance @ p
+    root = np.sqrt(contact.weights)
     strange = strange - R @ np.linalg.lstsq(root[:, None] * R, root * strange, rcond=None)[0]
     return Residuals(
         penetration=_largest(-gap / U),
         tension=_largest(-p / T),
         complementarity=_largest(np.abs(np.minimum(p / T, gap / U))),
-        work=float(condensed.weights @ (p * gap)) / (U * T * float(condensed.weights.max())),
+        work=float(contact.weights @ (p * gap)) / (U * T * float(contact.weights.max())),
         equilibrium=_largest(np.abs(strange) / U),
         stiffness_rows=_largest(np.abs(K @ u_n - B @ p - r) / T),
-        balance=_largest(_imbalance(condensed, p) / (T * np.abs(condensed.equilibrium).sum(axis=0))),
-        round_off=_largest(_round_off(condensed, solution)[condensed.touching(p, u_n)] / U),
+        balance=_largest(_imbalance(contact, p) / (T * np.abs(contact.equilibrium).sum(axis=0))),
+        round_off=_largest(_round_off(contact, solution)[contact.touching(p, u_n)] / U),
         force_balance=force_balance,
     )
 
 
-def _round_off(condensed: CondensedContact, solution: ContactSolution) -> Array:
+def _round_off(contact: CondensedContact, solution: ContactSolution) -> Array:
     """Round-off of δ (n,) [L], n eps times the sum of the magnitudes of all that is added up in it."""
-    terms = np.abs(condensed.initial_gap) + np.abs(condensed.free_displacement)
-    terms += np.abs(condensed.compliance) @ np.abs(solution.pressure)
-    terms += np.abs(condensed.rigid_motions) @ np.abs(solution.rigid_amplitudes)
-    return condensed.size * np.finfo(float).eps * terms
+    terms = np.abs(contact.initial_gap) + np.abs(contact.free_displacement)
+    terms += np.abs(contact.compliance) @ np.abs(solution.pressure)
+    terms += np.abs(contact.rigid_motions) @ np.abs(solution.rigid_amplitudes)
+    return contact.size * np.finfo(float).eps * terms
 
 
-def _imbalance(condensed: CondensedContact, pressure: Array) -> Array:
+def _imbalance(contact: CondensedContact, pressure: Array) -> Array:
     """|ℓᵀp + load| (k,)."""
-    return np.abs(condensed.equilibrium.T @ pressure + condensed.motion_load)
+    return np.abs(contact.equilibrium.T @ pressure + contact.motion_load)
 
 
 def _largest(values: Array) -> float:

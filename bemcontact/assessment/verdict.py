@@ -5,8 +5,8 @@ from enum import Enum
 
 from bemcontact.assessment.certificate import Certificate, CertificateKind
 from bemcontact.assessment.matrices import WeightedCompliance
-from bemcontact.choices import Weights
-from bemcontact.solution import ContactSolution, Status
+from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.options import Weights
 
 ZERO = 1e-11
 """Scaled objective that is round-off: a residual of 1e-10, times a displacement or pressure of size one."""

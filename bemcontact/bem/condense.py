@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
-from bemcontact.actions import BALANCED, LoadCases, Pinned, Tools
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.deflection import deflections
 from bemcontact.bem.factorisation import solve
@@ -21,9 +20,11 @@ from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_l
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.system import System
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.gauge import Gauge, fix_gauge
+from bemcontact.contact.load_cases import LoadCases
+from bemcontact.contact.tools import BALANCED, Pinned, Tools
 from bemcontact.errors import Complaint, ProblemError
-from bemcontact.gauge import Gauge, fix_gauge
 from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]

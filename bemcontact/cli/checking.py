@@ -10,7 +10,7 @@ from bemcontact.cli.options import (
     VariantOption,
     with_case,
 )
-from bemcontact.terminal import busy, show
+from bemcontact.cli.terminal import busy, show
 
 
 def check(

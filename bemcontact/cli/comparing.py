@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.choices import FormulationName, Weights
 from bemcontact.cli.failures import UNCERTIFIED, claim, claim_folder, told, write_json
 from bemcontact.cli.options import (
     STANDARD_OUTPUT,
@@ -19,8 +18,9 @@ from bemcontact.cli.options import (
     several,
     with_case,
 )
-from bemcontact.output import whole_file
-from bemcontact.terminal import show, stages, tell
+from bemcontact.cli.terminal import show, stages, tell
+from bemcontact.files.output import whole_file
+from bemcontact.options import FormulationName, Weights
 
 COMPARED = (FormulationName.QP1, FormulationName.QP2, FormulationName.QP3)
 
@@ -85,8 +85,8 @@ def compare(
         parts = several(refine, "--refine", "whole number", int)
         penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
         say("reading", "")
-        from bemcontact import comparing
         from bemcontact import spec as spec_file
+        from bemcontact.analysis import compare as comparing
         from bemcontact.formulations.plan import planned_comparison
         from bemcontact.report import text
 

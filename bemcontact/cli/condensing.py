@@ -7,7 +7,7 @@ import typer
 
 from bemcontact.cli.failures import claim, told
 from bemcontact.cli.options import CaseOption, RefineOption, SetOption, SpecArgument, VariantOption, with_case
-from bemcontact.terminal import busy, show
+from bemcontact.cli.terminal import busy, show
 
 
 def condense(
@@ -29,8 +29,8 @@ def condense(
     overrides = with_case(overrides, case)
     with told(spec, overrides, variant, (out,)), busy("condensing"):
         claim(spec, {"--out": out})
-        from bemcontact import analysis
         from bemcontact import spec as spec_file
+        from bemcontact.analysis import solve as analysis
         from bemcontact.report import text
 
         condensed = analysis.condense(spec_file.load(spec, overrides or (), variant).refined(refine))

@@ -7,9 +7,9 @@ from typing import NoReturn
 
 import typer
 
-from bemcontact import output
+from bemcontact.cli.terminal import tell
 from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError
-from bemcontact.terminal import tell
+from bemcontact.files import output
 
 UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 

@@ -16,8 +16,8 @@ from bemcontact.cli.options import (
     VariantOption,
     with_case,
 )
-from bemcontact.output import whole_file
-from bemcontact.terminal import busy, show, tell
+from bemcontact.cli.terminal import busy, show, tell
+from bemcontact.files.output import whole_file
 
 
 def path(
@@ -60,8 +60,8 @@ def path(
     with told(spec, overrides, variant, (out, json_claim)), busy("following") as say:
         claim(spec, {"--json": json_claim})
         claim_folder(spec, "--out", out, json_claim, "path")
-        from bemcontact import responses
         from bemcontact import spec as spec_file
+        from bemcontact.analysis import follow as responses
         from bemcontact.report import path_text
 
         problem = spec_file.load(spec, overrides or (), variant).refined(refine)

@@ -7,8 +7,8 @@ import typer
 
 from bemcontact.cli.failures import UNCERTIFIED, claim, claim_folder, told, write_json
 from bemcontact.cli.options import STANDARD_OUTPUT, JsonOption, several
-from bemcontact.output import whole_file
-from bemcontact.terminal import show, stages, tell
+from bemcontact.cli.terminal import show, stages, tell
+from bemcontact.files.output import whole_file
 
 
 def reproduce(
@@ -37,11 +37,11 @@ def reproduce(
         claim_folder(None, "--out", out, json_claim, "reproduction")
         parts = several(refine, "--refine", "whole number", int)
         say("reading", "")
+        from bemcontact.analysis.reproduction import reproduce as carry_out
         from bemcontact.report.reproduction_page import verdict
         from bemcontact.report.reproduction_text import reproduction_summary
-        from bemcontact.reproduction import carrying_out
 
-        reproduction = carrying_out.reproduce(parts, say)
+        reproduction = carry_out(parts, say)
         if out:
             say("page", "")
             from bemcontact.report import folder

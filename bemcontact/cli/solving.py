@@ -5,8 +5,6 @@ from typing import Annotated
 
 import typer
 
-from bemcontact import output
-from bemcontact.choices import Equilibrium, FormulationName, Rows, StartName, Weights
 from bemcontact.cli.failures import UNCERTIFIED, claim, told, write_json
 from bemcontact.cli.options import (
     STANDARD_OUTPUT,
@@ -20,8 +18,10 @@ from bemcontact.cli.options import (
     VariantOption,
     with_case,
 )
+from bemcontact.cli.terminal import busy, show, tell
 from bemcontact.errors import OptionError
-from bemcontact.terminal import busy, show, tell
+from bemcontact.files import output
+from bemcontact.options import Equilibrium, FormulationName, Rows, StartName, Weights
 
 
 def solve(
@@ -95,11 +95,12 @@ def solve(
     json_claim = None if json_file == STANDARD_OUTPUT else json_file
     with told(spec, overrides, variant, (figure, vtk_file, json_claim)), busy("solving") as say:
         claim(spec, {"--figure": figure, "--json": json_claim, "--vtk": vtk_file})
-        from bemcontact import analysis, load_cases
         from bemcontact import spec as spec_file
+        from bemcontact.analysis import load_cases
+        from bemcontact.analysis import solve as analysis
         from bemcontact.formulations import plan as plans
         from bemcontact.formulations import starts as starts_of
-        from bemcontact.report import cases_text, text, words
+        from bemcontact.report import cases_text, formatting, text
 
         plan = plans.planned(
             formulation,
@@ -140,7 +141,7 @@ def solve(
         if json_file == STANDARD_OUTPUT:
             write_json(found.to_json(indent=2))
             if not found.certified:
-                tell("not certified: ", cases_text.uncertified(found) if several else words.verdict(found))
+                tell("not certified: ", cases_text.uncertified(found) if several else formatting.verdict(found))
         else:
             show(cases_text.cases_summary(found) if several else text.result_summary(found))
     raise typer.Exit(0 if found.certified else UNCERTIFIED)

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from bemcontact.choices import FormulationName
 from bemcontact.formulations import complementarity, qp1, qp2, qp3
 from bemcontact.formulations.formulation import Formulation, FormulationOptions, Start
+from bemcontact.options import FormulationName
 
 FORMULATIONS: Mapping[str, Formulation] = {
     FormulationName.QP1: qp1.solve,

@@ -11,14 +11,14 @@ from scipy.linalg import qr
 from scipy.optimize import nnls
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.choices import FormulationName
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, BoolArray, first_active_set, primal_dual
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
-from bemcontact.solution import ContactSolution, Status, Trace, traces_in_turn
+from bemcontact.options import FormulationName
 
 ACCEPTED = 1e-11
 """Residual of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
@@ -85,12 +85,12 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
     return LcpResult(z=z, w=q + M @ z, status=found.status, iterations=found.iterations, method=found.method)
 
 
-def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
     """Solve the contact problem as what it is, (16)-(18) with (35)-(38); no objective, no weights but those of ℓ.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     options : `max_iterations` limits the pivots of Lemke's method; the rest has no meaning here and must not be set
 
     Returns
@@ -107,16 +107,16 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     """
     options = options or FormulationOptions()
     options.ensure_used(FormulationName.COMPLEMENTARITY)
-    problem = scaled(condensed)
-    if note := escape_note(condensed, problem):
-        return _without_contact(condensed, note)
+    problem = scaled(contact)
+    if note := escape_note(contact, problem):
+        return _without_contact(contact, note)
     carried = replace(problem, motion_load=problem.motion_load - loose_load(problem))
     found = _search(carried, options.max_iterations)
     if found.status is Status.INFEASIBLE:
         note = "the path of pivots ended on a ray that proves that no pressure will do"
-        empty = _without_contact(condensed, note)
+        empty = _without_contact(contact, note)
         return replace(empty, solver=found.method, iterations=found.iterations, history=found.history)
-    p, u_n, a = unscaled(condensed, found.end.pressure, found.end.amplitudes)
+    p, u_n, a = unscaled(contact, found.end.pressure, found.end.amplitudes)
     return ContactSolution(
         formulation=FormulationName.COMPLEMENTARITY,
         solver=found.method,
@@ -129,12 +129,12 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     )
 
 
-def polish(condensed: CondensedContact, solution: ContactSolution) -> ContactSolution:
+def polish(contact: CondensedContact, solution: ContactSolution) -> ContactSolution:
     """Make an approximate solution exact: a few primal-dual steps from the contact set {p/T > δ/U} that it shows.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     solution : of any formulation
 
     Returns
@@ -143,14 +143,14 @@ def polish(condensed: CondensedContact, solution: ContactSolution) -> ContactSol
         With `polished` set if the natural residual got smaller, or is at round-off where the solver had left traces of
         pressure off the contact set. Else `solution` itself.
     """
-    problem = scaled(condensed)
-    p, a = scaled_point(condensed, solution.pressure, solution.rigid_amplitudes)
-    touching = condensed.touching(solution.pressure, solution.displacement)
+    problem = scaled(contact)
+    p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
+    touching = contact.touching(solution.pressure, solution.displacement)
     end = primal_dual(problem, touching, POLISH_STEPS)
     cleaner = end.residual <= ACCEPTED and solution.pressure[~touching].any()
     if not (cleaner or end.residual < problem.residual(p, a)):
         return solution
-    p, u_n, a = unscaled(condensed, end.pressure, end.amplitudes)
+    p, u_n, a = unscaled(contact, end.pressure, end.amplitudes)
     return replace(solution, pressure=p, displacement=u_n, rigid_amplitudes=a, unpolished=solution.pressure)
 
 
@@ -164,17 +164,17 @@ def loose_load(problem: ScaledContact) -> Array:
     return ell.T @ nnls(ell.T, -load)[0] + load if load.size else load
 
 
-def escape_note(condensed: CondensedContact, problem: ScaledContact) -> str | None:
+def escape_note(contact: CondensedContact, problem: ScaledContact) -> str | None:
     """Say in words in which motion the load carries the body off its support; None if the support carries the load."""
     motion = loose_load(problem)
     if np.linalg.norm(motion) <= BALANCED * np.linalg.norm(problem.motion_load):
         return None
-    return escape_words(condensed, motion)
+    return escape_words(contact, motion)
 
 
-def escape_words(condensed: CondensedContact, motion: Array) -> str:
+def escape_words(contact: CondensedContact, motion: Array) -> str:
     """Say that the load carries the body off its support in a motion (k,), free of units."""
-    parts = zip(motion / np.abs(motion).max(), condensed.motion_names, strict=True)
+    parts = zip(motion / np.abs(motion).max(), contact.motion_names, strict=True)
     terms = ", ".join(f"{part:+.3g} x {name}" for part, name in parts if abs(part) > NAMED)
     return f"the load carries the body off its support, in a motion that no contact resists: {terms}"
 
@@ -254,15 +254,15 @@ def _search(problem: ScaledContact, pivot_limit: int | None) -> _Found:
     return _Found(end=best, status=status, method=LEMKE, history=history)
 
 
-def _without_contact(condensed: CondensedContact, note: str) -> ContactSolution:
+def _without_contact(contact: CondensedContact, note: str) -> ContactSolution:
     """The free body, p = 0, as the answer to a problem that has none."""
     return ContactSolution(
         formulation=FormulationName.COMPLEMENTARITY,
         solver=ACTIVE_SET,
         status=Status.INFEASIBLE,
-        pressure=np.zeros(condensed.size),
-        displacement=condensed.free_displacement,
-        rigid_amplitudes=np.zeros(condensed.free_motions),
+        pressure=np.zeros(contact.size),
+        displacement=contact.free_displacement,
+        rigid_amplitudes=np.zeros(contact.free_motions),
         iterations=0,
         notes=(note,),
     )

@@ -7,10 +7,10 @@ from typing import Protocol
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.choices import Equilibrium, Rows, Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import OptionError
-from bemcontact.solution import ContactSolution
+from bemcontact.options import Equilibrium, Rows, Weights
 
 LEAST_PENALTY, LARGEST_PENALTY = 1e-8, 1e8
 """Beyond, the smaller of QP2's two terms is lost in the round-off of the other: doubles carry 16 digits."""
@@ -110,6 +110,6 @@ class FormulationOptions:
 class Formulation(Protocol):
     """One statement of the contact problem together with its solver."""
 
-    def __call__(self, condensed: CondensedContact, options: FormulationOptions) -> ContactSolution:
+    def __call__(self, contact: CondensedContact, options: FormulationOptions) -> ContactSolution:
         """Solve; not converging is a `Status` of the solution, not an error."""
         ...

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
-from bemcontact.solution import Status
+from bemcontact.contact.solution import Status
 
 PIVOT = 1e-11
 TIE = 1e-12

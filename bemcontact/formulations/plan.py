@@ -7,11 +7,11 @@ from itertools import product
 from numbers import Real
 from typing import Any, TypeVar
 
-from bemcontact.choices import Equilibrium, FormulationName, Rows, Setting, Weights
 from bemcontact.errors import OptionError
 from bemcontact.formulations import OPTIONS, FormulationOptions, Start
 from bemcontact.formulations.formulation import ensure_whole
 from bemcontact.formulations.starts import StartChoice
+from bemcontact.options import Equilibrium, FormulationName, Rows, Setting, Weights
 
 Name = TypeVar("Name", bound=Enum)
 Item = TypeVar("Item")

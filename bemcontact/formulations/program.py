@@ -11,11 +11,11 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from bemcontact.arrays import Array
-from bemcontact.choices import Rows
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations.formulation import Start
 from bemcontact.formulations.local_solver import QPOptions, QPResult, inertia, minimize_qp
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point
+from bemcontact.options import Rows
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -101,25 +101,25 @@ class Program:
         return float(work + residual @ residual / self.penalty)
 
 
-def contact_equations(condensed: CondensedContact, rows: Rows) -> Equations:
+def contact_equations(contact: CondensedContact, rows: Rows) -> Equations:
     """K u_n - B p = r, (12), in scaled numbers, so that a residual is a part of the scale T or U.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     rows : the stiffness rows over (u_n, p), or the compliance rows over (u_n, p, a)
 
     Returns
     -------
     Equations
     """
-    U, T = condensed.scales
+    U, T = contact.scales
     if rows is Rows.STIFFNESS:
-        K, B, r = condensed.stiffness_rows
+        K, B, r = contact.stiffness_rows
         return Equations(matrix=np.hstack([K * (U / T), -B]), right=r / T)
-    problem = scaled(condensed)
-    matrix = np.hstack([np.eye(condensed.size), -problem.compliance, -problem.rigid_motions])
-    return Equations(matrix=matrix, right=condensed.free_displacement / U)
+    problem = scaled(contact)
+    matrix = np.hstack([np.eye(contact.size), -problem.compliance, -problem.rigid_motions])
+    return Equations(matrix=matrix, right=contact.free_displacement / U)
 
 
 def equilibrium(problem: ScaledContact, size: int) -> Equations:
@@ -135,10 +135,10 @@ def no_equations(size: int) -> Equations:
     return Equations(matrix=np.zeros((0, size)), right=np.zeros(0))
 
 
-def lower_bounds(condensed: CondensedContact, size: int) -> Array:
+def lower_bounds(contact: CondensedContact, size: int) -> Array:
     """-ε, 0, and -inf for amplitudes, of x of `size` entries."""
-    n = condensed.size
-    gap = condensed.initial_gap / condensed.scales.displacement
+    n = contact.size
+    gap = contact.initial_gap / contact.scales.displacement
     return np.concatenate([-gap, np.zeros(n), np.full(size - 2 * n, -np.inf)])
 
 
@@ -179,21 +179,21 @@ def minimise(program: Program, start: Array, max_iterations: int | None) -> QPRe
     )
 
 
-def start_vector(condensed: CondensedContact, start: Start | None, size: int) -> Array:
+def start_vector(contact: CondensedContact, start: Start | None, size: int) -> Array:
     """Write a start as x of `size` entries: u_n/U, p/T, and the amplitudes that go with them best."""
     x = np.zeros(size)
     if start is None:
         return x
-    start.ensure_fits(condensed.size)
-    n = condensed.size
-    p, a = scaled_point(condensed, start.pressure, amplitudes(condensed, start.pressure, start.displacement))
-    x[:n], x[n : 2 * n] = start.displacement / condensed.scales.displacement, p
+    start.ensure_fits(contact.size)
+    n = contact.size
+    p, a = scaled_point(contact, start.pressure, amplitudes(contact, start.pressure, start.displacement))
+    x[:n], x[n : 2 * n] = start.displacement / contact.scales.displacement, p
     x[2 * n :] = a[: size - 2 * n]
     return x
 
 
-def amplitudes(condensed: CondensedContact, pressure: Array, displacement: Array) -> Array:
+def amplitudes(contact: CondensedContact, pressure: Array, displacement: Array) -> Array:
     """The a (k,) with which u_n = Δ1 + M p + R a comes closest, in the least squares of the weights."""
-    R, ell = condensed.rigid_motions, condensed.equilibrium
-    rest = displacement - condensed.free_displacement - condensed.compliance @ pressure
+    R, ell = contact.rigid_motions, contact.equilibrium
+    rest = displacement - contact.free_displacement - contact.compliance @ pressure
     return np.asarray(np.linalg.solve(ell.T @ R, ell.T @ rest), float)

@@ -10,8 +10,8 @@ equilibrium.
 
 from dataclasses import replace
 
-from bemcontact.choices import FormulationName, Rows
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.program import (
     Program,
@@ -23,18 +23,18 @@ from bemcontact.formulations.program import (
 from bemcontact.formulations.qp3 import NEGLIGIBLE, smallest_eigenvalue
 from bemcontact.formulations.scaling import scaled, scaled_weights
 from bemcontact.formulations.search import polished, searched
-from bemcontact.solution import ContactSolution
+from bemcontact.options import FormulationName, Rows
 
 OPTIONS = ("weights", "rows", "start")
 """Those of `FormulationOptions` that have a meaning here."""
 
 
-def statement(condensed: CondensedContact, options: FormulationOptions) -> Program:
+def statement(contact: CondensedContact, options: FormulationOptions) -> Program:
     """Write (27)-(29) on the scaled problem.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     options : weights and rows
 
     Returns
@@ -47,25 +47,25 @@ def statement(condensed: CondensedContact, options: FormulationOptions) -> Progr
     ProblemError
         The problem does not carry the weights asked for.
     """
-    equations = contact_equations(condensed, options.rows)
+    equations = contact_equations(contact, options.rows)
     size = equations.matrix.shape[1]
     if options.rows is Rows.COMPLIANCE:
-        equations = equations.and_also(equilibrium(scaled(condensed), size))
+        equations = equations.and_also(equilibrium(scaled(contact), size))
     return Program(
-        weights=scaled_weights(condensed, options.weights),
+        weights=scaled_weights(contact, options.weights),
         penalised=no_equations(size),
         penalty=1.0,
         equations=equations.of_unit_size,
-        lower=lower_bounds(condensed, size),
+        lower=lower_bounds(contact, size),
     )
 
 
-def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
     """Find a local minimum of QP1, then polish it unless it is certain not to be the contact state.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     options : weights, rows, start, whether to polish, limit of the solver's iterations
 
     Returns
@@ -82,8 +82,8 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     """
     options = options or FormulationOptions()
     options.ensure_used(FormulationName.QP1, *OPTIONS)
-    program = statement(condensed, options)
-    eigenvalue = smallest_eigenvalue(scaled(condensed), scaled_weights(condensed, options.weights))
+    program = statement(contact, options)
+    eigenvalue = smallest_eigenvalue(scaled(contact), scaled_weights(contact, options.weights))
     only = eigenvalue is None or eigenvalue > NEGLIGIBLE
-    found = searched(condensed, options, FormulationName.QP1, program, only=only)
-    return replace(polished(condensed, options, found), smallest_eigenvalue=eigenvalue)
+    found = searched(contact, options, FormulationName.QP1, program, only=only)
+    return replace(polished(contact, options, found), smallest_eigenvalue=eigenvalue)

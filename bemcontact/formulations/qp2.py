@@ -26,8 +26,8 @@ import numpy as np
 from scipy.linalg import eigvalsh
 
 from bemcontact.arrays import Array
-from bemcontact.choices import Equilibrium, FormulationName, Rows, Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Penalty, Status
 from bemcontact.errors import OptionError
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.program import (
@@ -39,7 +39,7 @@ from bemcontact.formulations.program import (
 )
 from bemcontact.formulations.scaling import scaled, scaled_weights
 from bemcontact.formulations.search import polished, searched
-from bemcontact.solution import ContactSolution, Penalty, Status
+from bemcontact.options import Equilibrium, FormulationName, Rows, Weights
 
 OPTIONS = ("weights", "penalty", "rows", "equilibrium", "start")
 """Those of `FormulationOptions` that have a meaning here."""
@@ -64,12 +64,12 @@ class Ray:
     limit: float
 
 
-def statement(condensed: CondensedContact, options: FormulationOptions) -> Program:
+def statement(contact: CondensedContact, options: FormulationOptions) -> Program:
     """Write (30)-(34) on the scaled problem.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     options : weights, penalty, rows, equilibrium
 
     Returns
@@ -82,42 +82,42 @@ def statement(condensed: CondensedContact, options: FormulationOptions) -> Progr
     ProblemError
         The problem does not carry the weights asked for, or the rows do not contain the equilibrium to be penalised.
     """
-    penalised = contact_equations(condensed, options.rows)
+    penalised = contact_equations(contact, options.rows)
     size = penalised.matrix.shape[1]
     exact = no_equations(size)
     if options.equilibrium is Equilibrium.CONSTRAINT:
-        exact = equilibrium(scaled(condensed), size).of_unit_size
-    elif options.rows is Rows.COMPLIANCE and condensed.free_motions:
+        exact = equilibrium(scaled(contact), size).of_unit_size
+    elif options.rows is Rows.COMPLIANCE and contact.free_motions:
         raise OptionError(
             "equilibrium can be penalised with the stiffness rows only, which contain it; the compliance rows need it "
             "as a constraint"
         )
     return Program(
-        weights=scaled_weights(condensed, options.weights),
+        weights=scaled_weights(contact, options.weights),
         penalised=penalised,
         penalty=options.penalty,
         equations=exact,
-        lower=lower_bounds(condensed, size),
+        lower=lower_bounds(contact, size),
     )
 
 
-def penalty_unit(condensed: CondensedContact, options: FormulationOptions) -> float:
+def penalty_unit(contact: CondensedContact, options: FormulationOptions) -> float:
     """The μ in the user's units that is 1 in scaled ones: T/(U max J) for stiffness rows, U/(T max J) for others.
 
     It is that of pᵀJδ + (1/μ)|K u_n - B p - r|² with K, B, r, J as they are. Where a change of units multiplies
     lengths, it changes; so do not compare μ between problems by it.
     """
-    U, T = condensed.scales
-    weight = float(np.abs(condensed.weight_matrix(options.weights)).max())
+    U, T = contact.scales
+    weight = float(np.abs(contact.weight_matrix(options.weights)).max())
     return (T / U if options.rows is Rows.STIFFNESS else U / T) / weight
 
 
-def convexity_limit(condensed: CondensedContact, options: FormulationOptions) -> float:
+def convexity_limit(contact: CondensedContact, options: FormulationOptions) -> float:
     """The largest μ, free of units, for which QP2 is convex.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     options : weights, rows, equilibrium
 
     Returns
@@ -125,7 +125,7 @@ def convexity_limit(condensed: CondensedContact, options: FormulationOptions) ->
     float
         Zero if QP2 is convex for none, infinite if equilibrium leaves no pressure free.
     """
-    problem, J = scaled(condensed), scaled_weights(condensed, options.weights)
+    problem, J = scaled(contact), scaled_weights(contact, options.weights)
     n, k = problem.rigid_motions.shape
     Z = problem.equilibrium_space
     lifted = options.equilibrium is Equilibrium.PENALTY and k > 0
@@ -144,14 +144,14 @@ def convexity_limit(condensed: CondensedContact, options: FormulationOptions) ->
     return float(eigvalsh(2 * (W + W.T), D @ D.T, subset_by_index=(0, 0))[0])
 
 
-def two_point_ray(condensed: CondensedContact, options: FormulationOptions) -> Ray | None:
+def two_point_ray(contact: CondensedContact, options: FormulationOptions) -> Ray | None:
     """Find p growing by β at i and u_n by α at j, J_ij < 0, such that αβ J_ij + (1/μ)|α K e_j - β B e_i|² < 0.
 
     For given i, j the quadratic form in α, β > 0 is somewhere negative if μ > 2(|K e_j||B e_i| - K e_j·B e_i)/(-J_ij).
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     options : weights, penalty, rows, equilibrium
 
     Returns
@@ -159,10 +159,10 @@ def two_point_ray(condensed: CondensedContact, options: FormulationOptions) -> R
     Ray or None
         The one of the lowest limit; None if μ is not above it, or equilibrium lets no single pressure grow.
     """
-    n, J = condensed.size, scaled_weights(condensed, options.weights)
-    if not (J < 0).any() or (condensed.free_motions and options.equilibrium is Equilibrium.CONSTRAINT):
+    n, J = contact.size, scaled_weights(contact, options.weights)
+    if not (J < 0).any() or (contact.free_motions and options.equilibrium is Equilibrium.CONSTRAINT):
         return None
-    E = contact_equations(condensed, options.rows).matrix
+    E = contact_equations(contact, options.rows).matrix
     K, B = E[:, :n], -E[:, n : 2 * n]
     lengths = np.outer(np.linalg.norm(B, axis=0), np.linalg.norm(K, axis=0))
     limits = np.where(J < 0, 2 * (lengths - B.T @ K) / np.where(J < 0, -J, 1.0), np.inf)
@@ -174,12 +174,12 @@ def two_point_ray(condensed: CondensedContact, options: FormulationOptions) -> R
     return Ray(pressed=i, opened=j, direction=direction, limit=float(limits[i, j]))
 
 
-def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
     """Find a local minimum of QP2, then polish it unless it is certain not to be the contact state.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     options : weights, penalty, rows, equilibrium, start, whether to polish, limit of the solver's iterations
 
     Returns
@@ -197,11 +197,11 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     """
     options = options or FormulationOptions()
     options.ensure_used(FormulationName.QP2, *OPTIONS)
-    program = statement(condensed, options)
-    unit = penalty_unit(condensed, options)
-    if ray := two_point_ray(condensed, options):
-        raise OptionError(_unbounded(condensed, options, ray, unit))
-    limit = convexity_limit(condensed, options)
+    program = statement(contact, options)
+    unit = penalty_unit(contact, options)
+    if ray := two_point_ray(contact, options):
+        raise OptionError(_unbounded(contact, options, ray, unit))
+    limit = convexity_limit(contact, options)
     penalty = Penalty(
         value=options.penalty,
         raw=options.penalty * unit,
@@ -209,19 +209,19 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         convexity_limit_raw=limit * unit if np.isfinite(limit) else None,
         dimension="p/L²" if options.rows is Rows.STIFFNESS else "1/p",
     )
-    found = searched(condensed, options, FormulationName.QP2, program, only=limit > 0, penalty=penalty)
+    found = searched(contact, options, FormulationName.QP2, program, only=limit > 0, penalty=penalty)
     if found.status is Status.UNBOUNDED and options.weights is Weights.CONSISTENT:
         raise OptionError(f"QP2 has no minimum with consistent weights: {found.notes[-1]}; take the tributary weights")
     if found.status in (Status.NUMERICAL_FAILURE, Status.NO_SOLUTION_FOUND):
         notes = ("take a penalty nearer to 1, or stiffness rows, which lose least to round-off",)
     else:
-        notes = _notes(condensed, options, found)
-    return polished(condensed, options, replace(found, notes=(*found.notes, *notes)))
+        notes = _notes(contact, options, found)
+    return polished(contact, options, replace(found, notes=(*found.notes, *notes)))
 
 
-def _unbounded(condensed: CondensedContact, options: FormulationOptions, ray: Ray, unit: float) -> str:
+def _unbounded(contact: CondensedContact, options: FormulationOptions, ray: Ray, unit: float) -> str:
     """Tell of a ray in words."""
-    (x, y), (v, w) = condensed.points[ray.pressed], condensed.points[ray.opened]
+    (x, y), (v, w) = contact.points[ray.pressed], contact.points[ray.opened]
     return (
         f"QP2 has no minimum with {options.weights.value} weights and penalty {options.penalty:.3g} "
         f"({options.penalty * unit:.3g} in the units of the problem): it falls without end as the pressure grows at "
@@ -231,11 +231,11 @@ def _unbounded(condensed: CondensedContact, options: FormulationOptions, ray: Ra
     )
 
 
-def _notes(condensed: CondensedContact, options: FormulationOptions, found: ContactSolution) -> tuple[str, ...]:
+def _notes(contact: CondensedContact, options: FormulationOptions, found: ContactSolution) -> tuple[str, ...]:
     """What to know of equilibrium that is only penalised."""
     if options.equilibrium is Equilibrium.CONSTRAINT:
         return ()
-    if not condensed.free_motions:
+    if not contact.free_motions:
         return ("conditions hold all rigid motions: there is no equilibrium of a free body to be penalised",)
     if found.status is not Status.LOCAL_MINIMUM:
         return ()

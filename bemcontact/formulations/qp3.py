@@ -17,13 +17,13 @@ from scipy.linalg import eigvalsh
 from scipy.sparse import triu
 
 from bemcontact.arrays import Array
-from bemcontact.choices import FormulationName, Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Status, Trace
 from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_weights, unscaled
-from bemcontact.solution import ContactSolution, Status, Trace
+from bemcontact.options import FormulationName, Weights
 
 OPTIONS = ("weights",)
 """Those of `FormulationOptions` that have a meaning here."""
@@ -131,7 +131,7 @@ def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
     return float(eigvalsh(hessian, subset_by_index=(0, 0))[0])
 
 
-def solve(condensed: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
     """Minimise QP3, (40)-(42), on the scaled problem, then polish.
 
     With the consistent weights the minimum need not be the contact state, as J has negative entries; so the result then
@@ -139,7 +139,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     options : weights of the objective, whether to polish, limit of Clarabel's iterations
 
     Returns
@@ -161,7 +161,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
     """
     options = options or FormulationOptions()
     options.ensure_used(FormulationName.QP3, *OPTIONS)
-    problem, J = scaled(condensed), scaled_weights(condensed, options.weights)
+    problem, J = scaled(contact), scaled_weights(contact, options.weights)
     eigenvalue = smallest_eigenvalue(problem, J)
     work = objective(problem, J)
     notes = []
@@ -173,10 +173,10 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         )
     found = _minimise(problem, work, options.max_iterations)
     widest = float(np.abs(problem.offset).max(initial=0.0))
-    if found.status in (Status.UNBOUNDED, Status.INFEASIBLE) and widest > 1 and not escape_note(condensed, problem):
+    if found.status in (Status.UNBOUNDED, Status.INFEASIBLE) and widest > 1 and not escape_note(contact, problem):
         found = _in_units_of(widest, problem, work, options.max_iterations)
-    p, u_n, a = unscaled(condensed, found.pressure, found.amplitudes)
-    if found.status is Status.INFEASIBLE and (note := escape_note(condensed, problem)):
+    p, u_n, a = unscaled(contact, found.pressure, found.amplitudes)
+    if found.status is Status.INFEASIBLE and (note := escape_note(contact, problem)):
         notes.append(note)
     solution = ContactSolution(
         formulation=FormulationName.QP3,
@@ -194,7 +194,7 @@ def solve(condensed: CondensedContact, options: FormulationOptions | None = None
         notes=tuple(notes),
     )
     exact = options.weights is not Weights.CONSISTENT
-    return polish(condensed, solution) if options.polish and exact and found.has_point else solution
+    return polish(contact, solution) if options.polish and exact and found.has_point else solution
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

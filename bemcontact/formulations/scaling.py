@@ -10,11 +10,11 @@ from functools import cached_property
 
 import numpy as np
 
-from bemcontact.actions import Change
 from bemcontact.arrays import Array
-from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact
-from bemcontact.contact_scales import ContactScales
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import Change
+from bemcontact.contact.scales import ContactScales
+from bemcontact.options import Weights
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,54 +58,54 @@ class ScaledContact:
         return float(max(natural.max(initial=0.0), balance.max(initial=0.0)) / size)
 
 
-def scaled(condensed: CondensedContact, scales: ContactScales | None = None) -> ScaledContact:
+def scaled(contact: CondensedContact, scales: ContactScales | None = None) -> ScaledContact:
     """Take the units out of a contact problem.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     scales : other ones than those of the problem, which depend on its load; then ‖M‖∞ = 1 only if U = ‖M‖∞ T
 
     Returns
     -------
     ScaledContact
     """
-    U, T = scales or condensed.scales
-    weight = condensed.weights.max()
-    motion = motion_sizes(condensed)
+    U, T = scales or contact.scales
+    weight = contact.weights.max()
+    motion = motion_sizes(contact)
     return ScaledContact(
-        compliance=condensed.compliance * (T / U),
-        offset=condensed.offset / U,
-        rigid_motions=condensed.rigid_motions / motion,
-        motion_load=condensed.motion_load / (motion * weight * T),
-        weights=condensed.weights / weight,
+        compliance=contact.compliance * (T / U),
+        offset=contact.offset / U,
+        rigid_motions=contact.rigid_motions / motion,
+        motion_load=contact.motion_load / (motion * weight * T),
+        weights=contact.weights / weight,
     )
 
 
-def scaled_weights(condensed: CondensedContact, weights: Weights) -> Array:
+def scaled_weights(contact: CondensedContact, weights: Weights) -> Array:
     """J (n, n) over its largest entry."""
-    J = condensed.weight_matrix(weights)
+    J = contact.weight_matrix(weights)
     return J / np.abs(J).max()
 
 
-def scaled_point(condensed: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array]:
+def scaled_point(contact: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array]:
     """Take the units out of a pressure (n,) [p] and amplitudes (k,)."""
-    U, T = condensed.scales
-    return pressure / T, amplitudes * motion_sizes(condensed) / U
+    U, T = contact.scales
+    return pressure / T, amplitudes * motion_sizes(contact) / U
 
 
-def scaled_change(condensed: CondensedContact, change: Change) -> Change:
+def scaled_change(contact: CondensedContact, change: Change) -> Change:
     """Take the units out of an offset (n,) [L] and a load (k,), or of a change of both."""
-    U, T = condensed.scales
-    return Change(change.offset / U, change.motion_load / (motion_sizes(condensed) * condensed.weights.max() * T))
+    U, T = contact.scales
+    return Change(change.offset / U, change.motion_load / (motion_sizes(contact) * contact.weights.max() * T))
 
 
-def unscaled(condensed: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array, Array]:
+def unscaled(contact: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array, Array]:
     """Put the units of a contact problem back into a solution of `scaled`.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     pressure : (n,) p, dimensionless
     amplitudes : (k,) a, dimensionless
 
@@ -115,16 +115,16 @@ def unscaled(condensed: CondensedContact, pressure: Array, amplitudes: Array) ->
     displacement : (n,) u_n = Δ1 + M p + R a [L]
     amplitudes : (k,) in the user's units
     """
-    U, T = condensed.scales
-    p, a = pressure * T, amplitudes * U / motion_sizes(condensed)
-    return p, condensed.free_displacement + condensed.compliance @ p + condensed.rigid_motions @ a, a
+    U, T = contact.scales
+    p, a = pressure * T, amplitudes * U / motion_sizes(contact)
+    return p, contact.free_displacement + contact.compliance @ p + contact.rigid_motions @ a, a
 
 
-def motion_sizes(condensed: CondensedContact) -> Array:
+def motion_sizes(contact: CondensedContact) -> Array:
     """Largest normal component of each free motion, (k,).
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     """
-    return np.abs(condensed.rigid_motions).max(axis=0, initial=0.0)
+    return np.abs(contact.rigid_motions).max(axis=0, initial=0.0)

@@ -6,14 +6,14 @@ from itertools import groupby
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, LocalSearch, Penalty, Status, Trace, traces_in_turn
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.local_solver import QPResult, QPStatus
 from bemcontact.formulations.program import Program, amplitudes, minimise, start_vector
 from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
-from bemcontact.solution import ContactSolution, LocalSearch, Penalty, Status, Trace, traces_in_turn
+from bemcontact.options import Weights
 
 SOLUTION = 1e-8
 """Residual up to which the end of a search counts as the contact state: searches that go well leave 1e-10 and less."""
@@ -47,7 +47,7 @@ STATUSES = {
 
 
 def searched(
-    condensed: CondensedContact,
+    contact: CondensedContact,
     options: FormulationOptions,
     formulation: str,
     program: Program,
@@ -62,7 +62,7 @@ def searched(
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     options : start, limit of iterations, weights
     formulation : its name
     program : Program
@@ -74,9 +74,9 @@ def searched(
     ContactSolution
         Its displacement is the solver's own u_n.
     """
-    result = minimise(program, start_vector(condensed, options.start, len(program.linear)), options.max_iterations)
-    found = _as_found(condensed, formulation, result, _search(options, program, result, penalty))
-    residual, objective = contact_residual(condensed, found), program.value(result.x)
+    result = minimise(program, start_vector(contact, options.start, len(program.linear)), options.max_iterations)
+    found = _as_found(contact, formulation, result, _search(options, program, result, penalty))
+    residual, objective = contact_residual(contact, found), program.value(result.x)
     if found.status is not Status.SOLVED or residual <= SOLUTION:
         return found
     if options.weights is Weights.CONSISTENT:
@@ -92,7 +92,7 @@ def searched(
     return replace(found, status=status, notes=(*found.notes, note))
 
 
-def polished(condensed: CondensedContact, options: FormulationOptions, found: ContactSolution) -> ContactSolution:
+def polished(contact: CondensedContact, options: FormulationOptions, found: ContactSolution) -> ContactSolution:
     """The polish, where it is asked for and due, which may make the solution of an end that round-off has spoilt.
 
     Not due are a true minimum elsewhere, a search that was cut short or proved that there is nothing to find, and the
@@ -100,29 +100,29 @@ def polished(condensed: CondensedContact, options: FormulationOptions, found: Co
     """
     if not options.polish or options.weights is Weights.CONSISTENT or found.status not in POLISHED:
         return found
-    better = polish(condensed, found)
-    if found.status is Status.SOLVED or contact_residual(condensed, better) > SOLUTION:
+    better = polish(contact, found)
+    if found.status is Status.SOLVED or contact_residual(contact, better) > SOLUTION:
         return better
     return replace(better, status=Status.SOLVED, notes=(*better.notes, "the polish led from there to the solution"))
 
 
-def contact_residual(condensed: CondensedContact, solution: ContactSolution) -> float:
+def contact_residual(contact: CondensedContact, solution: ContactSolution) -> float:
     """Largest of |min(p/T, δ/U)|, of (12) over U and of |ℓᵀp + load| over T Σ|ℓ|, over the size of the numbers."""
-    problem = scaled(condensed)
-    p, a = scaled_point(condensed, solution.pressure, solution.rigid_amplitudes)
-    strange = solution.displacement - unscaled(condensed, p, a)[1]
+    problem = scaled(contact)
+    p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
+    strange = solution.displacement - unscaled(contact, p, a)[1]
     size = 1.0 + float(np.abs(p).max(initial=0.0) + np.abs(a).sum())
-    return max(problem.residual(p, a), float(np.abs(strange).max()) / condensed.scales.displacement / size)
+    return max(problem.residual(p, a), float(np.abs(strange).max()) / contact.scales.displacement / size)
 
 
-def ray_in_words(condensed: CondensedContact, ray: Array) -> str:
+def ray_in_words(contact: CondensedContact, ray: Array) -> str:
     """Name the contact points whose pressure or displacement grows most along a ray (N,)."""
-    n = condensed.size
+    n = contact.size
     displacement, pressure = ray[:n], ray[n : 2 * n]
     terms = []
     for name, part in (("pressure", pressure), ("normal displacement", displacement)):
         if (i := int(np.argmax(np.abs(part)))) < n and part[i]:
-            x, y = condensed.points[i]
+            x, y = contact.points[i]
             terms.append(f"{name} {'grows' if part[i] > 0 else 'falls'} at contact point {i} ({x:.5g}, {y:.5g})")
     return " while ".join(terms) or "the body moves rigidly"
 
@@ -143,17 +143,17 @@ def _search(options: FormulationOptions, program: Program, result: QPResult, pen
     )
 
 
-def _as_found(condensed: CondensedContact, formulation: str, result: QPResult, search: LocalSearch) -> ContactSolution:
+def _as_found(contact: CondensedContact, formulation: str, result: QPResult, search: LocalSearch) -> ContactSolution:
     """The end of the solver in the user's units."""
-    n = condensed.size
-    U, T = condensed.scales
+    n = contact.size
+    U, T = contact.scales
     notes = []
     if result.status is QPStatus.UNDECIDED:
         notes.append("the local solver left open whether its end is a minimum: zero multipliers hide directions")
     if result.status is QPStatus.UNBOUNDED and result.ray is not None:
-        notes.append(f"the objective falls without end along a ray: {ray_in_words(condensed, result.ray)}")
+        notes.append(f"the objective falls without end along a ray: {ray_in_words(contact, result.ray)}")
     if result.status is QPStatus.INFEASIBLE:
-        notes.append(escape_note(condensed, scaled(condensed)) or NO_CONTACT_STATE)
+        notes.append(escape_note(contact, scaled(contact)) or NO_CONTACT_STATE)
     u_n, p = result.x[:n] * U, result.x[n : 2 * n] * T
     return ContactSolution(
         formulation=formulation,
@@ -161,7 +161,7 @@ def _as_found(condensed: CondensedContact, formulation: str, result: QPResult, s
         status=STATUSES[result.status],
         pressure=p,
         displacement=u_n,
-        rigid_amplitudes=amplitudes(condensed, p, u_n),
+        rigid_amplitudes=amplitudes(contact, p, u_n),
         iterations=result.iterations,
         search=search,
         history=_history(result),

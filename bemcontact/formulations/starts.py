@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.choices import StartName
-from bemcontact.contact import CondensedContact
-from bemcontact.ends import End, RandomStarts
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.multistart import End, RandomStarts
+from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import OptionError, SpecError
+from bemcontact.files.text import text_of
 from bemcontact.formulations.formulation import Formulation, FormulationOptions, Start, ensure_whole
 from bemcontact.formulations.search import contact_residual
-from bemcontact.solution import ContactSolution, Status
-from bemcontact.text_file import text_of
+from bemcontact.options import StartName
 
 SPREAD = 2.0
 """Largest random pressure over T, and size of a random displacement over U."""
@@ -26,12 +26,12 @@ NOWHERE = (Status.INFEASIBLE, Status.UNBOUNDED)
 """Ends that are proofs and no points: all of a kind are one, and an objective means nothing there."""
 
 
-def random_points(condensed: CondensedContact, count: int, seed: int = 0) -> tuple[Start, ...]:
+def random_points(contact: CondensedContact, count: int, seed: int = 0) -> tuple[Start, ...]:
     """Draw starts: pressures even in [0, 2T], displacements normal with deviation 2U, the body moved likewise.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     count : how many, at least 1
     seed : the same seed gives the same starts, in any units, and fewer starts are the first of more
 
@@ -47,12 +47,12 @@ def random_points(condensed: CondensedContact, count: int, seed: int = 0) -> tup
     ensure_whole(count, "number of starts", 1)
     ensure_whole(seed, "seed", 0)
     rng = np.random.default_rng(seed)
-    U, T = condensed.scales
-    motions = condensed.rigid_motions / np.abs(condensed.rigid_motions).max(axis=0, initial=0.0)
+    U, T = contact.scales
+    motions = contact.rigid_motions / np.abs(contact.rigid_motions).max(axis=0, initial=0.0)
     points = []
     for number in range(count):
-        pressure = rng.uniform(0.0, SPREAD, condensed.size)
-        displacement = SPREAD * (rng.standard_normal(condensed.size) + motions @ rng.standard_normal(motions.shape[1]))
+        pressure = rng.uniform(0.0, SPREAD, contact.size)
+        displacement = SPREAD * (rng.standard_normal(contact.size) + motions @ rng.standard_normal(motions.shape[1]))
         label = f"random point {number}, seed {seed}"
         points.append(Start(pressure=pressure * T, displacement=displacement * U, label=label))
     return tuple(points)
@@ -101,21 +101,21 @@ class StartChoice:
 
     def search(
         self,
-        condensed: CondensedContact,
+        contact: CondensedContact,
         solve: Formulation,
         options: FormulationOptions,
         progress: Callable[[int], object] | None = None,
     ) -> tuple[ContactSolution, RandomStarts | None]:
         """Solve from the start; of several random ones from the first that led to the best end, with all the ends."""
         if isinstance(self.start, Start):
-            return solve(condensed, replace(options, start=self.start)), None
+            return solve(contact, replace(options, start=self.start)), None
         if not self.is_random:
-            return solve(condensed, options), None
-        points = random_points(condensed, self.count or 1, self.seed or 0)
+            return solve(contact, options), None
+        points = random_points(contact, self.count or 1, self.seed or 0)
         if self.count is None:
-            return solve(condensed, replace(options, start=points[0])), None
-        found = search_from(condensed, solve, options, self.count, self.seed or 0, progress)
-        return solve(condensed, replace(options, start=points[found.ends[0].first_start])), found
+            return solve(contact, replace(options, start=points[0])), None
+        found = search_from(contact, solve, options, self.count, self.seed or 0, progress)
+        return solve(contact, replace(options, start=points[found.ends[0].first_start])), found
 
 
 def read_start(path: str | os.PathLike[str]) -> Start:
@@ -154,7 +154,7 @@ def read_start(path: str | os.PathLike[str]) -> Start:
 
 
 def search_from(
-    condensed: CondensedContact,
+    contact: CondensedContact,
     solve: Formulation,
     options: FormulationOptions | None = None,
     count: int = 100,
@@ -165,7 +165,7 @@ def search_from(
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
     solve : `qp1.solve` or `qp2.solve`
     options : of the statement; its start is replaced, and nothing is polished, which would hide where a search ended
     count, seed : of `random_points`
@@ -183,12 +183,12 @@ def search_from(
     options = replace(options or FormulationOptions(), polish=False)
     ends: list[End] = []
     name = ""
-    for number, start in enumerate(random_points(condensed, count, seed)):
-        found = solve(condensed, replace(options, start=start))
+    for number, start in enumerate(random_points(contact, count, seed)):
+        found = solve(contact, replace(options, start=start))
         name = found.formulation
-        same = next((i for i, end in enumerate(ends) if _same(condensed, end.solution, found)), None)
+        same = next((i for i, end in enumerate(ends) if _same(contact, end.solution, found)), None)
         if same is None:
-            ends.append(_end(condensed, found, number))
+            ends.append(_end(contact, found, number))
         else:
             least, most = ends[same].iterations
             iterations = min(least, found.iterations), max(most, found.iterations)
@@ -199,7 +199,7 @@ def search_from(
     return RandomStarts(formulation=name, count=count, seed=seed, ends=ordered)
 
 
-def _end(condensed: CondensedContact, found: ContactSolution, number: int) -> End:
+def _end(contact: CondensedContact, found: ContactSolution, number: int) -> End:
     """The first search that ended here."""
     if found.search is None:
         raise OptionError(f"{found.formulation} has no start to choose; take qp1 or qp2")
@@ -208,17 +208,17 @@ def _end(condensed: CondensedContact, found: ContactSolution, number: int) -> En
         count=1,
         first_start=number,
         objective=None if found.status in NOWHERE else found.search.objective,
-        residual=contact_residual(condensed, found),
+        residual=contact_residual(contact, found),
         iterations=(found.iterations, found.iterations),
     )
 
 
-def _same(condensed: CondensedContact, one: ContactSolution, other: ContactSolution) -> bool:
+def _same(contact: CondensedContact, one: ContactSolution, other: ContactSolution) -> bool:
     """Whether two searches ended at one point in one way; a body that nothing holds counts as one wherever it is."""
     if one.status is not other.status or one.status in NOWHERE:
         return one.status is other.status
-    U, T = condensed.scales
-    R, ell = condensed.rigid_motions, condensed.equilibrium
+    U, T = contact.scales
+    R, ell = contact.rigid_motions, contact.equilibrium
     apart = one.displacement - other.displacement
     apart = apart - R @ np.linalg.solve(ell.T @ R, ell.T @ apart)
     return _near(one.pressure / T, other.pressure / T) and bool(np.abs(apart).max() <= SAME * U)

@@ -10,9 +10,8 @@ import cvxpy as cp
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact
-from bemcontact.contact_scales import ContactScales
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.scales import ContactScales
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
@@ -20,6 +19,7 @@ from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
 from bemcontact.modelling.clarabel import minimise
 from bemcontact.modelling.model_result import ModelResult, judged, solution_at, taken_out
 from bemcontact.modelling.parameters import Parameters, Value
+from bemcontact.options import Weights
 
 
 class ContactProblem(cp.Problem):
@@ -64,48 +64,6 @@ class ContactModel:
     constraints: dict[str, cp.Constraint]
     scales: ContactScales
     notes: tuple[str, ...] = ()
-
-    @classmethod
-    def of(cls, condensed: CondensedContact) -> "ContactModel":
-        """Write a condensed contact as a model whose parameters have the values that are in effect.
-
-        Parameters
-        ----------
-        condensed : CondensedContact
-
-        Returns
-        -------
-        ContactModel
-
-        Raises
-        ------
-        NotConvexError
-            The Hessian has a negative eigenvalue on the equilibrium space, of more than a hundredth of the largest.
-        """
-        U, T = scales = typical_scales(condensed)
-        problem, given = scaled(condensed, scales), Parameters.of(condensed)
-        n, k = condensed.rigid_motions.shape
-        hessian, notes = _convex_hessian(problem)
-        p = cp.Variable(n, name="pressure")
-        a = cp.Variable(k, name="motions") if k else None
-        moved = problem.compliance @ p + (problem.rigid_motions @ a if a is not None else 0.0)
-        sizes = motion_sizes(condensed)
-        load, offset = given.motion_load / (sizes * condensed.weights.max() * T), given.offset / U
-        balance = {} if a is None else {"equilibrium": problem.equilibrium.T @ p == -load}
-        motions = None if a is None else cp.multiply(U / sizes, a)
-        return cls(
-            condensed=condensed,
-            parameters=given,
-            pressure=T * p,
-            motions=motions,
-            gap=U * (offset + moved),
-            displacement=U * (given.free_displacement / U + moved),
-            tool_displacement=_tool_displacement(given, motions),
-            objective=U * T * condensed.weights.max() * _work(problem, hessian, p, a, offset, load),
-            constraints={"no_penetration": offset + moved >= 0, "no_tension": p >= 0, **balance},
-            scales=scales,
-            notes=notes,
-        )
 
     def __repr__(self) -> str:
         """One line: name, points, what may change."""
@@ -277,6 +235,48 @@ class ContactModel:
             self.motions,
             added=not pure or problem.objective.expr is not self.objective,
         )
+
+
+def model(contact: CondensedContact) -> ContactModel:
+    """Write a condensed contact as a cvxpy model; its parameters have the values that are in effect.
+
+    Parameters
+    ----------
+    contact : CondensedContact
+
+    Returns
+    -------
+    ContactModel
+
+    Raises
+    ------
+    NotConvexError
+        The Hessian has a negative eigenvalue on the equilibrium space, of more than a hundredth of the largest.
+    """
+    U, T = scales = typical_scales(contact)
+    problem, given = scaled(contact, scales), Parameters.of(contact)
+    n, k = contact.rigid_motions.shape
+    hessian, notes = _convex_hessian(problem)
+    p = cp.Variable(n, name="pressure")
+    a = cp.Variable(k, name="motions") if k else None
+    moved = problem.compliance @ p + (problem.rigid_motions @ a if a is not None else 0.0)
+    sizes = motion_sizes(contact)
+    load, offset = given.motion_load / (sizes * contact.weights.max() * T), given.offset / U
+    balance = {} if a is None else {"equilibrium": problem.equilibrium.T @ p == -load}
+    motions = None if a is None else cp.multiply(U / sizes, a)
+    return ContactModel(
+        condensed=contact,
+        parameters=given,
+        pressure=T * p,
+        motions=motions,
+        gap=U * (offset + moved),
+        displacement=U * (given.free_displacement / U + moved),
+        tool_displacement=_tool_displacement(given, motions),
+        objective=U * T * contact.weights.max() * _work(problem, hessian, p, a, offset, load),
+        constraints={"no_penetration": offset + moved >= 0, "no_tension": p >= 0, **balance},
+        scales=scales,
+        notes=notes,
+    )
 
 
 def ensure_convex(problem: cp.Problem) -> None:

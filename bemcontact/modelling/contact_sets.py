@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array, IntArray, freeze_arrays
-from bemcontact.contact import CondensedContact
-from bemcontact.contact_scales import ContactScales
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.scales import ContactScales
 from bemcontact.errors import SolverError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.scaling import ScaledContact, scaled

@@ -11,11 +11,11 @@ from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint
 from bemcontact.assessment.residual import Residuals
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
 from bemcontact.modelling.rest import at_rest
 from bemcontact.problem.rigid_surface import Polyline, Spline
-from bemcontact.solution import ContactSolution
 
 AGREED = 1e-6
 """Difference of the designed pressure from that of the contact state, over the peak, that is none."""

@@ -13,13 +13,13 @@ from bemcontact.arrays import Array
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import complementarity
 from bemcontact.modelling.contact_sets import BoolArray, Piece, SharedProfile
 from bemcontact.modelling.designed_gap import GapDesign, Goal, LoadState, relieved
 from bemcontact.modelling.relief import Profiles, Relief
-from bemcontact.solution import Status
 
 GAIN = 1e-8
 """Part of the goal that a step must gain to be one."""

@@ -9,12 +9,12 @@ import numpy as np
 from bemcontact.arrays import Array, freeze_arrays
 from bemcontact.assessment.certificate import Certificate, certify
 from bemcontact.assessment.residual import Residuals, residuals
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.qp3 import STATUSES
 from bemcontact.formulations.scaling import scaled
-from bemcontact.solution import ContactSolution, Status
 
 SEEN = 1e-5
 """Residual above which the optimum of a model with additions is no contact state: the root of Clarabel's tolerance."""

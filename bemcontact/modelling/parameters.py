@@ -7,7 +7,7 @@ import cvxpy as cp
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.modelling.rest import at_rest
 
@@ -33,15 +33,15 @@ class Parameters:
     tool_force: cp.Parameter | None
 
     @classmethod
-    def of(cls, condensed: CondensedContact) -> "Parameters":
+    def of(cls, contact: CondensedContact) -> "Parameters":
         """Parameters with the values that are in effect."""
-        cases, tools = condensed.cases, condensed.tools
-        rest = at_rest(condensed)
+        cases, tools = contact.cases, contact.tools
+        rest = at_rest(contact)
         position = (tools.position - cases.position @ cases.factors).reshape(-1, 3)
         force = (tools.force - cases.force @ cases.factors).reshape(-1, 3)
         return cls(
             rest=rest,
-            initial_gap=cp.Parameter(condensed.size, name="initial_gap", value=rest.initial_gap),
+            initial_gap=cp.Parameter(contact.size, name="initial_gap", value=rest.initial_gap),
             case_factors=cp.Parameter(len(cases), name="case_factors", value=cases.factors) if len(cases) else None,
             tool_position=cp.Parameter((len(tools), 3), name="tool_position", value=position) if len(tools) else None,
             tool_force=cp.Parameter((len(tools), 3), name="tool_force", value=force) if len(tools) else None,

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import linprog
 
 from bemcontact.arrays import Array, IntArray, freeze_arrays
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 
 Shape = Callable[[Array], ArrayLike]

@@ -1,17 +1,17 @@
 """A condensed contact on which nothing acts that may change."""
 
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 
 
-def at_rest(condensed: CondensedContact) -> CondensedContact:
+def at_rest(contact: CondensedContact) -> CondensedContact:
     """Switch all load cases off, put all tools where they are not displaced, and unload them.
 
     Parameters
     ----------
-    condensed : CondensedContact
+    contact : CondensedContact
 
     Returns
     -------
     CondensedContact
     """
-    return condensed.stepped(-condensed.cases.factors, -condensed.tools.position, -condensed.tools.force)
+    return contact.stepped(-contact.cases.factors, -contact.tools.position, -contact.tools.force)

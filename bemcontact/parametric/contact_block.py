@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
-from bemcontact.actions import Change
 from bemcontact.arrays import Array, IntArray
+from bemcontact.contact.load_cases import Change
 from bemcontact.errors import SingularSystemError
 from bemcontact.formulations.active_set import BoolArray
 from bemcontact.formulations.scaling import ScaledContact

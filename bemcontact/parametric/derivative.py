@@ -19,14 +19,14 @@ import numpy as np
 from scipy.linalg import eigvalsh, qr
 from scipy.optimize import nnls
 
-from bemcontact.actions import Change
 from bemcontact.arrays import Array, IntArray
+from bemcontact.contact.load_cases import Change
+from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import BoolArray
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import ScaledContact
 from bemcontact.parametric.contact_block import EPS, ContactBlock
-from bemcontact.solution import Status
 
 WEAK = 1e-10
 """Pressure and gap, over the size of the numbers in them, that count as zero together."""

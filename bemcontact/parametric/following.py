@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bemcontact.actions import Change
 from bemcontact.arrays import Array
+from bemcontact.contact.load_cases import Change
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.formulations.active_set import BoolArray
 from bemcontact.formulations.scaling import ScaledContact

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from bemcontact.assessment.footprint import Footprint, footprint
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.path import LoadPath
 
 BETWEEN = (0.25, 0.5, 0.75)

@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.actions import Change, LoadCases
 from bemcontact.arrays import Array, freeze_arrays
 from bemcontact.assessment.footprint import Footprint, footprint
-from bemcontact.choices import FormulationName
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import Change, LoadCases
+from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
+from bemcontact.options import FormulationName
 from bemcontact.parametric.following import Line, Trail, follow
-from bemcontact.solution import ContactSolution, Status
 
 COMMON = {
     "compliance": "compliance",

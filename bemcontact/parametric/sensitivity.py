@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bemcontact.actions import Change
 from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint, resting_ends
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import Change
+from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
 from bemcontact.parametric.derivative import WEAK, Tangent, is_monotone
 from bemcontact.parametric.path import NOT_PROVED, resultants
-from bemcontact.solution import ContactSolution, Status
 
 EXACT = 1e-9
 """Residual up to which a solution is one whose derivative has a meaning."""

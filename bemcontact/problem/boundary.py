@@ -12,7 +12,7 @@ from bemcontact.errors import Complaint, Path, ProblemError, dotted
 from bemcontact.problem.curves import CircularArc, Curve, Edge
 from bemcontact.problem.geometry import AnyEdge, Arc, Grading, Line, Place, StatedLoop
 from bemcontact.problem.loops import loop_complaints
-from bemcontact.problem.stated import Point, Stated, unknown_word, validation_error
+from bemcontact.problem.validation import Point, Stated, unknown_word, validation_error
 
 RADIUS_TOLERANCE = 1e-6
 """Relative difference of the two radii of an arc given by its ends: coordinates are written with a few digits."""

@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, Strict, ValidationInfo, field_validator, model_validator
 
-from bemcontact.problem.stated import Flag, Name, Number, Point, Positive, Stated, Text, complain
+from bemcontact.problem.validation import Flag, Name, Number, Point, Positive, Stated, Text, complain
 
 Tolerance = Annotated[float, Strict(), Field(gt=0, lt=1)]
 """A relative difference, 0.02 for two per cent."""

@@ -9,7 +9,7 @@ from pydantic import GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from bemcontact.problem.stated import Number, Stated, complain, described
+from bemcontact.problem.validation import Number, Stated, complain, described
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from bemcontact.problem.rigid_surface import StatedSurface
-from bemcontact.problem.stated import Name, Stated
+from bemcontact.problem.validation import Name, Stated
 
 
 def _as_list(value: Any) -> Any:

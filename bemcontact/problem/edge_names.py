@@ -6,9 +6,9 @@ from bemcontact.errors import Complaint
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.geometry import Line
+from bemcontact.problem.partial import Written
 from bemcontact.problem.rigid_surface import DeflectedContour
-from bemcontact.problem.stated import KeyComplaint, unknown_word
-from bemcontact.problem.written import Written
+from bemcontact.problem.validation import KeyComplaint, unknown_word
 
 
 def name_complaints(boundary: Written, conditions: Iterable[Written], zones: Written) -> list[Complaint]:

@@ -7,8 +7,8 @@ from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_valida
 
 from bemcontact.errors import Path
 from bemcontact.problem.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
-from bemcontact.problem.kinds import ByKind
-from bemcontact.problem.stated import (
+from bemcontact.problem.tagged_union import ByKind
+from bemcontact.problem.validation import (
     Count,
     Flag,
     Name,

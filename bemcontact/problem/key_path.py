@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from bemcontact.errors import Complaint, Path, ProblemError, dotted
-from bemcontact.problem.stated import described, unknown_word
+from bemcontact.problem.validation import described, unknown_word
 
 _STEP = re.compile(r"\.([^.\[\]=]+)|\[(\d+)\]")
 

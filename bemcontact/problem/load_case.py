@@ -8,9 +8,9 @@ from pydantic import AfterValidator, Field, model_validator
 from bemcontact.errors import Complaint
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.loads import Loads
+from bemcontact.problem.partial import Written
 from bemcontact.problem.rigid_tool import WAYS, RigidTool, ToolAction
-from bemcontact.problem.stated import KeyComplaint, Name, Number, Stated, Text, complain, unknown_word
-from bemcontact.problem.written import Written
+from bemcontact.problem.validation import KeyComplaint, Name, Number, Stated, Text, complain, unknown_word
 
 
 class LoadCase(Stated):

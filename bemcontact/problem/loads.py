@@ -5,7 +5,7 @@ from typing import Self
 from pydantic import model_validator
 
 from bemcontact.problem.conditions import Field
-from bemcontact.problem.stated import Number, Point, Positive, Stated, complain
+from bemcontact.problem.validation import Number, Point, Positive, Stated, complain
 
 
 class Gravity(Stated):

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from bemcontact.problem.stated import Number, Positive, Stated, complain
+from bemcontact.problem.validation import Number, Positive, Stated, complain
 
 
 class Material(Stated):

@@ -24,11 +24,11 @@ from bemcontact.problem.key_path import existing_path, parsed_path, with_entry
 from bemcontact.problem.load_case import Combination, LoadCase, case_complaints, tool_complaints
 from bemcontact.problem.loads import Loads
 from bemcontact.problem.material import Material
+from bemcontact.problem.partial import Written
 from bemcontact.problem.reference import StatedReference, Words, reference_complaints
 from bemcontact.problem.rigid_tool import RigidTool, ToolAction
-from bemcontact.problem.stated import Count, Flag, Name, Stated, Text, complain, complaints_of, unknown_word
+from bemcontact.problem.validation import Count, Flag, Name, Stated, Text, complain, complaints_of, unknown_word
 from bemcontact.problem.variant import Variant, blamed
-from bemcontact.problem.written import Written
 
 
 class Units(Stated):

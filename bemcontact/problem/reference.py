@@ -11,8 +11,9 @@ from pydantic import AfterValidator, Field, model_validator
 
 from bemcontact.errors import Complaint
 from bemcontact.problem.closed_form import AnyReference, Crack, FlatPunch, Hertz, ProppedBeam, ShrinkFit, Uniform
-from bemcontact.problem.kinds import ByKind
-from bemcontact.problem.stated import (
+from bemcontact.problem.partial import Written
+from bemcontact.problem.tagged_union import ByKind
+from bemcontact.problem.validation import (
     Number,
     Point,
     Positive,
@@ -22,7 +23,6 @@ from bemcontact.problem.stated import (
     unknown_word,
     validation_error,
 )
-from bemcontact.problem.written import Written
 
 
 def _not_blank(value: str) -> str:

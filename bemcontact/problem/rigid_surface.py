@@ -11,9 +11,9 @@ from pydantic import BeforeValidator, Field, model_validator
 from scipy.interpolate import CubicSpline
 
 from bemcontact.problem.conditions import Condition
-from bemcontact.problem.kinds import ByKind
 from bemcontact.problem.loads import Loads
-from bemcontact.problem.stated import Name, Point, Positive, Stated, complain
+from bemcontact.problem.tagged_union import ByKind
+from bemcontact.problem.validation import Name, Point, Positive, Stated, complain
 
 Array = NDArray[np.float64]
 

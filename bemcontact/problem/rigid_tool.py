@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from pydantic import AfterValidator, model_validator
 
 from bemcontact.problem.contact_zone import EdgeNames
-from bemcontact.problem.stated import Number, Point, Stated, complain
+from bemcontact.problem.validation import Number, Point, Stated, complain
 
 
 class ToolDisplacement(Stated):

@@ -7,7 +7,7 @@ from pydantic import AfterValidator, Field
 
 from bemcontact.errors import Complaint, Path, ProblemError, dotted
 from bemcontact.problem.key_path import existing_path, parsed_path
-from bemcontact.problem.stated import Stated, Text, complain
+from bemcontact.problem.validation import Stated, Text, complain
 
 
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.problem import (
     Crack,

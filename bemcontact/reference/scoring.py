@@ -8,7 +8,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.assessment.footprint import ContactInterval, Footprint
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Table, Values
 from bemcontact.reference.expectation import Expected
 from bemcontact.reference.positions import LEVEL, BoolArray, Frame, coordinates, in_zone

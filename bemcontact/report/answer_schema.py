@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from bemcontact.assessment.certificate import CertificateKind
-from bemcontact.choices import FormulationName, Weights
-from bemcontact.solution import Status
+from bemcontact.contact.solution import Status
+from bemcontact.options import FormulationName, Weights
 
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Inertia = Annotated[list[int], Field(min_length=3, max_length=3)]

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from bemcontact.load_cases import CaseResults
-from bemcontact.report.tables import add, list_of_facts, table_of
-from bemcontact.report.words import (
+from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.analysis.result import Result
+from bemcontact.report.formatting import (
     number,
     per_thickness,
     size_of,
@@ -18,7 +18,7 @@ from bemcontact.report.words import (
     with_unit,
     zone_forces,
 )
-from bemcontact.result import Result
+from bemcontact.report.tables import add, list_of_facts, table_of
 
 
 def cases_summary(found: CaseResults) -> RenderableType:

@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from bemcontact.assessment.verdict import Outcome
-from bemcontact.choices import FormulationName, Weights
+from bemcontact.options import FormulationName, Weights
 from bemcontact.report.answer_schema import Answer, Pair, Record, Starts
 
 OutcomeName = Annotated[str, Field(json_schema_extra={"enum": [outcome.value for outcome in Outcome]})]

@@ -7,12 +7,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from bemcontact import output
+from bemcontact.analysis.reproduced import Reproduction
+from bemcontact.analysis.study import Study
+from bemcontact.files import output
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report import page, reproduction_page
 from bemcontact.report.figures import figure_of_path, figures_of, figures_of_reproduction, vector_graphic
-from bemcontact.reproduction.reproduced import Reproduction
-from bemcontact.study import Study
 
 PICTURES = "figures"
 """Folder of the pictures."""

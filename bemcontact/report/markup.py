@@ -8,7 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
-from bemcontact.report.words import NEGLIGIBLE, number, plural, seconds_in_words, sentence_case, vector, with_unit
+from bemcontact.report.formatting import NEGLIGIBLE, number, plural, seconds_in_words, sentence_case, vector, with_unit
 
 Record = Mapping[str, Any]
 """A part of a report: what stands between braces in its JSON."""

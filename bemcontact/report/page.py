@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from bemcontact.problem import Units
+from bemcontact.report.formatting import number, per_thickness, settled, vector, with_unit
 from bemcontact.report.markup import NOTHING, Picture, Record, percent, picture, small, statement, template
-from bemcontact.report.words import number, per_thickness, settled, vector, with_unit
 
 OUTCOMES = {
     "solves it": "good",

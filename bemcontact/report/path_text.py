@@ -4,9 +4,9 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.report.words import number, plural, sentence_case, units_of, vector
+from bemcontact.report.formatting import number, plural, sentence_case, units_of, vector
 
 MANY = 4
 """Points that are named where they enter or leave together; of more the number is told."""

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from bemcontact.problem import Units
+from bemcontact.report.formatting import number, with_unit
 from bemcontact.report.markup import NOTHING, Record, percent, picture, small, statement, template
 from bemcontact.report.page import unit_of_score
-from bemcontact.report.words import number, with_unit
 
 FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
 """In the order of the table of iterations."""

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from bemcontact.choices import FormulationName
+from bemcontact.options import FormulationName
 from bemcontact.report.answer_schema import Interval, Pair, Peak, Record
 from bemcontact.report.schema import Expected, Units
 

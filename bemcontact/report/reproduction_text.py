@@ -4,9 +4,9 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from bemcontact.report.formatting import seconds_in_words, sentence_case
 from bemcontact.report.markup import Record
 from bemcontact.report.reproduction_page import counts, found_in_words, verdict
-from bemcontact.report.words import seconds_in_words, sentence_case
 
 
 def reproduction_summary(record: Record) -> RenderableType:

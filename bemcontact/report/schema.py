@@ -5,7 +5,7 @@ Units as in `answer_schema`.
 
 from typing import Any, Literal
 
-from bemcontact.choices import FormulationName, Weights
+from bemcontact.options import FormulationName, Weights
 from bemcontact.report.answer_schema import Interval, Pair, Record
 from bemcontact.report.comparison_schema import Comparison
 

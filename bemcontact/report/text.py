@@ -11,12 +11,13 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from bemcontact.analysis.result import Result
+from bemcontact.analysis.study import MeshLevel, Study
 from bemcontact.assessment.comparison import Comparison
 from bemcontact.bem.condense import Body
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import DeflectedContour, Problem
-from bemcontact.report.tables import add, list_of_facts, table_of
-from bemcontact.report.words import (
+from bemcontact.report.formatting import (
     case_in_words,
     convexity_in_words,
     deflected_by,
@@ -40,8 +41,7 @@ from bemcontact.report.words import (
     with_unit,
     zone_forces,
 )
-from bemcontact.result import Result
-from bemcontact.study import MeshLevel, Study
+from bemcontact.report.tables import add, list_of_facts, table_of
 
 
 def problem_summary(body: Body) -> RenderableType:

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact import output
+from bemcontact.analysis.result import Result
 from bemcontact.bem.recovery import BoundaryState
 from bemcontact.errors import ProblemError
+from bemcontact.files import output
 from bemcontact.problem.problem import Problem
-from bemcontact.result import Result
 
 Array = NDArray[np.float64]
 

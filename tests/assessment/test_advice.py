@@ -9,8 +9,8 @@ import typer.main
 
 from bemcontact import cli
 from bemcontact.assessment.advice import advice
-from bemcontact.choices import FormulationName
-from bemcontact.solution import ContactSolution, Status
+from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.options import FormulationName
 
 
 def ended(status: Status, formulation: str) -> ContactSolution:

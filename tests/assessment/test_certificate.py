@@ -8,9 +8,9 @@ from contact_problems import random_contact
 
 from bemcontact.assessment.certificate import Certificate, CertificateKind, certify
 from bemcontact.assessment.residual import residuals
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
 from bemcontact.formulations import complementarity, qp3
-from bemcontact.solution import ContactSolution
 
 
 def judged(problem: CondensedContact, solution: ContactSolution) -> Certificate:

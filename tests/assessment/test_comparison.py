@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from contact_problems import random_contact
 
-from bemcontact import comparing
+from bemcontact.analysis import compare as comparing
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Found
 from bemcontact.assessment.verdict import Outcome
-from bemcontact.choices import FormulationName, Setting, Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import Status
 from bemcontact.formulations import complementarity, qp1
-from bemcontact.solution import Status
+from bemcontact.options import FormulationName, Setting, Weights
 
 
 def compared(contact: CondensedContact, *found: Found) -> Comparison:

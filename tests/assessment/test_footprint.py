@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bemcontact.assessment.footprint import Footprint, footprint
-from bemcontact.contact import CondensedContact
-from bemcontact.solution import ContactSolution, Status
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Status
 
 
 def state(

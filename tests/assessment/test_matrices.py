@@ -7,8 +7,8 @@ import pytest
 from contact_problems import random_contact
 
 from bemcontact.assessment.matrices import condition, weighted_compliance
-from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.options import Weights
 
 
 def test_two_points_by_hand():

@@ -5,11 +5,11 @@ import pytest
 from contact_problems import random_contact
 
 from bemcontact.assessment.objectives import objectives
-from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.solution import ContactSolution, Status
+from bemcontact.options import Weights
 
 
 def at(contact: CondensedContact, pressure: np.ndarray, displacement: np.ndarray) -> ContactSolution:

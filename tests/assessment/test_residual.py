@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bemcontact.assessment.residual import residuals
-from bemcontact.contact import CondensedContact
-from bemcontact.solution import ContactSolution, Status
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Status
 
 
 def contact(length: float = 1.0, stress: float = 1.0) -> CondensedContact:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bemcontact.analysis import solve
+from bemcontact.analysis.solve import solve
 from bemcontact.bem.condense import body_of, condense
 from bemcontact.bem.recovery import boundary_state
 from bemcontact.errors import ProblemError

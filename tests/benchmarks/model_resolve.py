@@ -18,6 +18,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from contact_problems import random_contact
 
+import bemcontact
 from bemcontact.modelling.clarabel import minimise
 
 POINTS = 100
@@ -38,7 +39,7 @@ def milliseconds(task: Callable[[], object], before: Callable[[], object] = lamb
 def main() -> None:
     """Print the times and their ratios."""
     contact = random_contact(3, POINTS, 1)
-    model = contact.model()
+    model = bemcontact.model(contact)
     added = model.problem(extra_constraints=[model.pressure <= 1e3 * contact.scales.pressure])
     model.solve()
     model.solve(problem=added)
@@ -48,8 +49,8 @@ def main() -> None:
         model.initial_gap.value = first + 0.01 * np.abs(first).mean() * rng.standard_normal(POINTS)
 
     times = {
-        "new: model and compilation": milliseconds(lambda: compiled(contact.model().problem())),
-        "new: with solution and judgement": milliseconds(lambda: contact.model().solve()),
+        "new: model and compilation": milliseconds(lambda: compiled(bemcontact.model(contact).problem())),
+        "new: with solution and judgement": milliseconds(lambda: bemcontact.model(contact).solve()),
         "again by cvxpy: data alone": milliseconds(lambda: compiled(added), change),
         "again by cvxpy: with solution": milliseconds(lambda: minimise(added), change),
         "again by cvxpy: and judgement": milliseconds(lambda: model.solve(problem=added), change),

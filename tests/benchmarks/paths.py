@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import bemcontact
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations import complementarity
 from bemcontact.parametric.path import load_path
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.stiffness import StiffnessRows
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled
-from bemcontact.stiffness import StiffnessRows
 
 Array = NDArray[np.float64]
 

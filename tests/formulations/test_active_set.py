@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations.active_set import contact_equations, first_active_set, primal_dual
 from bemcontact.formulations.scaling import ScaledContact, scaled
 

@@ -8,11 +8,11 @@ from contact_problems import random_contact
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.complementarity import escape_note, polish, solve, solve_lcp, standard_form
 from bemcontact.formulations.scaling import scaled
-from bemcontact.solution import ContactSolution, Status
 
 
 def murty(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -25,7 +25,7 @@ from bemcontact import (
     random_starts,
 )
 from bemcontact.arrays import Array
-from bemcontact.ends import End
+from bemcontact.contact.multistart import End
 from bemcontact.formulations import qp1, qp2, qp3
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled

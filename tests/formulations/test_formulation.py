@@ -7,11 +7,11 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from bemcontact.choices import FormulationName
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError
 from bemcontact.formulations import FORMULATIONS, OPTIONS, FormulationOptions
-from bemcontact.solution import Status
+from bemcontact.options import FormulationName
 
 
 def test_every_name_has_a_formulation_and_its_options():

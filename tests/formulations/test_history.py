@@ -7,14 +7,14 @@ import pytest
 from contact_problems import random_contact
 
 from bemcontact.arrays import Array
-from bemcontact.choices import FormulationName
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.formulations import FORMULATIONS, complementarity, qp1, qp2, qp3
 from bemcontact.formulations.complementarity import ACCEPTED
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled, scaled_point
 from bemcontact.formulations.starts import random_points
-from bemcontact.solution import ContactSolution, Status, Trace, traces_in_turn
+from bemcontact.options import FormulationName
 
 N = 9
 UNPOLISHED = FormulationOptions(polish=False)

@@ -8,13 +8,13 @@ import pytest
 from contact_problems import random_contact
 from scipy.linalg import null_space
 
-from bemcontact.choices import Rows, Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import FORMULATIONS, complementarity, qp1, qp3
 from bemcontact.formulations.formulation import FormulationOptions, Start
 from bemcontact.formulations.scaling import scaled, scaled_point
-from bemcontact.solution import Status
+from bemcontact.options import Rows, Weights
 
 ROWS = [*Rows]
 NOT_POLISHED = FormulationOptions(polish=False)

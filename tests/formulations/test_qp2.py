@@ -7,15 +7,15 @@ import pytest
 from contact_problems import random_contact, resting
 from scipy.linalg import null_space
 
-from bemcontact.analysis import solve as judged
-from bemcontact.choices import Equilibrium, Rows, Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.analysis.solve import solve as judged
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError, ProblemError
 from bemcontact.formulations import complementarity, qp2
 from bemcontact.formulations.formulation import FormulationOptions, Start
 from bemcontact.formulations.search import contact_residual
 from bemcontact.formulations.starts import random_points, search_from
-from bemcontact.solution import Status
+from bemcontact.options import Equilibrium, Rows, Weights
 
 PENALISED = FormulationOptions(equilibrium=Equilibrium.PENALTY)
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from contact_problems import random_contact
 
-from bemcontact.choices import Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import Status
 from bemcontact.errors import NotConvexError, ProblemError, SolverError
 from bemcontact.formulations import complementarity, qp3
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled
-from bemcontact.solution import Status
+from bemcontact.options import Weights
 
 UNPOLISHED = FormulationOptions(polish=False)
 

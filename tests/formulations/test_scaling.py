@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
 
 

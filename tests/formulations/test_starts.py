@@ -10,13 +10,13 @@ import pytest
 from contact_problems import resting
 
 import bemcontact
-from bemcontact.choices import Equilibrium, Weights
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError
 from bemcontact.formulations import complementarity, qp1, qp2
 from bemcontact.formulations.formulation import FormulationOptions, Start
 from bemcontact.formulations.starts import random_points, search_from
-from bemcontact.solution import Status
+from bemcontact.options import Equilibrium, Weights
 
 P_MATRIX = np.array([[1.0, -3.0, 0.0], [0.0, 1.0, -3.0], [0.0, 0.0, 1.0]])
 """Triangular with positive diagonal, so a P-matrix, but far from positive definite."""

@@ -10,10 +10,10 @@ from contact_problems import random_contact, resting
 from modelling.tool_contact import tool_contact
 
 import bemcontact
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import Status
 from bemcontact.errors import NotConvexError, ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.solution import Status
 
 GALLERY = Path(__file__).parents[2] / "models" / "gallery"
 CONTACTS = {f"{n} points, {k} motions": random_contact(n + k, n, k) for n, k in ((9, 0), (14, 1), (14, 3))}
@@ -30,7 +30,7 @@ def same_pressure(found, contact: CondensedContact, within: float = 1e-10) -> No
 @pytest.mark.parametrize("contact", CONTACTS.values(), ids=CONTACTS)
 def test_optimum_is_the_contact_state(contact):
     """F3 is zero there, and nowhere below among what the constraints admit."""
-    model = contact.model()
+    model = bemcontact.model(contact)
     assert isinstance(model, bemcontact.ContactModel)
     result = model.solve()
     assert result.contact_state
@@ -46,7 +46,7 @@ def test_optimum_is_the_contact_state(contact):
 def test_expressions_are_those_of_the_condensed_problem(contact):
     """gap, displacement and F3 = pᵀJ gap at any p in equilibrium, whatever the gauge of M."""
     rng = np.random.default_rng(0)
-    model = contact.model()
+    model = bemcontact.model(contact)
     ell, U, T = contact.equilibrium, *contact.scales
     p = rng.standard_normal(contact.size) * T
     p -= contact.rigid_motions @ np.linalg.solve(ell.T @ contact.rigid_motions, ell.T @ p + contact.motion_load)
@@ -74,14 +74,14 @@ def test_expressions_are_those_of_the_condensed_problem(contact):
 def test_bodies_of_the_gallery(path):
     """Certified, and the pressure of the direct solver, on bodies with up to three free motions and three zones."""
     contact = bemcontact.condense(bemcontact.load(path))
-    result = contact.model().solve()
+    result = bemcontact.model(contact).solve()
     assert result.certificate.certified
     same_pressure(result.pressure, contact)
 
 
 def test_resultant_of_a_zone():
     contact = replace(random_contact(0, 6, 0), zone=np.array([0, 0, 1, 1, 1, 1]), zone_names=("left", "right"))
-    model = contact.model()
+    model = bemcontact.model(contact)
     p = model.solve().pressure
     parts = model.resultant("left").value, model.resultant("right").value
     np.testing.assert_allclose(parts[0][1], contact.weights[:2] @ p[:2], rtol=1e-6)  # the values are Clarabel's own
@@ -93,7 +93,7 @@ def test_resultant_of_a_zone():
 def test_parameters_are_the_data_of_the_problem():
     """Each against `with_factors` and `with_tools` of the waist; the values that are in effect come first."""
     contact = tool_contact()
-    model = contact.model()
+    model = bemcontact.model(contact)
     assert model.case_factors.value == pytest.approx([1, 0])
     np.testing.assert_allclose(model.contact.offset, contact.offset, atol=1e-15)
     np.testing.assert_allclose(model.contact.motion_load, contact.motion_load, atol=1e-15)
@@ -120,7 +120,7 @@ def test_parameters_are_the_data_of_the_problem():
 @pytest.mark.parametrize("added", [False, True])
 def test_new_values_of_parameters_are_not_compiled(added):
     """The compiler of cvxpy hands out the very same parametrised program again: DPP by its own word."""
-    model = tool_contact().model()
+    model = bemcontact.model(tool_contact())
     problem = model.problem(extra_constraints=[model.pressure <= 9] if added else ())
     assert problem.is_dpp()
     first = model.solve(problem=problem)
@@ -137,12 +137,12 @@ def test_new_values_of_parameters_are_not_compiled(added):
 def test_units_do_not_matter(length, stress):
     """Nothing added: to round-off. With additions in the user's units: to the tolerance of the solver."""
     one, other = tool_contact(), tool_contact(units=(length, stress))
-    first, second = one.model().solve(), other.model().solve()
+    first, second = bemcontact.model(one).solve(), bemcontact.model(other).solve()
     np.testing.assert_allclose(second.pressure / stress, first.pressure, atol=1e-12 * first.pressure.max())
     limit = 0.8 * first.pressure.max()
     found = []
     for contact, L, S in ((one, 1.0, 1.0), (other, length, stress)):
-        model = contact.model()
+        model = bemcontact.model(contact)
         lift = cp.Variable(nonneg=True)
         cut = model.solve(0.1 * S * L * cp.sum(model.gap) + lift * S * L, [model.pressure <= limit * S + lift * S / L])
         assert cut.status is Status.SOLVED
@@ -153,7 +153,7 @@ def test_units_do_not_matter(length, stress):
 
 def test_an_addition_may_break_contact_and_is_told():
     """A bound on the pressure below the peak: all constraints hold, complementarity fails, the sentence says so."""
-    model = random_contact(4, 12, 1).model()
+    model = bemcontact.model(random_contact(4, 12, 1))
     free = model.solve()
     p_max = 0.7 * free.pressure.max()
     found = model.solve(extra_constraints=[model.pressure <= p_max])
@@ -170,7 +170,7 @@ def test_an_addition_may_break_contact_and_is_told():
 
 
 def test_a_model_without_an_optimum_is_a_status_in_words():
-    model = random_contact(4, 12, 1).model()
+    model = bemcontact.model(random_contact(4, 12, 1))
     too_much = model.solve(extra_constraints=[model.pressure <= -1])
     assert too_much.status is Status.INFEASIBLE
     assert too_much.pressure is None
@@ -179,11 +179,11 @@ def test_a_model_without_an_optimum_is_a_status_in_words():
     assert without_end.status is Status.UNBOUNDED
     assert "no lower bound" in without_end.words
     upwards = CondensedContact.from_compliance(np.eye(3), np.zeros(3), rigid_motions=np.ones(3), motion_load=1.0)
-    assert "+1 x motion 1" in upwards.model().solve().words
+    assert "+1 x motion 1" in bemcontact.model(upwards).solve().words
 
 
 def test_what_cannot_be_modelled_is_refused():
-    model = random_contact(4, 12, 1).model()
+    model = bemcontact.model(random_contact(4, 12, 1))
     with pytest.raises(ProblemError, match=r"not convex by cvxpy's rules \(DCP\) in the objective"):
         model.problem(cp.sqrt(model.pressure[0]))
     with pytest.raises(ProblemError, match=r"not convex .* in constraint"):
@@ -205,11 +205,11 @@ def test_what_cannot_be_modelled_is_refused():
     with pytest.raises(ProblemError, match="does not contain the pressure"):
         model.result(stranger)
     with pytest.raises(NotConvexError):
-        CondensedContact.from_compliance([[1.0, 3.0], [0.0, 1.0]], [-1.0, -1.0], [4.0, 1.0]).model()
+        bemcontact.model(CondensedContact.from_compliance([[1.0, 3.0], [0.0, 1.0]], [-1.0, -1.0], [4.0, 1.0]))
 
 
 def test_a_result_is_taken_out_before_the_next_solve():
-    model = random_contact(4, 12, 1).model()
+    model = bemcontact.model(random_contact(4, 12, 1))
     one, other = model.problem(), model.problem(extra_constraints=[model.pressure <= 1.0])
     one.solve(solver=cp.CLARABEL)
     kept = model.result(one)
@@ -227,7 +227,7 @@ def test_a_design_variable_composes_with_the_gap():
     shifted gap, which the model finds again through its parameter.
     """
     contact = random_contact(11, 8, 0)
-    model = contact.model()
+    model = bemcontact.model(contact)
     h, peak = cp.Variable(contact.size), cp.Variable()
     force = 5.0
     problem = cp.Problem(
@@ -246,7 +246,7 @@ def test_a_design_variable_composes_with_the_gap():
 def test_solving_again_starts_from_the_last_solution():
     """The same problem again, and a neighbour: the active-set step gets there without Clarabel, and says so."""
     contact = random_contact(3, 40, 1)
-    model = contact.model()
+    model = bemcontact.model(contact)
     assert model.solve().solution.solver == "Clarabel"
     same = model.solve()
     assert same.solution.solver == "primal-dual active set"
@@ -262,7 +262,7 @@ def test_solving_again_starts_from_the_last_solution():
 def test_a_slightly_indefinite_objective_is_told_and_polished():
     """sym(M) = [[1, 1.01], [1.01, 1]] has eigenvalues 2.01 and -0.01: half a hundredth, left out of F3."""
     contact = CondensedContact.from_compliance([[1.0, 2.02], [0.0, 1.0]], [-1.0, -1.0])
-    model = contact.model()
+    model = bemcontact.model(contact)
     assert "not convex on this mesh" in model.notes[0]
     found = model.solve()
     assert found.contact_state
@@ -272,7 +272,7 @@ def test_a_slightly_indefinite_objective_is_told_and_polished():
 @pytest.mark.parametrize("contact", CONTACTS.values(), ids=CONTACTS)
 def test_a_problem_solved_the_way_of_cvxpy_is_the_contact_state(contact):
     """`problem.solve()` without a solver named; the polish does the rest, which the certificate proves."""
-    model = contact.model()
+    model = bemcontact.model(contact)
     problem = model.problem()
     problem.solve()
     assert problem.solver_stats.solver_name == "CLARABEL"
@@ -303,7 +303,7 @@ def test_loads_of_two_cases_that_balance_each_other_may_act_together():
         case="both",
     )
     contact = bemcontact.condense(problem)
-    model = contact.model()
+    model = bemcontact.model(contact)
     np.testing.assert_allclose(model.solve().pressure, 1.0, rtol=1e-10)
     model.case_factors.value = [2, 2]
     np.testing.assert_allclose(model.solve().pressure, 2.0, rtol=1e-10)

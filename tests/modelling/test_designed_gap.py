@@ -12,7 +12,7 @@ from contact_problems import random_contact
 
 import bemcontact
 from bemcontact import GapDesign, Relief, design_gap, spec
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.problem import Polyline, Spline
 

@@ -13,7 +13,7 @@ from scipy.optimize import linprog
 
 import bemcontact
 from bemcontact import GapDesign, Relief, design_gap, spec
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.modelling.designed_gap import relieved

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from bemcontact.actions import LoadCases, Tools
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import LoadCases
+from bemcontact.contact.tools import Tools
 
 
 def tool_contact(seed: int = 0, n: int = 20, units: tuple[float, float] = (1.0, 1.0)) -> CondensedContact:

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 from contact_problems import random_contact
 
-from bemcontact.actions import Change, LoadCases, Tools
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import Change, LoadCases
+from bemcontact.contact.tools import Tools
 
 
 def degenerate(seed: int, n: int, k: int, weak: int) -> tuple[CondensedContact, np.ndarray, np.ndarray]:

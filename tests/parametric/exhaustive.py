@@ -5,8 +5,8 @@ from itertools import chain, combinations
 
 import numpy as np
 
-from bemcontact.actions import Change
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import Change
 
 LOOSE = 1e-9
 """Of numbers of size one."""

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from contact_states import changed, degenerate, random_change, rocker
 
-from bemcontact.actions import Change
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import Change
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import bemcontact
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.residual import residuals
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.parametric.path import LoadPath, load_path

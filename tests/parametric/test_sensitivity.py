@@ -10,9 +10,9 @@ from contact_problems import random_contact
 from contact_states import between_tools, changed, degenerate, half_plane, random_change, rocker, without_load
 
 import bemcontact
-from bemcontact.actions import Change
 from bemcontact.assessment.footprint import footprint
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import Change
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.parametric.path import resultants

@@ -3,7 +3,7 @@
 import pytest
 
 from bemcontact.problem.edge_names import name_complaints
-from bemcontact.problem.written import Written
+from bemcontact.problem.partial import Written
 
 EDGES = {"outer": [{"name": "top"}, {"name": "side"}]}
 

@@ -7,7 +7,7 @@ import pytest
 from known_answers import BLOCK, hertz, punch, ring
 
 import bemcontact
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Table
 from bemcontact.reference.positions import Frame, coordinates, foot, in_zone, reach, spacing
 

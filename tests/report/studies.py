@@ -2,11 +2,11 @@
 
 from functools import cache
 
-from bemcontact import comparing
-from bemcontact.contact import CondensedContact
+from bemcontact.analysis import compare as comparing
+from bemcontact.analysis.study import Study
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations.plan import planned_comparison
 from bemcontact.problem import Problem
-from bemcontact.study import Study
 
 
 def block(**changes: object) -> Problem:

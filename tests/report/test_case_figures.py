@@ -7,7 +7,7 @@ import pytest
 from tool_problems import FREE, FREE_CASES, made
 
 import bemcontact
-from bemcontact.load_cases import CaseResults
+from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.report import figures
 
 

@@ -9,9 +9,9 @@ from rich.console import Console, RenderableType
 from tool_problems import BETWEEN, FREE, FREE_CASES, HELD, HELD_CASES, made
 
 import bemcontact
+from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.bem.condense import body_of
-from bemcontact.load_cases import CaseResults
 from bemcontact.report import cases_text, text, words
 
 UNITS = {"units": {"length": "mm", "force": "N"}}

@@ -22,12 +22,13 @@ from studies import (
 )
 from test_figures import block_in_a_corner
 
-from bemcontact import comparing, spec
+from bemcontact import spec
+from bemcontact.analysis import compare as comparing
+from bemcontact.analysis.study import Study
 from bemcontact.assessment.comparison import Contender
+from bemcontact.contact.solution import Trace
 from bemcontact.formulations.plan import planned_comparison
 from bemcontact.report import figures
-from bemcontact.solution import Trace
-from bemcontact.study import Study
 
 GREY = "#7d838c"
 

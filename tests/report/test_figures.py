@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 from matplotlib.text import Annotation
 
-from bemcontact import analysis
+from bemcontact.analysis import solve as analysis
 from bemcontact.bem import mesh
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report import figures

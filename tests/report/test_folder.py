@@ -11,7 +11,7 @@ import pytest
 from reproductions import on_base_meshes
 from studies import block, on_one_mesh, on_three_meshes, without_a_body
 
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report import folder
 
 

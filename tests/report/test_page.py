@@ -11,11 +11,11 @@ from page_reader import ensure_self_contained, read
 from studies import ALL, block, not_unique, of_many_settings, on_one_mesh, on_three_meshes, without_a_body
 from tool_problems import BETWEEN, made
 
-from bemcontact import comparing
+from bemcontact.analysis import compare as comparing
+from bemcontact.analysis.study import Study
 from bemcontact.formulations.plan import planned_comparison
 from bemcontact.report import words
 from bemcontact.report.page import render
-from bemcontact.study import Study
 
 SVG = b'<svg xmlns="http://www.w3.org/2000/svg"/>'
 

@@ -8,8 +8,8 @@ import pytest
 from contact_problems import random_contact
 from jsonschema import Draft202012Validator, ValidationError, validate
 
-from bemcontact import comparing
-from bemcontact.contact import CondensedContact
+from bemcontact.analysis import compare as comparing
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations.plan import planned_comparison
 from bemcontact.report.reproduction_schema import reproduction_schema
 from bemcontact.report.schema import Report, report_schema

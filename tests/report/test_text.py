@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from rich.console import Console, RenderableType
 
-from bemcontact import analysis
+from bemcontact.analysis import solve as analysis
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.bem.condense import body_of
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import LocalSearch, Penalty, Status
 from bemcontact.problem import Circle, DeflectedContour, Field, Plane, Polyline, Problem, Spline, Units
 from bemcontact.report import text, words
-from bemcontact.solution import LocalSearch, Penalty, Status
 
 
 def block() -> Problem:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from bemcontact import analysis, cli, spec
+from bemcontact import cli, spec
+from bemcontact.analysis import solve as analysis
 from bemcontact.errors import ProblemError
 from bemcontact.problem import Problem
 from bemcontact.report import vtk

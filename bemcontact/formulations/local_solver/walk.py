@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from bemcontact.formulations.local_solver.dead_point import examine
 from bemcontact.formulations.local_solver.factorisations import Inertia, inertia
+from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, first_order
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import nearest
 from bemcontact.formulations.local_solver.result import QPStatus
 from bemcontact.formulations.local_solver.statement import EPS, Array, Sides, largest
-from bemcontact.formulations.local_solver.verdict import FirstOrder, certified, cleaned_ray, first_order
 from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 FAILURES = 6

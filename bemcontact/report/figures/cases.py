@@ -3,11 +3,11 @@
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bemcontact.load_cases import CaseResults
+from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.analysis.result import Result
 from bemcontact.report.figures.page import BLACK, GREY, VERMILION, labelled, new_page, shortened, wrapped
 from bemcontact.report.figures.result import PIECE_COLOURS, figure_of_result, pieces_of
-from bemcontact.report.words import units_of
-from bemcontact.result import Result
+from bemcontact.report.formatting import units_of
 
 INCHES = 9
 DASHES = ("solid", "dashed", "dotted", "dashdot")

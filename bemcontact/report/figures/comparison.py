@@ -8,16 +8,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from bemcontact.analysis.study import MeshLevel
 from bemcontact.arrays import Array
 from bemcontact.assessment.comparison import SAME, Contender
-from bemcontact.choices import FormulationName
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
+from bemcontact.options import FormulationName
 from bemcontact.report.figures.course import COLOURS, legend_below, show_decades
 from bemcontact.report.figures.page import BLACK, GREY, PURPLE, labelled, plain, shortened
 from bemcontact.report.figures.result import Piece, pieces_of, tell_closed
-from bemcontact.report.words import number, units_of, with_unit
-from bemcontact.solution import ContactSolution
-from bemcontact.study import MeshLevel
+from bemcontact.report.formatting import number, units_of, with_unit
 
 DASHES = ("solid", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
 """Of the contenders of one formulation, in turn."""

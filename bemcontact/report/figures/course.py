@@ -8,9 +8,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocato
 
 from bemcontact.assessment.comparison import Contender
 from bemcontact.assessment.convergence import Convergence
-from bemcontact.choices import FormulationName
+from bemcontact.contact.solution import Trace
+from bemcontact.options import FormulationName
 from bemcontact.report.figures.page import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, plain, shortened
-from bemcontact.solution import Trace
 
 COLOURS = {
     FormulationName.QP1: VERMILION,

@@ -8,7 +8,7 @@ from bemcontact.arrays import Array, IntArray
 from bemcontact.modelling.designed_gap import GapDesign
 from bemcontact.report.figures.course import CYCLE
 from bemcontact.report.figures.page import GREY, labelled, new_page, plain
-from bemcontact.report.words import units_of
+from bemcontact.report.formatting import units_of
 
 
 def figure_of_design(design: GapDesign) -> Figure:

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from bemcontact import output
+from bemcontact.files import output
 
 Array = NDArray[np.float64]
 

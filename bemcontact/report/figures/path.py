@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.report.figures.course import CYCLE
 from bemcontact.report.figures.page import BLACK, labelled, new_page, plain, shortened
-from bemcontact.report.words import per_thickness, units_of
+from bemcontact.report.formatting import per_thickness, units_of
 
 WIDTH, HEIGHT = 5.6, 2.5
 """Inches of each picture."""

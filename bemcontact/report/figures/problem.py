@@ -44,7 +44,7 @@ from bemcontact.report.figures.page import (
     wrapped,
 )
 from bemcontact.report.figures.tool_marks import draw_tools
-from bemcontact.report.words import prescribed, volume_loads
+from bemcontact.report.formatting import prescribed, volume_loads
 
 Array = NDArray[np.float64]
 

@@ -4,14 +4,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bemcontact.analysis.findings import positions
+from bemcontact.analysis.reproduced import Reproduced, Reproduction, Run
 from bemcontact.problem import Table
 from bemcontact.reference import Expected
 from bemcontact.report.figures.course import legend_below
 from bemcontact.report.figures.page import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, labelled, new_page
 from bemcontact.report.figures.study import WIDTH, plan_of
-from bemcontact.report.words import number
-from bemcontact.reproduction.findings import positions
-from bemcontact.reproduction.reproduced import Reproduced, Reproduction, Run
+from bemcontact.report.formatting import number
 
 MESHES = (BLUE, VERMILION, GREEN)
 """Of the problem as stated, the coarsest first, in turn."""

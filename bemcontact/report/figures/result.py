@@ -11,9 +11,10 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
+from bemcontact.analysis.result import Result
 from bemcontact.bem import shape_functions
 from bemcontact.bem.recovery import BoundaryState
-from bemcontact.contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report.figures.marks import draw_ground
 from bemcontact.report.figures.page import (
     BLACK,
@@ -32,8 +33,7 @@ from bemcontact.report.figures.page import (
     shortened,
     wrapped,
 )
-from bemcontact.report.words import number, units_of, with_unit
-from bemcontact.result import Result
+from bemcontact.report.formatting import number, units_of, with_unit
 
 Array = NDArray[np.float64]
 

@@ -4,16 +4,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bemcontact.analysis.study import MeshLevel, Study
 from bemcontact.assessment.comparison import Contender
 from bemcontact.bem import mesh
-from bemcontact.choices import Weights
+from bemcontact.options import Weights
 from bemcontact.problem import Problem
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.course import draw_convergence, draw_history
 from bemcontact.report.figures.page import new_page
 from bemcontact.report.figures.problem import draw_problem
 from bemcontact.report.figures.result import draw_deformed
-from bemcontact.study import MeshLevel, Study
 
 WIDTH = 5.2
 """Inches of a picture: its text can be read on a telephone, and two stand side by side on a page."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.figures.marks import Name, draw_arrows
 from bemcontact.report.figures.page import BLUE, GREEN, wrapped
-from bemcontact.report.words import tool_in_words
+from bemcontact.report.formatting import tool_in_words
 
 Array = NDArray[np.float64]
 

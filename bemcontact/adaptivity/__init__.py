@@ -1,0 +1,1 @@
+"""Meshes that fit the answer."""

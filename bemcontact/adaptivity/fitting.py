@@ -1,0 +1,264 @@
+"""Meshes that find the ends of contact: solve, locate them, grade the contact zones towards them, and again."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from bemcontact.adaptivity.fitted_ends import Touched, fitted_ends, half_way, halved, movement, resolved
+from bemcontact.adaptivity.mesh_fit import FitPass, MeshFit
+from bemcontact.adaptivity.oscillation import sawing
+from bemcontact.adaptivity.stretches import stretches
+from bemcontact.adaptivity.zone_runs import ZoneRun, zone_runs
+from bemcontact.arrays import Array
+from bemcontact.assessment.footprint import ContactInterval, footprint
+from bemcontact.bem.condense import Body, body_of, condense
+from bemcontact.contact.solution import Status
+from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.formulations import complementarity
+from bemcontact.problem.curves import Edge
+from bemcontact.problem.problem import Problem
+
+MOST_PASSES = 8
+"""Meshes tried after the one that was stated."""
+SETTLED = 0.2
+"""Distance of an end of contact from where the mesh is graded to, over the shorter element there, that is none."""
+SWING = 5.0
+"""The same distance beyond which an end of contact does not swing to and fro, but is on its way."""
+SAWING = 0.01
+"""Amplitude over the peak above which a pressure that saws more than on the mesh as stated condemns a fitted mesh."""
+SAWING_UNTOLD = 0.05
+"""The same where the mesh as stated has too few points to tell: twice the amplitude beside an infinite pressure."""
+CHANGE = 0.01
+"""Change of the peak pressure, or of the force on a zone, with the fitted mesh above which it is told."""
+
+ElementEnds = Mapping[str, tuple[float, ...]]
+"""By the name of an edge, where its elements end, as `Problem.with_element_ends` takes them."""
+Stretches = Mapping[int, tuple[Touched, ...]]
+"""By the number of a run, its stretches of contact, of which one end at least is free."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Trial:
+    """A mesh with some element ends placed, and where contact is on it, if that is known."""
+
+    placed: ElementEnds
+    elements: int = 0
+    intervals: tuple[ContactInterval, ...] = ()
+    fitted_to: Stretches = field(default_factory=dict)
+    found: Stretches = field(default_factory=dict)
+    movement: float | None = None
+    narrow: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    sawing: float | None = None
+    peak: float = 0.0
+    forces: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def settled(self) -> bool:
+        return self.movement is not None and self.movement <= SETTLED and not self.narrow
+
+
+def fitted(problem: Problem, progress: Callable[[str], object] | None = None) -> tuple[Problem, MeshFit | None]:
+    """Fit the mesh to the ends of contact, if the problem asks for it.
+
+    The complementarity problem is solved on the mesh as stated, the elements of each contact zone are placed anew by
+    `fitted_ends`, and so on until no end of contact moves by more than a fifth of the shorter element beside it, eight
+    times at most. Elements beside a zone are halved until they are at most twice as long as the one at its end. A mesh
+    on which the pressure saws, as it did not on the one stated, is not kept. All this is done without `mesh.refine`,
+    which then cuts the fitted elements: so finer meshes contain each other, an observed order means something, and
+    fitting costs little. But the ends of contact are then those of the mesh that was cut: where they matter to many
+    digits, state more elements instead.
+
+    Parameters
+    ----------
+    problem : Problem
+    progress : told which pass begins
+
+    Returns
+    -------
+    Problem
+        With the element ends stated, and no longer asking for a fit.
+    MeshFit or None
+        None if the problem did not ask for a fit.
+
+    Raises
+    ------
+    ProblemError, SingularSystemError
+        As of `bemcontact.condense`, on the mesh as stated.
+    """
+    if not problem.mesh.fit_contact_edges:
+        return problem, None
+    refine = problem.mesh.refine
+    stated = problem if refine == 1 else problem.with_value("mesh.refine", 1)
+    trials, failed = _trials(stated, progress or (lambda _: None))
+    kept = min((i for i, trial in enumerate(trials) if not _saws(trial, trials[0])), key=lambda i: _unrest(trials[i]))
+    fit = MeshFit(
+        passes=tuple(FitPass(intervals=trial.intervals, movement=trial.movement) for trial in trials),
+        kept=kept,
+        settled=trials[kept].settled and not trials[kept].notes,
+        notes=(*_told(trials, kept, refine), *failed, *dict.fromkeys(note for trial in trials for note in trial.notes)),
+    )
+    return problem.with_element_ends(trials[kept].placed), fit
+
+
+def _unrest(trial: _Trial) -> float:
+    """How far a mesh is from the one that it asks for."""
+    return np.inf if trial.movement is None else trial.movement
+
+
+def _saws(trial: _Trial, first: _Trial) -> bool:
+    """Tell whether the pressure saws on a mesh, and more than on the first one, or much if that has too few points."""
+    if trial.sawing is None:
+        return False
+    return trial.sawing > (SAWING_UNTOLD if first.sawing is None else max(SAWING, first.sawing))
+
+
+def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_Trial], list[str]]:
+    """Try the mesh as stated, then what the trial before asks for, until one is settled; with notes on what failed."""
+    progress("mesh as stated")
+    body = body_of(stated)
+    runs = {run.number: run for run in zone_runs(body)}
+    trials = [_trial(body, {}, runs, None)]
+    while len(trials) <= MOST_PASSES and trials[-1].found and not trials[-1].settled:
+        progress(f"pass {len(trials)}")
+        try:
+            aim = _aim(runs, trials)
+            placed = _placed(runs, aim)
+            trials.append(_trial(body_of(stated.with_element_ends(placed)), placed, runs, aim))
+        except (ProblemError, SingularSystemError) as error:
+            return trials, [f"the mesh of pass {len(trials)} was given up: {str(error).splitlines()[0]}"]
+    return trials, []
+
+
+def _aim(stated: Mapping[int, ZoneRun], trials: Sequence[_Trial]) -> Stretches:
+    """Stretches of contact to fit to next: half-way to those found where the ends of contact only swing to and fro."""
+    last = trials[-1]
+    if len(trials) < 3 or last.narrow or not _unrest(trials[-2]) / 2 <= _unrest(last) <= SWING:
+        return last.found
+    return {
+        number: half_way(stated[number], last.fitted_to.get(number, ()), found) for number, found in last.found.items()
+    }
+
+
+def _placed(stated: Mapping[int, ZoneRun], aim: Stretches) -> ElementEnds:
+    """Element ends of the runs on which contact ends, and of edges beside them that have long elements there."""
+    placed: dict[str, tuple[float, ...]] = {}
+    for number, touched in aim.items():
+        placed |= stated[number].fractions(fitted_ends(stated[number], touched))
+    for run in (stated[number] for number in aim):
+        for edge, own, at in zip(run.beside, (run.edges[0], run.edges[-1]), (-1, 0), strict=False):
+            inside, outside = _breakpoints(own, placed), _breakpoints(edge, placed)
+            finer = halved(outside, np.diff(inside)[-1 - at] * own.length / edge.length, at)
+            if len(finer) > len(outside):
+                placed[edge.name] = tuple(finer[1:-1].tolist())
+    return placed
+
+
+def _breakpoints(edge: Edge, placed: ElementEnds) -> Array:
+    """Fractions of the length of an edge where its elements begin and end."""
+    return np.array([0.0, *placed[edge.name], 1.0]) if edge.name in placed else edge.breakpoints()
+
+
+def _trial(body: Body, placed: ElementEnds, stated: Mapping[int, ZoneRun], fitted_to: Stretches | None) -> _Trial:
+    """Solve a problem with some element ends placed, and find where contact ends."""
+    contact = condense(body).contact
+    solution = complementarity.solve(contact)
+    if solution.status is not Status.SOLVED:
+        note = f"the mesh could not be fitted to a state of contact: {solution.status.value}"
+        return _Trial(placed=placed, notes=(note,))
+    intervals = footprint(contact, solution).intervals
+    found: dict[int, tuple[Touched, ...]] = {}
+    movements: list[float | None] = [0.0]
+    narrow: list[str] = []
+    for run in zone_runs(body):
+        here = [*stretches(run, contact, solution, intervals)]
+        narrow += [run.zone for one in here if one.narrow]
+        touched = resolved(stated[run.number], [one.touched for one in here])
+        if any(item.start_free or item.end_free for item in touched):
+            found[run.number] = touched
+        movements.append(movement(run, touched, None if fitted_to is None else fitted_to.get(run.number, ())))
+    forces = np.bincount(contact.zone, contact.weights * solution.pressure, len(contact.zone_names))
+    return _Trial(
+        placed=placed,
+        elements=len(body.mesh.elements),
+        intervals=intervals,
+        fitted_to=fitted_to or {},
+        found=found,
+        movement=None if None in movements else max(filter(None, movements), default=0.0),
+        narrow=tuple(dict.fromkeys(narrow)),
+        sawing=sawing(contact, solution.pressure),
+        peak=contact.peak(solution.pressure),
+        forces=dict(zip(contact.zone_names, forces.tolist(), strict=True)),
+    )
+
+
+def _told(trials: Sequence[_Trial], kept: int, refine: int) -> Iterator[str]:
+    """Say how many meshes it took, what moved, and what did not settle."""
+    yield from _told_of_fit(trials[0], trials[kept], kept, refine) if kept else _told_of_none(trials)
+    for zone in trials[kept].narrow:
+        yield f"contact in {zone} is narrower than an element: its pressure and its width are those of the mesh"
+    for number, (before, after) in enumerate(pairwise(trials), 1):
+        if len(before.intervals) != len(after.intervals):
+            counts = f"from {len(before.intervals)} to {len(after.intervals)}"
+            yield f"the number of contact intervals changed {counts} with the mesh of pass {number}"
+
+
+def _told_of_fit(first: _Trial, last: _Trial, passes: int, refine: int) -> Iterator[str]:
+    """Say what a fitted mesh is like."""
+    cut = f", before each was cut into {refine}" if refine > 1 else ""
+    elements = f"it has {last.elements} elements where {first.elements} were stated{cut}"
+    done = f"mesh fitted to the ends of contact in {passes} pass{'es' * (passes > 1)}"
+    yield "; ".join([done, elements, *_moved(first.intervals, last.intervals)])
+    yield from _changed(first, last)
+    if last.movement is not None and last.movement > SETTLED:
+        still = f"the ends of contact still move by {last.movement:.2g} of an element from pass to pass{cut}"
+        yield f"{still}; state more elements in the zone{', not a finer cut' * (refine > 1)}"
+
+
+def _told_of_none(trials: Sequence[_Trial]) -> Iterator[str]:
+    """Say why the mesh is as stated."""
+    first, sawing = trials[0], max(trial.sawing or 0.0 for trial in trials)
+    if first.settled and first.found:
+        yield "the mesh fits the ends of contact already"
+    elif first.found and any(_saws(trial, first) for trial in trials):
+        yield (
+            f"the mesh was left as stated: on fitted ones pressures go up and down from point to point by {sawing:.2g} "
+            "of the peak, as where contact ends near a tip; grade elements towards that, and state more of them"
+        )
+    elif first.found:
+        yield "the mesh was left as stated, for no fitted one came to rest"
+    elif not first.notes and not first.intervals:
+        yield "the mesh is as stated, for nothing touches"
+    elif not first.notes:
+        yield (
+            "the mesh is as stated: contact ends at no place inside a zone that an element could be graded towards, as "
+            "where it reaches the ends of its zone"
+        )
+
+
+def _changed(first: _Trial, last: _Trial) -> Iterator[str]:
+    """Say if the peak pressure, or the force on a zone, is another one on the fitted mesh."""
+    pairs = {"peak pressure": (first.peak, last.peak)}
+    pairs |= {f"force on {zone}": (force, last.forces[zone]) for zone, force in first.forces.items()}
+    for name, (before, after) in pairs.items():
+        if abs(after - before) > CHANGE * before:
+            yield (
+                f"the {name} went from {before:.5g} to {after:.5g} as the mesh was fitted: one of them is settled by "
+                "neither mesh; compare with finer ones"
+            )
+
+
+def _moved(before: Sequence[ContactInterval], after: Sequence[ContactInterval]) -> Iterator[str]:
+    """Say from where to where each end of contact moved, where the intervals are still the same."""
+    if [item.zone for item in before] != [item.zone for item in after]:
+        return
+    for old, new in zip(before, after, strict=True):
+        for which, start, end in (("start", old.start, new.start), ("end", old.end, new.end)):
+            if start != end:
+                yield f"{which} of contact in {old.zone} moved from {_point(start)} to {_point(end)}"
+
+
+def _point(point: Array | tuple[float, float]) -> str:
+    return f"({point[0]:.6g}, {point[1]:.6g})"

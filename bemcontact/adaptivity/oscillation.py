@@ -1,0 +1,42 @@
+"""Pressures that go up and down from point to point, as no contact does."""
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from bemcontact.contact.condensed_contact import Array, CondensedContact
+
+
+def sawing(contact: CondensedContact, pressure: Array) -> float | None:
+    """Largest amplitude of a pressure that saws, over the peak pressure.
+
+    Five points in a row under pressure have one alternating part ±a, by which they are off a cubic, that of the fourth
+    divided difference. Where four such parts in a row alternate, the pressure saws by the least of them. A smooth
+    pressure has nearly none, however it bends.
+
+    Parameters
+    ----------
+    contact : CondensedContact
+    pressure : (n,) at the contact points [p]
+
+    Returns
+    -------
+    float or None
+        None where no eight points in a row are under pressure, which is what it takes to tell.
+    """
+    amplitudes: list[float] = []
+    for run in np.unique(contact.run):
+        own = np.flatnonzero(contact.run == run)
+        own = own[np.argsort(contact.arc_position[own], kind="stable")]
+        if len(own) >= 8:
+            parts = sliding_window_view(_alternating(contact.arc_position[own], pressure[own]), 4)
+            pressed = sliding_window_view(pressure[own] > 0, 8).all(axis=1)
+            saws = (parts[:, 1:] * parts[:, :-1] < 0).all(axis=1)
+            amplitudes += (np.abs(parts).min(axis=1) * saws)[pressed].tolist()
+    return max(amplitudes) / peak if amplitudes and (peak := contact.peak(pressure)) > 0 else None
+
+
+def _alternating(arc: Array, pressure: Array) -> Array:
+    """Alternating part (n - 4,) of each five points in a row, with the sign of the middle one."""
+    s, p = sliding_window_view(arc, 5), sliding_window_view(pressure, 5)
+    weights = 1 / (s[:, :, None] - s[:, None, :] + np.eye(5)).prod(axis=2)  # of the divided difference; they alternate
+    return (weights * p).sum(axis=1) / np.abs(weights).sum(axis=1)

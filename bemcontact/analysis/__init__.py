@@ -1,0 +1,1 @@
+"""From a problem to a judged answer: condense, solve, compare, follow, reproduce."""

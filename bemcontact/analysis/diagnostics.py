@@ -1,0 +1,95 @@
+"""What a person should know of a result that the certificate does not say: remarks on the mesh and on the load."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.adaptivity.zone_runs import SAME
+from bemcontact.assessment.footprint import Footprint
+from bemcontact.bem.condense import Body
+from bemcontact.bem.contact_points import element_lengths
+from bemcontact.contact.condensed_contact import CondensedContact
+
+FEW_POINTS = 5
+"""Points under pressure below which a contact is not resolved: three make a parabola, two more its ends."""
+SMOOTH = 0.2
+"""Angle in radians by which the boundary may turn at the end of a zone and still go on smoothly."""
+UNBOUNDED = "the pressure there is infinite in theory, and its values at the last nodes depend on the mesh"
+"""What holds at an end of contact where the stresses are singular."""
+LONG_NEIGHBOUR = 4.0
+"""Length of the element beyond the end of a zone over that inside, above which pressure at that end suffers."""
+LARGE_PRESSURE = 0.5
+"""Peak pressure over Young's modulus beyond which nothing is left of small displacements."""
+
+
+def of_few_points(contact: CondensedContact, touching: NDArray[np.bool_], where: Footprint) -> Iterator[str]:
+    """Say of each interval of contact if too few points carry pressure to show its course."""
+    for interval in where.intervals:
+        same = SAME * interval.end_arc
+        beyond = (
+            contact.arc_position - interval.start_arc + same
+        ) % interval.perimeter  # of its start, if need be round
+        inside = (contact.run == interval.run) & (beyond <= interval.end_arc - interval.start_arc + 2 * same)
+        carrying = int(np.count_nonzero(touching & inside))
+        if 0 < carrying < FEW_POINTS:
+            start, end = (f"({x:.5g}, {y:.5g})" for x, y in (interval.start, interval.end))
+            yield (
+                f"pressure acts on {carrying} contact point{'s' if carrying > 1 else ''} only from {start} to {end} in "
+                f"{interval.zone}: the mesh is too coarse there to tell how it is distributed; shorten the elements"
+            )
+
+
+def of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Say where contact reaches the end of a zone: it should go on, or the pressure has no bound there.
+
+    On a smooth boundary either may be so. At a corner that is free beyond the zone the pressure is bounded up to a
+    right angle: with its mirror image in the rigid surface the body is a wedge, and then no notch (Williams 1952).
+    """
+    mesh, points, angles = body.mesh, body.points, body.mesh.inner_angles
+    in_zone = np.isin(np.arange(len(mesh.elements)), points.element)
+    ends = np.flatnonzero(in_zone != in_zone[mesh.before])
+    beyond = np.where(in_zone, mesh.before, np.arange(len(in_zone)))
+    free = np.all(~body.acting.values.traction_unknown[beyond], axis=1)
+    for i in np.flatnonzero(touching & np.isin(points.node, ends)):
+        node = points.node[i]
+        x, y = mesh.nodes[node]
+        reached = f"contact reaches the end of the zone '{_zone(body, i)}' at ({x:.5g}, {y:.5g})"
+        if abs(angles[node] - np.pi) < SMOOTH:
+            yield (
+                f"{reached}, where the boundary goes on smoothly; make the zone longer, unless the rigid surface ends "
+                f"there with an edge: then {UNBOUNDED}"
+            )
+        elif free[node] and angles[node] > np.pi / 2 + SMOOTH:
+            yield f"{reached}, a corner of the body of {np.degrees(angles[node]):.0f} degrees; {UNBOUNDED}"
+
+
+def of_long_neighbours(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Say where contact goes up to the end of a zone beyond which elements are much longer."""
+    mesh, points = body.mesh, body.points
+    lengths, in_zone = element_lengths(mesh), np.isin(np.arange(len(mesh.elements)), points.element)
+    for i in np.flatnonzero(touching & (points.node < len(mesh.elements))):
+        after, before = points.node[i], mesh.before[points.node[i]]
+        outside, inside = (before, after) if in_zone[after] else (after, before)
+        if not in_zone[outside] and lengths[outside] > LONG_NEIGHBOUR * lengths[inside]:
+            (x, y), times = mesh.nodes[points.node[i]], lengths[outside] / lengths[inside]
+            yield (
+                f"pressure acts at ({x:.5g}, {y:.5g}), the end of the zone '{_zone(body, i)}', beyond which an element "
+                f"of '{mesh.edge_names[mesh.edge[outside]]}' is {times:.2g} times as long as that in the zone: the "
+                "pressure there is less exact for it; grade that edge towards the zone"
+            )
+
+
+def of_size(body: Body, where: Footprint) -> Iterator[str]:
+    """Say if the pressure is too large for small displacements."""
+    modulus = body.problem.material.young_modulus
+    if where.peak is not None and where.peak.pressure > LARGE_PRESSURE * modulus:
+        yield (
+            f"the peak pressure is {where.peak.pressure / modulus:.2g} times Young's modulus: displacements are not "
+            "small, and the linear answer means little"
+        )
+
+
+def _zone(body: Body, point: np.intp) -> str:
+    """Name of the zone of a contact point."""
+    return list(body.problem.contact_zones)[body.points.zone[point]]

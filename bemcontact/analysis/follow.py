@@ -1,0 +1,260 @@
+"""How the answer to a problem responds to its parameters: paths and sensitivities, by the key paths of a spec."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from bemcontact.adaptivity.fitting import fitted
+from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
+from bemcontact.arrays import Array
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import Change
+from bemcontact.errors import Complaint, ProblemError
+from bemcontact.formulations import complementarity
+from bemcontact.parametric.parameter_path import ParameterPath
+from bemcontact.parametric.path import COMMON, SAME, ensure_same_body, load_path
+from bemcontact.parametric.sensitivity import Sensitivities, modulus_change
+from bemcontact.parametric.sensitivity import sensitivities as sensitivities_of_contact
+from bemcontact.problem.key_path import existing_path, parsed_path
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.validation import described, unknown_word
+
+MODULUS = "material.young_modulus"
+BODY = ("material", "boundary", "mesh")
+"""Parts of a spec that make the body, so that more than gaps and loads depends on them."""
+SHARES = tuple(0.5**k for k in range(1, 11))
+"""Of the way between two values, at which one looks whether gaps and loads change linearly."""
+NOTHING = 1e-13
+"""Part of the largest entry that is the round-off of an entry that should be zero."""
+
+
+def follow(problem: Problem, key: str, to: float, start: float | None = None) -> ParameterPath:
+    """Follow the contact state while one value of the problem changes, exactly.
+
+    Parameters
+    ----------
+    problem : Problem
+    key : path to the value, as of `Problem.with_value`, or "load_cases.wind" for the factor of a load case; gaps and
+        loads must depend on it linearly, and nothing else
+    to : value at the end of the path
+    start : value at its beginning, that of the problem if not given
+
+    Returns
+    -------
+    ParameterPath
+
+    Raises
+    ------
+    ProblemError
+        If the key leads to no number, more than gaps and loads depend on it, they do not linearly, or there is no
+        contact state at either end.
+    """
+    ensure_kind(problem, Problem)
+    begin = stated_value(problem, key) if start is None else float(start)
+    if _case_of(problem, key) is None:
+        ensure_acting(problem)
+    end = float(to)
+    if not (np.isfinite(begin) and np.isfinite(end)) or begin == end:
+        raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
+    ends = (replace(contact, name=problem.title) for contact in between(fitted(problem)[0], key, begin, end))
+    return ParameterPath(key=key, start=begin, end=end, path=load_path(*ends))
+
+
+def sensitivities(
+    problem: Problem | CondensedContact, changes: Mapping[str, Change] | Sequence[str] | None = None
+) -> Sensitivities:
+    """Differentiate the contact state of a problem.
+
+    Parameters
+    ----------
+    problem : Problem or CondensedContact
+    changes : with respect to what. By key, each per unit; or keys alone: those of `CondensedContact.changes`,
+        "initial_gap[i]" for the gap at point i, and, of a `Problem`, also "material.young_modulus" and paths to any
+        value on which gaps and loads depend linearly, and nothing else. If not given, `CondensedContact.changes`
+
+    Returns
+    -------
+    Sensitivities
+
+    Raises
+    ------
+    ProblemError
+        If a key is none of these, there is no contact state, or it does not determine a derivative.
+    SingularSystemError
+        If the equations of contact are singular to working precision.
+    """
+    ensure_acting(problem)
+    stated = fitted(problem)[0] if isinstance(problem, Problem) else None
+    contact = problem if isinstance(problem, CondensedContact) else condense(stated or problem)
+    if changes is None or isinstance(changes, Mapping):
+        return sensitivities_of_contact(contact, changes)
+    solution, known = complementarity.solve(contact), contact.changes
+    keys = [changes] if isinstance(changes, str) else changes
+    wanted = {key: known[key] if key in known else _change(contact, stated, key, solution.pressure) for key in keys}
+    return sensitivities_of_contact(contact, wanted, solution)
+
+
+def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:
+    """What something else than load cases and tools does to gap and load, per unit."""
+    path = parsed_path(key)
+    if path[0] == "initial_gap" and isinstance(path[-1], int) and path[-1] < contact.size and len(path) == 2:
+        return Change(np.eye(contact.size)[path[-1]], np.zeros(contact.free_motions))
+    if problem is None:
+        known = ", ".join((*contact.changes, f"initial_gap[0] to initial_gap[{contact.size - 1}]"))
+        raise ProblemError(f"there is no '{key}' in this condensed problem; it has: {known}")
+    if key == MODULUS:
+        E = problem.material.young_modulus
+        return modulus_change(contact, condense(problem.with_value(MODULUS, 2 * E)), E, pressure)
+    value = stated_value(problem, key)
+    other = 2 * value or 1.0
+    first, last = between(problem, key, value, other)
+    width = other - value
+    return Change((last.offset - first.offset) / width, (last.motion_load - first.motion_load) / width)
+
+
+def stated_value(problem: Problem, key: str) -> float:
+    """The number at a key path, the constant of a field that is one, or the factor by which a load case acts.
+
+    `ProblemError` if there is none of these.
+    """
+    if (case := _case_of(problem, key)) is not None:
+        return problem.factors().get(case, 0.0)
+    data: Any = problem.model_dump()
+    path = existing_path(data, parsed_path(key))
+    for step in path:
+        if isinstance(data, Mapping) and step not in data:
+            message = f"there is no number to vary: {unknown_word('entry', str(step), map(str, data))}"
+            raise ProblemError(Complaint(path=path, message=message))
+        data = None if data is None else data[step]
+    if isinstance(data, Mapping) and "constant" in data and not any(data[name] for name in data if name != "constant"):
+        data = data["constant"]
+    if not isinstance(data, Real) or isinstance(data, bool):
+        found = "it is left out; state it, or give the value to begin with"
+        if data is not None:
+            found = f"it is {described(data)}; give a path to a number, or the value to begin with"
+        message = f"there is no number to vary, {found}"
+        raise ProblemError(Complaint(path=path, message=message))
+    return float(data)
+
+
+def between(problem: Problem, key: str, start: float, end: float) -> tuple[CondensedContact, CondensedContact]:
+    """Condense a problem at two values of a key, and make sure that it changes linearly from one to the other.
+
+    Parameters
+    ----------
+    problem : whose mesh is not to be fitted any more
+    key : path to the value
+    start, end : its values. At one of them the load may pull the body off its support, or not press it on; this end is
+        then found from the other one and what is on the way
+
+    Returns
+    -------
+    first, last : CondensedContact
+
+    Raises
+    ------
+    ProblemError
+        If neither end can be condensed, more than gaps and loads depend on the value, or these not linearly.
+    """
+    if parsed_path(key)[0] in BODY:
+        raise ProblemError(Complaint(path=parsed_path(key), message=f"the compliance depends on it; {EXACT}"))
+    first, last = (_attempted(problem, key, value) for value in (start, end))
+    if isinstance(first, ProblemError):
+        if isinstance(last, ProblemError):
+            raise last
+        return _extended(problem, key, last, end, start), last
+    if isinstance(last, ProblemError):
+        return first, _extended(problem, key, first, start, end)
+    share, middle = _farthest(problem, key, start, end)
+    _ensure_linear(key, first, middle, last, share)
+    return first, last
+
+
+def _farthest(problem: Problem, key: str, start: float, end: float) -> tuple[float, CondensedContact]:
+    """The largest of `SHARES` of the way to the end at which something presses the body onto its support, and that.
+
+    `ProblemError` as of half of the way if there is none.
+    """
+    refused: list[ProblemError] = []
+    for share in SHARES:
+        found = _attempted(problem, key, start + share * (end - start))
+        if isinstance(found, CondensedContact):
+            return share, found
+        refused.append(found)
+    raise refused[0]
+
+
+def _varied(problem: Problem, key: str, value: float) -> Problem:
+    """The problem with another value, or with another factor of a load case."""
+    case = _case_of(problem, key)
+    return problem.with_value(key, value) if case is None else problem.with_factors({**problem.factors(), case: value})
+
+
+def _case_of(problem: Problem, key: str) -> str | None:
+    """The load case whose factor a key path means, as `load_cases.wind` does; None for other paths."""
+    room, *rest = parsed_path(key)
+    return str(rest[0]) if room == "load_cases" and len(rest) == 1 and rest[0] in problem.load_cases else None
+
+
+def _attempted(problem: Problem, key: str, value: float) -> CondensedContact | ProblemError:
+    """Condense the problem at a value that is allowed; the error where nothing presses the body onto its support."""
+    varied = _varied(problem, key, value)
+    try:
+        return condense(varied)
+    except ProblemError as error:
+        return error
+
+
+def _ensure_linear(
+    key: str, first: CondensedContact, middle: CondensedContact, last: CondensedContact, share: float
+) -> None:
+    """Refuse a value on which more than gaps and loads depends, or these not linearly up to a share of the way."""
+    for end in (first, last):
+        try:
+            ensure_same_body(middle, end)
+        except ProblemError:
+            found = next(what for name, what in COMMON.items() if _differs(getattr(middle, name), getattr(end, name)))
+            message = f"the {found} depends on it; {EXACT}"
+            raise ProblemError(Complaint(path=parsed_path(key), message=message)) from None
+    displacement, pressure = np.max([first.scales, last.scales], axis=0)
+    least = {"offset": displacement, "motion_load": pressure * np.abs(middle.equilibrium).sum(axis=0)}
+    for name, what in (("offset", "gap"), ("motion_load", "load")):
+        one, inner, other = (getattr(item, name) for item in (first, middle, last))
+        size = np.maximum(np.abs([one, other]).max(axis=0), least[name])
+        if (bend := float((np.abs(inner - (1 - share) * one - share * other) / size).max(initial=0.0))) > SAME:
+            message = f"the {what} does not change in proportion to it, it bends by {bend:.2g}; {LINEAR}"
+            raise ProblemError(Complaint(path=parsed_path(key), message=message))
+
+
+EXACT = "a path is exact only for loads, gaps and tools"
+LINEAR = "a path is exact only for what enters gaps and loads linearly, as forces, pressures and displacements do"
+
+
+def _differs(one: Array, other: Array) -> bool:
+    return one.shape != other.shape or bool(np.abs(one - other).max(initial=0.0) > SAME * np.abs(one).max(initial=0.0))
+
+
+def _extended(problem: Problem, key: str, first: CondensedContact, start: float, end: float) -> CondensedContact:
+    """The problem at an end at which nothing presses the body onto its support, from the start and the way there."""
+    reached, there = _farthest(problem, key, start, end)
+    share, middle = _farthest(problem, key, start, start + reached * (end - start))
+    _ensure_linear(key, first, middle, there, share)
+
+    def beyond(one: Array, other: Array) -> Array:
+        found = one + (other - one) / reached
+        return np.where(np.abs(found) <= NOTHING / reached * np.abs(one).max(initial=0.0), 0.0, found)
+
+    tools, cases = first.tools, first.cases
+    return replace(
+        first,
+        free_displacement=beyond(first.free_displacement, there.free_displacement),
+        initial_gap=beyond(first.initial_gap, there.initial_gap),
+        motion_load=beyond(first.motion_load, there.motion_load),
+        tools=replace(
+            tools, position=beyond(tools.position, there.tools.position), force=beyond(tools.force, there.tools.force)
+        ),
+        cases=replace(cases, factors=beyond(cases.factors, there.cases.factors)),
+    )

@@ -1,0 +1,118 @@
+"""All load cases and combinations of a problem, solved on one condensation and judged."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from bemcontact.analysis.result import Result
+from bemcontact.analysis.solve import carry_out, condensed, ensure_kind, judged
+from bemcontact.analysis.stopwatch import Stopwatch
+from bemcontact.errors import ProblemError
+from bemcontact.formulations import FORMULATIONS
+from bemcontact.formulations.plan import Plan, planned
+from bemcontact.options import FormulationName, Weights
+from bemcontact.problem.problem import Problem
+from bemcontact.version import __version__
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class CaseResults:
+    """The answers to all load cases and combinations of a problem.
+
+    Parameters
+    ----------
+    name : of the problem
+    results : by the name of the load case or combination
+    seconds : spent on what they share
+    """
+
+    name: str
+    results: dict[str, Result]
+    seconds: dict[str, float]
+
+    def __repr__(self) -> str:
+        """One line: name, cases, verdict, largest peak."""
+        worst = "no contact" if self.worst is None else f"largest peak pressure in '{self.worst}'"
+        verdict = "all certified" if self.certified else "NOT all certified"
+        return f"<CaseResults of {self.name!r}: {', '.join(self.results)}: {verdict}, {worst}>"
+
+    @property
+    def certified(self) -> bool:
+        """Whether each of them is proved to be the solution."""
+        return all(result.certified for result in self.results.values())
+
+    @property
+    def worst(self) -> str | None:
+        """The case or combination with the largest peak pressure; None if nothing touches in any."""
+        peaks = {name: item.footprint.peak.pressure for name, item in self.results.items() if item.footprint.peak}
+        return max(peaks, key=lambda name: peaks[name], default=None)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give all of it as numbers, lists and texts, ready for JSON; of each case what `Result.to_dict` gives."""
+        return {
+            "name": self.name,
+            "version": __version__,
+            "certified": self.certified,
+            "worst": self.worst,
+            "cases": {name: result.to_dict() for name, result in self.results.items()},
+            "seconds": self.seconds,
+        }
+
+    def to_json(self, indent: int | None = 2) -> str:
+        """Write `to_dict` as JSON; every number in it is finite."""
+        return json.dumps(self.to_dict(), indent=indent, allow_nan=False, ensure_ascii=False)
+
+
+def solve_cases(
+    problem: Problem,
+    formulation: str = FormulationName.QP3,
+    weights: Weights | str = Weights.TRIBUTARY,
+    *,
+    max_iterations: int | None = None,
+) -> CaseResults:
+    """Solve all load cases and combinations of a problem by one formulation; the body is condensed once.
+
+    Parameters
+    ----------
+    problem : with load cases
+    formulation, weights, max_iterations : as of `bemcontact.solve`
+
+    Returns
+    -------
+    CaseResults
+
+    Raises
+    ------
+    ProblemError
+        If the problem states no load case, or one of them has no answer; as of `bemcontact.solve` else.
+    """
+    return carry_out_cases(planned(formulation, weights, max_iterations=max_iterations), problem)
+
+
+def carry_out_cases(plan: Plan, problem: Problem, progress: Callable[[str, str], object] | None = None) -> CaseResults:
+    """Solve all load cases and combinations as planned; all else is as of `solve_cases`.
+
+    Where the mesh is to be fitted to the ends of contact, each of them gets a mesh of its own.
+    """
+    ensure_kind(problem, Problem)
+    if not problem.load_cases:
+        raise ProblemError("the problem states no load cases; bemcontact.solve solves it as it is")
+    if problem.mesh.fit_contact_edges:
+        results = {}
+        for name in problem.case_names:
+            if progress:
+                progress(name, "")
+            results[name] = carry_out(plan, problem.with_case(name))
+        return CaseResults(name=problem.name, results=results, seconds={})
+    shared = Stopwatch(progress=progress)
+    _, whole = condensed(problem.model_copy(update={"case": None}), shared)
+    assert whole is not None
+    cases = {name: whole.acting(name) for name in problem.case_names}
+    results = {}
+    for name, case in cases.items():
+        watch = Stopwatch(progress=progress)
+        with watch.stage(name):
+            solution, ends = plan.start.search(case.contact, FORMULATIONS[plan.formulation], plan.options)
+            results[name] = judged(case.body.problem, case, case.contact, solution, plan.options.weights, watch, ends)
+    return CaseResults(name=problem.name, results=results, seconds=shared.seconds)

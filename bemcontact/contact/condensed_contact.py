@@ -1,0 +1,385 @@
+"""The waist of the package: a condensed contact problem.
+
+The boundary-element core makes a `CondensedContact`; the formulations turn it into a solution; neither side knows the
+other. Lengths and stresses are in the user's units throughout.
+"""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import isfinite
+from numbers import Real
+from operator import attrgetter
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.contact import archive
+from bemcontact.contact.gauge import fix_gauge
+from bemcontact.contact.load_cases import Change, LoadCases
+from bemcontact.contact.scales import ContactScales, typical_scales
+from bemcontact.contact.stiffness import StiffnessRows, stiffness_rows
+from bemcontact.contact.tools import Pinned, Tools
+from bemcontact.errors import ProblemError
+from bemcontact.options import Weights
+
+PEAK = 1e-12
+"""Part of T below which the largest pressure is round-off, and nothing touches."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class CondensedContact:
+    """An elastic body condensed to its n contact points: u_n = Δ1 + M p + R a with ℓᵀp = -load, [SS92] (35)-(38).
+
+    A contact point is a pair (zone, node): a node in two zones is two points, with two normals, gaps and pressures.
+    Arrays are read-only. With k = 0 free rigid motions R, a and the load vanish. M and Δ1 are in the gauge of
+    `fix_gauge`. Points are listed zone by zone and, within a zone, run by run in the order of the boundary.
+
+    Parameters
+    ----------
+    points : (n, 2) undeformed positions [L]
+    normals : (n, 2) unit normals of the rigid surface, from the surface into the body
+    zone : (n,) index into `zone_names`
+    run : (n,) number of the unbroken piece of boundary that the point belongs to
+    arc_position : (n,) arc length along that piece [L]
+    run_length : (number of runs,) its perimeter if the run closes on itself, else infinity [L]
+    compliance : (n, n) M, normal displacement per pressure [L/p]
+    free_displacement : (n,) Δ1, normal displacement without contact [L]
+    rigid_motions : (n, k) R, the free rigid motions seen along the normals
+    motion_load : (k,) work of the applied loads in these motions, [p L] for a motion of unit displacement
+    initial_gap : (n,) ε [L]
+    weights : (n,) tributary weights [L]: Σ w p n is the force of the rigid surface
+    consistent_weights : (n, n) ∫ h hᵀ ds [L], or None where no mesh stands behind the problem
+    element_length_weights : (n,) [L], or None likewise
+    held_arc : (number of runs, 2) arc position of a run's ends that a condition holds on the rigid surface, up to which
+        there is contact although there is no contact point; not a number for other ends; None if there are none [L]
+    held_points : (number of runs, 2, 2) these ends [L], or None likewise
+    motion_names : k descriptions of the free motions, for people: those of the body, then those of tools
+    tools : rigid surfaces that move; where they are displaced to is part of ε, and what they are loaded by of the load
+    cases : load cases; those in effect are part of Δ1, the load and ε
+    pinned : motions that no contact point sees, in which what acts must balance
+    notes : what was decided on the way and should be known
+    name, zone_names, units : labels
+    """
+
+    name: str = "unnamed"
+    zone_names: tuple[str, ...] = ("contact",)
+    units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    motion_names: tuple[str, ...] = ()
+    points: Array
+    normals: Array
+    zone: IntArray
+    run: IntArray
+    arc_position: Array
+    run_length: Array
+    compliance: Array
+    free_displacement: Array
+    rigid_motions: Array
+    motion_load: Array
+    initial_gap: Array
+    weights: Array
+    consistent_weights: Array | None = None
+    element_length_weights: Array | None = None
+    held_arc: Array | None = None
+    held_points: Array | None = None
+    tools: Tools = field(default_factory=lambda: Tools.none(0, 0))
+    cases: LoadCases = field(default_factory=lambda: LoadCases.none(0, 0, 0))
+    pinned: Pinned = field(default_factory=lambda: Pinned.none(0, 0))
+
+    def __post_init__(self) -> None:
+        """Check shapes, refuse numbers that are not finite, make arrays read-only."""
+        n, k = self.rigid_motions.shape
+        shapes = {
+            "points": (n, 2), "normals": (n, 2), "zone": (n,), "run": (n,), "arc_position": (n,),
+            "compliance": (n, n), "free_displacement": (n,), "motion_load": (k,), "initial_gap": (n,),
+            "weights": (n,), "consistent_weights": (n, n), "element_length_weights": (n,),
+        }  # fmt: skip
+        for key, shape in shapes.items():
+            array = getattr(self, key)
+            if array is None:
+                continue
+            if array.shape != shape:
+                raise ProblemError(f"{key} has shape {array.shape} where {shape} is needed; n = {n}, k = {k}")
+            if not np.isfinite(array).all():
+                raise ProblemError(f"{key} has entries that are not finite numbers")
+        if not (self.weights > 0).all():
+            raise ProblemError(f"weights must be positive; the smallest is {self.weights.min():.3g}")
+        freeze_arrays(self)
+        self._ensure_actions_fit()
+
+    def _ensure_actions_fit(self) -> None:
+        """Give no tools and no load cases their shapes, and refuse those of another body."""
+        n, k = self.rigid_motions.shape
+        if not len(self.tools):
+            object.__setattr__(self, "tools", Tools.none(n, k))
+        if not len(self.cases):
+            object.__setattr__(self, "cases", LoadCases.none(n, k, len(self.tools)))
+        c, t, j = len(self.cases), 3 * len(self.tools), len(self.pinned.motions)
+        if not j:
+            object.__setattr__(self, "pinned", Pinned.none(c, len(self.tools)))
+        shapes = {
+            "cases.displacement": (n, c), "cases.motion_load": (k, c), "cases.position": (t, c), "cases.force": (t, c),
+            "cases.factors": (c,), "tools.motions": (n, t), "tools.amplitudes": (t, k), "tools.position": (t,),
+            "tools.free": (t,), "tools.force": (t,), "tools.point": (t // 3, 2), "pinned.load": (j, 1 + c),
+            "pinned.tools": (t, j), "pinned.turns": (j,), "pinned.magnitude": (1 + c,),
+        }  # fmt: skip
+        for key, shape in shapes.items():
+            if (found := attrgetter(key)(self).shape) != shape:
+                raise ProblemError(f"{key} has shape {found} where {shape} is needed; n = {n}, k = {k}")
+
+    @classmethod
+    def from_compliance(
+        cls,
+        compliance: ArrayLike,
+        offset: ArrayLike,
+        weights: ArrayLike | None = None,
+        *,
+        rigid_motions: ArrayLike | None = None,
+        motion_load: ArrayLike | None = None,
+        name: str = "unnamed",
+    ) -> Self:
+        """State a contact problem by numbers alone: gap = q + M p + R a >= 0, p >= 0, p·gap = 0, ℓᵀp = -load.
+
+        Parameters
+        ----------
+        compliance : (n, n) M
+        offset : (n,) q = ε + Δ1, the gap without contact
+        weights : (n,) positive tributary weights, default ones
+        rigid_motions : (n, k) R, default none
+        motion_load : (k,) load, needed with `rigid_motions`
+        name : label
+
+        Returns
+        -------
+        CondensedContact
+            Points lie on the x axis, one unit apart; the gauge is fixed, `initial_gap` is `offset`.
+
+        Raises
+        ------
+        ProblemError
+            Shapes that do not fit, weights that are not positive, or entries that are not finite.
+        """
+        M = np.array(compliance, float, ndmin=2)
+        q = np.array(offset, float, ndmin=1)
+        n = len(q)
+        J = np.ones(n) if weights is None else np.array(weights, float, ndmin=1)
+        R = np.zeros((n, 0)) if rigid_motions is None else np.array(rigid_motions, float)
+        R = R[:, None] if R.ndim == 1 else R
+        load = np.zeros(R.shape[1]) if motion_load is None else np.array(motion_load, float, ndmin=1)
+        if not (M.shape == (n, n) and J.shape == (n,) and R.shape[0] == n and load.shape == R.shape[1:]):
+            raise ProblemError(
+                f"offset has {n} entries; then compliance needs ({n}, {n}), weights ({n},), rigid_motions ({n}, k), "
+                f"motion_load (k,); found {M.shape}, {J.shape}, {R.shape}, {load.shape}"
+            )
+        if R.shape[1] and np.linalg.matrix_rank(R) < R.shape[1]:
+            raise ProblemError("rigid_motions needs independent columns: a motion that no point sees holds nothing")
+        gauge = fix_gauge(M, np.zeros(n), R, J, load)
+        return cls(
+            name=name,
+            motion_names=tuple(f"motion {j + 1}" for j in range(R.shape[1])),
+            points=np.column_stack([np.arange(n, dtype=float), np.zeros(n)]),
+            normals=np.tile([0.0, 1.0], (n, 1)),
+            zone=np.zeros(n, int),
+            run=np.zeros(n, int),
+            arc_position=np.arange(n, dtype=float),
+            run_length=np.array([np.inf]),
+            compliance=gauge.compliance,
+            free_displacement=gauge.free_displacement,
+            rigid_motions=R,
+            motion_load=load,
+            initial_gap=q,
+            weights=J,
+        )
+
+    def __repr__(self) -> str:
+        """One line: name, zones, number of points and free motions."""
+        zones = ", ".join(self.zone_names)
+        return f"<CondensedContact {self.name!r}: {self.size} points in {zones}; {self.free_motions} free motions>"
+
+    @property
+    def size(self) -> int:
+        """Number n of contact points."""
+        return len(self.initial_gap)
+
+    @property
+    def free_motions(self) -> int:
+        """Number k of rigid motions that contact alone holds."""
+        return self.rigid_motions.shape[1]
+
+    @cached_property
+    def offset(self) -> Array:
+        """The gap q = ε + Δ1 (n,) [L] at p = 0, a = 0."""
+        return self.initial_gap + self.free_displacement
+
+    @cached_property
+    def equilibrium(self) -> Array:
+        """ℓ = J R (n, k) with the tributary weights: equilibrium is ℓᵀp = -load."""
+        return self.weights[:, None] * self.rigid_motions
+
+    @cached_property
+    def balancing_pressure(self) -> Array:
+        """p0 = -R (ℓᵀR)⁻¹ load (n,) [p]: the pressure of least weighted square in equilibrium, of either sign."""
+        R = self.rigid_motions
+        return -R @ np.linalg.solve(self.equilibrium.T @ R, self.motion_load)
+
+    @cached_property
+    def scales(self) -> ContactScales:
+        """Scales with U = ‖M‖∞ T, the larger of what the load and what interference asks for.
+
+        A load that presses a free body needs the balancing pressure; interference is what penetrates without pressure
+        however the body is placed. Wide gaps far from contact do not count; if there is neither, U = max|q|.
+        """
+        return typical_scales(self.compliance, self.offset, self.rigid_motions, self.balancing_pressure)
+
+    def with_factors(self, factors: Mapping[str, float]) -> Self:
+        """Let load cases act, each by its factor, and those that are not named not at all; nothing is condensed anew.
+
+        Parameters
+        ----------
+        factors : by name of a case
+
+        Returns
+        -------
+        CondensedContact
+
+        Raises
+        ------
+        ProblemError
+            If there is no such case, a factor is no finite number, or loads act along a motion that nothing resists.
+        """
+        if not isinstance(factors, Mapping):
+            raise ProblemError(f"factors by load case are needed, such as {{'wind': 1.5}}; found {factors!r}")
+        if unknown := [name for name in factors if name not in self.cases.names]:
+            known = ", ".join(self.cases.names) or "none"
+            raise ProblemError(f"there is no load case '{unknown[0]}'; there are: {known}")
+        if wrong := [name for name, factor in factors.items() if not isinstance(factor, Real) or not isfinite(factor)]:
+            raise ProblemError(f"the factor of '{wrong[0]}' must be a finite number, found {factors[wrong[0]]!r}")
+        found = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
+        step = found - self.cases.factors
+        return self.stepped(step, self.cases.position @ step, self.cases.force @ step).balanced()
+
+    def with_tools(self, position: ArrayLike | None = None, force: ArrayLike | None = None) -> Self:
+        """Displace and load the tools otherwise; nothing is condensed anew.
+
+        Parameters
+        ----------
+        position : (t, 3) displacements x, y [L] and rotation [rad], as now if None; those of free components are unused
+        force : (t, 3) x, y [p L] and moment [p L²], as now if None; those on components that are given are unused
+
+        Returns
+        -------
+        CondensedContact
+
+        Raises
+        ------
+        ProblemError
+            If the shapes do not fit, a number is not finite, or forces act along a motion that nothing resists.
+        """
+        tools, steps = self.tools, []
+        for new, now, used in ((position, tools.position, ~tools.free), (force, tools.force, tools.free)):
+            try:
+                given = now if new is None else np.array(new, float)
+            except (TypeError, ValueError):
+                raise ProblemError(
+                    f"tools, {', '.join(tools.names) or 'none'}, have x, y and rotation or moment each, in an array "
+                    f"({len(tools)}, 3); found {new!r}"
+                ) from None
+            if given.shape not in ((len(tools), 3), now.shape):
+                raise ProblemError(f"tools have {len(tools)} x 3 components; found an array of shape {given.shape}")
+            if not np.isfinite(given).all():
+                raise ProblemError("displacements of tools, and forces on them, must be finite numbers")
+            steps.append(np.where(used, given.ravel() - now, 0.0))
+        return self.stepped(np.zeros(len(self.cases)), *steps).balanced()
+
+    def balanced(self) -> Self:
+        """Refuse what acts along a motion that nothing resists, with a `ProblemError`."""
+        if complaint := self.pinned.complaint(np.append(1.0, self.cases.factors), self.tools.force):
+            raise ProblemError(complaint)
+        return self
+
+    def stepped(self, factors: Array, position: Array, force: Array) -> Self:
+        """Add to the factors (c,), and to the displacements (3 t,) and forces (3 t,) of tools, balanced or not."""
+        cases, tools = self.cases, self.tools
+        return replace(
+            self,
+            free_displacement=self.free_displacement + cases.displacement @ factors,
+            initial_gap=self.initial_gap + tools.motions @ position,
+            motion_load=self.motion_load + cases.motion_load @ factors + tools.amplitudes.T @ force,
+            cases=replace(cases, factors=cases.factors + factors),
+            tools=replace(tools, position=tools.position + position, force=tools.force + force),
+        )
+
+    @property
+    def changes(self) -> dict[str, Change]:
+        """What may change without condensing anew, by key path, each per unit: factors of load cases, tools.
+
+        Left out is what changes nothing, and what by itself would drive a motion that nothing resists.
+        """
+        cases, tools, pinned = self.cases, self.tools, self.pinned
+        unit, units = np.eye(1 + len(cases))[1:], np.eye(3 * len(tools))
+        offsets = cases.displacement + tools.motions @ cases.position
+        loads = cases.motion_load + tools.amplitudes.T @ cases.force
+        found = {
+            f"load_cases.{name}": Change(offset, load)
+            for name, offset, load, alone, force in zip(
+                cases.names, offsets.T, loads.T, unit, cases.force.T, strict=True
+            )
+            if pinned.complaint(alone, force) is None
+        }
+        moves = zip(tools.keys, np.where(tools.free, 0.0, tools.motions).T, tools.amplitudes, units, strict=True)
+        return found | {
+            key: Change(offset, load)
+            for key, offset, load, alone in moves
+            if (offset.any() or load.any()) and pinned.complaint(np.zeros(1 + len(cases)), alone) is None
+        }
+
+    @cached_property
+    def stiffness_rows(self) -> StiffnessRows:
+        """K u_n = B p + r, (12), with K = S, B = I, r = S Δ1 + V load; [S, V] the top of [[M, R], [ℓᵀ, 0]]⁻¹.
+
+        `SingularSystemError` where that has no inverse.
+        """
+        return stiffness_rows(
+            self.compliance, self.rigid_motions, self.equilibrium, self.free_displacement, self.motion_load, self.scales
+        )
+
+    def gap(self, pressure: Array, rigid_amplitudes: Array) -> Array:
+        """δ = ε + Δ1 + M p + R a, (n,) [L], from p (n,) [p] and a (k,)."""
+        return self.offset + self.compliance @ pressure + self.rigid_motions @ rigid_amplitudes
+
+    def touching(self, pressure: Array, displacement: Array) -> NDArray[np.bool_]:
+        """Which points (n,) are in contact, p/T > δ/U, from p (n,) [p] and u_n (n,) [L]: unmoved by a solver's dust."""
+        U, T = self.scales
+        return pressure / T > (self.initial_gap + displacement) / U
+
+    def peak(self, pressure: Array) -> float:
+        """The largest of the pressures p (n,), [p]; zero if that is round-off beside T."""
+        peak = float(pressure.max(initial=0.0))
+        return peak if peak > PEAK * self.scales.pressure else 0.0
+
+    def weight_matrix(self, weights: Weights) -> Array:
+        """The J (n, n) [L] of the objective; `ProblemError` where the problem does not carry these weights."""
+        match weights:
+            case Weights.TRIBUTARY:
+                return np.diag(self.weights)
+            case Weights.CONSISTENT:
+                J = self.consistent_weights
+            case Weights.ELEMENT_LENGTH:
+                J = None if self.element_length_weights is None else np.diag(self.element_length_weights)
+        if J is None:
+            raise ProblemError(f"the condensed problem carries no {weights.value} weights; use tributary ones")
+        return J
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write all of it as one ``.npz`` file, whole or not at all; `OSError` where that cannot be."""
+        archive.write(Path(path), self)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read what `save` wrote; `ProblemError` if the file is something else."""
+        return archive.read(Path(path), cls)

@@ -1,0 +1,124 @@
+"""Tools, which are rigid surfaces that move, and the motions in which applied loads must balance."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.arrays import Array, freeze_arrays
+
+BALANCED = 1e-9
+"""Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as none."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Tools:
+    """t tools: rigid surfaces that are displaced, or loaded so that contact must find where they go.
+
+    A tool moves by (x, y) and turns by a small angle about its point; the gap at a contact point of its surfaces then
+    changes by -n·w. Where a component is free, its amplitude is one of the free motions of the contact problem and its
+    force stands in the load; where it is not, its displacement stands in the initial gap.
+
+    Parameters
+    ----------
+    names : of the tools
+    point : (t, 2) about which each turns, and on which its force acts [L]
+    motions : (n, 3 t) -n·w: what a unit displacement x, y and a unit rotation of each tool add to the gap
+    amplitudes : (3 t, k) motion of the tools per amplitude a of the free motions
+    free : (3 t,) whether a component is free
+    position : (3 t,) displacement of the components that are not: x, y [L], rotation [rad], zero for others
+    force : (3 t,) on the components that are free: x, y [p L], moment [p L²], zero for others
+    """
+
+    names: tuple[str, ...]
+    point: Array
+    motions: Array
+    amplitudes: Array
+    free: NDArray[np.bool_]
+    position: Array
+    force: Array
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    @classmethod
+    def none(cls, points: int, motions: int) -> Self:
+        """No tool at all, for n contact points and k free motions."""
+        return cls(
+            names=(), point=np.zeros((0, 2)), motions=np.zeros((points, 0)), amplitudes=np.zeros((0, motions)),
+            free=np.zeros(0, bool), position=np.zeros(0), force=np.zeros(0),
+        )  # fmt: skip
+
+    def __len__(self) -> int:
+        """Return the number of tools."""
+        return len(self.names)
+
+    def displacement(self, rigid_amplitudes: Array) -> Array:
+        """Where the tools are (t, 3): x, y [L] and rotation [rad], for amplitudes a (k,)."""
+        return (self.position + self.amplitudes @ rigid_amplitudes).reshape(-1, 3)
+
+    def reaction(self, contact_forces: Array) -> Array:
+        """Force (t, 3) of the body on each tool: x, y [p L] and moment [p L²], from w p at the points (n,) [p L]."""
+        return (self.motions.T @ contact_forces).reshape(-1, 3)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Key paths (3 t) of the components: of the displacement where it is given, of the force where it is free."""
+        moves, forces = (
+            ("displacement.x", "displacement.y", "displacement.rotation"),
+            ("force.x", "force.y", "force.moment"),
+        )
+        ways = zip(self.free.reshape(-1, 3), self.names, strict=True)
+        return tuple(f"tools.{name}.{(forces if free[i] else moves)[i]}" for free, name in ways for i in range(3))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pinned:
+    """j rigid motions of the body and of tools that no contact point sees: what acts must balance in them.
+
+    Parameters
+    ----------
+    motions : j descriptions, "the body against the translation along (1, 0)"
+    turns : (j,) whether work in it is a moment [p L²] and not a force [p L]
+    load : (j, 1 + c) work of what is permanent on the body, and of each load case
+    tools : (3 t, j) motion of the tools
+    magnitude : (1 + c,) sum of the magnitudes of what is permanent on the body, and of each load case [p L]
+    length : by which a moment is divided to compare it with forces [L]
+    """
+
+    motions: tuple[str, ...]
+    turns: NDArray[np.bool_]
+    load: Array
+    tools: Array
+    magnitude: Array
+    length: float
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    @classmethod
+    def none(cls, cases: int, tools: int) -> Self:
+        """No pinned motion, for c cases and t tools."""
+        return cls(
+            motions=(), turns=np.zeros(0, bool), load=np.zeros((0, 1 + cases)), tools=np.zeros((3 * tools, 0)),
+            magnitude=np.zeros(1 + cases), length=1.0,
+        )  # fmt: skip
+
+    def total(self, factors: Array, force: Array) -> float:
+        """Sum of the magnitudes of all that acts [p L], for factors (1 + c,) and forces on tools (3 t,)."""
+        x, y, moment = force.reshape(-1, 3).T
+        return float(self.magnitude @ abs(factors) + (np.hypot(x, y) + abs(moment) / self.length).sum())
+
+    def complaint(self, factors: Array, force: Array) -> str | None:
+        """Say what the loads drive along a motion in which nothing resists them; None if they balance."""
+        work, total = self.load @ factors + self.tools.T @ force, self.total(factors, force)
+        for motion, turns, done in zip(self.motions, self.turns, work, strict=True):
+            if abs(done) > BALANCED * total * (self.length if turns else 1.0):
+                return (
+                    f"nothing holds {motion}, and the loads act along it ({'moment' if turns else 'resultant'} "
+                    f"{done:.6g}); prescribe a displacement that holds it, or balance the loads"
+                )
+        return None

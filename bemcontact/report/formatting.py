@@ -1,0 +1,288 @@
+"""Numbers to words, for people: in tables, on pictures and pages."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.analysis.result import Result
+from bemcontact.assessment.contender import Contender
+from bemcontact.assessment.footprint import ContactInterval
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import LocalSearch, Penalty, Status
+from bemcontact.problem import (
+    Circle,
+    Condition,
+    DeflectedContour,
+    Edge,
+    Field,
+    LoadCase,
+    Loads,
+    Plane,
+    Polyline,
+    Problem,
+    Reference,
+    RigidSurface,
+    Spline,
+    Table,
+    ToolAction,
+    Units,
+    Values,
+)
+
+NEGLIGIBLE = 1e-9
+"""Share of the largest component, or of a scale, below which a component of a vector is written as zero."""
+
+
+def number(value: float) -> str:
+    """Write a number with five figures: 183.33, 2.1e+05."""
+    return f"{value:.5g}" if value else "0"
+
+
+def settled(value: float, scale: float) -> float:
+    """The value, or zero where it is negligible beside the scale."""
+    return value if abs(value) > NEGLIGIBLE * scale else 0.0
+
+
+def vector(components: tuple[float, float], unit: str = "", *, scale: float = 0.0) -> str:
+    """Write a point or a force: (2.7685, 0.48) cm; what is negligible beside it, or beside the scale, is zero."""
+    largest = max(*map(abs, components), scale)
+    x, y = (number(settled(value, largest)) for value in components)
+    return with_unit(f"({x}, {y})", unit)
+
+
+def with_unit(text: str, unit: str) -> str:
+    """Put the unit, if there is one, behind a number that is not zero."""
+    return f"{text} {unit}" if unit and text != "0" else text
+
+
+def units_of(contact: CondensedContact) -> Units:
+    """Read the labels of the units back from a condensed problem."""
+    return Units(length=contact.units.get("length", ""), force=contact.units.get("force", ""))
+
+
+def per_thickness(units: Units) -> str:
+    """Label of a force on a body of unit thickness: kN/cm."""
+    return f"{units.force}/{units.length}" if units.force and units.length else ""
+
+
+def field_on(field: Field, edge: Edge, unit: str = "") -> str:
+    """Write the value of a field on an edge, or from where to where it goes: 50.625 kN/cm²; 3 … 5 N/mm²."""
+    return with_unit(_range(field.at(edge.points(np.linspace(0, 1, 41)))), unit)
+
+
+def _range(values: NDArray[np.float64]) -> str:
+    """Write a value, or from where to where values (k,) go."""
+    low, high = float(values.min()), float(values.max())
+    return number(low) if np.isclose(low, high) else f"{number(low)} … {number(high)}"
+
+
+def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
+    """Say what an edge is told: ``u_x = 0``, ``t_y = -3.6 kN/cm²``, ``pressure 3 N/mm²``, ``may touch in foot``."""
+    yield from (f"may touch in {name}" for name, zone in problem.contact_zones.items() if edge.name in zone.edges)
+    if edge.name in problem.conditions:
+        yield from _conditions(problem.conditions[edge.name], edge, problem.units)
+    for case, factor in problem.factors().items():
+        if (condition := problem.load_cases[case].conditions.get(edge.name)) is not None:
+            yield from (f"{told} ({_acting(case, factor)})" for told in _conditions(condition, edge, problem.units))
+
+
+def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]:
+    """Say what a condition prescribes on an edge."""
+    for symbol, fields, unit in (
+        ("u", condition.displacement, units.length),
+        ("t", condition.traction, units.stress),
+    ):
+        for axis, field in (("x", fields.x), ("y", fields.y)):
+            if field is not None:
+                yield f"{symbol}_{axis} = {field_on(field, edge, unit)}"
+    if condition.pressure is not None:
+        yield f"pressure {field_on(condition.pressure, edge, units.stress)}"
+
+
+def volume_loads(problem: Problem) -> Iterator[str]:
+    """Say what acts on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0) (1.5 spinning)``."""
+    yield from _volume_loads(problem.loads, problem)
+    for case, factor in problem.factors().items():
+        told = _volume_loads(problem.load_cases[case].loads, problem)
+        yield from (f"{load} ({_acting(case, factor)})" for load in told)
+
+
+def _acting(case: str, factor: float) -> str:
+    """Name a load case with the factor by which it acts, if it is not one."""
+    return case if factor == 1 else f"{factor:g} {case}"
+
+
+def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
+    """Say what loads do to the volume of the body."""
+    if loads.gravity:
+        yield f"gravity {vector(loads.gravity.acceleration)}"
+    if loads.centrifugal:
+        yield f"rotation {number(loads.centrifugal.angular_velocity)} about {vector(loads.centrifugal.center)}"
+    if loads.temperature:
+        points = np.concatenate([edge.polyline() for edge in problem.boundary.edges])
+        yield f"temperature change {_range(loads.temperature.change.at(points))}"
+
+
+def tool_in_words(action: ToolAction, units: Units) -> str:
+    """Say how a tool is displaced, and what it is loaded by: ``displaced by x = 0.1 mm; loaded by y = -10 N/mm``."""
+    labels = {"moment": units.force, "rotation": ""}
+    ways = (
+        ("displaced by", action.displacement, units.length),
+        ("loaded by", action.force, per_thickness(units)),
+    )
+    told = [
+        (
+            way,
+            [f"{key} = {with_unit(number(value), labels.get(key, unit))}" for key, value in part if value is not None],
+        )
+        for way, part, unit in ways
+    ]
+    return "; ".join(f"{way} {', '.join(values)}" for way, values in told if values)
+
+
+def case_in_words(case: LoadCase) -> str:
+    """Say what a load case is: what its author says of it, or else what it acts on."""
+    parts = [*case.conditions, *case.tools, *(key for key, load in case.loads if load is not None)]
+    return case.description.strip() or f"adds to {', '.join(parts)}"
+
+
+def surface_in_words(surface: RigidSurface) -> str:
+    """Say what a rigid surface is."""
+    match surface:
+        case Plane():
+            return f"plane through {vector(surface.point)}, normal {vector(surface.unit_normal)}"
+        case Circle():
+            return f"circle about {vector(surface.center)}, radius {number(surface.radius)}, body {surface.body}"
+        case Polyline() | Spline():
+            first, last = vector(surface.points[0]), vector(surface.points[-1])
+            return f"{surface.kind} of {len(surface.points)} points from {first} to {last}"
+        case DeflectedContour():
+            return f"own contour, deflected; gap along {vector(surface.unit_direction)}"
+
+
+def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
+    """Say what deflects a contour: ``top t_y = -50 kN/cm²``; kept conditions are not repeated."""
+    told = [
+        f"{name} {', '.join(_conditions(condition, problem.edge(name), problem.units))}"
+        for name, condition in surface.conditions.items()
+    ]
+    return "; ".join([*told, *_volume_loads(surface.loads, problem)])
+
+
+def verdict(result: Result) -> str:
+    """Say in words whether the answer is proved, and what to do where it is not."""
+    ending = "" if result.solution.status is Status.SOLVED else f"The solver: {result.solution.status.value}. "
+    return ending + result.certificate.words
+
+
+def plural(noun: str, count: int) -> str:
+    """The noun as it stands after a number."""
+    return noun if count == 1 else f"{noun}s"
+
+
+def search_in_words(search: LocalSearch, contact: CondensedContact) -> str:
+    """Say how a local solver came to its end: from where, in how many iterations, over what curvature."""
+    first, second, changes = search.phase_one_iterations, search.phase_two_iterations, search.working_set_changes
+    sentences = [
+        f"from the {search.start}: {first + second} {plural('iteration', first + second)} ({first} to a feasible "
+        f"point, {second} from there)",
+        f"{changes} {plural('change', changes)} of the working set",
+        f"eigenvalues of the whole Hessian: {_inertia(search.inertia)}; on what the working set leaves free: "
+        f"{_inertia(search.reduced_inertia_start)} at the feasible point, {_inertia(search.reduced_inertia_end)} at "
+        "the end",
+    ]
+    if search.penalty is not None:
+        sentences.append(_penalty(search.penalty, contact))
+    return "; ".join(sentences)
+
+
+def _inertia(inertia: tuple[int, int, int]) -> str:
+    """Write how many eigenvalues are positive, zero and negative."""
+    kinds = zip(inertia, ("positive", "zero", "negative"), strict=True)
+    return ", ".join(f"{count} {kind}" for count, kind in kinds if count) or "none"
+
+
+def _penalty(penalty: Penalty, contact: CondensedContact) -> str:
+    """Write the penalty, and up to which one QP2 is convex, which equilibrium helps it to be."""
+    units = units_of(contact)
+    pressures = penalty.dimension == "p/L²"
+    unit = f"{units.force}/{units.length}⁴" if pressures else f"{units.length}²/{units.force}"
+    unit = unit if units.force and units.length else "in the units of the problem"
+    told = f"penalty {number(penalty.value)} ({number(penalty.raw)} {unit})"
+    kept = " where equilibrium is kept" if contact.free_motions else ""
+    if penalty.convexity_limit is None or penalty.convexity_limit_raw is None:
+        return f"{told}, convex{kept} for every penalty"
+    if penalty.convexity_limit == 0:
+        return f"{told}, convex for no penalty"
+    return (
+        f"{told}, convex{kept} up to {number(penalty.convexity_limit)} ({number(penalty.convexity_limit_raw)} {unit})"
+    )
+
+
+def size_of(contact: CondensedContact) -> float:
+    """The largest coordinate of a contact point, beside which round-off is written as zero."""
+    return float(np.abs(contact.points).max(initial=0.0))
+
+
+def span(contact: CondensedContact, interval: ContactInterval) -> str:
+    """Say from where to where there is contact: at one point, along a stretch, or all round a closed zone."""
+    unit, scale = units_of(contact).length, size_of(contact)
+    start, end = vector(interval.start, scale=scale), vector(interval.end, unit, scale=scale)
+    length = interval.end_arc - interval.start_arc
+    if length == 0:
+        return f"at the point {end} alone"
+    along = with_unit(number(length), unit)
+    all_round = (np.isfinite(contact.run_length) & np.isclose(contact.run_length, length)).any()
+    return f"all round, {along}" if all_round else f"{start} to {end}, {along} long"
+
+
+def zone_forces(result: Result) -> list[str]:
+    """Say with which force each rigid surface presses on the body, where there are several: ``foot: (0, 3) N/mm``."""
+    contact, unit = result.contact, per_thickness(units_of(result.contact))
+    if len(contact.zone_names) == 1:
+        return []
+    forces = (contact.weights * result.solution.pressure)[:, None] * contact.normals
+    scale = float(np.abs(forces).sum())
+    sums = [forces[contact.zone == i].sum(axis=0) for i in range(len(contact.zone_names))]
+    named = zip(contact.zone_names, sums, strict=True)
+    return [f"{zone}: {vector((float(x), float(y)), unit, scale=scale)}" for zone, (x, y) in named]
+
+
+def held_by(condensed: CondensedContact) -> str:
+    """Say which rigid motions contact alone holds."""
+    if not condensed.free_motions:
+        return "all held by conditions"
+    return f"held by contact alone: {', '.join(condensed.motion_names)}"
+
+
+def seconds_in_words(seconds: float) -> str:
+    """Write seconds with two figures, or all before the point."""
+    return f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
+
+
+def sentence_case(text: str) -> str:
+    """The text with a capital first letter."""
+    return text[:1].upper() + text[1:]
+
+
+def convexity_in_words(contender: Contender) -> str:
+    """Say whether a program is convex on what equations and equilibrium leave free, and up to which penalty it is."""
+    search = None if contender.judged is None else contender.judged.solution.search
+    told = "yes" if contender.convex else "no"
+    if search is None or search.penalty is None:
+        return told
+    limit = search.penalty.convexity_limit
+    if limit is None:
+        return f"{told}, for every μ"
+    return f"{told}, for no μ" if limit == 0 else f"{told}, up to μ = {limit:.3g}"
+
+
+def reference_in_words(reference: Reference) -> str:
+    """Say what is known of an answer, and in which load case: a closed form by its name, or where values come from."""
+    of_case = "" if reference.case is None else f", load case '{reference.case}'"
+    match reference:
+        case Values() | Table():
+            return f"{reference.source}{of_case}"
+        case _:
+            return f"closed form, {reference.kind.replace('_', ' ')}{of_case}"

@@ -1,0 +1,119 @@
+"""Remarks on a result: contact up to the end of a zone, few points under a contact, long elements beyond its end."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from contact_meshes import cylinder, ring, table
+from scipy.optimize import brentq
+
+import bemcontact
+from bemcontact.analysis.result import Result
+from bemcontact.problem import Problem
+
+FEW, LONG = "pressure acts on", "pressure acts at"
+FOLDER = Path(__file__).parents[2] / "models" / "gallery"
+
+
+def block(angle: float, refine: int = 1, right: dict[str, object] | None = None) -> Result:
+    """A block 20 high pressed on a plane, its right side leaning by an inner angle in degrees at (20, 0)."""
+    fine = {"elements": 8, "grading": {"ratio": 50, "towards": "end"}}
+    edges = [
+        {"name": "bottom", "start": [0, 0], **fine},
+        {"name": "right", "start": [20, 0], **fine, "grading": {"ratio": 50, "towards": "start"}},
+        {"name": "top", "start": [20 + 20 * np.tan(np.radians(angle - 90)), 20], "elements": 4},
+        {"name": "left", "start": [0, 20], "elements": 3},
+    ]
+    problem = Problem(
+        name="block",
+        material={"young_modulus": 210e3, "poisson_ratio": 0.3},
+        boundary={"outer": edges},
+        conditions={"left": {"displacement": {"x": 0}}, "top": {"pressure": 3}, **({"right": right} if right else {})},
+        contact_zones={"foot": {"edges": "bottom", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
+    )
+    return bemcontact.solve(problem.refined(refine))
+
+
+def at_the_corner(result: Result) -> float:
+    """The pressure at (20, 0)."""
+    return float(result.solution.pressure[np.argmax(result.contact.points[:, 0])])
+
+
+@pytest.mark.parametrize("angle", [110, 120, 135])
+def test_at_an_obtuse_corner_the_pressure_is_unbounded_as_the_note_says(angle: float):
+    """Williams 1952, wedge of twice the angle α: p ~ r^(λ - 1), sin 2λα + λ sin 2α = 0; h/2 raises p by 2^(1 - λ).
+
+    To 1 %, for the second term of the wedge, which is smaller by a power of the shortest element, 0.003 of the block.
+    """
+    results = [block(angle, refine) for refine in (1, 2)]
+    double = 2 * np.radians(angle)
+    exponent = brentq(lambda power: np.sin(power * double) + power * np.sin(double), 0.4, 0.999) - 1
+    once, twice = map(at_the_corner, results)
+    assert np.log2(twice / once) == pytest.approx(-exponent, rel=0.01)
+    for result in results:
+        (note,) = result.notes
+        assert f"the end of the zone 'foot' at (20, 0), a corner of the body of {angle} degrees" in note
+        assert "infinite in theory" in note
+        assert "longer" not in note
+
+
+def test_at_a_right_angle_the_pressure_is_bounded_and_there_is_no_note():
+    """Uniform compression is the solution."""
+    result = block(90)
+    assert at_the_corner(result) == pytest.approx(3, rel=1e-10)
+    assert result.notes == ()
+
+
+def test_at_an_acute_corner_contact_opens_or_there_is_no_note():
+    """The wedge of twice the angle has no notch."""
+    assert block(70).notes == ()
+
+
+def test_a_corner_that_is_held_beyond_the_zone_is_another_one():
+    """The wedge of the note is free on its other face; with displacements prescribed there, nothing is said."""
+    assert block(120, right={"displacement": {"x": 0}}).notes == ()
+
+
+def test_on_a_smooth_boundary_both_readings_are_told():
+    """That of a zone too short, and that of a punch, whose pressure is infinite at its edge."""
+    (note,) = bemcontact.solve(bemcontact.load(FOLDER / "flat_punch.yaml")).notes
+    assert "(5, 0), where the boundary goes on smoothly; make the zone longer, unless the rigid surface ends" in note
+    assert "infinite in theory" in note
+
+
+def notes(problem: bemcontact.Problem, start: str) -> list[str]:
+    """Those of the mesh as stated that begin so."""
+    result = bemcontact.solve(problem.with_value("mesh.fit_contact_edges", False), "complementarity")
+    return [note for note in result.notes if note.startswith(start)]
+
+
+def test_few_points_are_told_of_each_contact():
+    """Two feet with a few points each, enough of them together; on finer elements there are enough on each."""
+    told = notes(table(), FEW)
+    assert len(told) == 2
+    assert all(
+        "contact points only from (" in note and "in feet: the mesh is too coarse there" in note for note in told
+    )
+    assert notes(table().refined(4), FEW) == []
+
+
+def test_points_across_the_seam_are_of_one_contact():
+    """Contact over half of a pin, with the seam in the middle of it."""
+    assert notes(ring(90), FEW) == []
+
+
+@pytest.mark.parametrize(("elements", "told"), [(2, True), (24, False)])
+def test_long_elements_beyond_a_pressed_corner_are_told(elements, told):
+    """On the axis: the peak is off by a third beside the long ones, and the fit cures it by halving them."""
+    stated = cylinder(24, load=0.01).with_value("boundary.outer.axis.grading.ratio", 1)
+    coarse = stated.with_value("boundary.outer.axis.elements", elements)
+    found = notes(coarse, LONG)
+    assert bool(found) is told
+    if told:
+        assert found[0].startswith(
+            "pressure acts at (0, 0), the end of the zone 'foot', beyond which an element of 'axis'"
+        )
+        assert found[0].endswith("grade that edge towards the zone")
+    fitted = bemcontact.solve(coarse, "complementarity")
+    assert not [note for note in fitted.notes if note.startswith(LONG)]
+    assert fitted.footprint.peak.pressure == pytest.approx(18.819, rel=3e-3)  # Hertz

@@ -1,0 +1,242 @@
+"""Paths and sensitivities by the key paths of a spec."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from tool_problems import BETWEEN, made
+
+import bemcontact
+from bemcontact.analysis.follow import between, follow, sensitivities, stated_value
+from bemcontact.analysis.solve import condense
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.errors import ProblemError
+from bemcontact.formulations import complementarity
+from bemcontact.problem import Problem
+
+MODELS = Path(__file__).parents[2] / "models"
+PRESSURE = "conditions.top.pressure"
+
+
+@pytest.fixture(scope="module")
+def cylinder() -> Problem:
+    return bemcontact.load(MODELS / "cylinder_on_plane.yaml")
+
+
+@pytest.fixture(scope="module")
+def cantilever() -> Problem:
+    return bemcontact.load(MODELS / "cantilever_flat_surface.yaml")
+
+
+def apart(one: CondensedContact, other: CondensedContact, pressure: np.ndarray) -> float:
+    expected = complementarity.solve(other).pressure
+    return float(np.abs(pressure - expected).max() / expected.max())
+
+
+@pytest.mark.parametrize(
+    ("key", "to", "start"),
+    [
+        ("conditions.top.traction.y", -3.0, -2.0),
+        ("contact_zones.ground.surface.point[1]", -0.5, -1.5),
+        ("conditions.clamp.displacement.y", 0.4, -0.4),
+    ],
+)
+def test_states_of_a_path_are_those_of_the_problem_itself(cantilever: Problem, key: str, to: float, start: float):
+    """Loads, rigid surfaces and prescribed displacements; problems condensed and solved anew agree to 1e-9."""
+    found = follow(cantilever, key, to, start)
+    assert found.certified
+    for t in (0.0, 0.3, 0.7, 1.0):
+        problem = bemcontact.condense(cantilever.with_value(key, found.value(t)))
+        assert apart(found.path.contact(t), problem, found.path.at(t).pressure) <= 1e-9
+
+
+def test_gravity_is_a_parameter(cylinder: Problem):
+    heavy = cylinder.with_value("loads.gravity", {"density": 1.0, "acceleration": [0, -1.0]})
+    found = follow(heavy, "loads.gravity.acceleration[1]", -10.0)
+    assert (found.start, found.certified) == (-1.0, True)
+    problem = bemcontact.condense(heavy.with_value("loads.gravity.acceleration[1]", -4.0))
+    assert apart(problem, problem, found.path.at(1 / 3).pressure) <= 1e-9
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_free_body_without_load_is_found_from_the_other_end(cylinder: Problem, backwards: bool):
+    """Nothing presses the cylinder at 0, and it cannot be condensed; by linearity the load there is zero exactly."""
+    found = follow(cylinder, PRESSURE, *((0.0, None) if backwards else (50.625, 0.0)))
+    assert found.certified
+    empty = found.breakpoints[-1 if backwards else 0]
+    assert (empty.value, empty.peak, empty.resultant) == (0.0, 0.0, ((0.0, 0.0),))
+    problem = bemcontact.condense(cylinder.with_value(PRESSURE, 20.25))
+    t = 1 - 0.4 if backwards else 0.4
+    assert apart(problem, problem, found.path.at(t).pressure) <= 1e-9
+
+
+@pytest.mark.parametrize("end", [20.25, 50.625, 5062.5])
+def test_path_ends_where_the_load_no_longer_presses_the_body_on(cylinder: Problem, end: float):
+    """A pull of any size: the cylinder is free at pressure 0, whether the middle of the path is beyond or not."""
+    found = follow(cylinder, PRESSURE, -end)
+    assert found.reaches == pytest.approx((50.625, 0.0), abs=1e-9)
+    assert "carries the body off" in " ".join(found.notes)
+    assert repr(found).startswith(f"<ParameterPath of {PRESSURE} from 50.625 to -{end:g}: ")
+
+
+def test_path_of_a_factor_ends_where_the_tool_lifts_off_and_is_named_after_the_problem():
+    """A force of -10 + 4 f on a press that nothing else holds: none at f = 2.5, and the path is asked for up to 40."""
+    cases = {"lift": {"tools": {"press": {"force": {"y": 4}}}}}
+    tools = {"press": {"zones": "press", "force": {"y": -10}}}
+    found = follow(made(BETWEEN, tools=tools, load_cases=cases), "load_cases.lift", 40)
+    assert found.reaches == pytest.approx((0.0, 2.5))
+    assert found.contact.name == BETWEEN["name"]
+    assert found.path.end.cases.factors == pytest.approx([40])
+
+
+@pytest.mark.parametrize(
+    ("key", "to", "words"),
+    [
+        ("material.young_modulus", 2e3, "young_modulus: the compliance depends on it; a path is exact only for loads"),
+        ("boundary.outer.top.elements", 8, "elements: the compliance depends on it"),
+        ("name", 1.0, "name: there is no number to vary"),
+        ("material.colour", 1.0, "there is no number to vary: unknown entry 'colour'; there is: "),
+        ("conditions.tpo.pressure", 1.0, "there is no number to vary: unknown entry 'tpo'; did you mean 'top'?"),
+        ("conditions.top.traction.x", 1.0, "there is no number to vary, it is left out; state it, or give the value"),
+        ("contact_zones.foot.surface.point", 1.0, "there is no number to vary, it is a list of 2; give a path to a"),
+        ("contact_zones.foot.surface.point.1", 1.0, "a list has places, not keys: write [1] for '1'"),
+        (PRESSURE, 50.625, "a path needs two different finite values; found 50.625 and 50.625"),
+        (PRESSURE, np.nan, "a path needs two different finite values"),
+        ("no path[", 1.0, "is not a key path"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(cylinder: Problem, key: str, to: float, words: str):
+    with pytest.raises(ProblemError, match=re.escape(words)):
+        follow(cylinder, key, to)
+
+
+def on_a_circle() -> tuple[Problem, str]:
+    """The small Hertz problem on a circle below, and the path to it."""
+    problem = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml")
+    (zone,) = problem.contact_zones
+    key = f"contact_zones.{zone}.surface"
+    return problem.with_value(key, {"kind": "circle", "center": [0, -100], "radius": 100, "body": "outside"}), key
+
+
+def test_radius_of_a_rigid_circle_is_linear():
+    """The gap along the normal of a circle is the distance from its centre less its radius."""
+    circle, key = on_a_circle()
+    assert follow(circle, f"{key}.radius", 99.99).path.contact(1.0).offset == pytest.approx(
+        bemcontact.condense(circle.with_value(f"{key}.radius", 99.99)).offset, abs=1e-13
+    )
+
+
+def test_value_that_turns_the_rigid_surface_is_refused():
+    """As the centre of a circle moves sideways its normals turn, and all that is seen along them with it."""
+    circle, key = on_a_circle()
+    with pytest.raises(ProblemError, match=r"center\[0\]: the compliance depends on it"):
+        follow(circle, f"{key}.center[0]", 1.0)
+
+
+def test_gap_that_is_all_round_off_is_no_bend():
+    """A block flush in a corner: gaps are zero, and what a pressure adds to them is round-off of 1e-19.
+
+    As the pressure on the floor vanishes, that on the wall is 5 still, as statics wants; the path arrives there.
+    """
+    found = follow(bemcontact.load(MODELS / "gallery" / "block_in_corner.yaml"), PRESSURE, 0.0, 8.0)
+    assert found.certified
+    assert found.reaches == (8.0, 0.0)
+    assert [state.peak for state in found.breakpoints] == pytest.approx([8.0, 5.0], rel=1e-9)
+
+
+def test_two_ends_that_nothing_presses_are_refused(cylinder: Problem):
+    with pytest.raises(ProblemError, match="only contact holds the body"):
+        between(cylinder.with_value(PRESSURE, 0.0), "contact_zones.foot.surface.point[1]", 0.0, 1.0)
+
+
+@pytest.mark.parametrize("to", [2000.0, 6000.0, 9000.0])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_load_that_turns_around_is_followed_to_where_the_tool_lifts_off(to: float, backwards: bool):
+    """At no load, wherever that is between the ends: also half-way, or nearer to the end that presses."""
+    problem = bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("off the middle")
+    problem = problem.with_value("load_cases.off the middle.tools.punch.force.moment", 0.0)
+    key, ends = "tools.punch.force.y", (-2000.0, to)
+    path = follow(problem, key, *(ends if backwards else ends[::-1])).path
+    none = 2000.0 / (2000.0 + to)
+    reached, half = (path.begins_at, 1 - none / 2) if backwards else (path.ends_at, none / 2)
+    assert reached == pytest.approx(1 - none if backwards else none, rel=1e-13)
+    assert apart(path.contact(half), condense(problem.with_value(key, -1000.0)), path.at(half).pressure) <= 1e-10
+
+
+def test_factor_of_a_load_case_is_known_all_along_a_path_from_where_nothing_presses():
+    """(1 - t) 0 + t 1, which `with_factors` builds on, though the state at factor 0 cannot be condensed by itself."""
+    problem = bemcontact.load(MODELS / "gallery" / "roller_in_v_block.yaml")
+    data: dict[str, Any] = problem.model_dump(exclude={"reference"}) | {"combinations": {}}
+    data["tools"]["plate"]["force"]["y"] = 0.0
+    data["load_cases"] = {"press": {"tools": {"plate": {"force": {"y": -400.0}}}}}
+    problem = Problem(**data).with_case("press")
+    path = follow(problem, "load_cases.press", 1.0, 0.0).path
+    for t in (0.0, 0.3, 1.0):
+        assert path.contact(t).cases.factors == pytest.approx([t], abs=1e-15)
+    full = path.contact(0.3).with_factors({"press": 1.0})
+    np.testing.assert_allclose(full.motion_load, condense(problem).motion_load, rtol=1e-13)
+
+
+def test_stated_values_are_read(cylinder: Problem):
+    assert stated_value(cylinder, PRESSURE) == 50.625
+    assert stated_value(cylinder, "contact_zones.foot.surface.point[1]") == 0.0
+    varied = cylinder.with_value(PRESSURE, {"constant": 1, "x": 2})
+    with pytest.raises(ProblemError, match="there is no number to vary"):
+        stated_value(varied, PRESSURE)
+    assert stated_value(varied, f"{PRESSURE}.x") == 2.0
+
+
+def test_sensitivities_by_key_against_central_differences(cantilever: Problem):
+    """Bodies are condensed and solved anew, a step of 1e-5 of each value to both sides.
+
+    Curvature leaves 1e-10, round-off 1e-12 / 1e-5 by the condition of the compliance.
+    """
+    keys = ["material.young_modulus", "conditions.top.traction.y", "contact_zones.ground.surface.point[1]"]
+    found = sensitivities(cantilever, keys)
+    assert list(found) == keys
+    assert not found.notes
+    for key in keys:
+        value = stated_value(cantilever, key)
+        step = 1e-5 * abs(value)
+        ends = [bemcontact.solve(cantilever.with_value(key, value + side), "complementarity") for side in (step, -step)]
+        after, before = (end.solution.pressure for end in ends)
+        expected = (after - before) / (2 * step)
+        np.testing.assert_allclose(found[key].rising.pressure, expected, atol=1e-6 * np.abs(expected).max())
+        ends_of = [end.footprint.intervals[0].start_arc for end in ends]
+        start = found[key].rising.interval_ends[0][0]
+        assert start == pytest.approx((ends_of[0] - ends_of[1]) / (2 * step), rel=1e-5)
+
+
+def test_sensitivities_of_a_condensed_problem(cylinder: Problem):
+    contact = bemcontact.condense(cylinder)
+    assert len(sensitivities(contact)) == 0
+    with pytest.raises(
+        ProblemError, match=r"there is no 'material\.young_modulus' in this condensed problem; it has: init"
+    ):
+        sensitivities(contact, ["material.young_modulus"])
+    with pytest.raises(ProblemError, match="a Problem or a CondensedContact is needed, found str"):
+        sensitivities("cylinder.yaml")  # pyright: ignore[reportArgumentType]
+
+
+def test_sensitivity_to_the_gap_at_a_point(cylinder: Problem):
+    """A difference over 1e-6 of a state that is linear in the gap as long as no point enters or leaves."""
+    contact, step = bemcontact.condense(cylinder.with_value(PRESSURE, 45)), 1e-6
+    wider = contact.initial_gap + step * (np.arange(contact.size) == 5)
+    then = complementarity.solve(replace(contact, initial_gap=wider)).pressure
+    expected = (then - complementarity.solve(contact).pressure) / step
+    found = sensitivities(contact, "initial_gap[5]")["initial_gap[5]"]
+    np.testing.assert_allclose(found.rising.pressure, expected, atol=1e-6 * np.abs(expected).max())
+    with pytest.raises(ProblemError, match=r"there is no 'initial_gap\[45\]'"):
+        sensitivities(contact, ["initial_gap[45]"])
+
+
+def test_public_names_are_there(cylinder: Problem):
+    contact = bemcontact.condense(cylinder)
+    half = replace(contact, motion_load=contact.motion_load / 2, free_displacement=contact.free_displacement / 2)
+    path = bemcontact.load_path(half, contact)
+    assert isinstance(path, bemcontact.LoadPath)
+    assert isinstance(bemcontact.sensitivities(contact), bemcontact.Sensitivities)
+    assert isinstance(bemcontact.follow(cylinder, PRESSURE, 25), bemcontact.ParameterPath)

@@ -1,0 +1,95 @@
+"""The command path: table, folder, numbers, exit statuses."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from bemcontact import cli
+
+MODELS = Path(__file__).parents[2] / "models"
+CYLINDER, CANTILEVER = MODELS / "cylinder_on_plane.yaml", MODELS / "cantilever_flat_surface.yaml"
+PRESSURE, TRACTION = "conditions.top.pressure", "conditions.top.traction.y"
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(cli.app, ["path", *map(str, arguments)])
+
+
+def test_table_says_where_points_enter_and_how_the_peak_goes():
+    """The cantilever touches with its tip first, and with its neighbours in turn."""
+    answer = run(CANTILEVER, "--vary", TRACTION, "--from", 0, "--to", -3.6)
+    assert answer.exit_code == 0, answer.stderr
+    assert "conditions.top.traction.y from 0 to -3.6; 18 breakpoints, 16 pivots" in answer.stdout
+    assert re.search(r"-0\.288\d+ +20 at \(50, 0\)", answer.stdout)
+    assert "certified. Every state from 0 to -3.6 is the contact state, the only one." in answer.stdout
+    assert max(map(len, answer.stdout.splitlines())) <= 100
+    assert answer.stderr == ""
+
+
+def test_path_that_does_not_arrive_is_said_and_has_a_status():
+    """Suction lifts the cylinder as soon as the pressure is below zero."""
+    answer = run(CYLINDER, "--vary", PRESSURE, "--to", -20)
+    assert answer.exit_code == 1
+    told = " ".join(answer.stdout.split())
+    assert "NOT certified. The path is there up to 0; beyond, the load carries the body off its support" in told
+
+
+def test_folder_gets_picture_table_and_numbers(tmp_path: Path):
+    place = tmp_path / "path"
+    for _ in range(2):  # the second one replaces the first
+        answer = run(CYLINDER, "--vary", PRESSURE, "--to", 20, "--out", place, "--json", tmp_path / "path.json")
+        assert answer.exit_code == 0, answer.stderr
+    assert {item.name for item in place.iterdir()} == {"path.svg", "path.csv", "path.json"}
+    assert (place / "path.json").read_text(encoding="utf-8") == (tmp_path / "path.json").read_text(encoding="utf-8")
+    told = json.loads((place / "path.json").read_text(encoding="utf-8"))
+    assert (told["key"], told["start"], told["end"], told["certified"]) == (PRESSURE, 50.625, 20.0, True)
+    assert len((place / "path.csv").read_text(encoding="utf-8").splitlines()) == 1 + len(told["states"])
+    assert "prefers-color-scheme: dark" in (place / "path.svg").read_text(encoding="utf-8")
+
+
+def test_foreign_folder_is_left_alone(tmp_path: Path):
+    (tmp_path / "mine.txt").write_text("mine", encoding="utf-8")
+    answer = run(CYLINDER, "--vary", PRESSURE, "--to", 20, "--out", tmp_path)
+    assert answer.exit_code == 2
+    assert "mine.txt, which no path of ours has" in answer.stderr
+    assert [item.name for item in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_json_on_standard_output_and_the_reason_beside_it():
+    answer = run(CYLINDER, "--vary", PRESSURE, "--to", -20, "--json", "-")
+    assert answer.exit_code == 1
+    assert json.loads(answer.stdout)["reaches"] == [50.625, 0.0]
+    assert "not certified: The path is there up to 0" in answer.stderr
+
+
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("material.young_modulus", "material.young_modulus: the compliance depends on it; a path is exact only for"),
+        ("conditions.top.presure", "conditions.top.presure: there is no number to vary"),
+        ("conditions.side.pressure", "conditions.side.pressure: there is no number to vary"),
+    ],
+)
+def test_what_cannot_be_varied_is_refused_with_its_place(key: str, words: str):
+    answer = run(CYLINDER, "--vary", key, "--to", 10)
+    assert answer.exit_code == 2
+    assert re.search(r"cylinder_on_plane\.yaml:\d+:\d+: ", answer.stderr)
+    assert words in answer.stderr
+
+
+def test_overrides_variants_and_refinement_come_first():
+    answer = run(CYLINDER, "--vary", PRESSURE, "--to", 2, "--from", 1, "--variant", "paper", "--set",
+                 "material.young_modulus=500", "--refine", 2, "--json", "-")  # fmt: skip
+    told = json.loads(answer.stdout)
+    assert told["name"] == "cylinder on a plane, paper"
+    assert len(told["points"]) == 2 * 2 * 10 + 1  # 10 quadratic elements in the contact zone, cut in two
+
+
+def test_help_teaches_by_examples():
+    answer = run("--help")
+    assert answer.exit_code == 0
+    assert "Examples" in answer.stdout
+    assert "bemcontact path" in answer.stdout

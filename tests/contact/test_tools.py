@@ -1,0 +1,178 @@
+"""What may change without condensing anew: load cases and tools enter q = ε + Δ1 and the load linearly."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tool_problems import FREE, FREE_CASES, HELD, HELD_CASES, made
+
+from bemcontact.analysis import solve as analysis
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import LoadCases
+from bemcontact.contact.tools import Pinned, Tools
+from bemcontact.errors import ProblemError
+
+PROBLEMS = {"held": (HELD, HELD_CASES), "free": (FREE, FREE_CASES)}
+names = st.sampled_from([*PROBLEMS])
+numbers = st.floats(-10, 10)
+
+
+@cache
+def condensed(name: str) -> CondensedContact:
+    stated, cases = PROBLEMS[name]
+    return analysis.condense(made(stated, load_cases=cases["load_cases"]))
+
+
+def factors_of(name: str, values: list[float]) -> dict[str, float]:
+    return dict(zip(condensed(name).cases.names, values, strict=False))
+
+
+factors = st.lists(numbers, min_size=5, max_size=5)
+
+
+def alike(one: CondensedContact, other: CondensedContact) -> None:
+    """The same contact problem, to round-off; factors are 10 at most."""
+    U = 10 * max(condensed("held").scales.displacement, condensed("free").scales.displacement)
+    assert one.initial_gap == pytest.approx(other.initial_gap, abs=1e-13 * U)
+    assert one.free_displacement == pytest.approx(other.free_displacement, abs=1e-13 * U)
+    assert one.motion_load == pytest.approx(other.motion_load, rel=1e-12, abs=1e-11)
+    assert one.cases.factors == pytest.approx(other.cases.factors, abs=1e-14)
+    assert one.tools.position == pytest.approx(other.tools.position, abs=1e-13)
+    assert one.tools.force == pytest.approx(other.tools.force, rel=1e-12, abs=1e-11)
+
+
+@given(names, factors)
+def test_factors_are_linear(name: str, values: list[float]):
+    """What acts is what is permanent and the sum of factor times `changes`."""
+    contact, wanted = condensed(name), factors_of(name, values)
+    found, changes = contact.with_factors(wanted), contact.changes
+    steps = [(factor, changes[f"load_cases.{case}"]) for case, factor in wanted.items()]
+    offset = contact.offset + sum(factor * step.offset for factor, step in steps)
+    load = contact.motion_load + sum(factor * step.motion_load for factor, step in steps)
+    assert found.offset == pytest.approx(offset, abs=1e-12 * max(1e-3, abs(offset).max()))
+    assert found.motion_load == pytest.approx(load, rel=1e-11, abs=1e-11)
+
+
+@given(names, factors, factors)
+def test_the_last_factors_count(name: str, before: list[float], after: list[float]):
+    contact = condensed(name)
+    alike(
+        contact.with_factors(factors_of(name, before)).with_factors(factors_of(name, after)),
+        contact.with_factors(factors_of(name, after)),
+    )
+
+
+@given(names, factors)
+def test_no_factors_are_what_is_permanent(name: str, values: list[float]):
+    contact = condensed(name)
+    alike(contact.with_factors(factors_of(name, values)).with_factors({}), contact)
+
+
+components = st.lists(st.tuples(numbers, numbers, numbers), min_size=2, max_size=2)
+
+
+@given(names, components, components)
+def test_tools_are_where_they_are_put(name: str, position: list, force: list):
+    """Components that are given go there, those that are free keep no position; forces the other way round."""
+    contact = condensed(name)
+    t = len(contact.tools)
+    at, pushed = np.array(position[:t]).ravel(), np.array(force[:t]).ravel()
+    found = contact.with_tools(position[:t], force[:t])
+    free = contact.tools.free
+    assert found.tools.position == pytest.approx(np.where(free, 0.0, at), abs=1e-14)
+    assert found.tools.force == pytest.approx(np.where(free, pushed, 0.0), abs=1e-13)
+    alike(found.with_tools(contact.tools.position, contact.tools.force), contact)
+    changes, step = contact.changes, np.where(free, pushed - contact.tools.force, at - contact.tools.position)
+    known = [(step[i], changes[key]) for i, key in enumerate(contact.tools.keys) if key in changes]
+    offset = contact.offset + sum(size * change.offset for size, change in known)
+    load = contact.motion_load + sum(size * change.motion_load for size, change in known)
+    assert found.offset == pytest.approx(offset, abs=1e-11)
+    assert found.motion_load == pytest.approx(load, rel=1e-11, abs=1e-10)
+
+
+@given(factors, components)
+def test_factors_and_tools_add_up_in_any_order(values: list[float], position: list):
+    """A load case moves tools from where they are."""
+    contact, wanted = condensed("held"), factors_of("held", values)
+    step = contact.cases.position @ contact.with_factors(wanted).cases.factors
+    moved = contact.with_tools(position).with_factors(wanted)
+    alike(moved, contact.with_factors(wanted).with_tools(np.array(position).ravel() + step))
+
+
+def test_nothing_given_changes_nothing():
+    contact = condensed("held")
+    alike(contact.with_tools(), contact)
+
+
+def test_keys_are_those_of_the_spec():
+    """What `Problem.with_value` takes, with the same effect: force where the tool is free, else displacement."""
+    keys = condensed("held").changes
+    assert "tools.punch.force.y" in keys
+    assert "tools.punch.force.moment" in keys
+    assert "tools.table.displacement.rotation" in keys
+    assert "tools.punch.displacement.y" not in keys
+    problem = made(HELD)
+    for key, value in (("tools.punch.force.moment", 3 + 0.5), ("tools.table.displacement.rotation", 0.001 + 0.5)):
+        other = analysis.condense(problem.with_value(key, value))
+        change = keys[key]
+        here = analysis.condense(problem)
+        assert other.offset == pytest.approx(here.offset + 0.5 * change.offset, abs=1e-13)
+        assert other.motion_load == pytest.approx(here.motion_load + 0.5 * change.motion_load, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            lambda contact: contact.with_factors({"snow": 1}),
+            "there is no load case 'snow'; there are: wind, heat, settle",
+        ),
+        (lambda contact: contact.with_factors({"wind": np.inf}), "factor of 'wind' must be a finite number, found inf"),
+        (lambda contact: contact.with_factors({"wind": "1"}), "factor of 'wind' must be a finite number, found '1'"),
+        (lambda contact: contact.with_factors([1.0]), r"factors by load case are needed, such as .*; found \[1.0\]"),
+        (
+            lambda contact: contact.with_tools({"punch": 1}),
+            r"have x, y and rotation or moment each, in an array \(2, 3\)",
+        ),
+        (lambda contact: contact.with_tools(position=[[0, 0, 0]]), r"tools have 2 x 3 components.* of shape \(1, 3\)"),
+        (
+            lambda contact: contact.with_tools(position=np.zeros((3, 2))),
+            r"tools have 2 x 3 components.* of shape \(3, 2\)",
+        ),
+        (lambda contact: contact.with_tools(force=[[0, np.nan, 0]] * 2), "forces on them, must be finite numbers"),
+    ],
+)
+def test_what_does_not_fit_is_refused(change, words: str):
+    with pytest.raises(ProblemError, match=words):
+        change(condensed("held"))
+
+
+def test_forces_that_nothing_resists_are_refused_after_condensing_too():
+    """Both tools are loaded: what is changed on one only would push all of them away, and no pressure can tell."""
+    zones = {**FREE["contact_zones"], "punch": {**FREE["contact_zones"]["punch"], "edges": ["head", "top"]}}
+    tools = {
+        "punch": {"zones": "punch", "force": {"x": 0, "y": -10}},
+        "table": {"zones": "table", "force": {"y": 10}},
+    }
+    cases = {"more": {"tools": {"punch": {"force": {"y": -1}}, "table": {"force": {"y": 1}}}}, "weight": {
+        "loads": {"gravity": {"density": 1, "acceleration": [0, -3]}}}}  # fmt: skip
+    contact = analysis.condense(made(FREE, loads={}, contact_zones=zones, tools=tools, load_cases=cases))
+    assert contact.with_factors({"more": 2}).tools.force.tolist() == [0, -12, 0, 0, 12, 0]
+    with pytest.raises(
+        ProblemError, match=r"the body, the tool 'punch' and the tool 'table' together .*resultant -5\)"
+    ):
+        contact.with_tools(force=[[0, -15, 0], [0, 10, 0]])
+    with pytest.raises(ProblemError, match=r"nothing holds the tool 'punch' against .*along \(1, 0\).*resultant 2\)"):
+        contact.with_tools(force=[[2, -10, 0], [0, 10, 0]])
+    with pytest.raises(ProblemError, match=r"together against the translation along \(0, 1\).*resultant -6\)"):
+        contact.with_factors({"weight": 1})
+    assert {key for key in contact.changes if "rotation" not in key} == {"load_cases.more"}
+    balanced = contact.with_factors({"more": 1}).with_tools(force=[[0, -15, 0], [0, 15, 0]])
+    assert balanced.motion_load @ balanced.motion_load > 0
+
+
+def test_none_says_nothing():
+    assert len(Tools.none(4, 2)) == len(LoadCases.none(4, 2, 0)) == 0
+    assert Pinned.none(2, 1).complaint(np.ones(3), np.ones(3)) is None

@@ -1,0 +1,51 @@
+"""YAML is written so that it is read as what it was."""
+
+from pathlib import Path
+
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bemcontact.spec import as_run, load, loads
+from bemcontact.spec.yaml_1_2 import READERS, Loader, written
+
+SCALARS = st.none() | st.booleans() | st.integers(-(10**9), 10**9) | st.floats(allow_nan=False, allow_infinity=False)
+TEXTS = st.text(st.characters(codec="utf-8", exclude_categories=("Cs", "Cc")), max_size=12)
+AWKWARD = st.sampled_from(
+    ["2e6", "no", "on", "null", "~", "0x1F", "1_000", "12:30", "2001-01-01", ".inf", "<<", "=", ""]
+)
+DATA = st.recursive(
+    SCALARS | TEXTS | AWKWARD,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(TEXTS | AWKWARD, inner, max_size=3),
+    max_leaves=8,
+)
+
+
+def read(text: str) -> object:
+    """The document with the readers of a spec, without its places."""
+
+    def value(node: yaml.Node) -> object:
+        if isinstance(node, yaml.MappingNode):
+            return {value(key): value(entry) for key, entry in node.value}
+        if isinstance(node, yaml.SequenceNode):
+            return [value(entry) for entry in node.value]
+        return READERS[node.tag](node.value)
+
+    return value(Loader(text).get_single_node())
+
+
+@given(DATA)
+def test_what_is_written_is_read_as_it_was(data: object):
+    assert read(written(data)) == data
+
+
+def test_a_spec_as_run_states_the_problem_with_its_changes(request):
+    path = request.config.rootpath / "models" / "cylinder_on_plane.yaml"
+    changes = ["material.young_modulus=2e6", "name='2e6'", "description='no'", "conditions.top.pressure=1e-7"]
+    assert loads(as_run(path, changes)) == load(path, changes)
+
+
+def test_a_spec_without_changes_keeps_its_words(tmp_path: Path):
+    path = tmp_path / "a.yaml"
+    path.write_text("name: a  # why\n", encoding="utf-8")
+    assert as_run(path) == "name: a  # why\n"
