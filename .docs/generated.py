@@ -8,7 +8,6 @@ import inspect
 import json
 import re
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import typer
@@ -129,7 +128,8 @@ def _object(
             about.append(f"default `{_plain(value['default'])}`")
         elif name in node.get("required", ()) and prefix == "yaml":
             about.append("required")
-        lines += [f"[`{name}`]{{#{key}-{name}}}", f": *{'; '.join(about)}.* {_escaped(value.get('description', ''))}", ""]
+        text = _escaped(value.get("description", ""))
+        lines += [f"[`{name}`]{{#{key}-{name}}}", f": *{'; '.join(about)}.* {text}", ""]
     return "\n".join(lines)
 
 
@@ -148,7 +148,9 @@ def _value(node: Any, schema: dict[str, Any], prefix: str) -> str:
     for word in ("anyOf", "oneOf", "allOf"):
         if word in node:
             options = [option.get("then", option) for option in node[word]]
-            texts = [_value(option, schema, prefix) for option in options if option != {"type": "null"} or prefix != "yaml"]
+            if prefix == "yaml":
+                options = [option for option in options if option != {"type": "null"}]  # that is, left out
+            texts = [_value(option, schema, prefix) for option in options]
             return _either(list(dict.fromkeys(texts)))
     return _simple(node, schema, prefix)
 
@@ -196,21 +198,27 @@ def _escaped(text: str) -> str:
     return re.sub(r"([*<>|\\])", r"\\\1", text)
 
 
+def public() -> set[str]:
+    """Give the public names that are documented."""
+    return {name for name in bemcontact.__all__ if not name.startswith("_")}
+
+
 def names(words: str) -> str:
     """Document public names from their docstrings."""
-    blocks = []
-    for name in words.split():
-        value = getattr(bemcontact, name)
-        if isinstance(value, type) and issubclass(value, Exception):
-            directive, members = "autoexception", ""
-        elif isinstance(value, enum.EnumType):
-            directive, members = "autoclass", "\n   :members:\n   :undoc-members:\n   :no-show-inheritance:"
-        elif isinstance(value, type):
-            directive, members = "autoclass", "\n   :members:\n   :exclude-members: __init__, model_config, model_post_init"
-        else:
-            directive, members = "autofunction", ""
-        blocks.append(f"```{{eval-rst}}\n.. {directive}:: bemcontact.{name}{members}\n```\n")
-    return "\n".join(blocks)
+    return "\n".join(_documented(f"bemcontact.{name}", getattr(bemcontact, name)) for name in words.split())
+
+
+def _documented(path: str, value: object) -> str:
+    """Document one name."""
+    if not isinstance(value, type):
+        directive, options = "autofunction", []
+    elif issubclass(value, Exception):
+        directive, options = "autoexception", []
+    elif issubclass(value, enum.Enum):
+        directive, options = "autoclass", [":members:", ":undoc-members:"]
+    else:
+        directive, options = "autoclass", [":members:", ":exclude-members: __init__, model_config, model_post_init"]
+    return "\n   ".join([f"```{{eval-rst}}\n.. {directive}:: {path}", *options]) + "\n```\n"
 
 
 PARTS = {"commands": commands, "spec": spec, "json": json_files, "names": names}
@@ -220,8 +228,8 @@ def fill(app: Sphinx, page: str, source: list[str]) -> None:
     """Put the parts into a page as it is read."""
     if page == "reference/python":
         listed = {name for what, words in MARK.findall(source[0]) if what == "names" for name in words.split()}
-        if listed ^ set(bemcontact.__all__):
-            raise ExtensionError(f"{page}: not the public names: {', '.join(listed ^ set(bemcontact.__all__))}")
+        if wrong := listed ^ public():
+            raise ExtensionError(f"{page}: public names without a place, or places without one: {', '.join(wrong)}")
     source[0] = MARK.sub(lambda found: PARTS[found[1]](*filter(None, [found[2].strip()])), source[0])
 
 
