@@ -8,11 +8,12 @@ import inspect
 import json
 import re
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, get_args
 
 import typer
 import typer.main
 from docutils import nodes
+from pydantic import BaseModel
 from rich.text import Text
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
@@ -208,6 +209,33 @@ def names(words: str) -> str:
     return "\n".join(_documented(f"bemcontact.{name}", getattr(bemcontact, name)) for name in words.split())
 
 
+def parts() -> str:
+    """Document the objects that public ones hold, and those that these hold in turn, by name."""
+    known = [getattr(bemcontact, name) for name in bemcontact.__all__]
+    queue = [value for value in known if isinstance(value, type) and not issubclass(value, BaseModel)]
+    held: list[type] = []
+    while queue:
+        for part in _held(queue.pop(0)):
+            if part.__module__.startswith("bemcontact.") and part not in (*known, *held):
+                held.append(part)
+                queue.append(part)
+    held.sort(key=lambda part: part.__name__)
+    return "\n".join(_documented(f"{part.__module__}.{part.__name__}", part) for part in held)
+
+
+def _held(value: type) -> Iterator[type]:
+    """Find the classes in the types of fields and properties of a class."""
+    public = {name: item for name, item in vars(value).items() if not name.startswith("_")}
+    getters = [getattr(item, "fget", getattr(item, "func", None)) for item in public.values()]
+    hints = [*inspect.get_annotations(value).values()]
+    hints += [inspect.get_annotations(getter).get("return") for getter in getters if getter]
+    while hints:
+        hint = hints.pop(0)
+        hints.extend(get_args(hint))
+        if isinstance(hint, type):
+            yield hint
+
+
 def _documented(path: str, value: object) -> str:
     """Document one name."""
     if not isinstance(value, type):
@@ -221,7 +249,7 @@ def _documented(path: str, value: object) -> str:
     return "\n   ".join([f"```{{eval-rst}}\n.. {directive}:: {path}", *options]) + "\n```\n"
 
 
-PARTS = {"commands": commands, "spec": spec, "json": json_files, "names": names}
+PARTS = {"commands": commands, "spec": spec, "json": json_files, "names": names, "parts": parts}
 
 
 def fill(app: Sphinx, page: str, source: list[str]) -> None:
