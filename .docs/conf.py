@@ -19,6 +19,7 @@ nb_execution_mode = "force"
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 
+add_module_names = False
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings give shapes and units, which types cannot
 autodoc_class_signature = "separated"
@@ -26,6 +27,7 @@ autodoc_preserve_defaults = True
 maximum_signature_line_length = 80
 napoleon_google_docstring = False
 napoleon_use_rtype = False
+napoleon_attr_annotations = False  # `generated.tidy` gives them shorter
 
 html_theme = "furo"
 html_title = "bemcontact"

@@ -8,14 +8,16 @@ import inspect
 import json
 import re
 from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import typer
 import typer.main
+from docutils import nodes
+from pydantic import BaseModel
 from rich.text import Text
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
+from sphinx.util.typing import stringify_annotation
 from typer.testing import CliRunner
 
 import bemcontact
@@ -27,32 +29,30 @@ COMMANDS = typer.main.get_command(cli.app)
 
 def commands() -> str:
     """Describe each command, its arguments and its options."""
-    root = [_options("", COMMANDS, ["--version", "--help"])]
-    return "\n".join(root + [_command(name, command) for name, command in COMMANDS.commands.items()])
+    return "\n".join([_options("bemcontact", COMMANDS), *map(_command, COMMANDS.commands, COMMANDS.commands.values())])
 
 
 def _command(name: str, command: Any) -> str:
     """Describe one command: its help, with the examples as a block, and its options."""
     text, _, examples = Text.from_markup(inspect.cleandoc(command.help)).plain.partition("\n\nExamples\n")
-    arguments = [parameter.get_help_record(typer.Context(command))[0].split()[0] for parameter in _positional(command)]
+    arguments = [_usage(parameter) for parameter in command.params if parameter.param_type_name == "argument"]
     usage = " ".join(["bemcontact", name, *arguments, "[OPTIONS]"])
     shown = f"```text\n{inspect.cleandoc(examples)}\n```\n" if examples else ""
     return f"(command-{name})=\n## {name}\n\n```text\n{usage}\n```\n\n{text}\n\n{shown}\n{_options(name, command)}"
 
 
-def _positional(command: Any) -> list[Any]:
-    return [parameter for parameter in command.params if parameter.param_type_name == "argument"]
+def _usage(parameter: Any) -> str:
+    """Say how an argument or option is written; an argument by its name alone."""
+    written = parameter.get_help_record(typer.Context(COMMANDS))[0]
+    return written.split()[0] if parameter.param_type_name == "argument" else written
 
 
-def _options(name: str, command: Any, names: list[str] | None = None) -> str:
+def _options(name: str, command: Any) -> str:
     """List the arguments and options of a command, each with an anchor such as ``solve-penalty``."""
     entries = []
-    for parameter in command.get_params(typer.Context(command)):
-        record = parameter.get_help_record(typer.Context(command))
-        if record is None or (names and parameter.opts[0] not in names):
-            continue
-        key = f"{name or 'bemcontact'}-{parameter.opts[0].strip('-')}"
-        entries.append(f"[`{record[0]}`]{{#{key}}}\n: {_escaped(' '.join(record[1].split()))}\n")
+    for parameter in command.params:
+        about = " ".join(parameter.get_help_record(typer.Context(command))[1].split())
+        entries.append(f"[`{_usage(parameter)}`]{{#{name}-{parameter.opts[0].strip('-')}}}\n: {_escaped(about)}\n")
     return "\n".join(entries)
 
 
@@ -129,7 +129,8 @@ def _object(
             about.append(f"default `{_plain(value['default'])}`")
         elif name in node.get("required", ()) and prefix == "yaml":
             about.append("required")
-        lines += [f"[`{name}`]{{#{key}-{name}}}", f": *{'; '.join(about)}.* {_escaped(value.get('description', ''))}", ""]
+        text = _escaped(value.get("description", ""))
+        lines += [f"[`{name}`]{{#{key}-{name}}}", f": *{'; '.join(about)}.* {text}", ""]
     return "\n".join(lines)
 
 
@@ -148,7 +149,9 @@ def _value(node: Any, schema: dict[str, Any], prefix: str) -> str:
     for word in ("anyOf", "oneOf", "allOf"):
         if word in node:
             options = [option.get("then", option) for option in node[word]]
-            texts = [_value(option, schema, prefix) for option in options if option != {"type": "null"} or prefix != "yaml"]
+            if prefix == "yaml":
+                options = [option for option in options if option != {"type": "null"}]  # that is, left out
+            texts = [_value(option, schema, prefix) for option in options]
             return _either(list(dict.fromkeys(texts)))
     return _simple(node, schema, prefix)
 
@@ -196,37 +199,72 @@ def _escaped(text: str) -> str:
     return re.sub(r"([*<>|\\])", r"\\\1", text)
 
 
+def public() -> set[str]:
+    """Give the public names that are documented."""
+    return {name for name in bemcontact.__all__ if not name.startswith("_")}
+
+
 def names(words: str) -> str:
     """Document public names from their docstrings."""
-    blocks = []
-    for name in words.split():
-        value = getattr(bemcontact, name)
-        if isinstance(value, type) and issubclass(value, Exception):
-            directive, members = "autoexception", ""
-        elif isinstance(value, enum.EnumType):
-            directive, members = "autoclass", "\n   :members:\n   :undoc-members:\n   :no-show-inheritance:"
-        elif isinstance(value, type):
-            directive, members = "autoclass", "\n   :members:\n   :exclude-members: model_config, model_post_init"
-        else:
-            directive, members = "autofunction", ""
-        blocks.append(f"```{{eval-rst}}\n.. {directive}:: bemcontact.{name}{members}\n```\n")
-    return "\n".join(blocks)
+    return "\n".join(_documented(f"bemcontact.{name}", getattr(bemcontact, name)) for name in words.split())
 
 
-PARTS = {"commands": commands, "spec": spec, "json": json_files, "names": names}
+def parts() -> str:
+    """Document the objects that public ones hold, and those that these hold in turn, by name."""
+    known = [getattr(bemcontact, name) for name in bemcontact.__all__]
+    queue = [value for value in known if isinstance(value, type) and not issubclass(value, BaseModel)]
+    held: list[type] = []
+    while queue:
+        for part in _held(queue.pop(0)):
+            if part.__module__.startswith("bemcontact.") and part not in (*known, *held):
+                held.append(part)
+                queue.append(part)
+    held.sort(key=lambda part: part.__name__)
+    return "\n".join(_documented(f"{part.__module__}.{part.__name__}", part) for part in held)
+
+
+def _held(value: type) -> Iterator[type]:
+    """Find the classes in the types of fields and properties of a class."""
+    public = {name: item for name, item in vars(value).items() if not name.startswith("_")}
+    getters = [getattr(item, "fget", getattr(item, "func", None)) for item in public.values()]
+    hints = [*inspect.get_annotations(value).values()]
+    hints += [inspect.get_annotations(getter).get("return") for getter in getters if getter]
+    while hints:
+        hint = hints.pop(0)
+        hints.extend(get_args(hint))
+        if isinstance(hint, type):
+            yield hint
+
+
+def _documented(path: str, value: object) -> str:
+    """Document one name."""
+    if not isinstance(value, type):
+        directive, options = "autofunction", []
+    elif issubclass(value, Exception):
+        directive, options = "autoexception", []
+    elif issubclass(value, enum.Enum):
+        directive, options = "autoclass", [":members:", ":undoc-members:"]
+    else:
+        directive, options = "autoclass", [":members:", ":exclude-members: __init__, model_config, model_post_init"]
+    return "\n   ".join([f"```{{eval-rst}}\n.. {directive}:: {path}", *options]) + "\n```\n"
+
+
+PARTS = {"commands": commands, "spec": spec, "json": json_files, "names": names, "parts": parts}
 
 
 def fill(app: Sphinx, page: str, source: list[str]) -> None:
     """Put the parts into a page as it is read."""
     if page == "reference/python":
         listed = {name for what, words in MARK.findall(source[0]) if what == "names" for name in words.split()}
-        if listed ^ set(bemcontact.__all__):
-            raise ExtensionError(f"{page}: not the public names: {', '.join(listed ^ set(bemcontact.__all__))}")
+        if wrong := listed ^ public():
+            raise ExtensionError(f"{page}: public names without a place, or places without one: {', '.join(wrong)}")
     source[0] = MARK.sub(lambda found: PARTS[found[1]](*filter(None, [found[2].strip()])), source[0])
 
 
 def tidy(app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]) -> None:
     """Give a docstring the form that napoleon reads: a parameter's text under its name, no mark of a substitution."""
+    if what in ("attribute", "property"):
+        lines[0] = f": {lines[0]}"  # nothing before the first colon, which napoleon takes for the type
     section, tidied = "", []
     for i, line in enumerate(lines):
         if i + 1 < len(lines) and re.fullmatch("-{3,}", lines[i + 1]):
@@ -235,14 +273,34 @@ def tidy(app: Sphinx, what: str, name: str, value: object, options: object, line
         if section in ("Parameters", "Attributes") and entry:
             below = lines[i + 1] if i + 1 < len(lines) else ""
             stop = "." if re.match(r"    [A-Z0-9\[]", below) else ""
-            tidied += [entry[1], f"    {entry[2]}{stop}"]
+            tidied += [f"{entry[1]}{_annotation(value, entry[1])}", f"    {entry[2]}{stop}"]
+        elif section == "Returns" and line in bemcontact.__all__:
+            tidied.append(f":class:`~bemcontact.{line}`")
         else:
             tidied.append(line)
     lines[:] = [re.sub(r"(?<![`\\])\|", r"\|", line) for line in tidied]
+
+
+def _annotation(value: object, field: str) -> str:
+    """Say of which type a field of a class is, and its default; docstrings of functions say it themselves."""
+    annotation = getattr(value, "__annotations__", {}).get(field) if isinstance(value, type) else None
+    if annotation is None:
+        return ""
+    text = stringify_annotation(annotation, "smart")
+    default = getattr(value, field, None)  # where a dataclass keeps it
+    is_plain = isinstance(default, (bool, int, float, str)) and default != ""
+    return f" : {'array' if 'ndarray' in text else text}" + (f", default {default}" if is_plain else "")
+
+
+def dash(app: Sphinx, doctree: nodes.document) -> None:
+    """Set a dash between the name of a parameter and its text; smart quotes, which are off, would."""
+    for text in [text for text in doctree.findall(nodes.Text) if text.startswith(" -- ")]:
+        text.parent.replace(text, nodes.Text(f" – {text[4:]}"))
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register what is called when a page is read and when a docstring is."""
     app.connect("source-read", fill)
     app.connect("autodoc-process-docstring", tidy, priority=100)  # before napoleon
+    app.connect("doctree-read", dash)
     return {"parallel_read_safe": True}
