@@ -1,4 +1,4 @@
-"""Sphinx settings of the documentation: ``python -m sphinx -W --keep-going -E .docs .docs/build``."""
+"""Sphinx settings of the documentation: ``python -m sphinx -W --keep-going -E .docs .docs/build/html``."""
 
 import sys
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 
 project = "bemcontact"
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "generated"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "generated", "mathml"]
 exclude_patterns = ["build"]
 default_role = "py:obj"  # docstrings name things in single backticks
 highlight_language = "none"
@@ -16,6 +16,7 @@ nitpicky = False
 myst_enable_extensions = ["attrs_inline", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 4
 nb_execution_mode = "force"
+nb_merge_streams = True
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 
@@ -29,6 +30,10 @@ napoleon_google_docstring = False
 napoleon_use_rtype = False
 napoleon_attr_annotations = False  # `generated.tidy` gives them shorter
 
+html_math_renderer = "mathml"
+html_show_copyright = False
+html_show_sourcelink = False
+html_copy_source = False
 html_theme = "furo"
 html_title = "bemcontact"
 html_static_path = ["static"]

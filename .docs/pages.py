@@ -312,17 +312,20 @@ def refresh(page: Path) -> None:
             if wanted and not (output.shown.strip() and output.agrees):
                 new = refreshed(output.shown, output.printed).splitlines()
                 lines[output.first : output.last] = [f"{output.indent}{line}".rstrip() for line in new]
-                print(f"{page.relative_to(ROOT)}:{output.first + 1}: {output.source}")
+                print(f"{os.path.relpath(page)}:{output.first + 1}: {output.source}")
         page.write_text("\n".join(lines) + "\n", encoding="utf-8")
         for target in re.findall(r"!\[[^]]*\]\(([^)\s]+)\)", text):
             drawn, place = folder / Path(target).name, page.parent / target
             if drawn.is_file() and not (place.is_file() and place.read_bytes() == drawn.read_bytes()):
                 place.parent.mkdir(exist_ok=True)
                 shutil.copy(drawn, place)
-                print(f"{place.resolve().relative_to(ROOT)} of {page.relative_to(ROOT)}")
+                print(f"{os.path.relpath(place)} of {os.path.relpath(page)}")
 
 
 if __name__ == "__main__":
     os.environ.update(SETTINGS)
-    for named in [Path(name).resolve() for name in sys.argv[1:]] or pages():
-        refresh(named)
+    try:
+        for named in [Path(name).resolve() for name in sys.argv[1:]] or pages():
+            refresh(named)
+    except PageError as error:
+        sys.exit(str(error))

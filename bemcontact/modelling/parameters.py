@@ -54,13 +54,17 @@ class Parameters:
     @cached_property
     def position(self) -> Value:
         """Displacement (3 t,) of the tools, zero where a component is free."""
-        own = np.zeros(0) if self.tool_position is None else cp.vec(self.tool_position, order="C")
+        if self.tool_position is None:
+            return np.zeros(0)  # cvxpy below 1.9 knows no expression of size zero
+        own = cp.vec(self.tool_position, order="C")
         return cp.multiply(~self.rest.tools.free, own + self.rest.cases.position @ self._factors)
 
     @cached_property
     def force(self) -> Value:
         """Force (3 t,) on the tools, zero where a component is not free."""
-        own = np.zeros(0) if self.tool_force is None else cp.vec(self.tool_force, order="C")
+        if self.tool_force is None:
+            return np.zeros(0)
+        own = cp.vec(self.tool_force, order="C")
         return cp.multiply(self.rest.tools.free, own + self.rest.cases.force @ self._factors)
 
     @cached_property
@@ -77,6 +81,8 @@ class Parameters:
     def motion_load(self) -> Value:
         """The load (k,)."""
         rest = self.rest
+        if not rest.motion_load.size:
+            return np.zeros(0)
         return rest.motion_load + rest.cases.motion_load @ self._factors + rest.tools.amplitudes.T @ self.force
 
     def contact(self) -> CondensedContact:

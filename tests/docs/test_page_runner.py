@@ -116,3 +116,30 @@ def test_a_page_is_one_session(tmp_path: Path):
     printed = ["4\n", "four", "cat: nothing: No such file or directory\n", "1\n", ""]
     assert [output.printed for output in outputs] == printed
     assert [output.agrees for output in outputs] == [True, False, True, True, True]
+
+
+def test_a_page_can_use_the_problems_of_another(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(pages, "DOCS", tmp_path)
+    model = (pages.ROOT / "models" / "gallery" / "flat_punch.yaml").read_text(encoding="utf-8")
+    (tmp_path / "other.md").write_text(f"```yaml\n# punch.yaml\n{model}\n```\n", encoding="utf-8")
+    page = tmp_path / "page.md"
+    page.write_text("<!-- uses: other.md -->\n\n```console\n$ ls\nmodels\npunch.yaml\n```\n", encoding="utf-8")
+    folder = tmp_path / "run"
+    folder.mkdir()
+    assert [output.agrees for output in pages.Session(page, folder).run()] == [True]
+
+
+def test_a_page_is_written_anew_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """Only what is shown and differs is written: an output that is not shown stays away, one that agrees as it is."""
+    page = tmp_path / "page.md"
+    shown = (
+        "- ```python\n  print(2)\n  ```\n\n  ```text\n{}  ```\n\n"
+        "```console\n$ echo 1.00\n1.0\n$ echo 5 > a.svg; cat a.svg\n```\n"
+    )
+    page.write_text(shown.format("") + "\n![a](pictures/a.svg)\n", encoding="utf-8")
+    pages.refresh(page)
+    assert page.read_text(encoding="utf-8") == shown.format("  2\n") + "\n![a](pictures/a.svg)\n"
+    assert (tmp_path / "pictures" / "a.svg").read_text(encoding="utf-8") == "5\n"
+    assert len(capsys.readouterr().out.splitlines()) == 2
+    pages.refresh(page)
+    assert capsys.readouterr().out == ""

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from chromium import Browser, browser, executable
+from chromium import executable, opened, started
+from playwright.sync_api import Browser
 from reproductions import on_base_meshes
 from studies import of_many_settings, on_three_meshes
 
@@ -77,9 +78,9 @@ LIGHTNESS = """
 
 
 @pytest.fixture(scope="module")
-def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    with browser(tmp_path_factory.mktemp("profile")) as page:
-        yield page
+def chromium() -> Iterator[Browser]:
+    with started() as browser:
+        yield browser
 
 
 @pytest.fixture(scope="module", params=[*STUDIES, PAPER])
@@ -95,26 +96,25 @@ def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 @pytest.mark.parametrize("width", [380, 1200])
 def test_the_page_is_drawn_whole_and_fits(chromium: Browser, report: Path, width: int, dark: bool):
-    chromium.complaints.clear()
-    chromium.open(report, width=width, dark=dark)
-    sizes = chromium.evaluate(PICTURES)
-    assert len(sizes) == len([*(report.parent / "figures").iterdir()])
-    assert min(sizes) > 0
-    assert chromium.evaluate(WIDTHS) == [width, width, []]
-    contrasts = chromium.evaluate(CONTRASTS)
-    assert len(contrasts) > 100
-    assert min(contrasts)[0] >= 4.5, min(contrasts)
-    background = chromium.evaluate("getComputedStyle(document.body).backgroundColor")
-    assert background == ("rgb(22, 25, 29)" if dark else "rgb(255, 255, 255)")
-    assert chromium.evaluate(WIDTHS) == [width, width, []]  # with all details open
-    assert chromium.complaints == []
+    with opened(chromium, report, width=width, dark=dark) as (page, complaints):
+        sizes = page.evaluate(PICTURES)
+        assert len(sizes) == len([*(report.parent / "figures").iterdir()])
+        assert min(sizes) > 0
+        assert page.evaluate(WIDTHS) == [width, width, []]
+        contrasts = page.evaluate(CONTRASTS)
+        assert len(contrasts) > 100
+        assert min(contrasts)[0] >= 4.5, min(contrasts)
+        background = page.evaluate("getComputedStyle(document.body).backgroundColor")
+        assert background == ("rgb(22, 25, 29)" if dark else "rgb(255, 255, 255)")
+        assert page.evaluate(WIDTHS) == [width, width, []]  # with all details open
+    assert complaints == []
 
 
 def test_a_picture_is_transparent_and_its_ink_follows_the_page(chromium: Browser, report: Path):
     seen = []
     for dark in (False, True):
-        chromium.open(report, width=1200, dark=dark)
-        seen.append(chromium.evaluate(LIGHTNESS))
+        with opened(chromium, report, width=1200, dark=dark) as (page, _):
+            seen.append(page.evaluate(LIGHTNESS))
     (light, corner), (dark, other_corner) = seen
     assert corner == other_corner == 0
     assert dark != pytest.approx(light, abs=0.02)
@@ -122,10 +122,11 @@ def test_a_picture_is_transparent_and_its_ink_follows_the_page(chromium: Browser
 
 def test_complaints_are_heard(chromium: Browser, tmp_path: Path):
     """A page with a script that fails and a picture that is missing: without this the test above proves nothing."""
-    page = tmp_path / "bad.html"
-    page.write_text("<!DOCTYPE html><img src=none.png><script>nothing()</script>", encoding="utf-8")
-    chromium.complaints.clear()
-    chromium.open(page, width=380)
-    chromium.evaluate("1")
-    assert any("nothing is not defined" in complaint for complaint in chromium.complaints)
-    assert any("ERR_FILE_NOT_FOUND" in complaint for complaint in chromium.complaints)
+    bad = tmp_path / "bad.html"
+    bad.write_text(
+        "<!DOCTYPE html><img src=none.png><script>console.warn('a warning'); nothing()</script>", encoding="utf-8"
+    )
+    with opened(chromium, bad, width=380) as (_, complaints):
+        pass
+    for expected in ("a warning", "nothing is not defined", "none.png: net::ERR_FILE_NOT_FOUND"):
+        assert any(expected in complaint for complaint in complaints)

@@ -29,9 +29,14 @@ def test_each_key_of_a_problem_file_is_shown():
     assert shown(generated.spec()) == keys(bemcontact.schema())
 
 
-@pytest.mark.parametrize("option", ["--report", "--reproduction"])
-def test_each_key_of_a_json_file_is_shown(option: str):
-    assert keys(generated._schema(option)) <= shown(generated.json_files())
+def test_each_key_of_each_json_file_is_shown():
+    """The command schema has an option for each file of results."""
+    text = generated.json_files()
+    options = [parameter.opts[0] for parameter in generated.COMMANDS.commands["schema"].params]
+    assert {"--report", "--reproduction"} <= {*options}
+    for option in options:
+        part = text.partition(f"\n## `schema {option}`\n")[2].partition("\n## ")[0]
+        assert keys(generated._schema(option)) == shown(part), option
 
 
 def test_each_option_of_each_command_is_shown():
