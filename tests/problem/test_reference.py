@@ -1,5 +1,6 @@
 """References in a spec, and the place and text of the error for each mistake."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -303,9 +304,9 @@ def test_schema_rejects_invalid_references(case: str, words: str):
     assert words in first
 
 
-def test_the_references_of_the_readme_are_valid():
-    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-    start = readme.index("\nreference:\n") + 1
-    block = readme[start : readme.index("```", start)]
+def test_the_examples_of_the_page_on_references_are_read():
+    page = (Path(__file__).parents[2] / ".docs/how-to/reference_values.md").read_text(encoding="utf-8")
+    examples = re.findall(r"^\| `\w+` \| `(\{kind: .*?\})` \|", page, flags=re.MULTILINE)
+    block = "reference:\n" + "".join(f"  example {i}: {example}\n" for i, example in enumerate(examples))
     references = bemcontact.loads(BODY + block).reference.values()
     assert len({type(reference) for reference in references}) == 8

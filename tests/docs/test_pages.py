@@ -1,0 +1,106 @@
+"""Each code block of README and pages runs, and prints what the page shows."""
+
+import re
+import shlex
+import tomllib
+from pathlib import Path
+
+import pages
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+EXTRAS = set(PROJECT["optional-dependencies"])
+CI = (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
+
+
+def name(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+@pytest.fixture(autouse=True)
+def settled(monkeypatch: pytest.MonkeyPatch):
+    for variable, value in pages.SETTINGS.items():
+        monkeypatch.setenv(variable, value)
+
+
+@pytest.mark.parametrize("page", pages.pages(), ids=name)
+def test_blocks_run_and_print_what_is_shown(page: Path, tmp_path: Path):
+    for output in pages.Session(page, tmp_path).run():
+        where = f"{name(page)}:{output.first + 1}: {output.source}"
+        assert output.agrees, f"{where} prints\n{output.printed}\npython .docs/pages.py {name(page)} writes it"
+
+
+def is_sound(command: str, folder: Path) -> bool:
+    """Whether a command of a block of sh can work: bemcontact is run, others must name what exists."""
+    words = [word for word in shlex.split(command, comments=True) if not re.match(r"[A-Z_]+=", word)]
+    match [words[0].rpartition("/")[2], *words[1:]]:
+        case ["bemcontact", *_]:
+            return pages.Session(ROOT / "README.md", folder).command(shlex.join(["bemcontact", *words[1:]]))[1] == 0
+        case ["python" | "python3", "-m", "venv", _]:
+            return True
+        case ["python" | "python3", "-m", "sphinx", *options]:
+            return ".docs" in options
+        case ["pip", "install", *options]:
+            project, _, extras = options[-1].rstrip("]").partition("[")
+            return project in (".", "bemcontact") and {*filter(None, extras.split(","))} <= EXTRAS
+        case ["pytest", *paths]:
+            return all((ROOT / path).exists() for path in paths if not path.startswith("-"))
+        case ["python" | "python3" | "bash", path, *_] | [path]:
+            return (ROOT / path).is_file()
+    return False
+
+
+@pytest.mark.parametrize("page", pages.pages(), ids=name)
+def test_commands_that_take_long_can_work(page: Path, tmp_path: Path):
+    """Blocks of sh install, test or measure; each line is one that CI runs, or its commands are sound."""
+    (tmp_path / "models").symlink_to(ROOT / "models")
+    for token in pages.tokens(page):
+        for line in token.content.splitlines() if token.info == "sh" else ():
+            if line in CI or not line.strip() or line.startswith("#"):
+                continue
+            for command in line.split(" && "):
+                assert is_sound(command, tmp_path), f"{name(page)}: '{command}' is not known to work"
+
+
+def test_a_command_that_cannot_work_is_found(tmp_path: Path):
+    (tmp_path / "models").symlink_to(ROOT / "models")
+    assert is_sound("OMP_NUM_THREADS=1 python tests/benchmarks/assembly.py 100", tmp_path)
+    assert is_sound(".venv/bin/pip install -e '.[vtk,fast]'", tmp_path)
+    assert is_sound(".venv/bin/bemcontact check models/gallery/flat_punch.yaml", tmp_path)
+    for command in (
+        "python nothing.py",
+        "pip install '.[nothing]'",
+        "pip install x",
+        "bemcontact solve x.yaml",
+        "ls -l",
+    ):
+        assert not is_sound(command, tmp_path), command
+
+
+def test_the_readme_is_short():
+    """The length that the founders ask for."""
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 150
+
+
+def test_each_page_is_in_a_table_of_contents():
+    """Those that lead to it from the index of the site."""
+    reached, queue = set(), [pages.DOCS / "index.md"]
+    while queue:
+        page = queue.pop()
+        reached.add(page)
+        for token in pages.tokens(page):
+            if token.info.startswith("{toctree}"):
+                entries = [line.strip() for line in token.content.splitlines()]
+                entries = [re.sub(r".*<(.*)>", r"\1", entry) for entry in entries if entry and entry[0] != ":"]
+                queue += [(page.parent / f"{entry}.md").resolve() for entry in entries]
+    assert reached == {page for page in pages.pages() if page.is_relative_to(pages.DOCS)}
+
+
+def test_sources_that_the_code_cites_are_listed():
+    listed = set(re.findall(r"^- \[\[(\w+)\]\]", (pages.DOCS / "reference" / "literature.md").read_text("utf-8"), re.M))
+    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "bemcontact").rglob("*.py")]
+    sources += [page.read_text(encoding="utf-8") for page in pages.pages()]
+    cited = {key for text in sources for key in re.findall(r"\[([A-Z][A-Za-z]{1,5}\d\d)\]", text)}
+    assert cited <= listed
+    assert "SS92" in cited
