@@ -8,6 +8,7 @@ import inspect
 import json
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, get_args
 
 import typer
@@ -23,6 +24,7 @@ from typer.testing import CliRunner
 import bemcontact
 from bemcontact import cli
 
+ROOT = Path(__file__).parents[1]
 MARK = re.compile(r"^<!-- generated: (\w+)(.*) -->$", flags=re.MULTILINE)
 COMMANDS = typer.main.get_command(cli.app)
 
@@ -249,7 +251,13 @@ def _documented(path: str, value: object) -> str:
     return "\n   ".join([f"```{{eval-rst}}\n.. {directive}:: {path}", *options]) + "\n```\n"
 
 
-PARTS = {"commands": commands, "spec": spec, "json": json_files, "names": names, "parts": parts}
+def gallery() -> str:
+    """Show the page of the models, with its paths as from the folder of the site."""
+    text = (ROOT / "models" / "README.md").read_text(encoding="utf-8")
+    return re.sub(r"\]\(([^)]*\.yaml)\)", r"](../models/\1)", text).replace('src="../.docs/', 'src="')
+
+
+PARTS = {"commands": commands, "spec": spec, "json": json_files, "names": names, "parts": parts, "gallery": gallery}
 
 
 def fill(app: Sphinx, page: str, source: list[str]) -> None:
