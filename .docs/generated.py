@@ -167,7 +167,8 @@ def _simple(node: dict[str, Any], schema: dict[str, Any], prefix: str) -> str:
         if "prefixItems" in node:
             return "[" + ", ".join(_value(item, schema, prefix) for item in node["prefixItems"]) + "]"
         count = f" {node['minItems']}" if node.get("minItems") == node.get("maxItems", -1) else ""
-        return f"list of{count} {_value(node.get('items', {}), schema, prefix)}"
+        items = _value(node.get("items", {}), schema, prefix)
+        return f"list of{count} " + re.sub(r"^(number|integer|text|list)\b", r"\1s", items)
     if types == "object":
         values = node.get("additionalProperties")
         return "mapping of names" + (f" to {_value(values, schema, prefix)}" if isinstance(values, dict) else "")
@@ -192,8 +193,8 @@ def _plain(value: Any) -> str:
 
 
 def _title(name: str) -> str:
-    """Turn the name of a class into words: FlatPunch, Flat punch."""
-    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).capitalize()
+    """Turn the name of a class into words: FlatPunch, Flat punch; UnitsRecord, Units."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name.removesuffix("Record")).capitalize()
 
 
 def _escaped(text: str) -> str:
