@@ -1,5 +1,6 @@
 """What a spec may say of the answer, and where and in which words each mistake is refused."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -301,9 +302,9 @@ def test_schema_refuses_what_is_wrong(case: str, words: str):
     assert words in first
 
 
-def test_the_block_of_the_readme_is_read():
-    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-    start = readme.index("\nreference:\n") + 1
-    block = readme[start : readme.index("```", start)]
+def test_the_examples_of_the_page_on_references_are_read():
+    page = (Path(__file__).parents[2] / ".docs/how-to/reference_values.md").read_text(encoding="utf-8")
+    examples = re.findall(r"^\| `\w+` \| `(\{kind: .*?\})` \|", page, flags=re.MULTILINE)
+    block = "reference:\n" + "".join(f"  example {i}: {example}\n" for i, example in enumerate(examples))
     references = bemcontact.loads(BODY + block).reference.values()
     assert len({type(reference) for reference in references}) == 8

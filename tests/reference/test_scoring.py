@@ -1,7 +1,6 @@
 """Answers beside closed forms: how far they are off, what is judged, and that units do not matter."""
 
 import json
-import re
 from pathlib import Path
 
 import numpy as np
@@ -171,12 +170,3 @@ def test_where_nothing_touches_nothing_holds():
     assert [(item.found, item.difference) for item in ends] == [(None, None)] * 2
     assert {item.found for item in found if item.quantity in ("peak", "contact length", "resultant")} == {0.0}
     json.dumps([item.to_dict() for item in found], allow_nan=False)
-
-
-def test_what_the_readme_calls_runs():
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    lines = re.search(r"((?:^    .*(?:expected|score).*\n)+)", text, flags=re.MULTILINE)[1]
-    problem = bemcontact.loads(BLOCK)
-    names = {"problem": problem, "result": bemcontact.solve(problem)}
-    exec("\n".join(line.strip() for line in lines.splitlines()), names)
-    assert len(names["known"]) == 5

@@ -58,7 +58,7 @@ def test_it_tells_of_each_field_what_it_means(stated: dict[str, Any]):
 
 
 def test_lengths_pressures_and_forces_have_their_units():
-    """Of what report.json has in units, by the tables of the README: each of them named [L], [p], [p L] or [p L²]."""
+    """Of what report.json has in units: each of them named [L], [p], [p L] or [p L²]."""
     units = {
         ("Answer", "pressure"): "[p]", ("Answer", "gap"): "[L]", ("Answer", "normal_displacement"): "[L]",
         ("Answer", "resultant"): "[p L]", ("Answer", "resultant_moment"): "[p L²]", ("Peak", "pressure"): "[p]",
