@@ -11,7 +11,7 @@ DOCUMENT = Document(
 )
 
 
-def test_complaint_is_placed_at_the_value_the_key_or_what_is_above():
+def test_place_of_an_issue_is_its_value_its_key_or_the_value_above():
     assert DOCUMENT.located(Issue(path=("n",), message="bad")) == (VALUE, "n: bad")
     assert DOCUMENT.located(KeyIssue(path=("n",), message="bad")) == (KEY, "n: bad")
     assert DOCUMENT.located(Issue(path=("m", 0), message="missing")) == (TOP, "m[0]: missing")
