@@ -1,4 +1,4 @@
-"""Plain data as it was written, and the place in the text, or the override, that each value comes from."""
+"""Data of a spec, with the place in the text, or the override, of each value."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from bemcontact.problem.validation import KeyIssue
 
 @dataclass(frozen=True, order=True)
 class Mark:
-    """A place in a text, or an override; `text` begins the issue."""
+    """A place in a text, or an override; `text` is the start of the error message."""
 
     line: int
     column: int
@@ -19,12 +19,12 @@ class Mark:
 
 
 LocatedMessage = tuple[Mark, str]
-"""What was found wrong, and where."""
+"""An error message and its place."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Place:
-    """Where an issue about a value points to, and where one about its key does."""
+    """Places of a value and of its key; `scalar` tells that the value has no entries in the text."""
 
     value: Mark
     key: Mark
@@ -33,14 +33,14 @@ class Place:
 
 @dataclass(frozen=True, kw_only=True)
 class Document:
-    """Plain data with the place of each value by its path.
+    """Data of a spec with the place of each value.
 
     Parameters
     ----------
     data : nested mappings and lists
-    places : place of each value
-    messages : what was found wrong while reading
-    change : the override that made it from another document, if one did
+    places : place of each value by its key path
+    messages : errors found while reading
+    change : override that made this document from another one, if any
     """
 
     data: Any
@@ -49,7 +49,7 @@ class Document:
     change: Mark | None = None
 
     def below(self, path: KeyPath) -> "Document":
-        """Take the value at a path as a document of its own."""
+        """Document of the value at a path."""
         data = self.data
         for key in path:
             data = data[key]
@@ -57,7 +57,7 @@ class Document:
         return Document(data=data, places=places)
 
     def changed(self, path: KeyPath, entry: "Document", mark: Mark) -> "Document":
-        """Replace or add one value, all of which comes from the place of the mark."""
+        """Copy with one value replaced or added; the place of the new value is the mark."""
         kept = {other: place for other, place in self.places.items() if other[: len(path)] != path}
         added = {
             (*path, *below): Place(value=mark, key=mark, scalar=place.scalar) for below, place in entry.places.items()
@@ -70,17 +70,17 @@ class Document:
         )
 
     def located(self, issue: Issue) -> LocatedMessage:
-        """Find the place of an issue, or of the nearest thing above that stands in the text."""
+        """Place of an issue; if its path is not in the text, the place of the value that contains it."""
         path = issue.path
         while path not in self.places:
             path = path[:-1]
         place = self.places[path]
-        if place.scalar:  # its entries exist in the model only: a number as a field, a name as a list of one
+        if place.scalar:  # the text has no entries: a number is a field, a name is a list of one name
             issue = replace(issue, path=path)
         is_key = isinstance(issue, KeyIssue) and path == issue.path
         return (place.key if is_key else place.value), str(issue)
 
 
 def error_text(messages: Iterable[LocatedMessage]) -> str:
-    """Write messages in the order of the text, a line each."""
+    """One line for each message, in the order of the text."""
     return "\n".join(f"{mark.text}: {message}" for mark, message in sorted(messages))

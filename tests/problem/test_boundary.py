@@ -72,7 +72,7 @@ def test_body_with_round_and_elliptic_holes():
 
 
 @given(st.floats(0.01, 0.99), st.floats(-1e3, 1e3), st.floats(-1e3, 1e3), st.floats(1e-6, 1e6))
-def test_no_complaint_depends_on_place_or_unit(radius, x, y, scale):
+def test_checks_do_not_depend_on_place_or_unit(radius, x, y, scale):
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * scale + (scale * x, scale * y)
     outer = [Line(name=f"side {i}", start=tuple(corner), elements=2) for i, corner in enumerate(corners.tolist())]
     bore = circle(center=(scale * x, scale * y), radius=scale * radius)

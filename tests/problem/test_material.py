@@ -34,7 +34,7 @@ def test_incompressible_material_needs_plane_stress():
         Material(young_modulus=1, poisson_ratio=0.5)
 
 
-def test_all_complaints_come_together():
+def test_all_issues_are_reported_together():
     with pytest.raises(ProblemError) as caught:
         Material(young_modulus=-1, poisson_ratio="0.3")
     assert [str(issue) for issue in caught.value.issues] == [

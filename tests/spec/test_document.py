@@ -1,4 +1,4 @@
-"""Documents: places of issues, and of what an override brings."""
+"""Documents: places of issues and of overrides."""
 
 from bemcontact.errors import Issue
 from bemcontact.problem.validation import KeyIssue
@@ -11,13 +11,13 @@ DOCUMENT = Document(
 )
 
 
-def test_complaint_is_placed_at_the_value_the_key_or_what_is_above():
+def test_place_of_an_issue_is_its_value_its_key_or_the_value_above():
     assert DOCUMENT.located(Issue(path=("n",), message="bad")) == (VALUE, "n: bad")
     assert DOCUMENT.located(KeyIssue(path=("n",), message="bad")) == (KEY, "n: bad")
     assert DOCUMENT.located(Issue(path=("m", 0), message="missing")) == (TOP, "m[0]: missing")
 
 
-def test_entries_of_a_scalar_exist_in_the_model_only():
+def test_place_of_an_entry_of_a_scalar_is_the_scalar():
     assert DOCUMENT.located(Issue(path=("n", "constant"), message="bad")) == (VALUE, "n: bad")
 
 
