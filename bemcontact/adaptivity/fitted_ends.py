@@ -7,7 +7,7 @@ from math import ceil
 
 import numpy as np
 
-from bemcontact.adaptivity.zone_runs import SAME, ZoneRun
+from bemcontact.adaptivity.zone_runs import SAME, Touched, ZoneRun
 from bemcontact.arrays import Array
 from bemcontact.problem.element_ends import cubic_ends, moved_onto
 
@@ -26,22 +26,6 @@ GENTLE = 2.0
 """Length of the element beside a run over that of the one at its end, up to which it is left."""
 GROWTH = 1.5
 """Length of an element over that of its neighbour nearer to an end of contact that counts as grading towards it."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Touched:
-    """A stretch of contact on a run.
-
-    Parameters
-    ----------
-    start, end : positions [L]; on a closed run the end may lie beyond its length
-    start_free, end_free : whether contact ends there by itself, and not at the end of the run or at a corner
-    """
-
-    start: float
-    end: float
-    start_free: bool
-    end_free: bool
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,14 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from bemcontact.adaptivity.fitted_ends import Touched, fitted_ends, half_way, halved, movement, resolved
+from bemcontact.adaptivity.fitted_ends import fitted_ends, half_way, halved, movement, resolved
 from bemcontact.adaptivity.mesh_fit import FitPass, MeshFit
 from bemcontact.adaptivity.oscillation import sawing
-from bemcontact.adaptivity.stretches import stretches
-from bemcontact.adaptivity.zone_runs import ZoneRun, zone_runs
+from bemcontact.adaptivity.zone_runs import Touched, ZoneRun, stretches, zone_runs
 from bemcontact.arrays import Array
 from bemcontact.assessment.footprint import ContactInterval, footprint
-from bemcontact.bem.condense import Body, body_of, condense
+from bemcontact.bem.body import Body, body_of
+from bemcontact.bem.condense import condense
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity

@@ -13,7 +13,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, ComplexArray, IntArray
 from bemcontact.bem.kernels import Factors
-from bemcontact.bem.shape_functions import INTEGRALS
+from bemcontact.bem.reference_element import INTEGRALS
 
 FarSums = Callable[[Array, Array, ComplexArray, IntArray, int, ComplexArray, ComplexArray, Array, Factors], None]
 """A function with the parameters of `add_far`."""

@@ -21,7 +21,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
-from bemcontact.bem import compiled, kernels, quadrature
+from bemcontact.bem import compiled, kernels, reference_element
 from bemcontact.bem.kernels import Components, GaussRule
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
@@ -154,7 +154,7 @@ class Influence:
     @cached_property
     def _rules(self) -> list[tuple[GaussRule, ComplexArray]]:
         """For each tier: the rule, and dζ/dξ (n, m) at its Gauss points."""
-        rules = [kernels.gauss_rule(int(order), self._factors) for order in quadrature.ORDERS]
+        rules = [kernels.gauss_rule(int(order), self._factors) for order in reference_element.ORDERS]
         from_middle = self.element_nodes - self.element_nodes[:, 1:2]
         return [(rule, rule.derivatives.T @ from_middle.T) for rule in rules]
 
@@ -230,7 +230,9 @@ class Influence:
         distance = np.maximum(abs(c0 - middle) - radius, 0)
         r = 2 * distance / (c1 + np.sqrt(c1**2 + 4 * c2 * distance))
         rho = np.where(r > 1, r + np.sqrt(np.maximum(r * r - 1, 0)), 1.0)
-        tiers = np.where(self._slot >= 0, quadrature.tier(rho), quadrature.tier(rho, quadrature.RHO_OF_T))
+        tiers = np.where(
+            self._slot >= 0, reference_element.tier(rho), reference_element.tier(rho, reference_element.RHO_OF_T)
+        )
         return tiers, (rho > SHARED_RULE_RHO) & (radius <= RATIO * (abs(c0 - middle) - c1 - c2))
 
     @cached_property
@@ -294,14 +296,14 @@ class Influence:
         base, offset = collocation.base[block.rows], collocation.offset[block.rows]
         tau = ((self.element_nodes[element, None] - base[:, None]) - offset[:, None]).reshape(-1, 3)
         root = kernels.nearest_root(tau)
-        tiers = quadrature.tier(quadrature.bernstein_parameter(root.r))
+        tiers = reference_element.tier(reference_element.bernstein_parameter(root.r))
         on_element, on = self._on_elements(block, collocation, element)
         tiers[on_element] = -1
         T, U = np.empty((4, 3, len(tau))), np.empty((3, 3, len(tau)))
         T[..., on_element], U[..., on_element] = on
         for tier in np.unique(tiers[tiers >= 0]):
             at = np.flatnonzero(tiers == tier)
-            if tier < len(quadrature.ORDERS):
+            if tier < len(reference_element.ORDERS):
                 result = self._regular(tau[at], int(tier))
             else:
                 part = kernels.Root(root.r[at], root.minus[at], root.plus[at])

@@ -21,13 +21,14 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, ComplexArray
-from bemcontact.bem.quadrature import bernstein_parameter, gauss_legendre
-from bemcontact.bem.shape_functions import (
+from bemcontact.bem.reference_element import (
     DERIVATIVE_MONOMIALS,
     INTEGRALS,
     MONOMIALS,
     NODES,
+    bernstein_parameter,
     derivatives,
+    gauss_legendre,
     values,
 )
 

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from bemcontact.arrays import Array, ComplexArray, IntArray
-from bemcontact.bem.quadrature import TOLERANCE
+from bemcontact.bem.reference_element import TOLERANCE
 
 RATIO = 0.5
 """Radius of a block over the distance from its middle up to which an element is far."""

@@ -77,16 +77,15 @@ def minimize(
         data, chain, inverse = problem.get_problem_data(cp.CLARABEL, solver_opts={})
     except cp.SolverError as error:
         raise SolverError(f"Clarabel cannot solve this model: {error}; state it without integers") from error
+    assert chain is not None
     scaled, scaling = _equilibrated(data) if equilibrate else _divided(data, size)
-    for tolerance in TOLERANCES:
-        solution, progress = _solve(scaled, tolerance, max_iterations or ITERATIONS)
-        if str(solution.status) not in FAILED:
-            break
-    else:
+    ends = (_solve(scaled, tolerance, max_iterations or ITERATIONS) for tolerance in TOLERANCES)
+    end = next((end for end in ends if str(end[0].status) not in FAILED), None)
+    if end is None:
         raise SolverError(
-            f"Clarabel found no solution ({solution.status}); look for terms of very different size, or loosen "
-            "what was added"
+            "Clarabel found no solution of this model; look for terms of very different size, or loosen what was added"
         )
+    solution, progress = end
     with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status says the same
         problem.unpack_results(_unscaled(solution, *scaling), chain, inverse)
     return progress / np.array([scaling.s, 1.0])
