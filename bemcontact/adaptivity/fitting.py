@@ -73,7 +73,6 @@ def fitted(problem: Problem, progress: Callable[[str], object] | None = None) ->
 
     Parameters
     ----------
-    problem : Problem
     progress : told which pass begins
 
     Returns

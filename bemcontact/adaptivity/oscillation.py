@@ -16,7 +16,6 @@ def sawing(contact: CondensedContact, pressure: Array) -> float | None:
 
     Parameters
     ----------
-    contact : CondensedContact
     pressure : (n,) at the contact points [p]
 
     Returns

@@ -137,14 +137,6 @@ def _pinned(who: str) -> str:
 def body_of(problem: Problem) -> Body:
     """Mesh a problem, spread its conditions, and find out whether contact can hold it.
 
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    Body
-
     Raises
     ------
     ProblemError
@@ -220,7 +212,6 @@ def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
 
     Parameters
     ----------
-    problem : Problem
     mesh : of it
 
     Returns

@@ -59,14 +59,6 @@ class Condensation:
 def condense(body: Body) -> Condensation:
     """Eliminate everything but the contact points.
 
-    Parameters
-    ----------
-    body : Body
-
-    Returns
-    -------
-    Condensation
-
     Raises
     ------
     SingularSystemError
@@ -172,13 +164,8 @@ def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes
 
     Parameters
     ----------
-    condensation : Condensation
     pressure : (n,) p [p]
     rigid_amplitudes : (k,) a [L], in the fixed gauge of the condensed problem
-
-    Returns
-    -------
-    BoundaryState
     """
     body, system = condensation.body, condensation.system
     mesh, gauge = body.mesh, condensation.gauge

@@ -132,10 +132,6 @@ def contact_points(
     problem, mesh, values : the stages up to here
     deflections : by zone, for those on a deflected contour: displacement (N, 2) [L] of the nodes that shapes it
     cases : what load cases prescribe in addition
-
-    Returns
-    -------
-    ContactPoints
     """
     halves = _half_lengths(mesh)
     tool_of = {zone: tool for tool, stated in problem.tools.items() for zone in stated.zones}

@@ -165,7 +165,6 @@ class Influence:
 
         Parameters
         ----------
-        collocation : Collocation
         use : called once for each block, from other threads and in any order; must not keep the block
         """
         step = max(8, min(ROWS_PER_BLOCK, LARGEST_BLOCK // len(self.mesh.elements)))
@@ -189,12 +188,7 @@ class Influence:
 
         Parameters
         ----------
-        collocation : Collocation
         rows : neighbouring points
-
-        Returns
-        -------
-        Block
         """
         return self._block(collocation, rows, self._space(rows.stop - rows.start))
 

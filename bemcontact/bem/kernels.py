@@ -163,12 +163,7 @@ def regular(integrands: Array, rule: GaussRule, factor: Factors, *, with_U: bool
     ----------
     integrands : (5, n, …) as from `numerators`, or `numerator_polynomials` at points; overwritten
     rule : with n points
-    factor : Factors
     with_U : whether the integrals of U are wanted
-
-    Returns
-    -------
-    Components
     """
     _, n, *pairs = integrands.shape
     square, cos, normal, sin, _ = (np.asarray(part) for part in integrands)
@@ -210,10 +205,6 @@ def nearest_root(tau: ComplexArray) -> Root:
     Parameters
     ----------
     tau : (p, 3) ζ - z at the element nodes
-
-    Returns
-    -------
-    Root
     """
     _, c1, c2 = element_coefficients(tau)
     nearest = abs(tau).argmin(axis=1)
@@ -233,10 +224,6 @@ def near_singular(tau: ComplexArray, root: Root) -> Integrals:
     ----------
     tau : (p, 3) ζ - z at the element nodes
     root : as from `nearest_root`
-
-    Returns
-    -------
-    Integrals
     """
     log_ratio = np.log(root.minus / root.plus)
     ends = tau[:, [0, 2]]
@@ -253,10 +240,6 @@ def singular(nodes: ComplexArray, local: Array) -> Integrals:
     ----------
     nodes : (p, 3) element nodes
     local : (p,) ξ0 of the collocation point
-
-    Returns
-    -------
-    Integrals
     """
     _, c1, c2 = element_coefficients(nodes)
     r = local.astype(complex)

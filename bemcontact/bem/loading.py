@@ -47,18 +47,7 @@ class ParticularSolution:
 
 
 def particular_solution(loads: Loads, material: Material, mesh: Mesh) -> ParticularSolution:
-    """Sum the particular solutions of all volume loads.
-
-    Parameters
-    ----------
-    loads : Loads
-    material : Material
-    mesh : Mesh
-
-    Returns
-    -------
-    ParticularSolution
-    """
+    """Sum the particular solutions of all volume loads."""
     parts = []
     if loads.gravity:
         parts.append(_gravity(loads.gravity, material, mesh))
@@ -76,16 +65,7 @@ def particular_solution(loads: Loads, material: Material, mesh: Mesh) -> Particu
 
 
 def true_resultant(problem: Problem) -> tuple[Array, float]:
-    """Resultant (2,) [p L] of the body forces and its moment about the origin [p L²], on the curves themselves.
-
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    force, moment
-    """
+    """Resultant (2,) [p L] of the body forces and its moment about the origin [p L²], on the curves themselves."""
     area, moments = 0.0, np.zeros(2)
     for edge in problem.boundary.edges:
         points, normals, lengths = along_curve(edge)

@@ -100,16 +100,7 @@ class Mesh:
 
 
 def build(problem: Problem) -> Mesh:
-    """Divide every edge into its elements; middle nodes halve the arc length of an element.
-
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    Mesh
-    """
+    """Divide every edge into its elements; middle nodes halve the arc length of an element."""
     starts, middles, after, edge_of = [], [], [], []
     for loop in problem.boundary.loops:
         first = len(edge_of)
@@ -146,10 +137,6 @@ def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[
     starts, middles : (m, 2) start and middle node of each element [L]
     after : (m,) the element that begins where each element ends
     edge_of : m names of edges
-
-    Returns
-    -------
-    Mesh
     """
     m = len(starts)
     names = tuple(dict.fromkeys(edge_of))

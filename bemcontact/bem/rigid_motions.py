@@ -82,7 +82,6 @@ def free_rigid_motions(mesh: Mesh, prescribed: BoolArray) -> RigidMotions:
 
     Parameters
     ----------
-    mesh : Mesh
     prescribed : (N, 2) whether the displacement of a node along an axis is prescribed
 
     Returns

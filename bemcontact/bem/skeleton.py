@@ -54,12 +54,7 @@ def disc(z: ComplexArray) -> tuple[complex, float]:
 
 
 def skeleton(z: ComplexArray) -> Skeleton:
-    """Choose points among z (R,) that stand for all of them.
-
-    Returns
-    -------
-    Skeleton
-    """
+    """Choose points among z (R,) that stand for all of them."""
     geqp3, trtrs = get_lapack_funcs(("geqp3", "trtrs"), dtype=float)
     values = _far_functions(z)
     triangle, pivots, *_ = geqp3(values)

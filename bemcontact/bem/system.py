@@ -98,13 +98,7 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Equa
 
     Parameters
     ----------
-    mesh : Mesh
-    unknowns : Unknowns
     nodes : (N,) as x + iy, in the lengths of the system
-
-    Returns
-    -------
-    Equations
     """
     m, before = len(mesh.elements), mesh.before
     element = np.arange(m)
@@ -259,12 +253,7 @@ class System:
         return _Carried(at, sparse.csr_array((values, (column, np.arange(len(at)))), shape=(len(factors), len(at))))
 
     def rows(self, block: Block) -> Iterator[Rows]:
-        """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations.
-
-        Yields
-        ------
-        Rows
-        """
+        """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations."""
         F = dict(zip(kernels.T_ORDER, block.F, strict=True))
         G = dict(zip(kernels.U_ORDER, block.G.reshape(3, -1, block.G.shape[-1]), strict=True))
         for axis in range(2):
@@ -333,10 +322,6 @@ SINGULAR = 1e-15
 def assemble(system: System) -> tuple[Array, Array]:
     """Set up the bordered matrix (in Fortran order, to be factorised in place) and the right sides.
 
-    Parameters
-    ----------
-    system : System
-
     Returns
     -------
     matrix : (size, size)
@@ -363,10 +348,6 @@ def assemble(system: System) -> tuple[Array, Array]:
 
 def solve(system: System) -> Array:
     """Solve for the loads and for unit pressures: LU in place, then one step of refinement on rows computed anew.
-
-    Parameters
-    ----------
-    system : System
 
     Returns
     -------

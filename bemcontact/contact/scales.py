@@ -29,10 +29,6 @@ def typical_scales(compliance: Array, offset: Array, rigid_motions: Array, balan
     offset : (n,) q, the gap without contact [L]
     rigid_motions : (n, k) R
     balancing_pressure : (n,) the least pressure in equilibrium with the load [p]
-
-    Returns
-    -------
-    ContactScales
     """
     norm = float(np.abs(compliance).sum(axis=1).max(initial=0.0))
     pressure = float(np.abs(balancing_pressure).max(initial=0.0))

@@ -7,7 +7,7 @@ RAL-TR-2001-034), cone by cone, unless the problem is dimensionless already.
 
 import warnings
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from clarabel import DefaultSettings, DefaultSolver  # pyright: ignore (has no stubs)
@@ -17,9 +17,6 @@ from scipy.sparse import csc_array, diags_array, triu
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.solution import Status
 from bemcontact.errors import SolverError
-
-if TYPE_CHECKING:
-    import cvxpy as cp
 
 TOLERANCES = 1e-11, 1e-8
 """Asked of Clarabel one after the other: the second if the first cannot be reached."""
@@ -48,14 +45,12 @@ class _Scaling(NamedTuple):
     s: float = 1.0
 
 
-def minimize(
-    problem: "cp.Problem", max_iterations: int | None = None, *, equilibrate: bool = True, size: float = 1.0
-) -> Array:
+def minimize(problem: Any, max_iterations: int | None = None, *, equilibrate: bool = True, size: float = 1.0) -> Array:
     """Solve a cvxpy problem; its status and values are set as by its own `solve`, which has coarser tolerances.
 
     Parameters
     ----------
-    problem : convex, with cones that Clarabel knows
+    problem : cvxpy problem, convex, with cones that Clarabel knows
     max_iterations : of Clarabel, 200 if None
     equilibrate : whether to scale rows and columns; False for a dimensionless problem
     size : number by which all variables and right sides of a dimensionless problem are divided
@@ -77,7 +72,6 @@ def minimize(
         data, chain, inverse = problem.get_problem_data(cp.CLARABEL, solver_opts={})
     except cp.SolverError as error:
         raise SolverError(f"Clarabel cannot solve this model: {error}; state it without integers") from error
-    assert chain is not None
     scaled, scaling = _equilibrated(data) if equilibrate else _divided(data, size)
     ends = (_solve(scaled, tolerance, max_iterations or ITERATIONS) for tolerance in TOLERANCES)
     end = next((end for end in ends if str(end[0].status) not in FAILED), None)

@@ -90,7 +90,6 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
 
     Parameters
     ----------
-    contact : CondensedContact
     options : `max_iterations` limits the pivots of Lemke's method; the rest has no meaning here and must not be set
 
     Returns
@@ -134,7 +133,6 @@ def polish(contact: CondensedContact, solution: ContactSolution) -> ContactSolut
 
     Parameters
     ----------
-    contact : CondensedContact
     solution : of any formulation
 
     Returns
@@ -186,10 +184,6 @@ def standard_form(problem: ScaledContact) -> tuple[Array, Array, BoolArray]:
     then is nonsingular whatever M is, so that p_B and a can be expressed by δ_B and p elsewhere. On B pressure and gap
     change places. Rows are weighted by J: Δzᵀ Δw = Δpᵀ JM Δp on the equilibrium space, so that M' inherits
     semidefiniteness from sym(JM) there.
-
-    Parameters
-    ----------
-    problem : ScaledContact
 
     Returns
     -------

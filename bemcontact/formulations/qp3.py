@@ -67,12 +67,7 @@ def objective(problem: ScaledContact, J: Array) -> Objective:
 
     Parameters
     ----------
-    problem : ScaledContact
     J : (n, n) weights of the objective, scaled
-
-    Returns
-    -------
-    Objective
     """
     weighted, project, p0 = J @ problem.compliance, problem.projector, problem.balancing_pressure
     hessian = weighted + weighted.T
@@ -93,7 +88,6 @@ def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
 
     Parameters
     ----------
-    problem : ScaledContact
     J : (n, n) weights of the objective, scaled
 
     Returns
@@ -121,7 +115,6 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
 
     Parameters
     ----------
-    contact : CondensedContact
     options : weights of the objective, whether to polish, limit of Clarabel's iterations
 
     Returns
@@ -234,13 +227,8 @@ def nearly_convex(work: Objective, eigenvalue: float, weights: Weights) -> Objec
 
     Parameters
     ----------
-    work : Objective
     eigenvalue : `smallest_eigenvalue` of the problem, negative
     weights : of the objective
-
-    Returns
-    -------
-    Objective
 
     Raises
     ------

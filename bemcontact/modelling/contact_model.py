@@ -296,16 +296,7 @@ def ensure_convex(problem: cp.Problem) -> None:
 
 
 def typical_scales(condensed: CondensedContact) -> ContactScales:
-    """Displacement [L] and pressure [p] of the present state, or of a load case by itself, whichever is largest.
-
-    Parameters
-    ----------
-    condensed : CondensedContact
-
-    Returns
-    -------
-    ContactScales
-    """
+    """Displacement [L] and pressure [p] of the present state, or of a load case by itself, whichever is largest."""
     cases = condensed.cases
     steps = np.eye(len(cases)) - cases.factors
     states = [condensed, *(condensed.stepped(step, cases.position @ step, cases.force @ step) for step in steps)]

@@ -133,10 +133,6 @@ class SharedProfile:
         Parameters
         ----------
         touching : (loads, n)
-
-        Returns
-        -------
-        Piece or None
         """
         program = self._stated()
         sets = program.with_contact(touching)
@@ -195,10 +191,6 @@ class SharedProfile:
         Parameters
         ----------
         best : a value of the goal that is reached [p]
-
-        Returns
-        -------
-        Relaxation
         """
         U, T = self.scales
         program = self._stated()

@@ -238,12 +238,7 @@ def relieved(contact: CondensedContact, profile: Array) -> CondensedContact:
 
     Parameters
     ----------
-    contact : CondensedContact
     profile : (n,) g [L]
-
-    Returns
-    -------
-    CondensedContact
     """
     return replace(contact, initial_gap=contact.initial_gap + profile)
 

@@ -78,10 +78,6 @@ def taken_out(
     pressure, motions : of the model
     added : whether the problem is more than the contact problem
 
-    Returns
-    -------
-    ModelResult
-
     Raises
     ------
     ProblemError
@@ -114,10 +110,6 @@ def solution_at(
     contact : the contact problem with the present values of the parameters
     pressure, motions : of the model
     solver : name of the program that found them
-
-    Returns
-    -------
-    ContactSolution
     """
     p = np.array(pressure.value, float)
     a = np.zeros(0) if motions is None else np.array(motions.value, float)
@@ -140,10 +132,6 @@ def judged(contact: CondensedContact, solution: ContactSolution, *, added: bool)
     contact : the contact problem with the present values of the parameters
     solution : of the model
     added : whether the model is more than the contact problem
-
-    Returns
-    -------
-    ModelResult
     """
     found = residuals(contact, solution)
     certificate = certify(contact, solution, found, SEEN) if added else certify(contact, solution, found)

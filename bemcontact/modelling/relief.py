@@ -88,14 +88,9 @@ class Profiles:
 
         Parameters
         ----------
-        contact : CondensedContact
         relief : the bounds
         zone : name of the contact zone, which may be left out if there is one only
         arc : least and largest arc position of the interval [L], the whole zone if left out
-
-        Returns
-        -------
-        Profiles
 
         Raises
         ------

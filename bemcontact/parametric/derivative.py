@@ -170,10 +170,6 @@ class Tangent:
         ----------
         change : (q̇, ḟ), free of units
 
-        Returns
-        -------
-        Rate
-
         Raises
         ------
         ProblemError
