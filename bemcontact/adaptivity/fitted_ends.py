@@ -272,8 +272,8 @@ def _counted(run: ZoneRun, block: Sequence[_Part]) -> list[_Part]:
     left = max(max(stated, fair) - sum(counts), 0)
     rivals = list(range(len(block)))
     while left:
-        claim = [block[i].share / (counts[i] + 0.5) * (1 + 1e-6 * block[i].width / run.length) for i in rivals]
-        first = [i for i, own in zip(rivals, claim, strict=True) if own >= max(claim) * (1 - 1e-12)]
+        need = [block[i].share / (counts[i] + 0.5) * (1 + 1e-6 * block[i].width / run.length) for i in rivals]
+        first = [i for i, own in zip(rivals, need, strict=True) if own >= max(need) * (1 - 1e-12)]
         if len(first) > left and len(rivals) > len(first):
             rivals = [i for i in rivals if i not in first]
             continue

@@ -110,12 +110,12 @@ class Body:
         R, load = self.relative_load
         if not load.size:
             return None
-        found = linprog(
+        optimum = linprog(
             -R.sum(axis=0), A_ub=-R, b_ub=np.zeros(len(R)), A_eq=load[None, :], b_eq=[0.0], bounds=(-1.0, 1.0),
             options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
         )  # fmt: skip
-        idle = found.success and (R @ found.x).max() > IDLE
-        return self.seen.combined(found.x[:, None]).describe()[0] if idle else None
+        idle = optimum.success and (R @ optimum.x).max() > IDLE
+        return self.seen.combined(optimum.x[:, None]).describe()[0] if idle else None
 
     @property
     def notes(self) -> tuple[str, ...]:

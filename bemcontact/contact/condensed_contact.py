@@ -125,8 +125,8 @@ class CondensedContact(MotionAlgebra):
             "pinned.tools": (t, j), "pinned.turns": (j,), "pinned.magnitude": (1 + c,),
         }  # fmt: skip
         for key, shape in shapes.items():
-            if (found := attrgetter(key)(self).shape) != shape:
-                raise ProblemError(f"{key} has shape {found} where {shape} is needed; n = {n}, k = {k}")
+            if (stated := attrgetter(key)(self).shape) != shape:
+                raise ProblemError(f"{key} has shape {stated} where {shape} is needed; n = {n}, k = {k}")
 
     @classmethod
     def from_compliance(
@@ -244,8 +244,8 @@ class CondensedContact(MotionAlgebra):
             raise ProblemError(f"there is no load case '{unknown[0]}'; there are: {known}")
         if wrong := [name for name, factor in factors.items() if not isinstance(factor, Real) or not isfinite(factor)]:
             raise ProblemError(f"the factor of '{wrong[0]}' must be a finite number, found {factors[wrong[0]]!r}")
-        found = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
-        step = found - self.cases.factors
+        given = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
+        step = given - self.cases.factors
         return self.stepped(step, self.cases.position @ step, self.cases.force @ step).balanced()
 
     def with_tools(self, position: ArrayLike | None = None, force: ArrayLike | None = None) -> Self:
@@ -309,7 +309,7 @@ class CondensedContact(MotionAlgebra):
         unit, units = np.eye(1 + len(cases))[1:], np.eye(3 * len(tools))
         offsets = cases.displacement + tools.motions @ cases.position
         loads = cases.motion_load + tools.amplitudes.T @ cases.force
-        found = {
+        of_cases = {
             f"load_cases.{name}": Change(offset, load)
             for name, offset, load, alone, force in zip(
                 cases.names, offsets.T, loads.T, unit, cases.force.T, strict=True
@@ -317,7 +317,7 @@ class CondensedContact(MotionAlgebra):
             if pinned.complaint(alone, force) is None
         }
         moves = zip(tools.keys, np.where(tools.free, 0.0, tools.motions).T, tools.amplitudes, units, strict=True)
-        return found | {
+        return of_cases | {
             key: Change(offset, load)
             for key, offset, load, alone in moves
             if (offset.any() or load.any()) and pinned.complaint(np.zeros(1 + len(cases)), alone) is None

@@ -45,5 +45,5 @@ def _interference(offset: Array, rigid_motions: Array, widest: float) -> float:
         return deepest if deepest > ROUND_OFF * widest else 0.0
     columns = np.column_stack([rigid_motions, np.ones(n)])
     cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
-    found = linprog(cost, A_ub=-columns, b_ub=offset / widest, bounds=bounds)
-    return widest * found.fun if found.success and found.fun > INTERFERENCE else 0.0
+    optimum = linprog(cost, A_ub=-columns, b_ub=offset / widest, bounds=bounds)
+    return widest * optimum.fun if optimum.success and optimum.fun > INTERFERENCE else 0.0

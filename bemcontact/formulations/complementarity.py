@@ -80,9 +80,9 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
         motion_load=np.zeros(0),
         weights=np.ones(n),
     )
-    found = _search(problem, None)
-    z = found.end.pressure * T
-    return LcpResult(z=z, w=q + M @ z, status=found.status, iterations=found.iterations, method=found.method)
+    search = _search(problem, None)
+    z = search.end.pressure * T
+    return LcpResult(z=z, w=q + M @ z, status=search.status, iterations=search.iterations, method=search.method)
 
 
 def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
@@ -110,21 +110,21 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
     if note := escape_note(contact, problem):
         return _without_contact(contact, note)
     carried = replace(problem, motion_load=problem.motion_load - loose_load(problem))
-    found = _search(carried, options.max_iterations)
-    if found.status is Status.INFEASIBLE:
+    search = _search(carried, options.max_iterations)
+    if search.status is Status.INFEASIBLE:
         note = "the path of pivots ended on a ray that proves that no pressure will do"
         empty = _without_contact(contact, note)
-        return replace(empty, solver=found.method, iterations=found.iterations, history=found.history)
-    p, u_n, a = unscaled(contact, found.end.pressure, found.end.amplitudes)
+        return replace(empty, solver=search.method, iterations=search.iterations, history=search.history)
+    p, u_n, a = unscaled(contact, search.end.pressure, search.end.amplitudes)
     return ContactSolution(
         formulation=FormulationName.COMPLEMENTARITY,
-        solver=found.method,
-        status=found.status,
+        solver=search.method,
+        status=search.status,
         pressure=p,
         displacement=u_n,
         rigid_amplitudes=a,
-        iterations=found.iterations,
-        history=found.history,
+        iterations=search.iterations,
+        history=search.history,
     )
 
 

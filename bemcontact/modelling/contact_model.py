@@ -17,7 +17,7 @@ from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import minimize
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
 from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
-from bemcontact.modelling.model_result import ModelResult, judged, solution_at, taken_out
+from bemcontact.modelling.model_result import ModelResult, judged, read_back, solution_at
 from bemcontact.modelling.parameters import Parameters, Value
 from bemcontact.options import Weights
 
@@ -40,7 +40,7 @@ class ContactModel:
 
     Parameters
     ----------
-    condensed : what the model was made of
+    original : the contact problem that the model was made of
     parameters : what may change; `initial_gap`, `case_factors`, `tool_position` and `tool_force` are its own
     pressure : (n,) p [p], an expression
     motions : (k,) a, an expression; None without free motions
@@ -53,7 +53,7 @@ class ContactModel:
     notes : what a person should know
     """
 
-    condensed: CondensedContact
+    original: CondensedContact
     parameters: Parameters
     pressure: cp.Expression
     motions: cp.Expression | None
@@ -68,7 +68,7 @@ class ContactModel:
     def __repr__(self) -> str:
         """One line: name, points, what may change."""
         names = ", ".join(parameter.name() for parameter in self.objective.parameters())
-        return f"<ContactModel of {self.condensed.name!r}: {self.condensed.size} points; {names} may change>"
+        return f"<ContactModel of {self.original.name!r}: {self.original.size} points; {names} may change>"
 
     @property
     def initial_gap(self) -> cp.Parameter:
@@ -109,11 +109,11 @@ class ContactModel:
         ProblemError
             If there is no such zone.
         """
-        names = self.condensed.zone_names
+        names = self.original.zone_names
         if zone is not None and zone not in names:
             raise ProblemError(f"there is no contact zone '{zone}'; there are: {', '.join(names)}")
-        inside = np.ones(self.condensed.size, bool) if zone is None else self.condensed.zone == names.index(zone)
-        return self.condensed.forces(inside.astype(float)).T @ self.pressure
+        inside = np.ones(self.original.size, bool) if zone is None else self.original.zone == names.index(zone)
+        return self.original.forces(inside.astype(float)).T @ self.pressure
 
     @property
     def contact(self) -> CondensedContact:
@@ -141,8 +141,8 @@ class ContactModel:
             new problem.
         """
         if extra_objective is not None and not isinstance(extra_objective, cp.Expression | Real):
-            found = type(extra_objective).__name__
-            raise ProblemError(f"extra_objective is an expression, which is added to F3 and minimised; found {found}")
+            kind = type(extra_objective).__name__
+            raise ProblemError(f"extra_objective is an expression, which is added to F3 and minimised; found {kind}")
         if isinstance(extra_constraints, cp.Constraint):
             raise ProblemError("extra_constraints is a list of constraints; put the one that is given into brackets")
         goal = self.objective if extra_objective is None else self.objective + extra_objective
@@ -189,8 +189,8 @@ class ContactModel:
         if problem is not None and added:
             raise ProblemError("give either a problem that was made before, or what is to be added, not both")
         chosen = problem or (self.problem(extra_objective, extra_constraints) if added else self._pure)
-        if chosen is self._pure and (found := self._from_last()) is not None:
-            return found
+        if chosen is self._pure and (result := self._from_last()) is not None:
+            return result
         minimize(chosen, max_iterations)
         return self.result(chosen)
 
@@ -199,15 +199,15 @@ class ContactModel:
         if self.pressure.value is None:
             return None
         contact, motions = self.contact, self.motions
-        found = judged(contact, polish(contact, solution_at(contact, self.pressure, motions, ACTIVE_SET)), added=False)
-        solution, certificate = found.solution, found.certificate
+        result = judged(contact, polish(contact, solution_at(contact, self.pressure, motions, ACTIVE_SET)), added=False)
+        solution, certificate = result.solution, result.certificate
         if solution is None or certificate is None or not certificate.certified:
             return None
         U, T = self.scales
         self.pressure.variables()[0].value = solution.pressure / T
         if motions is not None:
-            motions.variables()[0].value = solution.rigid_amplitudes * (motion_sizes(self.condensed) / U)
-        return found
+            motions.variables()[0].value = solution.rigid_amplitudes * (motion_sizes(self.original) / U)
+        return result
 
     def result(self, problem: cp.Problem) -> ModelResult:
         """Take everything out of a problem that has been solved, and judge it at the present values of the parameters.
@@ -227,7 +227,7 @@ class ContactModel:
         """
         parts = zip(problem.constraints, self.constraints.values(), strict=False)
         pure = len(problem.constraints) == len(self.constraints) and all(one is other for one, other in parts)
-        return taken_out(
+        return read_back(
             self.contact,
             problem,
             self.pressure,
@@ -264,7 +264,7 @@ def model(contact: CondensedContact) -> ContactModel:
     balance = {} if a is None else {"equilibrium": problem.equilibrium.T @ p == -load}
     motions = None if a is None else cp.multiply(U / sizes, a)
     return ContactModel(
-        condensed=contact,
+        original=contact,
         parameters=given,
         pressure=T * p,
         motions=motions,
@@ -295,13 +295,13 @@ def ensure_convex(problem: cp.Problem) -> None:
     )
 
 
-def typical_scales(condensed: CondensedContact) -> ContactScales:
+def typical_scales(contact: CondensedContact) -> ContactScales:
     """Displacement [L] and pressure [p] of the present state, or of a load case by itself, whichever is largest."""
-    cases = condensed.cases
+    cases = contact.cases
     steps = np.eye(len(cases)) - cases.factors
-    states = [condensed, *(condensed.stepped(step, cases.position @ step, cases.force @ step) for step in steps)]
-    told = [state for state in states if state.offset.any() or state.motion_load.any()]
-    return max((state.scales for state in told), default=condensed.scales)
+    states = [contact, *(contact.stepped(step, cases.position @ step, cases.force @ step) for step in steps)]
+    acting = [state for state in states if state.offset.any() or state.motion_load.any()]
+    return max((state.scales for state in acting), default=contact.scales)
 
 
 def _convex_hessian(problem: ScaledContact) -> tuple[Array, tuple[str, ...]]:

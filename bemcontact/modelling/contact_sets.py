@@ -165,8 +165,8 @@ class SharedProfile:
             minimize(cp.Problem(goal, [*program.constraints, *sets.constraints, as_good]))
         except SolverError:
             return piece
-        found = None if program.top.value is None else self._piece(program, piece.touching, sets.promise())
-        return found if found is not None and found.value <= piece.value + 2 * ROOM * abs(piece.value) else piece
+        gentler = None if program.top.value is None else self._piece(program, piece.touching, sets.promise())
+        return gentler if gentler is not None and gentler.value <= piece.value + 2 * ROOM * abs(piece.value) else piece
 
     def _piece(self, program: "_Program", touching: BoolArray, promise: Array) -> Piece:
         """Take the numbers out of a program that has been solved."""
@@ -249,10 +249,10 @@ class _Sets(NamedTuple):
 
     def promise(self) -> Array:
         """What turning a point would gain, to first order, (loads, n); minus infinity off the edge of contact."""
-        found = np.full(self.shape, -np.inf)
+        gains = np.full(self.shape, -np.inf)
         for load, points, zero, signed in self.sides:
-            found[load, points] = np.where(value_of(signed) <= WEAK, np.asarray(zero.dual_value, float), -np.inf)
-        return found
+            gains[load, points] = np.where(value_of(signed) <= WEAK, np.asarray(zero.dual_value, float), -np.inf)
+        return gains
 
 
 class _Program(NamedTuple):

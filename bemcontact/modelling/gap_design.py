@@ -144,12 +144,12 @@ def _solved(contact: CondensedContact, profile: Array) -> LoadState:
     solution = complementarity.solve(there)
     if solution.status is not Status.SOLVED:
         raise ProblemError(f"a load state has no contact state: {' '.join((solution.status.value, *solution.notes))}")
-    found = residuals(there, solution)
+    recomputed = residuals(there, solution)
     return LoadState(
         contact=there,
         solution=solution,
-        residuals=found,
-        certificate=certify(there, solution, found),
+        residuals=recomputed,
+        certificate=certify(there, solution, recomputed),
         footprint=footprint(there, solution),
     )
 
@@ -197,9 +197,9 @@ def _corner(profiles: Profiles, direction: Array) -> Array:
 def _state(states: Sequence[CondensedContact], profile: Array) -> tuple[list[Array], BoolArray]:
     """Pressure (n,) [p] of each state with a profile, and the contact sets (loads, n)."""
     contacts = [relieved(state, profile) for state in states]
-    found = [complementarity.solve(contact) for contact in contacts]
-    sets = [one.touching(two.pressure, two.displacement) for one, two in zip(contacts, found, strict=True)]
-    return [solution.pressure for solution in found], np.array(sets)
+    solutions = [complementarity.solve(contact) for contact in contacts]
+    sets = [one.touching(two.pressure, two.displacement) for one, two in zip(contacts, solutions, strict=True)]
+    return [solution.pressure for solution in solutions], np.array(sets)
 
 
 def _value(piece: Piece) -> float:
@@ -238,7 +238,7 @@ def _next(shared: SharedProfile, piece: Piece) -> Piece | None:
         touching = piece.touching.copy()
         for load, point in turned:
             touching[load, point] ^= True
-        found = shared.best_with(touching)
-        if found is not None and found.value < piece.value - GAIN * abs(piece.value):
-            return found
+        better = shared.best_with(touching)
+        if better is not None and better.value < piece.value - GAIN * abs(piece.value):
+            return better
     return None

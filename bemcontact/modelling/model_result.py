@@ -61,7 +61,7 @@ class ModelResult:
         return f"<ModelResult: {self.words}>"
 
 
-def taken_out(
+def read_back(
     contact: CondensedContact,
     problem: cp.Problem,
     pressure: cp.Expression,
@@ -96,8 +96,8 @@ def taken_out(
         iterations=int(statistics.num_iters or 0),
         notes=("the tolerance asked of the solver was not reached",) if problem.status == INACCURATE else (),
     )
-    found = judged(contact, solution if added else polish(contact, solution), added=added)
-    return replace(found, objective=float(value)) if added else found
+    result = judged(contact, solution if added else polish(contact, solution), added=added)
+    return replace(result, objective=float(value)) if added else result
 
 
 def solution_at(
@@ -133,12 +133,12 @@ def judged(contact: CondensedContact, solution: ContactSolution, *, added: bool)
     solution : of the model
     added : whether the model is more than the contact problem
     """
-    found = residuals(contact, solution)
-    certificate = certify(contact, solution, found, SEEN) if added else certify(contact, solution, found)
+    recomputed = residuals(contact, solution)
+    certificate = certify(contact, solution, recomputed, SEEN) if added else certify(contact, solution, recomputed)
     gap = contact.initial_gap + solution.displacement
     return ModelResult(
         status=solution.status,
-        words=_words(solution.status, certificate, found, added=added),
+        words=_words(solution.status, certificate, recomputed, added=added),
         contact_state=not certificate.complaint,
         objective=float(contact.weights @ (solution.pressure * gap)),
         pressure=solution.pressure,
@@ -146,7 +146,7 @@ def judged(contact: CondensedContact, solution: ContactSolution, *, added: bool)
         motions=solution.rigid_amplitudes,
         tool_displacement=contact.tools.displacement(solution.rigid_amplitudes),
         solution=solution,
-        residuals=found,
+        residuals=recomputed,
         certificate=certificate,
     )
 
@@ -156,8 +156,8 @@ def _ensure_of_the_model(problem: cp.Problem, pressure: cp.Expression) -> None:
     variable = pressure.variables()[0]
     if variable.id not in {own.id for own in problem.variables()}:
         raise ProblemError("the problem does not contain the pressure of this model; build it from the model's parts")
-    found = None if problem.solution is None else problem.solution.primal_vars.get(variable.id)
-    same = found is None if variable.value is None else found is not None and np.array_equal(found, variable.value)
+    solved = None if problem.solution is None else problem.solution.primal_vars.get(variable.id)
+    same = solved is None if variable.value is None else solved is not None and np.array_equal(solved, variable.value)
     if not same:
         raise ProblemError("another problem of this model was solved since; take a result out right after its solve")
 
@@ -177,7 +177,7 @@ def _without_optimum(contact: CondensedContact, status: Status, *, added: bool) 
             return f"No optimum was found: the solver {status.value}."
 
 
-def _words(status: Status, certificate: Certificate, found: Residuals, *, added: bool) -> str:
+def _words(status: Status, certificate: Certificate, recomputed: Residuals, *, added: bool) -> str:
     """The verdict."""
     cut = "" if status is Status.SOLVED else f" The solver {status.value}."
     if certificate.complaint and added:
@@ -185,6 +185,6 @@ def _words(status: Status, certificate: Certificate, found: Residuals, *, added:
     if added:
         return (
             "What was added leaves a contact state, to the solver's tolerance (residual of complementarity "
-            f"{found.complementarity:.1e}).{cut}"
+            f"{recomputed.complementarity:.1e}).{cut}"
         )
     return f"{certificate.words}{cut}"

@@ -137,8 +137,8 @@ class Tangent:
             if self.weak.size < free.shape[1]:
                 raise ProblemError(NOT_HELD)
             seen = (self.contact.rigid_motions[self.weak] @ free).T
-            found = qr(seen, mode="r", pivoting=True)
-            triangle, order = np.asarray(found[0]), np.asarray(found[-1])
+            factors = qr(seen, mode="r", pivoting=True)
+            triangle, order = np.asarray(factors[0]), np.asarray(factors[-1])
             sizes = np.abs(np.diag(triangle))
             if sizes.min() <= RANK:
                 raise ProblemError(NOT_HELD)

@@ -50,8 +50,8 @@ class PathState:
 
     def ends(self, zone: str) -> tuple[list[float], list[float]]:
         """Arc positions of the starts and ends of the intervals of a zone [L]."""
-        found = [item for item in self.footprint.intervals if item.zone == zone]
-        return [item.start_arc for item in found], [item.end_arc for item in found]
+        intervals = [item for item in self.footprint.intervals if item.zone == zone]
+        return [item.start_arc for item in intervals], [item.end_arc for item in intervals]
 
     def to_dict(self) -> dict[str, Any]:
         """Give it as numbers and lists, ready for JSON."""
@@ -87,8 +87,8 @@ class ParameterPath:
     def __repr__(self) -> str:
         """One line: key, values, the path."""
         counts = f"{len(self.path.parameter)} breakpoints, {self.path.pivots} pivots"
-        told = "".join(f"; {note}" for note in self.notes)
-        return f"<ParameterPath of {self.key} from {self.start:g} to {self.end:g}: {counts}{told}>"
+        notes = "".join(f"; {note}" for note in self.notes)
+        return f"<ParameterPath of {self.key} from {self.start:g} to {self.end:g}: {counts}{notes}>"
 
     @property
     def contact(self) -> CondensedContact:
@@ -114,7 +114,7 @@ class ParameterPath:
     def notes(self) -> tuple[str, ...]:
         """What a person should know of the path."""
         begin, end = self.reaches
-        return self.path.told(f"{begin:.6g}", f"{end:.6g}")
+        return self.path.notes_between(f"{begin:.6g}", f"{end:.6g}")
 
     @cached_property
     def states(self) -> tuple[PathState, ...]:

@@ -92,9 +92,9 @@ class LoadPath:
     @property
     def notes(self) -> tuple[str, ...]:
         """What a person should know of the path."""
-        return self.told(f"{self.begins_at:.6g}", f"{self.ends_at:.6g}")
+        return self.notes_between(f"{self.begins_at:.6g}", f"{self.ends_at:.6g}")
 
-    def told(self, begin: str, end: str) -> tuple[str, ...]:
+    def notes_between(self, begin: str, end: str) -> tuple[str, ...]:
         """Say what a person should know, in a sentence each, of a path from `begin` to `end`."""
         where = f"from {begin} on" if self.begins_at > 0.0 else f"up to {end}"
         early = f"the path is there {where}; beyond, {self.note}" if self.note else ""
@@ -112,8 +112,8 @@ class LoadPath:
 
     def _changed(self, masks: BoolArray) -> tuple[tuple[int, ...], ...]:
         """Indices of points at the breakpoints between the first and the last."""
-        found = (tuple(np.flatnonzero(mask).tolist()) for mask in masks)
-        return ((), *found, ())[: len(self.parameter)]
+        changed = (tuple(np.flatnonzero(mask).tolist()) for mask in masks)
+        return ((), *changed, ())[: len(self.parameter)]
 
     @property
     def pivots(self) -> int:
@@ -147,8 +147,8 @@ class LoadPath:
         first, last = self.start, self.end
 
         def between(one: Array, other: Array) -> Array:
-            found = (1 - t) * one + t * other
-            return np.where(np.abs(found) <= CANCELLED * np.maximum(np.abs(one), np.abs(other)), 0.0, found)
+            value = (1 - t) * one + t * other
+            return np.where(np.abs(value) <= CANCELLED * np.maximum(np.abs(one), np.abs(other)), 0.0, value)
 
         load = between(first.motion_load, last.motion_load)
         largest = np.abs([first.motion_load, last.motion_load]).max(initial=0.0)
@@ -268,8 +268,8 @@ def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:
     """
     for given in (start, end):
         if not isinstance(given, CondensedContact):
-            found = type(given).__name__
-            raise ProblemError(f"a path leads between two CondensedContact, which condense makes; found {found}")
+            kind = type(given).__name__
+            raise ProblemError(f"a path leads between two CondensedContact, which condense makes; found {kind}")
     ensure_same_body(start, end)
     trail, note = _followed(start, end)
     if trail is None or len(trail.states) == 1:
@@ -323,15 +323,15 @@ def _path(start: CondensedContact, end: CondensedContact, trail: Trail, note: st
     """Put units back, and t in ascending order."""
     unit, order = measure(start, end), slice(None, None, -1 if backwards else 1)
     states = trail.states[order]
-    found = [unscaled(unit, state.pressure, state.amplitudes) for state in states]
+    points = [unscaled(unit, state.pressure, state.amplitudes) for state in states]
     s = np.array([state.s for state in states])
     return LoadPath(
         start=start,
         end=end,
         parameter=1.0 - s if backwards else s,
-        pressure=np.array([pressure for pressure, _, _ in found]),
+        pressure=np.array([pressure for pressure, _, _ in points]),
         gap=np.array([state.gap for state in states]) * unit.scales.displacement,
-        rigid_amplitudes=np.array([amplitudes for _, _, amplitudes in found]),
+        rigid_amplitudes=np.array([amplitudes for _, _, amplitudes in points]),
         touching=np.array(trail.touching[order], bool).reshape(-1, start.size),
         unique=trail.unique,
         note=note,

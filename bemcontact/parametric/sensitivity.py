@@ -137,8 +137,8 @@ class Sensitivities:
 
     def __repr__(self) -> str:
         """One line: keys, and what is to be known."""
-        told = "".join(f"; {note}" for note in self.notes)
-        return f"<Sensitivities to {', '.join(self.each) or 'nothing'}{told}>"
+        notes = "".join(f"; {note}" for note in self.notes)
+        return f"<Sensitivities to {', '.join(self.each) or 'nothing'}{notes}>"
 
     def to_dict(self) -> dict[str, Any]:
         """Give all of them as numbers, lists and texts, ready for JSON."""
@@ -309,6 +309,6 @@ def _at_rest(contact: CondensedContact, state: ContactSolution) -> Iterator[str]
 
 def _placed(contact: CondensedContact, points: IntArray) -> str:
     """Name points by number and place."""
-    told = [f"{i} at ({x:g}, {y:g})" for i, (x, y) in zip(points, contact.points[points], strict=True)]
-    more = f" and {len(told) - NAMED} more" if len(told) > NAMED else ""
-    return f"{'points' if len(points) > 1 else 'point'} {', '.join(told[:NAMED])}{more}"
+    places = [f"{i} at ({x:g}, {y:g})" for i, (x, y) in zip(points, contact.points[points], strict=True)]
+    more = f" and {len(places) - NAMED} more" if len(places) > NAMED else ""
+    return f"{'points' if len(points) > 1 else 'point'} {', '.join(places[:NAMED])}{more}"
