@@ -12,13 +12,13 @@ from bemcontact.arrays import Array
 from bemcontact.problem.element_ends import cubic_ends, moved_onto
 
 CONTACT_SHARE = 2.0
-"""Elements on the side of a contact edge that is in contact, to those on the open side, where this is no longer."""
+"""Ratio of the elements on the contact side of a contact edge to those on the open side, if this is no longer."""
 SHORTEST = 5e-4
 """Least element, over the shortest side in contact: shorter ones gain little, and cost digits of the certificate."""
 SHORTEST_OF_RUN = 1e-6
 """Least element over the length of the run: element ends that are nearer to each other are refused."""
 LEAST_TOUCHED, LEAST_OPEN = 4, 3
-"""Elements on each side of a contact edge, stated or not: with three in contact its place swings from pass to pass."""
+"""Least elements on each side of a contact edge: with three in contact its place alternates from pass to pass."""
 CLOSE = 1e-2
 """Distance from the end of a run, or from a joint, that is not resolved by elements, over the mean length of these, or
 over the contact that ends there if it is shorter."""
@@ -30,7 +30,7 @@ GROWTH = 1.5
 
 @dataclass(frozen=True, kw_only=True)
 class _Part:
-    """What lies between two marks: ends of contact, of the run, corners; free ones are graded to."""
+    """A part between two marks (ends of contact, ends of the run, corners); elements are graded towards free ones."""
 
     low: float
     high: float
@@ -56,7 +56,7 @@ class _Part:
 
 
 def resolved(run: ZoneRun, touched: Sequence[Touched]) -> tuple[Touched, ...]:
-    """Move contact edges that are all but at a joint, or at an end of the run, onto it."""
+    """Move contact edges that are very near to a joint, or to an end of the run, onto it."""
 
     def settle(position: float, free: bool, width: float) -> tuple[float, bool]:
         close = CLOSE * min(run.length / (len(run.ends) - 1), width)
@@ -173,7 +173,7 @@ def halved(ends: Array, neighbour: float, at: int) -> Array:
 
 
 def half_way(run: ZoneRun, one: Sequence[Touched], other: Sequence[Touched]) -> tuple[Touched, ...]:
-    """Stretches between two lots of them; the second lot if they are not as many, or end in other ways."""
+    """Mean of two lists of stretches; the second list if they differ in number or in the kind of their ends."""
     kinds = [[(item.start_free, item.end_free) for item in lot] for lot in (one, other)]
     if kinds[0] != kinds[1]:
         return tuple(other)
@@ -190,7 +190,7 @@ def _free_ends(touched: Sequence[Touched]) -> list[float]:
 
 
 def _along(run: ZoneRun, start: float, end: Array | float) -> Array:
-    """How far one has to go from one position to others, the shorter way round if the run is closed."""
+    """Distance from one position to others, the shorter way round if the run is closed."""
     way = np.asarray(end) - start
     return way - run.length * np.round(way / run.length) if run.closed else way
 

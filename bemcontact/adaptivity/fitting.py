@@ -110,7 +110,7 @@ def fitted(problem: Problem, progress: Callable[[str], object] | None = None) ->
 
 
 def _unrest(trial: _Trial) -> float:
-    """How far a mesh is from the one that it asks for."""
+    """Distance of a mesh from the one that its solution asks for; infinite if unknown."""
     return np.inf if trial.movement is None else trial.movement
 
 
@@ -141,7 +141,7 @@ def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_T
 
 
 def _aim(stated: Mapping[int, ZoneRun], trials: Sequence[_Trial]) -> Stretches:
-    """Stretches of contact to fit to next: half-way to those found where the ends of contact only swing to and fro."""
+    """Stretches of contact for the next mesh; half-way to the computed ones if the ends of contact only alternate."""
     last = trials[-1]
     if len(trials) < 3 or last.narrow or not _unrest(trials[-2]) / 2 <= _unrest(last) <= SWING:
         return last.touched
@@ -204,7 +204,7 @@ def _trial(body: Body, placed: ElementEnds, stated: Mapping[int, ZoneRun], fitte
 
 
 def _notes(trials: Sequence[_Trial], kept: int, refine: int) -> Iterator[str]:
-    """Say how many meshes it took, what moved, and what did not settle."""
+    """Notes on the number of meshes, on what moved, and on what did not settle."""
     yield from _fit_notes(trials[0], trials[kept], kept, refine) if kept else _no_fit_notes(trials)
     for zone in trials[kept].narrow:
         yield f"contact in {zone} is narrower than an element: its pressure and its width are those of the mesh"
@@ -215,7 +215,7 @@ def _notes(trials: Sequence[_Trial], kept: int, refine: int) -> Iterator[str]:
 
 
 def _fit_notes(first: _Trial, last: _Trial, passes: int, refine: int) -> Iterator[str]:
-    """Say what a fitted mesh is like."""
+    """Notes on a fitted mesh."""
     cut = f", before each was cut into {refine}" if refine > 1 else ""
     elements = f"it has {last.elements} elements where {first.elements} were stated{cut}"
     done = f"mesh fitted to the ends of contact in {passes} pass{'es' * (passes > 1)}"
@@ -227,7 +227,7 @@ def _fit_notes(first: _Trial, last: _Trial, passes: int, refine: int) -> Iterato
 
 
 def _no_fit_notes(trials: Sequence[_Trial]) -> Iterator[str]:
-    """Say why the mesh is as stated."""
+    """Notes on why the mesh is as stated."""
     first, largest = trials[0], max(trial.oscillation or 0.0 for trial in trials)
     if first.settled and first.touched:
         yield "the mesh fits the ends of contact already"
@@ -249,7 +249,7 @@ def _no_fit_notes(trials: Sequence[_Trial]) -> Iterator[str]:
 
 
 def _changed(first: _Trial, last: _Trial) -> Iterator[str]:
-    """Say if the peak pressure, or the force on a zone, is another one on the fitted mesh."""
+    """Notes on a peak pressure, or a force on a zone, that differs on the fitted mesh."""
     pairs = {"peak pressure": (first.peak, last.peak)}
     pairs |= {f"force on {zone}": (force, last.forces[zone]) for zone, force in first.forces.items()}
     for name, (before, after) in pairs.items():
@@ -261,7 +261,7 @@ def _changed(first: _Trial, last: _Trial) -> Iterator[str]:
 
 
 def _moved(before: Sequence[ContactInterval], after: Sequence[ContactInterval]) -> Iterator[str]:
-    """Say from where to where each end of contact moved, where the intervals are still the same."""
+    """Notes on how far each end of contact moved, if the intervals are still the same."""
     if [item.zone for item in before] != [item.zone for item in after]:
         return
     for old, new in zip(before, after, strict=True):

@@ -17,7 +17,7 @@ from bemcontact.problem.curves import Edge
 CORNER = 0.2
 """Sine of the angle by which the boundary turns from which a joint of two edges is a corner."""
 SAME = 1e-12
-"""Difference of two positions over the length of the run below which they are one."""
+"""Difference of two positions, over the length of the run, below which they are equal."""
 POINTS_OF_ELEMENT = 3
 
 
@@ -48,7 +48,7 @@ class ZoneRun:
 
     @property
     def length(self) -> float:
-        """Of all edges [L]."""
+        """Length of all edges [L]."""
         return float(self.joints[-1])
 
     @cached_property

@@ -29,12 +29,12 @@ from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
 
 IDLE = 1e-7
-"""Normal displacement in a motion that opens gaps, over that of the motion, from which it is one."""
+"""Least normal displacement, over that of the motion, of a motion that opens gaps."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
-    """A problem on its mesh, before it is condensed: what is known, where contact may be, what may move rigidly.
+    """A problem on its mesh, before it is condensed: boundary values, contact points, rigid motions.
 
     Parameters
     ----------
@@ -57,13 +57,13 @@ class Body:
 
     @cached_property
     def factors(self) -> Array:
-        """By how much each loading (1 + c,) acts."""
+        """Factors of the loadings (1 + c,)."""
         named = self.problem.factors()
         return np.array([1.0, *(named.get(case, 0.0) for case in self.problem.load_cases)])
 
     @cached_property
     def acting(self) -> Loading:
-        """What acts on the body."""
+        """The loading that acts on the body."""
         return combined(self.loadings, self.factors.tolist())
 
     def motion_load(self, motions: FreeMotions) -> Array:
@@ -73,7 +73,7 @@ class Body:
 
     @cached_property
     def pinned(self) -> Pinned:
-        """The motions that no contact point sees, with true loads: whether they balance is no matter of the mesh."""
+        """The motions that move no contact point, with the true loads: their balance does not depend on the mesh."""
         motions = self.unseen.in_user_units()
         return Pinned(
             motions=tuple(f"{motions.who(j)} against the {motions.way(j)}" for j in range(len(motions))),
@@ -86,11 +86,11 @@ class Body:
 
     @cached_property
     def forces(self) -> Array:
-        """What the tools (3 t,) are loaded by."""
+        """Forces on the tools (3 t,)."""
         return self.tools.force @ self.factors
 
     def normal_motion(self, motions: FreeMotions) -> Array:
-        """R (n, k): what free motions add to the gaps."""
+        """R (n, k): change of the gaps in free motions."""
         return motions.body.along_normals(self.points) + self.tools.motions @ motions.tools
 
     @cached_property
@@ -119,7 +119,7 @@ class Body:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was decided and should be known."""
+        """Decisions that a user should know."""
         pinned = tuple(
             f"the {motion} is seen by no contact point and loaded by nothing: {_pinned(self.unseen.who(j))} against it"
             for j, motion in enumerate(self.unseen.describe())
@@ -130,7 +130,7 @@ class Body:
 
 
 def _pinned(who: str) -> str:
-    """Tell who is pinned."""
+    """Say who is pinned."""
     return "they are pinned" if who.endswith(" together") else f"{who} is pinned"
 
 
@@ -181,7 +181,7 @@ def ensure_held(body: Body) -> None:
 
 
 def _check_support(body: Body) -> None:
-    """Refuse loads that no pressure p >= 0 can balance, and what nothing presses on."""
+    """Refuse loads that no pressure p >= 0 can balance, and a body that no load presses on."""
     R, load = body.relative_load
     forces, residual = nnls(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
     if residual > BALANCED:
@@ -200,7 +200,7 @@ def _check_support(body: Body) -> None:
 
 
 def _against(motions: FreeMotions) -> str:
-    """What is free to move, and how: the body against one motion and another, and a tool against a third."""
+    """Describe who is free to move, and how: the body against one motion and another, and a tool against a third."""
     ways: dict[str, list[str]] = {}
     for j in range(len(motions)):
         ways.setdefault(motions.who(j), []).append(f"the {motions.way(j)}")

@@ -22,7 +22,7 @@ from bemcontact.contact.tools import Tools
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Condensation:
-    """A condensed body, and what it takes to find the whole boundary again from a pressure.
+    """A condensed body, with the response from which the whole boundary follows for a pressure.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Condensation:
     gauge: Gauge
 
     def acting(self, case: str | None = None) -> "Condensation":
-        """The same body with the load case or combination that acts, or another; `ProblemError` as of `body_of`."""
+        """The body under the load case or combination that acts, or another one; `ProblemError` as of `body_of`."""
         problem = self.body.problem if case is None else self.body.problem.with_case(case)
         if problem.case is None:
             return self
@@ -52,7 +52,7 @@ class Condensation:
 
     @property
     def factors(self) -> Array:
-        """By how much each loading (1 + c,) acts."""
+        """Factors of the loadings (1 + c,)."""
         return np.append(1.0, self.contact.cases.factors)
 
 
@@ -201,7 +201,7 @@ def _force_balance(condensation: Condensation, traction: Array) -> float:
 
 
 def _slack(condensation: Condensation, scaled: Array) -> float:
-    """Border unknowns of the solution over the sum of what loads and pressures put there each by themselves."""
+    """Border unknowns of the solution, over the sum of the magnitudes that each load and pressure contributes."""
     slack = condensation.response[condensation.system.unknowns.size :]
     if len(slack) == 0:
         return 0.0

@@ -65,7 +65,7 @@ class ContactPoints:
 
     @classmethod
     def none(cls, mesh: Mesh) -> Self:
-        """No points: a body that touches nothing."""
+        """No points, for a body that touches nothing."""
         none, numbers = np.zeros(0), np.zeros(0, int)
         return cls(
             mesh=mesh, node=numbers, zone=numbers, run=numbers, arc_position=none, run_length=none,
@@ -84,7 +84,7 @@ class ContactPoints:
 
     @cached_property
     def element_length(self) -> Array:
-        """(n,) [L]: length of the element, the mean of the two where a node has two; [SS92] (26) read word for word."""
+        """(n,) [L]: length of the element, the mean of the two where a node has two; [SS92] (26) taken literally."""
         lengths = element_lengths(self.mesh)[self.element]
         return np.bincount(self.point, lengths, len(self)) / np.bincount(self.point, minlength=len(self))
 
@@ -198,7 +198,7 @@ class _Piece(NamedTuple):
 
 
 def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
-    """String all runs together and find the (element, local node) pairs of every point."""
+    """Join all runs, and find the (element, local node) pairs of every point."""
     sizes = [len(piece.nodes) for piece in pieces]
     node, normals, gap = (
         np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("nodes", "normals", "gap")

@@ -79,7 +79,7 @@ class Block:
     F : (4, N, R) by components in the order of `kernels.T_ORDER`; multiplies displacement at the nodes
     G : (3, 3, e, R) by components in the order of `kernels.U_ORDER`; multiplies traction times Jacobian at the three
         local nodes of the elements that `Influence` was asked for
-    known : (s, 2, R) what each of the tractions does that `Influence` was told, along x and y
+    known : (s, 2, R) displacement along x and y due to each of the known tractions of `Influence`
     """
 
     rows: slice
@@ -89,7 +89,7 @@ class Block:
 
 
 class _Space(NamedTuple):
-    """Room for F and G of a block, used again for the next: fresh memory costs as much as filling it."""
+    """Memory for F and G of a block, reused for the next one, because new memory costs as much as filling it."""
 
     F: Array
     G: Array
@@ -127,7 +127,7 @@ class Influence:
 
     @cached_property
     def _known(self) -> Array:
-        """The same (s, 2, 3, m)."""
+        """`known` as (s, 2, 3, m)."""
         return self.known.transpose(0, 3, 2, 1) if len(self.known) else np.zeros((0, 2, 3, len(self.mesh.elements)))
 
     @cached_property
@@ -196,7 +196,7 @@ class Influence:
         return _Space(np.empty(4 * len(self.nodes) * size), np.empty(9 * len(self.traction_elements) * size))
 
     def _block(self, collocation: Collocation, rows: slice, space: _Space) -> Block:
-        """The same in a given space, which the result keeps."""
+        """Rows of F and G in given memory, which the result keeps."""
         origin = collocation.base[rows.start]  # the digits of short elements are in differences to nodes of their own
         z = (collocation.base[rows] - origin) + collocation.offset[rows]
         nodes = self.element_nodes - origin
@@ -231,7 +231,7 @@ class Influence:
 
     @cached_property
     def _far_sums(self) -> compiled.FarSums | None:
-        """The machine code, if there is any and it is wanted."""
+        """The compiled function, if there is one and it is wanted."""
         large = self.mesh.degrees_of_freedom >= WORTH_COMPILING
         return compiled.far_sums() if (large if self.by_numba is None else self.by_numba) else None
 
@@ -268,7 +268,7 @@ class Influence:
         )  # fmt: skip
 
     def _far_by_products(self, block: Block, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice) -> None:
-        """The same by products of matrices, a cacheful at a time."""
+        """Every point with every element of a run by products of matrices, in parts that fit into the cache."""
         rule, tangent = self._rules[tier]
         middle, _ = disc(z)
         zeta = rule.shapes.T @ (nodes - middle).T
@@ -342,7 +342,7 @@ class Influence:
 
 
 def _places(of: IntArray, count: int) -> IntArray:
-    """Where each of so many things stands in a list of some, -1 if nowhere."""
+    """Place of each of `count` items in a list of some of them, -1 if it is not there."""
     places = np.full(count, -1)
     places[of] = np.arange(len(of))
     return places

@@ -33,10 +33,10 @@ from bemcontact.bem.reference_element import (
 )
 
 SMOOTH_ORDER = 24
-"""Gauss points for what is left when the near root has been split off."""
+"""Gauss points for the smooth remainder after the near root has been split off."""
 
 SMOOTH_RHO = 2.0
-"""Bernstein parameter that the second root must have for that: 2^-48 < 1e-14."""
+"""Bernstein parameter that the second root needs for the remainder: 2^-48 < 1e-14."""
 
 
 class Integrals(NamedTuple):
@@ -61,11 +61,11 @@ class Components(NamedTuple):
 T_ORDER = ((0, 0), (1, 1), (0, 1), (1, 0))
 """Equation and displacement component of each entry of T."""
 U_ORDER = ((0, 0), (1, 1), (0, 1))
-"""The same of U, which is symmetric."""
+"""Equation and traction component of each entry of U, which is symmetric."""
 
 
 class Factors(NamedTuple):
-    """What multiplies the integrals, with κ = 3 - 4ν, c = 1/(8π(1-ν)), stresses over the shear modulus.
+    """Factors of the integrals, with κ = 3 - 4ν, c = 1/(8π(1-ν)), stresses over the shear modulus.
 
     T_xx, T_yy = normal Im A ∓ skew Re S, T_xy, T_yx = ∓tangential Re A - skew Im S with B = 2i S;
     U_xx, U_yy = -log L + turn (w ± Re M), U_xy = turn Im M.
@@ -137,7 +137,7 @@ def numerators(tau: ComplexArray, tangent: ComplexArray) -> Array:
 
 
 def numerator_polynomials(zeta: ComplexArray, tangent: ComplexArray) -> Array:
-    """The same as polynomials in the point z: coefficients (6, 5, n, e) at Gauss points ζ, ζ' (n, e) of e elements.
+    """`numerators` as polynomials in the point z: coefficients (6, 5, n, e) at Gauss points ζ, ζ' (n, e) of e elements.
 
     Their product with `point_powers` is every pair of an element and a point. With ζ and z counted from the middle of
     the points, elements farther away from all points than half their radius lose one digit.
@@ -157,7 +157,7 @@ def point_powers(z: ComplexArray) -> Array:
 
 
 def regular(integrands: Array, rule: GaussRule, factor: Factors, *, with_U: bool) -> Components:
-    """Gauss's rule, for pairs whose root is far enough away.
+    """Gauss's rule, for pairs with a root that is far enough away.
 
     Parameters
     ----------

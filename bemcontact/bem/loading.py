@@ -178,7 +178,7 @@ class Loading:
     true_moment: float = 0.0
 
     def forces(self, mesh: Mesh) -> Array:
-        """What the prescribed tractions do at each (element, local node), (m, 3, 2) [p L]."""
+        """Forces of the prescribed tractions at each (element, local node), (m, 3, 2) [p L]."""
         return mesh.tributary[..., None] * self.values.traction
 
     def resultant(self, mesh: Mesh) -> Array:
@@ -191,7 +191,7 @@ class Loading:
         return work + motions.work_of(self.particular.force, self.particular.moment)
 
     def true_work(self, mesh: Mesh, motions: RigidMotions) -> Array:
-        """The same (k,) on the curves themselves, to round-off: whether loads balance is no matter of the mesh."""
+        """Work (k,) on the curves themselves, to round-off: the balance of loads does not depend on the mesh."""
         return motions.work_of(self.true_force, self.true_moment, about=mesh.center)
 
     def magnitude(self, mesh: Mesh) -> float:
@@ -201,12 +201,12 @@ class Loading:
 
 
 def permanent_loading(problem: Problem, mesh: Mesh) -> Loading:
-    """What the problem's own conditions and loads do; `ProblemError` if they contradict each other at a corner."""
+    """The loading by the problem's own conditions and loads; `ProblemError` if these contradict at a corner."""
     return _loading(problem, mesh, problem.conditions, problem.loads)
 
 
 def case_loadings(problem: Problem, mesh: Mesh) -> list[Loading]:
-    """What each load case does by itself; `ProblemError` likewise."""
+    """The loading by each load case alone; `ProblemError` if it contradicts itself at a corner."""
     return [_case_loading(problem, mesh, name, case) for name, case in problem.load_cases.items()]
 
 
@@ -258,7 +258,7 @@ def _loading(problem: Problem, mesh: Mesh, conditions: Mapping[str, Condition], 
 
 
 def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase) -> Loading:
-    """What a load case does: displacements that it does not give are zero where the problem prescribes some."""
+    """The loading by a load case; where the problem prescribes displacements that it does not give, they are zero."""
     conditions: dict[str, Condition] = {}
     for edge in {**problem.conditions, **case.conditions}:
         held = problem.conditions[edge].displacement.given if edge in problem.conditions else ()

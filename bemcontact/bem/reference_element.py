@@ -45,10 +45,10 @@ ORDERS = np.array([3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 23])
 """Numbers of Gauss points to choose from."""
 
 RHO_OF_T = (2 * ORDERS / TOLERANCE) ** (1 / (2 * ORDERS - 1))
-"""The ρ from which each rule is good enough for the integrals of T, decreasing."""
+"""Least ρ for which each rule is accurate enough for the integrals of T, decreasing."""
 
 SMALLEST_RHO = np.maximum(RHO_OF_T, (2 * ORDERS * TOLERANCE) ** (-1 / (2 * ORDERS - 2)))
-"""The same for T and U; below the last one the singularity is taken out first."""
+"""Least ρ of each rule for the integrals of T and U; below the last one the singularity is split off first."""
 
 
 @lru_cache(maxsize=32)

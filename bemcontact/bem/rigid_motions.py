@@ -14,7 +14,7 @@ from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_tool import RigidTool, ToolAction
 
 HELD = 1e-9
-"""Singular value, relative to one, below which a prescribed displacement does not hold a motion."""
+"""Singular value, relative to one, below which the prescribed displacements do not hold a motion."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,11 +57,11 @@ class RigidMotions:
         return self.coefficients @ np.append(force, about_center / self.radius)
 
     def describe(self) -> tuple[str, ...]:
-        """Say each motion in words: its direction, or the point about which it turns."""
+        """Describe each motion: its direction, or the point about which it turns."""
         return tuple(map(self.described, self.coefficients))
 
     def described(self, coefficients: Array) -> str:
-        """Say the motion with such coefficients (3,), which are not all zero, in words."""
+        """Describe the motion with these coefficients (3,), which are not all zero."""
         a, b, c = np.where(abs(coefficients) > 1e-9 * abs(coefficients).max(), coefficients, 0.0)
         if c == 0:
             length = np.hypot(a, b)
@@ -115,9 +115,9 @@ def echelon(basis: Array) -> Array:
 
 
 UNSEEN = 1e-9
-"""Largest normal displacement, relative to the motion's own, of a rigid motion that no contact point sees."""
+"""Largest normal displacement at contact points, relative to the motion's own, that counts as zero."""
 BODY = "the body"
-"""What moves where no tool does."""
+"""Name of the body in sentences."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -142,9 +142,9 @@ class PlacedTools:
     force: Array
 
     def poles(self, points: ContactPoints) -> Array:
-        """About which (t, 2) to turn: the middle of a tool's contact points as far as it is free to go there [L].
+        """Poles (t, 2) of rotation [L]: the middle of a tool's contact points, in directions in which the tool is free.
 
-        About a point far away a rotation can hardly be told from a translation.
+        A rotation about a point far away can hardly be distinguished from a translation.
         """
         poles = self.point.copy()
         for tool, (x, y, turns) in enumerate(self.free.reshape(-1, 3)):
@@ -209,12 +209,12 @@ class FreeMotions:
 
     @property
     def body(self) -> RigidMotions:
-        """What the body does in each of them."""
+        """Motions of the body in each of them."""
         return self._part(0)
 
     @property
     def tools(self) -> Array:
-        """What the tools do, (3 t, k): x, y and rotation [rad/L] about their points, tool by tool."""
+        """Motions of the tools (3 t, k): x, y and rotation [rad/L] about their points, tool by tool."""
         return self.to_points @ self.coefficients[:, 3:].T
 
     def combined(self, factors: Array) -> "FreeMotions":
@@ -222,7 +222,7 @@ class FreeMotions:
         return replace(self, coefficients=factors.T @ self.coefficients)
 
     def describe(self) -> tuple[str, ...]:
-        """Say each motion in words, and of what it is unless of the body alone."""
+        """Describe each motion, and whose it is unless it is that of the body alone."""
         return tuple(f"{self.way(j)}{'' if self.who(j) == BODY else f' of {self.who(j)}'}" for j in range(len(self)))
 
     def who(self, motion: int) -> str:
@@ -231,12 +231,12 @@ class FreeMotions:
         return f"{', '.join(others)} and {last} together" if others else last
 
     def way(self, motion: int) -> str:
-        """Say how that moves, without what."""
+        """Say how it moves."""
         ways = [self._part(part).described(self._of(motion, part)) for part in self._moving(motion)]
         return " and ".join(dict.fromkeys(ways))
 
     def in_user_units(self) -> "FreeMotions":
-        """The same motions, so that work in them is a force [p L] along a translation, or else a moment [p L²]."""
+        """These motions scaled so that work in them is a force [p L] for a translation, else a moment [p L²]."""
         scales = []
         for motion in range(len(self)):
             x, y, turn = abs(self.coefficients[motion]).reshape(-1, 3).T
@@ -249,7 +249,7 @@ class FreeMotions:
         return bool(abs(self.coefficients[motion, 2::3]).max() > UNSEEN * size)
 
     def _part(self, number: int) -> RigidMotions:
-        """What the body (0) or a tool does in each of them."""
+        """Motions of the body (0) or of a tool in each of them."""
         its = self.coefficients[:, 3 * number : 3 * number + 3]
         return RigidMotions(coefficients=its, center=self.centers[number], radius=self.radius)
 

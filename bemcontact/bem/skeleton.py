@@ -1,4 +1,4 @@
-"""Few points of a block that stand for all of them: what far elements do to these, they do to the others by proportion.
+"""Few points of a block that represent all of them: the influence of far elements on the others is a combination.
 
 With z = c + r w, c the middle and r the radius of the block, and q = r/(ζ - c), the kernels at z are sums over p of
 q^p w^p and (p + 1) q^p conj(w) w^p times what does not depend on z (Taylor's series of 1/τ, 1/τ² and ln τ). So
@@ -21,7 +21,7 @@ RATIO = 0.5
 
 
 def _number_of_terms() -> int:
-    """How many powers it takes until (p + 1) RATIO^p is below TOLERANCE."""
+    """Number of powers until (p + 1) RATIO^p is below TOLERANCE."""
     p = np.arange(200)
     return int(np.argmax((p + 1) * RATIO**p < TOLERANCE))
 

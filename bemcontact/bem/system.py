@@ -174,7 +174,7 @@ class System:
 
     @property
     def values(self) -> BoundaryValues:
-        """What is prescribed on the boundary."""
+        """Prescribed values on the boundary."""
         return self.loadings[0].values
 
     @cached_property
@@ -217,12 +217,12 @@ class System:
 
     @cached_property
     def _known_traction(self) -> Array:
-        """What G multiplies on the right (s, m, 3, 2): prescribed traction less that of the particular solution."""
+        """Factor of G on the right (s, m, 3, 2): prescribed traction less that of the particular solution."""
         return np.stack([item.values.traction - item.particular.traction for item in self.loadings]) / self.stress
 
     @cached_property
     def _known_displacement(self) -> Array:
-        """What F multiplies on the right (s, N, 2), with the sign it has on the left."""
+        """Factor of F on the right (s, N, 2), with the sign that it has on the left."""
         given = [item.values.displacement - item.particular.displacement for item in self.loadings]
         return np.stack(given) / self.length
 
@@ -320,7 +320,7 @@ SINGULAR = 1e-15
 
 
 def assemble(system: System) -> tuple[Array, Array]:
-    """Set up the bordered matrix (in Fortran order, to be factorised in place) and the right sides.
+    """Set up the bordered matrix (in Fortran order, to be factorized in place) and the right sides.
 
     Returns
     -------

@@ -8,9 +8,9 @@ from scipy.optimize import linprog
 from bemcontact.arrays import Array
 
 INTERFERENCE = 1e-6
-"""Part of the widest gap that counts as interference; a linear program knows no less."""
+"""Fraction of the widest gap from which there is interference: the accuracy of a linear program."""
 ROUND_OFF = 64 * float(np.finfo(float).eps)
-"""The same for a body that is held: less is a gap that has just closed."""
+"""This fraction for a body that is held: less is a gap that has just closed."""
 
 
 class ContactScales(NamedTuple):
@@ -21,7 +21,7 @@ class ContactScales(NamedTuple):
 
 
 def typical_scales(compliance: Array, offset: Array, rigid_motions: Array, balancing_pressure: Array) -> ContactScales:
-    """Scales with U = ‖M‖∞ T, the larger of what the load and what interference asks for.
+    """Scales with U = ‖M‖∞ T: the larger of those of the load and of the interference.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def typical_scales(compliance: Array, offset: Array, rigid_motions: Array, balan
 
 
 def _interference(offset: Array, rigid_motions: Array, widest: float) -> float:
-    """Least s >= 0 [L] with q + R a >= -s for some a: a linear program; below 1e-6 of the widest gap it is none."""
+    """Least s >= 0 [L] with q + R a >= -s for some a, by a linear program; zero below 1e-6 of the widest gap."""
     n, k = rigid_motions.shape
     if k == 0 or widest == 0:
         deepest = float(np.maximum(-offset, 0.0).max(initial=0.0))

@@ -21,19 +21,19 @@ from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point,
 from bemcontact.options import FormulationName
 
 ACCEPTED = 1e-11
-"""Residual of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
+"""Value of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
 BALANCED = 1e-12
-"""Part of the load, by its norm, that may be left without support before the load counts as impossible to carry."""
+"""Fraction of the load, by its norm, that may remain without support before the load counts as impossible to carry."""
 POLISH_STEPS = 10
 NAMED = 1e-9
-"""Share of a motion that is worth its name in a sentence."""
+"""Least share of a motion that a sentence names."""
 
 ACTIVE_SET, LEMKE = "primal-dual active set", "Lemke's method"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LcpResult:
-    """What `solve_lcp` found; z and w are a solution only with `Status.SOLVED`.
+    """Result of `solve_lcp`; z and w are a solution only with `Status.SOLVED`.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
 
 
 def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
-    """Solve the contact problem as what it is, (16)-(18) with (35)-(38); no objective, no weights but those of ℓ.
+    """Solve the complementarity problem (16)-(18) with (35)-(38) directly, without an objective.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
 
 
 def polish(contact: CondensedContact, solution: ContactSolution) -> ContactSolution:
-    """Make an approximate solution exact: a few primal-dual steps from the contact set {p/T > δ/U} that it shows.
+    """Make an approximate solution exact by a few primal-dual steps from its contact set {p/T > δ/U}.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def loose_load(problem: ScaledContact) -> Array:
 
 
 def escape_note(contact: CondensedContact, problem: ScaledContact) -> str | None:
-    """Say in words in which motion the load carries the body off its support; None if the support carries the load."""
+    """Describe the motion in which the load carries the body off its support; None if the support carries the load."""
     motion = loose_load(problem)
     if np.linalg.norm(motion) <= BALANCED * np.linalg.norm(problem.motion_load):
         return None
@@ -171,7 +171,7 @@ def escape_note(contact: CondensedContact, problem: ScaledContact) -> str | None
 
 
 def escape_words(contact: CondensedContact, motion: Array) -> str:
-    """Say that the load carries the body off its support in a motion (k,), free of units."""
+    """Describe the motion (k,), dimensionless, in which the load carries the body off its support."""
     parts = zip(motion / np.abs(motion).max(), contact.motion_names, strict=True)
     terms = ", ".join(f"{part:+.3g} x {name}" for part, name in parts if abs(part) > NAMED)
     return f"the load carries the body off its support, in a motion that no contact resists: {terms}"
@@ -216,7 +216,7 @@ def _spanning_points(motions: Array) -> IntArray:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Found:
-    """End of a search: the point, what it is, which method ended it, and the way of both methods."""
+    """End of a search: the point, its status, the method that ended it, and the history of both methods."""
 
     end: ActiveSetEnd
     status: Status
@@ -230,7 +230,7 @@ class _Found:
 
 
 def _search(problem: ScaledContact, pivot_limit: int | None) -> _Found:
-    """Primal-dual active set; where it cycles, Lemke's method and the active set again from where that ended."""
+    """Primal-dual active set; if it cycles, Lemke's method, and the active set again from its end."""
     first = primal_dual(problem, first_active_set(problem))
     if first.residual <= ACCEPTED:
         history = traces_in_turn(("residual", first.residuals))
@@ -249,7 +249,7 @@ def _search(problem: ScaledContact, pivot_limit: int | None) -> _Found:
 
 
 def _without_contact(contact: CondensedContact, note: str) -> ContactSolution:
-    """The free body, p = 0, as the answer to a problem that has none."""
+    """The free body, p = 0, for a problem without solution."""
     return ContactSolution(
         formulation=FormulationName.COMPLEMENTARITY,
         solver=ACTIVE_SET,

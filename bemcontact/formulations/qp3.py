@@ -1,6 +1,6 @@
 """QP3, (40)-(42): the quadratic program in pressures and rigid amplitudes, written in cvxpy and solved by Clarabel.
 
-    minimise   pᵀJ(ε + Δ1 + R a) + pᵀJ M p    over p, a
+    minimize   pᵀJ(ε + Δ1 + R a) + pᵀJ M p    over p, a
     subject to ε + Δ1 + M p + R a >= 0,  p >= 0,  ℓᵀp = -load
 
 In equilibrium the objective is pᵀJδ, (19). M stays unsymmetric in the constraints; the objective sees its symmetric
@@ -23,15 +23,15 @@ from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_weight
 from bemcontact.options import FormulationName, Weights
 
 OPTIONS = ("weights",)
-"""Those of `FormulationOptions` that have a meaning here."""
+"""The `FormulationOptions` that QP3 uses."""
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR, or negative eigenvalue, that is round-off; by the scaling the numbers are of size one."""
 SLIGHT = 1e-2
-"""Negative part of a Hessian, relative to its largest eigenvalue, that is blamed on the mesh."""
+"""Negative part of a Hessian, relative to its largest eigenvalue, that is attributed to the mesh."""
 
 
 def load() -> None:
-    """Import cvxpy, which takes half a second, so that what follows can be timed."""
+    """Import cvxpy, which takes half a second, so that later steps can be timed."""
     import cvxpy  # noqa: F401
 
 
@@ -59,7 +59,7 @@ class Objective:
 
 
 def objective(problem: ScaledContact, J: Array) -> Objective:
-    """Write pᵀJδ as a convex function of (p, a), with the help of equilibrium.
+    """Write pᵀJδ as a convex function of (p, a) by means of equilibrium.
 
     With P = I - R(ℓᵀR)⁻¹ℓᵀ and p0 = -R(ℓᵀR)⁻¹load every p in equilibrium is P p + p0, so that
     pᵀJM p = (P p)ᵀJM(P p) + p0ᵀ(JM + MᵀJᵀ)P p + p0ᵀJM p0. And if JR = ℓC, then pᵀJR a = -loadᵀC a; C = I for the
@@ -108,10 +108,10 @@ def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
 
 
 def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
-    """Minimise QP3, (40)-(42), on the scaled problem, then polish.
+    """Minimize QP3, (40)-(42), on the scaled problem, then polish.
 
-    With the consistent weights the minimum need not be the contact state, as J has negative entries; so the result then
-    is left as it is.
+    With the consistent weights the minimum need not be the contact state, because J has negative entries. The result is
+    then not polished.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ def _minimized(problem: ScaledContact, work: Objective, max_iterations: int | No
 
 
 def nearly_convex(work: Objective, eigenvalue: float, weights: Weights) -> Objective:
-    """Leave out the negative part of a Hessian that is indefinite by the mesh alone; refuse any other.
+    """Drop the negative part of a Hessian that is slightly indefinite because of the mesh; refuse any other.
 
     Collocation leaves sym(JM) slightly indefinite on coarse meshes of slender bodies and at acute corners.
 

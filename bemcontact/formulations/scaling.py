@@ -1,4 +1,4 @@
-"""Make a contact problem dimensionless, and bring its solution back: one pair.
+"""Scaling: make a contact problem dimensionless, and put the units back into its solution.
 
 Displacement is divided by U, pressure by T (`CondensedContact.scales`), weights by the largest one, and each free
 motion by its own largest component along the normals. A change of units leaves the numbers here

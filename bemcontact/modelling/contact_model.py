@@ -23,16 +23,16 @@ from bemcontact.options import Weights
 
 
 class ContactProblem(cp.Problem):
-    """A problem of cvxpy that Clarabel solves unless another solver is named: OSQP, cvxpy's choice, ends far off."""
+    """A cvxpy problem that Clarabel solves unless another solver is named: OSQP, cvxpy's choice, is too inaccurate."""
 
     def solve(self, *args: Any, **options: Any) -> Any:
-        """Solve as `cvxpy.Problem.solve` does, which tells of arguments and options."""
+        """Solve as `cvxpy.Problem.solve` does; arguments and options are described there."""
         return super().solve(*args, **{"solver": cp.CLARABEL, **options})
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ContactModel:
-    """Minimise F3 = pᵀJ gap with gap = q + M p + R a >= 0, p >= 0, ℓᵀp = -load, (40)-(42): to build on in cvxpy.
+    """Minimize F3 = pᵀJ gap with gap = q + M p + R a >= 0, p >= 0, ℓᵀp = -load, (40)-(42), to be extended in cvxpy.
 
     All is in the user's units; the variables behind the expressions are scaled, so that units do not matter to a
     solver. The expressions are affine and may be used in what is added. After new values of parameters nothing is
@@ -50,7 +50,7 @@ class ContactModel:
     objective : F3 [p L²], which is zero at a contact state; in equilibrium it is pᵀJ gap
     constraints : "no_penetration", "no_tension" and, with free motions, "equilibrium"
     scales : displacement [L] and pressure [p] that the variables behind the expressions are divided by
-    notes : what a person should know
+    notes : what a user should know
     """
 
     original: CondensedContact
@@ -152,7 +152,7 @@ class ContactModel:
 
     @cached_property
     def _pure(self) -> cp.Problem:
-        """Nothing added."""
+        """The problem with nothing added."""
         return self.problem()
 
     def solve(
@@ -195,7 +195,7 @@ class ContactModel:
         return self.result(chosen)
 
     def _from_last(self) -> ModelResult | None:
-        """Try a few active-set steps from the values that stand in the model; None if they do not get there."""
+        """Try a few active-set steps from the values of the last solve; None if they do not lead to a contact state."""
         if self.pressure.value is None:
             return None
         contact, motions = self.contact, self.motions
@@ -336,7 +336,7 @@ def _work(
 
 
 def _tool_displacement(given: Parameters, motions: cp.Expression | None) -> cp.Expression | None:
-    """Where the tools are, (t, 3)."""
+    """Displacements (t, 3) of the tools."""
     tools = given.rest.tools
     if not len(tools):
         return None

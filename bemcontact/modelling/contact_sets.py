@@ -25,11 +25,11 @@ from bemcontact.modelling.parameters import value_of
 from bemcontact.modelling.relief import Profiles
 
 WEAK = 1e-6
-"""Scaled pressure or gap that is none to the tolerance of the solver."""
+"""Scaled pressure or gap that is zero to the tolerance of the solver."""
 ROOM = 3e-10
-"""Part of the goal that the gentlest profile may give away."""
+"""Fraction of the goal that the gentlest profile may lose."""
 MARGIN = 1e-6
-"""By which a value that is reached is taken too high, so that the relaxation surely admits it."""
+"""Relative increase of a known value of the goal, so that the relaxation surely admits it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -244,11 +244,11 @@ class _Sets(NamedTuple):
 
     @property
     def constraints(self) -> list[cp.Constraint]:
-        """What is zero, and what is not negative."""
+        """The equations and inequalities of the contact sets."""
         return [constraint for side in self.sides for constraint in (side.zero, side.signed >= 0)]
 
     def promise(self) -> Array:
-        """What turning a point would gain, to first order, (loads, n); minus infinity off the edge of contact."""
+        """First-order gain of switching a point (loads, n); minus infinity off the edge of contact."""
         gains = np.full(self.shape, -np.inf)
         for load, points, zero, signed in self.sides:
             gains[load, points] = np.where(value_of(signed) <= WEAK, np.asarray(zero.dual_value, float), -np.inf)

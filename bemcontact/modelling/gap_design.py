@@ -22,7 +22,7 @@ from bemcontact.modelling.designed_gap import GapDesign, Goal, LoadState, reliev
 from bemcontact.modelling.relief import Profiles, Relief
 
 GAIN = 1e-8
-"""Part of the goal that a step must gain to be one."""
+"""Least relative gain of a step."""
 MET = 1e-6
 """Distance from the lower bound, relative, at which a design is proved to be the best."""
 STEPS = 200
@@ -108,7 +108,7 @@ def _carried_out(
 def _states(
     contact: CondensedContact | Sequence[CondensedContact], cases: Sequence[Mapping[str, float]] | None
 ) -> tuple[CondensedContact, ...]:
-    """The load states, and that they are those of one body."""
+    """Check that the load states are those of one body."""
     states = (contact,) if isinstance(contact, CondensedContact) else tuple(contact)
     if not states or not all(isinstance(state, CondensedContact) for state in states):
         raise ProblemError("a design needs a CondensedContact, or several of one body; bemcontact.condense makes them")
@@ -155,7 +155,7 @@ def _solved(contact: CondensedContact, profile: Array) -> LoadState:
 
 
 def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> Piece:
-    """The best of what all starts lead to."""
+    """The best end of all starts."""
     known = set[bytes]()
     ends: list[Piece] = []
     for sets in _starts(shared, states):

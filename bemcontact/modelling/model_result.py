@@ -1,4 +1,4 @@
-"""What came out of a model: arrays of ours, judged, and a verdict in words."""
+"""The result of a model: arrays, residuals and certificate, and a verdict in words."""
 
 from dataclasses import dataclass, replace
 from typing import Any, cast
@@ -29,7 +29,7 @@ class ModelResult:
     Parameters
     ----------
     status : how the solver ended
-    words : what this is, in a sentence or two
+    words : the verdict in a sentence or two
     contact_state : whether it is a contact state: to round-off if nothing was added, else to the solver's tolerance
     objective : of all that was minimised, in the user's units
     pressure : (n,) [p]
@@ -37,7 +37,7 @@ class ModelResult:
     motions : (k,) a
     tool_displacement : (t, 3) x, y [L] and rotation [rad]
     solution : the same as a contact solution, polished if nothing was added
-    residuals, certificate : the judgement, recomputed
+    residuals, certificate : recomputed
     """
 
     status: Status
@@ -103,7 +103,7 @@ def read_back(
 def solution_at(
     contact: CondensedContact, pressure: cp.Expression, motions: cp.Expression | None, solver: str
 ) -> ContactSolution:
-    """The values that stand in a model, as a contact solution.
+    """The present values of a model as a contact solution.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The profiles that a design may choose from: bounds on values, slope and curvature, or on a few shapes."""
+"""The set of profiles of a design: bounds on values, slope and curvature, or on a few shapes."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from bemcontact.errors import ProblemError
 Shape = Callable[[Array], ArrayLike]
 Range = float | tuple[float, float]
 UNBOUNDED = 3
-"""Status of a linear program of scipy that has no end."""
+"""Status of an unbounded linear program of SciPy."""
 
 
 class Bounds(NamedTuple):
@@ -84,7 +84,7 @@ class Profiles:
     def of(
         cls, contact: CondensedContact, relief: Relief, zone: str | None = None, arc: tuple[float, float] | None = None
     ) -> Self:
-        """Write bounds as rows, and see that some profile keeps them all.
+        """Write bounds as rows, and check that some profile keeps them all.
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class Profiles:
         return self._unit * optimum.x[:-1]
 
     def kept(self, coefficients: Array) -> Array:
-        """Draw coefficients (s,) [L] that keep the bounds to a solver's tolerance inwards, to where they do exactly."""
+        """Move coefficients (s,) [L] that keep the bounds to a solver's tolerance inwards to the exact bounds."""
         inner, now = self.rows @ self._innermost, self.rows @ coefficients
         over = np.stack([now - self.high, self.low - now])
         ways = np.stack([now - inner, inner - now])
@@ -254,7 +254,7 @@ def _shapes(relief: Relief, position: Array) -> Array:
 
 
 def _families(relief: Relief, shapes: Array, sizes: Array, position: Array, run: IntArray) -> dict[str, Bounds]:
-    """All bounds by what they bound, as rows W with their limits: low <= W c <= high."""
+    """All bounds by family, as rows W with their limits: low <= W c <= high."""
     m, step = len(position), np.diff(position)
     inner = np.flatnonzero(run[1:] == run[:-1])
     slopes = (np.eye(m)[1:] - np.eye(m)[:-1])[inner] / step[inner, None]
@@ -293,5 +293,5 @@ def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int, what: s
 
 
 def _nothing_bounded() -> dict[str, Bounds]:
-    """Refuse a relief that says nothing."""
+    """Refuse a relief without bounds."""
     raise ProblemError("nothing bounds the profile; give lower and upper values, or shapes with coefficients")
