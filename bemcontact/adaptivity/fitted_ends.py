@@ -25,7 +25,7 @@ over the contact that ends there if it is shorter."""
 GENTLE = 2.0
 """Length of the element beside a run over that of the one at its end, up to which it is left."""
 GROWTH = 1.5
-"""Length of an element over that of its neighbour nearer to an end of contact that counts as grading towards it."""
+"""Length of an element over that of its neighbor nearer to an end of contact that counts as grading towards it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,13 +153,13 @@ def movement(run: ZoneRun, touched: Sequence[Touched], fitted_to: Sequence[Touch
     return largest
 
 
-def halved(ends: Array, neighbour: float, at: int) -> Array:
-    """Halve the element at one end of an edge until it is at most `GENTLE` times as long as its neighbour beyond.
+def halved(ends: Array, neighbor: float, at: int) -> Array:
+    """Halve the element at one end of an edge until it is at most `GENTLE` times as long as its neighbor beyond.
 
     Parameters
     ----------
     ends : (m + 1,) element ends, ascending
-    neighbour : length of the element beyond, in the same unit
+    neighbor : length of the element beyond, in the same unit
     at : 0 for the first element, -1 for the last
 
     Returns
@@ -167,7 +167,7 @@ def halved(ends: Array, neighbour: float, at: int) -> Array:
     (m + k + 1,)
     """
     ends = ends if at == 0 else ends[::-1]
-    while abs(ends[1] - ends[0]) > GENTLE * neighbour * (1 + 1e-9):
+    while abs(ends[1] - ends[0]) > GENTLE * neighbor * (1 + 1e-9):
         ends = np.insert(ends, 1, (ends[0] + ends[1]) / 2)
     return ends if at == 0 else ends[::-1]
 

@@ -1,6 +1,6 @@
 """Influence of displacement and traction on the boundary upon collocation points: rows of F and G in F u = G t, (7).
 
-Rows are computed in blocks of neighbouring points. What far elements do to a block follows from what they do, by one
+Rows are computed in blocks of neighboring points. What far elements do to a block follows from what they do, by one
 Gauss rule each, to a few of its points (`skeleton`); pairs near to each other get the rule, or the closed form, that
 the root of their own element map asks for.
 
@@ -188,7 +188,7 @@ class Influence:
 
         Parameters
         ----------
-        rows : neighbouring points
+        rows : neighboring points
         """
         return self._block(collocation, rows, self._space(rows.stop - rows.start))
 

@@ -233,8 +233,8 @@ def near_singular(tau: ComplexArray, root: Root) -> Integrals:
 def singular(nodes: ComplexArray, local: Array) -> Integrals:
     """Pairs whose point lies on the element, at local coordinate ξ0; one-sided limits from outside the body.
 
-    At an end of the element A_k of the node there diverges like ln|τ|; that part cancels against the neighbour's and
-    is left out here: with the neighbour's share goes -i times the interior angle.
+    At an end of the element A_k of the node there diverges like ln|τ|; that part cancels against the neighbor's and
+    is left out here: with the neighbor's share goes -i times the interior angle.
 
     Parameters
     ----------

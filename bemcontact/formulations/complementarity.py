@@ -73,14 +73,14 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
         raise ProblemError(f"M (n, n) and q (n,) of finite numbers are needed; found shapes {M.shape} and {q.shape}")
     U = float(np.abs(q).max(initial=0.0)) or 1.0
     T = U / (float(np.abs(M).sum(axis=1).max(initial=0.0)) or 1.0)
-    problem = ScaledContact(
+    contact = ScaledContact(
         compliance=M * (T / U),
         offset=q / U,
         rigid_motions=np.zeros((n, 0)),
         motion_load=np.zeros(0),
         weights=np.ones(n),
     )
-    search = _search(problem, None)
+    search = _search(contact, None)
     z = search.end.pressure * T
     return LcpResult(z=z, w=q + M @ z, status=search.status, iterations=search.iterations, method=search.method)
 
@@ -106,10 +106,10 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
     """
     options = options or FormulationOptions()
     options.ensure_used(FormulationName.COMPLEMENTARITY)
-    problem = scaled(contact)
-    if note := escape_note(contact, problem):
+    if note := escape_note(contact):
         return _without_contact(contact, note)
-    carried = replace(problem, motion_load=problem.motion_load - loose_load(problem))
+    body = scaled(contact)
+    carried = replace(body, motion_load=body.motion_load - loose_load(body))
     search = _search(carried, options.max_iterations)
     if search.status is Status.INFEASIBLE:
         note = "the path of pivots ended on a ray that proves that no pressure will do"
@@ -141,31 +141,32 @@ def polish(contact: CondensedContact, solution: ContactSolution) -> ContactSolut
         With `polished` set if the natural residual got smaller, or is at round-off where the solver had left traces of
         pressure off the contact set. Else `solution` itself.
     """
-    problem = scaled(contact)
+    body = scaled(contact)
     p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
     touching = contact.touching(solution.pressure, solution.displacement)
-    end = primal_dual(problem, touching, POLISH_STEPS)
+    end = primal_dual(body, touching, POLISH_STEPS)
     cleaner = end.residual <= ACCEPTED and solution.pressure[~touching].any()
-    if not (cleaner or end.residual < problem.residual(p, a)):
+    if not (cleaner or end.residual < body.residual(p, a)):
         return solution
     p, u_n, a = unscaled(contact, end.pressure, end.amplitudes)
     return replace(solution, pressure=p, displacement=u_n, rigid_amplitudes=a, unpolished=solution.pressure)
 
 
-def loose_load(problem: ScaledContact) -> Array:
+def loose_load(contact: ScaledContact) -> Array:
     """The part r (k,) of the load that no p >= 0 carries: the least ℓᵀp + load by norm.
 
     Where it is not zero, it is the motion in which the body leaves: R r >= 0 opens every gap, and the load works on it,
     r·load = r·r > 0 (Farkas).
     """
-    ell, load = problem.equilibrium, problem.motion_load
+    ell, load = contact.equilibrium, contact.motion_load
     return ell.T @ nnls(ell.T, -load)[0] + load if load.size else load
 
 
-def escape_note(contact: CondensedContact, problem: ScaledContact) -> str | None:
+def escape_note(contact: CondensedContact) -> str | None:
     """Describe the motion in which the load carries the body off its support; None if the support carries the load."""
-    motion = loose_load(problem)
-    if np.linalg.norm(motion) <= BALANCED * np.linalg.norm(problem.motion_load):
+    body = scaled(contact)
+    motion = loose_load(body)
+    if np.linalg.norm(motion) <= BALANCED * np.linalg.norm(body.motion_load):
         return None
     return escape_words(contact, motion)
 
@@ -177,7 +178,7 @@ def escape_words(contact: CondensedContact, motion: Array) -> str:
     return f"the load carries the body off its support, in a motion that no contact resists: {terms}"
 
 
-def standard_form(problem: ScaledContact) -> tuple[Array, Array, BoolArray]:
+def standard_form(contact: ScaledContact) -> tuple[Array, Array, BoolArray]:
     """The contact problem as w = q' + M' z without free motions, by one principal pivot.
 
     Choose k points B on which R_B has full rank (QR with pivoting). The block of [[M, R], [ℓᵀ, 0]] on B and the motions
@@ -191,13 +192,13 @@ def standard_form(problem: ScaledContact) -> tuple[Array, Array, BoolArray]:
     vector : (n,) q'
     exchanged : (n,) True on B: z is the gap and w the pressure there
     """
-    M, R, ell, J = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.weights
+    M, R, ell, J = contact.compliance, contact.rigid_motions, contact.equilibrium, contact.weights
     n, k = R.shape
     B = _spanning_points(np.sqrt(J)[:, None] * R)
     rest = np.setdiff1d(np.arange(n), B)
     inside, order = np.append(B, n + np.arange(k)), np.append(B, rest)
     W = np.block([[M, R], [ell.T, np.zeros((k, k))]])
-    h = np.append(problem.offset, problem.motion_load)
+    h = np.append(contact.offset, contact.motion_load)
     given = np.hstack([np.eye(2 * k, k), -W[np.ix_(inside, rest)], -h[inside, None]])
     inner = np.linalg.solve(W[np.ix_(inside, inside)], given)
     gap_rest = W[np.ix_(rest, inside)] @ inner + np.hstack([np.zeros((n - k, k)), M[np.ix_(rest, rest)], h[rest, None]])
@@ -215,7 +216,7 @@ def _spanning_points(motions: Array) -> IntArray:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Found:
+class _SearchEnd:
     """End of a search: the point, its status, the method that ended it, and the history of both methods."""
 
     end: ActiveSetEnd
@@ -229,23 +230,23 @@ class _Found:
         return sum(len(trace.values) for trace in self.history)
 
 
-def _search(problem: ScaledContact, pivot_limit: int | None) -> _Found:
+def _search(contact: ScaledContact, pivot_limit: int | None) -> _SearchEnd:
     """Primal-dual active set; if it cycles, Lemke's method, and the active set again from its end."""
-    first = primal_dual(problem, first_active_set(problem))
+    first = primal_dual(contact, first_active_set(contact))
     if first.residual <= ACCEPTED:
         history = traces_in_turn(("residual", first.residuals))
-        return _Found(end=first, status=Status.SOLVED, method=ACTIVE_SET, history=history)
-    matrix, vector, exchanged = standard_form(problem)
+        return _SearchEnd(end=first, status=Status.SOLVED, method=ACTIVE_SET, history=history)
+    matrix, vector, exchanged = standard_form(contact)
     path = lemke(matrix, vector, limit=pivot_limit)
-    second = primal_dual(problem, path.active ^ exchanged, POLISH_STEPS)
+    second = primal_dual(contact, path.active ^ exchanged, POLISH_STEPS)
     history = traces_in_turn(
         ("residual", first.residuals), ("infeasibility", path.covers), ("residual", second.residuals)
     )
     if second.residual <= ACCEPTED:
-        return _Found(end=second, status=Status.SOLVED, method=LEMKE, history=history)
+        return _SearchEnd(end=second, status=Status.SOLVED, method=LEMKE, history=history)
     status = Status.NUMERICAL_FAILURE if path.status is Status.SOLVED else path.status
     best = min(first, second, key=lambda end: end.residual)
-    return _Found(end=best, status=status, method=LEMKE, history=history)
+    return _SearchEnd(end=best, status=status, method=LEMKE, history=history)
 
 
 def _without_contact(contact: CondensedContact, note: str) -> ContactSolution:

@@ -58,7 +58,7 @@ class Objective:
         return float(quadratic + self.pressure @ pressure + self.amplitudes @ amplitudes + self.constant)
 
 
-def objective(problem: ScaledContact, J: Array) -> Objective:
+def objective(contact: ScaledContact, J: Array) -> Objective:
     """Write pᵀJδ as a convex function of (p, a) by means of equilibrium.
 
     With P = I - R(ℓᵀR)⁻¹ℓᵀ and p0 = -R(ℓᵀR)⁻¹load every p in equilibrium is P p + p0, so that
@@ -69,18 +69,18 @@ def objective(problem: ScaledContact, J: Array) -> Objective:
     ----------
     J : (n, n) weights of the objective, scaled
     """
-    weighted, project, p0 = J @ problem.compliance, problem.projector, problem.balancing_pressure
+    weighted, project, p0 = J @ contact.compliance, contact.projector, contact.balancing_pressure
     hessian = weighted + weighted.T
-    share = np.linalg.lstsq(problem.equilibrium, J @ problem.rigid_motions, rcond=None)[0]
+    share = np.linalg.lstsq(contact.equilibrium, J @ contact.rigid_motions, rcond=None)[0]
     return Objective(
         hessian=project.T @ hessian @ project,
-        pressure=J @ problem.offset + project.T @ (hessian @ p0),
-        amplitudes=-share.T @ problem.motion_load,
+        pressure=J @ contact.offset + project.T @ (hessian @ p0),
+        amplitudes=-share.T @ contact.motion_load,
         constant=float(p0 @ weighted @ p0),
     )
 
 
-def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
+def smallest_eigenvalue(contact: ScaledContact, J: Array) -> float | None:
     """Smallest eigenvalue of Zᵀ(JM + MᵀJᵀ)Z, Z spanning {p : ℓᵀp = 0}: the curvature on the equilibrium space.
 
     Where ZᵀJR is not zero, pᵀJR a makes the objective a saddle in (p, a), and the eigenvalue is that of the Hessian in
@@ -95,11 +95,11 @@ def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
     float or None
         Dimensionless; None if equilibrium leaves no pressure free (n = k).
     """
-    R, Z = problem.rigid_motions, problem.equilibrium_space
+    R, Z = contact.rigid_motions, contact.equilibrium_space
     n, k = R.shape
     if n == k:
         return None
-    weighted = J @ problem.compliance
+    weighted = J @ contact.compliance
     hessian = Z.T @ (weighted + weighted.T) @ Z
     coupling = Z.T @ J @ R
     if np.abs(coupling).max(initial=0.0) > NEGLIGIBLE:
@@ -136,9 +136,9 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
     """
     options = options or FormulationOptions()
     options.ensure_used(FormulationName.QP3, *OPTIONS)
-    problem, J = scaled(contact), scaled_weights(contact, options.weights)
-    eigenvalue = smallest_eigenvalue(problem, J)
-    work = objective(problem, J)
+    body, J = scaled(contact), scaled_weights(contact, options.weights)
+    eigenvalue = smallest_eigenvalue(body, J)
+    work = objective(body, J)
     notes = []
     if eigenvalue is not None and eigenvalue < -NEGLIGIBLE:
         work = nearly_convex(work, eigenvalue, options.weights)
@@ -146,12 +146,12 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
             f"QP3 is not convex on this mesh (smallest eigenvalue {eigenvalue:.1e}): it was solved without the "
             "negative part of its Hessian, as a start for the active-set step"
         )
-    optimum = _minimized(problem, work, options.max_iterations)
-    widest, escape = float(np.abs(problem.offset).max(initial=0.0)), None
+    optimum = _minimized(body, work, options.max_iterations)
+    widest, escape = float(np.abs(body.offset).max(initial=0.0)), None
     if optimum.status in (Status.UNBOUNDED, Status.INFEASIBLE):
-        escape = escape_note(contact, problem)
+        escape = escape_note(contact)
         if widest > 1 and not escape:  # the widest gaps drown the pressures
-            optimum = _minimized(problem, work, options.max_iterations, widest)
+            optimum = _minimized(body, work, options.max_iterations, widest)
     if optimum.status is Status.INFEASIBLE and escape:
         notes.append(escape)
     p, u_n, a = unscaled(contact, optimum.pressure, optimum.amplitudes)
@@ -189,16 +189,16 @@ class _Optimum:
     progress: Array
 
 
-def _minimized(problem: ScaledContact, work: Objective, max_iterations: int | None, size: float = 1.0) -> _Optimum:
+def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | None, size: float = 1.0) -> _Optimum:
     """State the quadratic program in cvxpy, and solve it with pressures and gaps divided by a size."""
     import cvxpy as cp
 
-    M, R, ell, load = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.motion_load
+    M, R, ell, load = contact.compliance, contact.rigid_motions, contact.equilibrium, contact.motion_load
     n, k = R.shape
     p = cp.Variable(n, nonneg=True, name="pressure")
     a = cp.Variable(k, name="rigid_amplitudes") if k else None
     goal = 0.5 * cp.quad_form(p, cp.psd_wrap(work.hessian)) + work.pressure @ p
-    gap, balance = problem.offset + M @ p, []
+    gap, balance = contact.offset + M @ p, []
     if a is not None:
         goal, gap, balance = goal + work.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
     program = cp.Problem(cp.Minimize(goal), [gap >= 0, *balance])

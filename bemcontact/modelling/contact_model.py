@@ -142,7 +142,7 @@ class ContactModel:
         """
         if extra_objective is not None and not isinstance(extra_objective, cp.Expression | Real):
             kind = type(extra_objective).__name__
-            raise ProblemError(f"extra_objective is an expression, which is added to F3 and minimised; found {kind}")
+            raise ProblemError(f"extra_objective is an expression, which is added to F3 and minimized; found {kind}")
         if isinstance(extra_constraints, cp.Constraint):
             raise ProblemError("extra_constraints is a list of constraints; put the one that is given into brackets")
         goal = self.objective if extra_objective is None else self.objective + extra_objective
@@ -291,7 +291,7 @@ def ensure_convex(problem: cp.Problem) -> None:
     bad = next(name for name, part in parts if not part.is_dcp())
     raise ProblemError(
         f"the model is not convex by cvxpy's rules (DCP) in {bad:.200}; write what was added with convex functions "
-        "that are minimised or bounded from above"
+        "that are minimized or bounded from above"
     )
 
 

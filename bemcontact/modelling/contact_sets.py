@@ -186,7 +186,7 @@ class SharedProfile:
 
         Complementarity is dropped but for what is convex in it: F3 at the designed gap is zero, and in it p·g is at
         least what McCormick's two planes say (Math. Programming 10, 1976, 147-175) for g within its range and, where
-        the peak is minimised, p up to the best peak that is known.
+        the peak is minimized, p up to the best peak that is known.
 
         Parameters
         ----------

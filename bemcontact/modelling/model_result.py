@@ -14,7 +14,6 @@ from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.clarabel import STATUSES
 from bemcontact.formulations.complementarity import escape_note, polish
-from bemcontact.formulations.scaling import scaled
 
 SEEN = 1e-5
 """Residual above which the optimum of a model with additions is no contact state: the root of Clarabel's tolerance."""
@@ -31,7 +30,7 @@ class ModelResult:
     status : how the solver ended
     words : the verdict in a sentence or two
     contact_state : whether it is a contact state: to round-off if nothing was added, else to the solver's tolerance
-    objective : of all that was minimised, in the user's units
+    objective : of all that was minimized, in the user's units
     pressure : (n,) [p]
     gap : (n,) [L]
     motions : (k,) a
@@ -164,7 +163,7 @@ def _ensure_of_the_model(problem: cp.Problem, pressure: cp.Expression) -> None:
 
 def _without_optimum(contact: CondensedContact, status: Status, *, added: bool) -> str:
     """Say why there is no optimum."""
-    reason = escape_note(contact, scaled(contact)) if status is Status.INFEASIBLE else None
+    reason = escape_note(contact) if status is Status.INFEASIBLE else None
     if reason is not None:
         return f"There is no contact state: {reason}."
     of_whom = "what was added to the model" if added else "the contact problem"

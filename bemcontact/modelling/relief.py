@@ -35,7 +35,7 @@ class Relief:
     Parameters
     ----------
     lower, upper : of g [L], a number or one for each point of the interval
-    slope : of g between neighbouring points [1], ± a number or (least, largest)
+    slope : of g between neighboring points [1], ± a number or (least, largest)
     curvature : of g at inner points, by second divided differences over arc length [1/L], likewise
     shapes : functions of the arc position (m,) that g is a combination of, or their values (m, s) at the points of the
         interval; without them each point has a value of its own

@@ -5,8 +5,8 @@ along a change (q̇, ḟ) of offset and load is the solution of the mixed comple
 
     δ̇ = 0 on S,  0 <= ṗ ⟂ δ̇ >= 0 on W,  ṗ = 0 elsewhere,  ℓᵀṗ = -ḟ,  δ̇ = q̇ + M ṗ + R ȧ,
 
-(Robinson's generalised equations; Facchinei and Pang, "Finite-Dimensional Variational Inequalities and Complementarity
-Problems", 2003, section 5.4, for strongly regular solutions). S and the motions are eliminated by one factorisation.
+(Robinson's generalized equations; Facchinei and Pang, "Finite-Dimensional Variational Inequalities and Complementarity
+Problems", 2003, section 5.4, for strongly regular solutions). S and the motions are eliminated by one factorization.
 Where S alone does not hold the body, points B of W join them, on which pressure and gap change places, as in
 `bemcontact.formulations.complementarity.standard_form`.
 """

@@ -1,4 +1,4 @@
-"""Sensitivities: exact derivatives of a contact state, from the points in contact and one factorisation for all."""
+"""Sensitivities: exact derivatives of a contact state, from the points in contact and one factorization for all."""
 
 import json
 from collections.abc import Iterator, Mapping
