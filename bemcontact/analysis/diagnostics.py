@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from bemcontact.adaptivity.zone_runs import SAME
 from bemcontact.assessment.footprint import Footprint
-from bemcontact.bem.condense import Body
+from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import element_lengths
 from bemcontact.contact.condensed_contact import CondensedContact
 

@@ -11,9 +11,9 @@ from bemcontact.analysis.stopwatch import Stopwatch
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.bem.condense import Condensation, body_of
+from bemcontact.bem.body import body_of
+from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.condense import condense as condense_body
-from bemcontact.bem.recovery import boundary_state
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.solution import ContactSolution

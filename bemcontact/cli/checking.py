@@ -35,7 +35,7 @@ def check(
     with told(spec, overrides, variant, (figure,)), busy("checking"):
         claim(spec, {"--figure": figure})
         from bemcontact import spec as spec_file
-        from bemcontact.bem.condense import body_of, each_case, ensure_held
+        from bemcontact.bem.body import body_of, each_case, ensure_held
         from bemcontact.report import text
 
         body = body_of(spec_file.load(spec, overrides or (), variant).refined(refine))

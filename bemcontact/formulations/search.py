@@ -153,7 +153,7 @@ def _as_found(contact: CondensedContact, formulation: str, result: QPResult, sea
     if result.status is QPStatus.UNBOUNDED and result.ray is not None:
         notes.append(f"the objective falls without end along a ray: {ray_in_words(contact, result.ray)}")
     if result.status is QPStatus.INFEASIBLE:
-        notes.append(escape_note(contact, scaled(contact)) or NO_CONTACT_STATE)
+        notes.append(escape_note(contact) or NO_CONTACT_STATE)
     u_n, p = result.x[:n] * U, result.x[n : 2 * n] * T
     return ContactSolution(
         formulation=formulation,

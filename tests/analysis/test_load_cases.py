@@ -28,7 +28,8 @@ from bemcontact.analysis import compare as comparing
 from bemcontact.analysis import load_cases
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.result import Result
-from bemcontact.bem.condense import body_of, condense
+from bemcontact.bem.body import body_of
+from bemcontact.bem.condense import condense
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.plan import planned_comparison
 from bemcontact.problem import Problem
