@@ -21,12 +21,9 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace
 from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.complementarity import escape_note, polish
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_weights, unscaled
-from bemcontact.options import FormulationName, Weights
+from bemcontact.options import FormulationName, SolveOptions, Weights, options_of
 
-OPTIONS = ("weights",)
-"""Those of `FormulationOptions` that have a meaning here."""
 ITERATIONS = 200
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR, or negative eigenvalue, that is round-off; by the scaling the numbers are of size one."""
@@ -131,7 +128,7 @@ def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
     return float(eigvalsh(hessian, subset_by_index=(0, 0))[0])
 
 
-def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:
     """Minimise QP3, (40)-(42), on the scaled problem, then polish.
 
     With the consistent weights the minimum need not be the contact state, as J has negative entries; so the result then
@@ -159,8 +156,7 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
     SolverError
         Clarabel broke down.
     """
-    options = options or FormulationOptions()
-    options.ensure_used(FormulationName.QP3, *OPTIONS)
+    options = options_of(FormulationName.QP3, options)
     problem, J = scaled(contact), scaled_weights(contact, options.weights)
     eigenvalue = smallest_eigenvalue(problem, J)
     work = objective(problem, J)
