@@ -407,8 +407,8 @@ class ComparisonOptions:
             "formulations": [name.value for name in self.formulations],
             "weights": [name.value for name in self.weights],
             "penalties": [*(self.penalties or (1.0,))] if FormulationName.QP2 in self.formulations else [],
-            "starts": None if self.starts is None else int(self.starts),
-            "seed": int(self.seed or 0),
+            "starts": self.starts,
+            "seed": self.seed or 0,
         }
 
 
@@ -436,11 +436,12 @@ def ensure_whole(value: object, what: str, least: int) -> None:
 
 
 def ensure_whole_fields(options: SolveOptions | ComparisonOptions) -> None:
-    """Refuse a field that is to be a whole number, and is given and none."""
+    """Make each field that is to be a whole number an int, if it is given; refuse what is none."""
     for item in fields(options):
         value, least = getattr(options, item.name), item.metadata["least"]
         if least is not None and value is not None:
             ensure_whole(value, item.metadata["noun"] or item.name, least)
+            object.__setattr__(options, item.name, int(value))
 
 
 def _compared(name: object) -> FormulationName:

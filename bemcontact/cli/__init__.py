@@ -56,7 +56,7 @@ def bemcontact(
     """
 
 
-for command in (
+for function in (
     check.check,
     solve.solve,
     compare.compare,
@@ -65,4 +65,4 @@ for command in (
     check.condense,
     check.schema,
 ):
-    app.command()(flattened(command))
+    app.command()(flattened(function))

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Annotated, Any, NoReturn, TypeVar, get_type_hints
 
 import typer
-from rich.console import RenderableType
 
-from bemcontact.cli.terminal import Report, show, stages, tell
+from bemcontact.cli.terminal import RenderableType, Report, show, stages, tell
 from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError
 from bemcontact.files import output
 from bemcontact.options import ComparisonOptions, SolveOptions, StartName
