@@ -68,7 +68,7 @@ class Equilibrium(StrEnum):
     CONSTRAINT = "constraint"
     """ℓᵀp = -load holds exactly. The default."""
     PENALTY = "penalty"
-    """Only penalised, with all the rest of (12), as in [SS92]: a body lifted off its support is a stationary point."""
+    """Only penalized, with all the rest of (12), as in [SS92]: a body lifted off its support is a stationary point."""
 
 
 class StartName(StrEnum):

@@ -50,14 +50,14 @@ class Program:
     Parameters
     ----------
     weights : (n, n) scaled J
-    penalised : E x = e; none of them, (0, N), in QP1
+    penalized : E x = e; none of them, (0, N), in QP1
     penalty : μ
     equations : that hold exactly
     lower : (N,) bounds of x, -ε, 0 and for amplitudes -inf
     """
 
     weights: Array
-    penalised: Equations
+    penalized: Equations
     penalty: float
     equations: Equations
     lower: Array
@@ -65,7 +65,7 @@ class Program:
     @cached_property
     def hessian(self) -> Array:
         """H (N, N) of ½ xᵀH x + cᵀx + d."""
-        n, J, E = len(self.weights), self.weights, self.penalised.matrix
+        n, J, E = len(self.weights), self.weights, self.penalized.matrix
         hessian = (2 / self.penalty) * (E.T @ E)
         hessian[:n, n : 2 * n] += J.T
         hessian[n : 2 * n, :n] += J
@@ -75,7 +75,7 @@ class Program:
     def linear(self) -> Array:
         """C (N,) of ½ xᵀH x + cᵀx + d."""
         n = len(self.weights)
-        linear = -(2 / self.penalty) * (self.penalised.matrix.T @ self.penalised.right)
+        linear = -(2 / self.penalty) * (self.penalized.matrix.T @ self.penalized.right)
         linear[n : 2 * n] -= self.weights @ self.lower[:n]
         return linear
 
@@ -85,10 +85,10 @@ class Program:
 
         From [[Q, Eᵀ], [E, -μ/2]], whose inertia is that and m negative ones (Haynsworth 1968): it is free of 1/μ.
         """
-        n, (m, N) = len(self.weights), self.penalised.matrix.shape
+        n, (m, N) = len(self.weights), self.penalized.matrix.shape
         bordered = np.zeros((N + m, N + m))
         bordered[:n, n : 2 * n], bordered[n : 2 * n, :n] = self.weights.T, self.weights
-        bordered[N:, :N], bordered[:N, N:] = self.penalised.matrix, self.penalised.matrix.T
+        bordered[N:, :N], bordered[:N, N:] = self.penalized.matrix, self.penalized.matrix.T
         bordered[N:, N:] = -0.5 * self.penalty * np.eye(m)
         positive, zero, negative = inertia(bordered)
         return positive, zero, negative - m
@@ -96,7 +96,7 @@ class Program:
     def value(self, x: Array) -> float:
         """Objective at x (N, more may follow); multiplied out, it would cancel to round-off."""
         n, x = len(self.weights), x[: len(self.lower)]
-        residual = self.penalised.matrix @ x - self.penalised.right
+        residual = self.penalized.matrix @ x - self.penalized.right
         work = x[n : 2 * n] @ self.weights @ (x[:n] - self.lower[:n])
         return float(work + residual @ residual / self.penalty)
 
@@ -140,7 +140,7 @@ def minimize(program: Program, start: Array, max_iterations: int | None) -> QPRe
 
     Penalized equations become √μ s = E x - e with |s|² in the objective, which avoids the condition of EᵀE.
     """
-    E, e = program.penalised.matrix, program.penalised.right
+    E, e = program.penalized.matrix, program.penalized.right
     A, b = program.equations.matrix, program.equations.right
     n, (m, N), root = len(program.weights), E.shape, np.sqrt(program.penalty)
     J, zero = program.weights, np.zeros((n, n))

@@ -36,7 +36,7 @@ def statement(contact: CondensedContact, options: SolveOptions) -> Program:
         equations = equations.and_also(equilibrium(scaled(contact), size))
     return Program(
         weights=scaled_weights(contact, options.weights),
-        penalised=no_equations(size),
+        penalized=no_equations(size),
         penalty=1.0,
         equations=equations.of_unit_size,
         lower=lower_bounds(contact, size),

@@ -1,4 +1,4 @@
-"""QP2, (30)-(34): QP1 with the equations penalised, over displacements and pressures, from a local solver.
+"""QP2, (30)-(34): QP1 with the equations penalized, over displacements and pressures, from a local solver.
 
     minimize   pᵀJ(ε + u_n) + (1/μ)|K u_n - B p - r|²    over u_n, p
     subject to ε + u_n >= 0,  p >= 0,  ℓᵀp = -load
@@ -10,7 +10,7 @@ Stationary points. Let sym(JM) be positive definite on the equilibrium space, �
 conditions of first order read p >= 0, Jδ - σ' >= 0, δ >= 0, Jp + w >= 0, the first two and the last two complementary:
 in each case w_i σ'_i <= 0. From S M = I - Vℓᵀ follows σ' = Mᵀw + ℓz, and Rᵀw = 0. So with v = w/J, which is in
 equilibrium, vᵀJM v = wᵀσ'/J <= 0: v = 0, σ = 0, and the point is the contact state, whatever μ is. With the compliance
-rows w = σ and σ' = Mᵀσ + ℓy lead to the same. Where equilibrium is penalised as all the rest, as [SS92] has it, p = 0
+rows w = σ and σ' = Mᵀσ + ℓy lead to the same. Where equilibrium is penalized as all the rest, as [SS92] has it, p = 0
 with the body lifted far enough is another stationary point: the residual then is balanced by no force, and small
 changes of p and u_n improve nothing.
 
@@ -77,21 +77,21 @@ def statement(contact: CondensedContact, options: SolveOptions) -> Program:
     Raises
     ------
     ProblemError
-        The problem does not carry the weights asked for, or the rows do not contain the equilibrium to be penalised.
+        The problem does not carry the weights asked for, or the rows do not contain the equilibrium to be penalized.
     """
-    penalised = contact_equations(contact, options.rows)
-    size = penalised.matrix.shape[1]
+    penalized = contact_equations(contact, options.rows)
+    size = penalized.matrix.shape[1]
     exact = no_equations(size)
     if options.equilibrium is Equilibrium.CONSTRAINT:
         exact = equilibrium(scaled(contact), size).of_unit_size
     elif options.rows is Rows.COMPLIANCE and contact.free_motions:
         raise OptionError(
-            "equilibrium can be penalised with the stiffness rows only, which contain it; the compliance rows need it "
+            "equilibrium can be penalized with the stiffness rows only, which contain it; the compliance rows need it "
             "as a constraint"
         )
     return Program(
         weights=scaled_weights(contact, options.weights),
-        penalised=penalised,
+        penalized=penalized,
         penalty=options.penalty,
         equations=exact,
         lower=lower_bounds(contact, size),
@@ -190,7 +190,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     ------
     ProblemError
         QP2 has no minimum, as with the consistent weights and a large penalty; the problem does not carry the weights
-        asked for; the rows do not contain the equilibrium to be penalised.
+        asked for; the rows do not contain the equilibrium to be penalized.
     """
     options = options_of(FormulationName.QP2, options)
     program = statement(contact, options)
@@ -230,15 +230,15 @@ def _unbounded(contact: CondensedContact, options: SolveOptions, ray: Ray, unit:
 
 
 def _notes(contact: CondensedContact, options: SolveOptions, solution: ContactSolution) -> tuple[str, ...]:
-    """What to know of equilibrium that is only penalised."""
+    """What to know of equilibrium that is only penalized."""
     if options.equilibrium is Equilibrium.CONSTRAINT:
         return ()
     if not contact.free_motions:
-        return ("conditions hold all rigid motions: there is no equilibrium of a free body to be penalised",)
+        return ("conditions hold all rigid motions: there is no equilibrium of a free body to be penalized",)
     if solution.status is not Status.LOCAL_MINIMUM:
         return ()
     state = "lifted off its support" if not solution.pressure.any() else "out of equilibrium"
     return (
-        f"equilibrium was only penalised, and the body was left {state}, where no small change helps; keep "
+        f"equilibrium was only penalized, and the body was left {state}, where no small change helps; keep "
         "equilibrium as a constraint, or take another start",
     )

@@ -37,7 +37,7 @@ SOLVER = "inertia-controlling active set"
 QUANTITIES = {1: "infeasibility", 2: "objective"}
 """What each phase of the solver reduces."""
 STATUSES = {
-    QPStatus.LOCAL_MINIMISER: Status.SOLVED,
+    QPStatus.LOCAL_MINIMIZER: Status.SOLVED,
     QPStatus.UNDECIDED: Status.SOLVED,
     QPStatus.UNBOUNDED: Status.UNBOUNDED,
     QPStatus.INFEASIBLE: Status.INFEASIBLE,

@@ -246,7 +246,7 @@ def test_qp3_of_p_matrices(kind):
                 weighted + weighted.T, problem.weights * problem.offset, A=problem.compliance, cl=-problem.offset,
                 bl=np.zeros(6), x0=start.pressure / condensed.scales.pressure,
             )  # fmt: skip
-            assert found.status is QPStatus.LOCAL_MINIMISER
+            assert found.status is QPStatus.LOCAL_MINIMIZER
             assert among(found.x, [truth])
 
 
@@ -380,5 +380,5 @@ def test_a_first_order_point_without_a_p_matrix_in_exact_numbers():
     program = qp1.statement(problem, SolveOptions.of("qp1"))
     E, e = program.equations.matrix, program.equations.right
     found = minimize_qp(program.hessian, program.linear, A=E, cl=e, cu=e, bl=program.lower, x0=np.array([-0.5, 0.5]))
-    assert found.status is QPStatus.LOCAL_MINIMISER
+    assert found.status is QPStatus.LOCAL_MINIMIZER
     assert program.value(found.x) == pytest.approx(0, abs=1e-15)

@@ -202,7 +202,7 @@ def test_written_by_hand_in_scaled_numbers(statement, body, mesh, modulus, units
         truth = complementarity.solve(condensed)
         problem = without_units(condensed)
         found = by_hand(statement, problem)
-        assert found.status is QPStatus.LOCAL_MINIMISER
+        assert found.status is QPStatus.LOCAL_MINIMIZER
         gap = (problem.initial_gap + found.x[:n]) * condensed.scales.displacement
         assert_right(found.x[n:] * condensed.scales.pressure, truth.pressure)
         assert_right(gap - condensed.initial_gap, truth.displacement)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.formulations.local_solver.factorisations import Inertia, inertia
+from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 
 
 class QPStatus(StrEnum):
@@ -19,7 +19,7 @@ class QPStatus(StrEnum):
     the limits of double precision for any claim.
     """
 
-    LOCAL_MINIMISER = "local minimiser"
+    LOCAL_MINIMIZER = "local minimizer"
     UNDECIDED = "second-order undecided"
     UNBOUNDED = "unbounded"
     INFEASIBLE = "infeasible"

@@ -1,4 +1,4 @@
-"""The quadratic programme as stated, checked on entry, and its equilibration."""
+"""The quadratic program as stated, checked on entry, and its equilibration."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.local_solver.factorisations import row_lengths
+from bemcontact.formulations.local_solver.factorizations import row_lengths
 
 Array = NDArray[np.float64]
 Sides = NDArray[np.int8]

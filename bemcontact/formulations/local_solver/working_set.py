@@ -14,7 +14,7 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.formulations.local_solver.factorisations import add_rank_one, inverse_triangle, orthogonal, unit_rows
+from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, orthogonal, unit_rows
 from bemcontact.formulations.local_solver.statement import Array, Sides, Statement
 
 EQUALITY = 2
