@@ -24,11 +24,11 @@ from .errors import SingularSystemError as SingularSystemError
 from .errors import SolverError as SolverError
 from .errors import SpecError as SpecError
 from .formulations.complementarity import solve_lcp as solve_lcp
-from .formulations.formulation import Start as Start
 from .formulations.local_solver import QPOptions as QPOptions
 from .formulations.local_solver import QPResult as QPResult
 from .formulations.local_solver import QPStatus as QPStatus
 from .formulations.local_solver import minimize_qp as minimize_qp
+from .formulations.start import Start as Start
 from .modelling.contact_model import ContactModel as ContactModel
 from .modelling.contact_model import model as model
 from .modelling.designed_gap import GapDesign as GapDesign
@@ -36,6 +36,7 @@ from .modelling.gap_design import design_gap as design_gap
 from .modelling.relief import Relief as Relief
 from .options import Equilibrium as Equilibrium
 from .options import Rows as Rows
+from .options import SolveOptions as SolveOptions
 from .options import Weights as Weights
 from .parametric.parameter_path import ParameterPath as ParameterPath
 from .parametric.path import LoadPath as LoadPath

@@ -15,10 +15,9 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
-from bemcontact.options import FormulationName
+from bemcontact.options import FormulationName, SolveOptions, options_of
 
 ACCEPTED = 1e-11
 """Value of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
@@ -85,7 +84,7 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
     return LcpResult(z=z, w=q + M @ z, status=search.status, iterations=search.iterations, method=search.method)
 
 
-def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:
     """Solve the complementarity problem (16)-(18) with (35)-(38) directly, without an objective.
 
     Parameters
@@ -104,8 +103,7 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
     ProblemError
         An option has no meaning here, such as weights.
     """
-    options = options or FormulationOptions()
-    options.ensure_used(FormulationName.COMPLEMENTARITY)
+    options = options_of(FormulationName.COMPLEMENTARITY, options)
     if note := escape_note(contact):
         return _without_contact(contact, note)
     body = scaled(contact)

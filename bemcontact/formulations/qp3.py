@@ -18,12 +18,9 @@ from bemcontact.contact.solution import ContactSolution, Status, Trace
 from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.clarabel import STATUSES, minimize
 from bemcontact.formulations.complementarity import escape_note, polish
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_weights, unscaled
-from bemcontact.options import FormulationName, Weights
+from bemcontact.options import FormulationName, SolveOptions, Weights, options_of
 
-OPTIONS = ("weights",)
-"""The `FormulationOptions` that QP3 uses."""
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR, or negative eigenvalue, that is round-off; by the scaling the numbers are of size one."""
 SLIGHT = 1e-2
@@ -107,7 +104,7 @@ def smallest_eigenvalue(contact: ScaledContact, J: Array) -> float | None:
     return float(eigvalsh(hessian, subset_by_index=(0, 0))[0])
 
 
-def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:
     """Minimize QP3, (40)-(42), on the scaled problem, then polish.
 
     With the consistent weights the minimum need not be the contact state, because J has negative entries. The result is
@@ -134,8 +131,7 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
     SolverError
         Clarabel broke down.
     """
-    options = options or FormulationOptions()
-    options.ensure_used(FormulationName.QP3, *OPTIONS)
+    options = options_of(FormulationName.QP3, options)
     body, J = scaled(contact), scaled_weights(contact, options.weights)
     eigenvalue = smallest_eigenvalue(body, J)
     work = objective(body, J)

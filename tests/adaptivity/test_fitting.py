@@ -21,7 +21,7 @@ from bemcontact.assessment.footprint import footprint
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.formulations.plan import planned_comparison
+from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
 
 MODELS = Path(__file__).parents[2] / "models"
@@ -428,7 +428,7 @@ def test_condense_fits_too_and_says_so():
 
 def test_a_comparison_fits_once_and_then_refines():
     said = []
-    plan = planned_comparison(["qp3"])
+    plan = ComparisonOptions.of(["qp3"])
     found = comparing.study(plan, cylinder(6), (1, 2), lambda stage, now: said.append((stage, now)))
     assert found.certified
     assert next(stage for stage, now in said if not now) == "mesh fit"

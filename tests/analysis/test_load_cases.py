@@ -31,7 +31,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import condense
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.plan import planned_comparison
+from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
 from bemcontact.reference.closed_forms import PunchOnHalfPlane, contact_modulus
 
@@ -433,7 +433,7 @@ def test_saved_and_read_again_cases_and_tools_are_the_same(case: str, tmp_path: 
 def test_cases_are_compared_one_by_one():
     """A study of one case: references without case are judged in each, others in theirs; --case outdates none."""
     problem = spec.load(GALLERY / "body_between_two_tools.yaml")
-    plan = planned_comparison(("qp1", "qp2", "qp3"))
+    plan = ComparisonOptions.of(("qp1", "qp2", "qp3"))
     for case, names in {
         "raised": {"raised", "press", "table"},
         "edge of the kern": {"edge of the kern", "press", "table"},

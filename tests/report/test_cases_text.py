@@ -12,7 +12,7 @@ import bemcontact
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.bem.body import body_of
-from bemcontact.report import cases_text, text
+from bemcontact.report import cases_text, formatting, text
 
 UNITS = {"units": {"length": "mm", "force": "N"}}
 
