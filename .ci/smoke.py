@@ -51,7 +51,7 @@ def problems_are_solved(folder: Path) -> None:
     bemcontact_program("compare", PUNCH, "--out", page.parent)
     bemcontact_program("condense", PUNCH, "--refine", "20", "--out", npz)  # large enough for numba
     assert all(file.stat().st_size for file in files)
-    assert bemcontact.condense(bemcontact.load(PUNCH)).model().solve().contact_state
+    assert bemcontact.model(bemcontact.condense(bemcontact.load(PUNCH))).solve().contact_state
 
 
 def mistakes_are_refused(folder: Path) -> None:

@@ -13,7 +13,7 @@ highlight_language = "none"
 smartquotes = False  # they would turn the two hyphens of an option into a dash
 nitpicky = False
 
-myst_enable_extensions = ["attrs_inline", "colon_fence", "deflist", "dollarmath"]
+myst_enable_extensions = ["attrs_inline", "colon_fence", "deflist", "dollarmath", "html_image"]
 myst_heading_anchors = 4
 nb_execution_mode = "force"
 nb_merge_streams = True

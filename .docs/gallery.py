@@ -131,8 +131,8 @@ def _percent(error: float) -> str:
 
 def pictures() -> Iterator[tuple[Path, bytes]]:
     """Draw each problem, and two of them side by side for the README."""
-    readme = new_page(8.3, 3.2)
-    for axes, name in zip(readme.subplots(1, 2, width_ratios=(1, 1.7)), README, strict=True):
+    readme = new_page(8.3, 3.0)
+    for axes, name in zip(readme.subplots(1, 2, width_ratios=(1, 2.2)), README, strict=True):
         problem = bemcontact.load(ROOT / "models" / f"{name}.yaml")
         _draw(axes, problem)
         axes.set_title(problem.name, fontsize=10)

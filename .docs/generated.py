@@ -8,6 +8,7 @@ import inspect
 import json
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, get_args
 
 import typer
@@ -23,6 +24,7 @@ from typer.testing import CliRunner
 import bemcontact
 from bemcontact import cli
 
+ROOT = Path(__file__).parents[1]
 MARK = re.compile(r"^<!-- generated: (\w+)(.*) -->$", flags=re.MULTILINE)
 COMMANDS = typer.main.get_command(cli.app)
 
@@ -165,7 +167,8 @@ def _simple(node: dict[str, Any], schema: dict[str, Any], prefix: str) -> str:
         if "prefixItems" in node:
             return "[" + ", ".join(_value(item, schema, prefix) for item in node["prefixItems"]) + "]"
         count = f" {node['minItems']}" if node.get("minItems") == node.get("maxItems", -1) else ""
-        return f"list of{count} {_value(node.get('items', {}), schema, prefix)}"
+        items = _value(node.get("items", {}), schema, prefix)
+        return f"list of{count} " + re.sub(r"^(number|integer|text|list)\b", r"\1s", items)
     if types == "object":
         values = node.get("additionalProperties")
         return "mapping of names" + (f" to {_value(values, schema, prefix)}" if isinstance(values, dict) else "")
@@ -190,8 +193,8 @@ def _plain(value: Any) -> str:
 
 
 def _title(name: str) -> str:
-    """Turn the name of a class into words: FlatPunch, Flat punch."""
-    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).capitalize()
+    """Turn the name of a class into words: FlatPunch, Flat punch; UnitsRecord, Units."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name.removesuffix("Record")).capitalize()
 
 
 def _escaped(text: str) -> str:
@@ -249,7 +252,13 @@ def _documented(path: str, value: object) -> str:
     return "\n   ".join([f"```{{eval-rst}}\n.. {directive}:: {path}", *options]) + "\n```\n"
 
 
-PARTS = {"commands": commands, "spec": spec, "json": json_files, "names": names, "parts": parts}
+def gallery() -> str:
+    """Show the page of the models, with its paths as from the folder of the site."""
+    text = (ROOT / "models" / "README.md").read_text(encoding="utf-8")
+    return re.sub(r"\]\(([^)]*\.yaml)\)", r"](../models/\1)", text).replace('src="../.docs/', 'src="')
+
+
+PARTS = {"commands": commands, "spec": spec, "json": json_files, "names": names, "parts": parts, "gallery": gallery}
 
 
 def fill(app: Sphinx, page: str, source: list[str]) -> None:

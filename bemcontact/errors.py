@@ -1,30 +1,36 @@
-"""What can go wrong, as types: `BemContactError` and its leaves.
+"""All errors that the package raises: `BemContactError` and its subclasses.
 
-An error means that the question has no answer as asked. A solver that does not converge is no error: it returns a
+An error means that a problem or a request has no answer. A solver that does not converge raises no error: it returns a
 `bemcontact.Status`.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-Path = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 """Keys and list positions from the top of a spec to a value, such as ``("conditions", "top", "pressure")``."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Complaint:
-    """One thing that is wrong with a problem: where (path of keys) and what, in a sentence that says the way out."""
+class Issue:
+    """One mistake in a problem.
 
-    path: Path
+    Parameters
+    ----------
+    path : keys from the top of the problem to the mistake
+    message : what is wrong, what was found, and what to do
+    """
+
+    path: KeyPath
     message: str
 
     def __str__(self) -> str:
-        """The key path in dots, then the message."""
+        """The key path with dots, then the message."""
         return f"{dotted(self.path)}: {self.message}" if self.path else self.message
 
 
-def dotted(path: Path) -> str:
-    """Write a path of keys as a person does: ``contact_zones.foot.edges[1]``."""
+def dotted(path: KeyPath) -> str:
+    """Write a key path as in a spec: ``contact_zones.foot.edges[1]``."""
     text = ""
     for key in path:
         text += f"[{key}]" if isinstance(key, int) else f".{key}" if text else key
@@ -32,39 +38,39 @@ def dotted(path: Path) -> str:
 
 
 class BemContactError(Exception):
-    """Base of all errors that the package raises on purpose."""
+    """Base class of all errors that the package raises."""
 
 
 class ProblemError(BemContactError):
-    """A problem that has no answer as stated: contradictory, incomplete, or physically impossible.
+    """A problem that has no answer: it is contradictory, incomplete, or physically impossible.
 
     Parameters
     ----------
-    complaints : Complaint, sequence of Complaint, or str
-        All that was found, each with the path of keys it belongs to.
+    issues : Issue, sequence of Issue, or str
+        All mistakes that were found, each with its key path.
     """
 
-    def __init__(self, complaints: Complaint | Sequence[Complaint] | str) -> None:
-        if isinstance(complaints, str):
-            complaints = Complaint(path=(), message=complaints)
-        self.complaints = (complaints,) if isinstance(complaints, Complaint) else tuple(complaints)
-        super().__init__("\n".join(map(str, self.complaints)))
+    def __init__(self, issues: Issue | Sequence[Issue] | str) -> None:
+        if isinstance(issues, str):
+            issues = Issue(path=(), message=issues)
+        self.issues = (issues,) if isinstance(issues, Issue) else tuple(issues)
+        super().__init__("\n".join(map(str, self.issues)))
 
 
 class OptionError(ProblemError):
-    """An option of solving, not the problem, that is wrong: of no meaning, out of range, or not for this problem."""
+    """An option of the solution that is unknown, out of range, or not possible for this problem."""
 
 
 class SpecError(BemContactError):
-    """A spec file that does not state a problem; each line of the text starts with ``file:line:column``."""
+    """A spec file that cannot be read as a problem; each line of the text starts with ``file:line:column``."""
 
 
 class SingularSystemError(BemContactError):
-    """A linear system of the boundary-element core has no unique solution."""
+    """A linear system of boundary elements has no unique solution."""
 
 
 class NotConvexError(BemContactError):
-    """A quadratic program that must be convex is not; the text states the eigenvalue."""
+    """A quadratic program that must be convex is not; the text gives the smallest eigenvalue."""
 
     def __init__(self, message: str, *, smallest_eigenvalue: float) -> None:
         self.smallest_eigenvalue = smallest_eigenvalue
@@ -72,4 +78,4 @@ class NotConvexError(BemContactError):
 
 
 class SolverError(BemContactError):
-    """A solver gave no answer that could be used; raised from the solver's own error where there is one."""
+    """A solver failed without a usable result; its own error, if there is one, is the cause."""

@@ -18,7 +18,7 @@ ROOMS = {
     "options": (),
     "version": (),
     "files": ("errors",),
-    "problem": ("errors", "options"),
+    "problem": ("errors", "arrays", "options"),
     "spec": ("errors", "files", "problem"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problem", "contact"),
@@ -51,8 +51,8 @@ EXCEPTIONS = {
 
 HOME = {
     "yaml": ("bemcontact.spec",),
-    "cvxpy": ("bemcontact.formulations.qp3", "bemcontact.modelling"),
-    "clarabel": ("bemcontact.formulations.qp3",),
+    "cvxpy": ("bemcontact.formulations.clarabel", "bemcontact.formulations.qp3", "bemcontact.modelling"),
+    "clarabel": ("bemcontact.formulations.clarabel",),
     "matplotlib": ("bemcontact.report.figures",),
     "typer": ("bemcontact.cli",),
     "numba": ("bemcontact.bem.compiled",),

@@ -41,7 +41,7 @@ def test_each_package_that_is_imported_is_declared():
             elif isinstance(node, ast.ImportFrom):
                 imported.add(node.module.partition(".")[0])
     foreign = imported - sys.stdlib_module_names - {"bemcontact"}
-    assert {PACKAGE_OF.get(module, module) for module in foreign} <= set(declared)
+    assert {PACKAGE_OF.get(module, module) for module in foreign} == set(declared)
 
 
 def test_the_citation_names_this_version():

@@ -6,12 +6,10 @@ from itertools import pairwise
 from math import ceil
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bemcontact.adaptivity.zone_runs import SAME, ZoneRun
+from bemcontact.arrays import Array
 from bemcontact.problem.element_ends import cubic_ends, moved_onto
-
-Array = NDArray[np.float64]
 
 CONTACT_SHARE = 2.0
 """Elements on the side of a contact edge that is in contact, to those on the open side, where this is no longer."""

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from bemcontact.contact.condensed_contact import Array, CondensedContact
+from bemcontact.arrays import Array
+from bemcontact.contact.condensed_contact import CondensedContact
 
 
 def sawing(contact: CondensedContact, pressure: Array) -> float | None:
@@ -25,8 +26,7 @@ def sawing(contact: CondensedContact, pressure: Array) -> float | None:
     """
     amplitudes: list[float] = []
     for run in np.unique(contact.run):
-        own = np.flatnonzero(contact.run == run)
-        own = own[np.argsort(contact.arc_position[own], kind="stable")]
+        own = contact.points_of_run(run)
         if len(own) >= 8:
             parts = sliding_window_view(_alternating(contact.arc_position[own], pressure[own]), 4)
             pressed = sliding_window_view(pressure[own] > 0, 8).all(axis=1)

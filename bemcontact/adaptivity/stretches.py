@@ -4,12 +4,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bemcontact.adaptivity.fitted_ends import Touched
 from bemcontact.adaptivity.zone_runs import SAME, ZoneRun
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import ContactInterval
-from bemcontact.contact.condensed_contact import Array, CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 
 POINTS_OF_ELEMENT = 3
@@ -61,10 +61,9 @@ def stretches(
         yield Stretch(touched=touched, narrow=last - first < POINTS_OF_ELEMENT - 1)
 
 
-def _points(run: ZoneRun, contact: CondensedContact, solution: ContactSolution) -> tuple[Array, NDArray[np.bool_]]:
+def _points(run: ZoneRun, contact: CondensedContact, solution: ContactSolution) -> tuple[Array, BoolArray]:
     """Arc lengths of the points of a run in order, and which of them touch; of a closed run all several times over."""
-    own = np.flatnonzero(contact.run == run.number)
-    own = own[np.argsort(contact.arc_position[own], kind="stable")]
+    own = contact.points_of_run(run.number)
     touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
     arcs, touching = contact.arc_position[own], touching[own]
     if not run.closed:

@@ -5,13 +5,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.condense import Body
 from bemcontact.bem.contact_points import element_lengths
 from bemcontact.problem.curves import Edge
-
-Array = NDArray[np.float64]
 
 CORNER = 0.2
 """Sine of the angle by which the boundary turns from which a joint of two edges is a corner."""
@@ -41,7 +39,7 @@ class ZoneRun:
     closed: bool
     arc: Array
     breakpoints: tuple[Array, ...]
-    corner: NDArray[np.bool_]
+    corner: BoolArray
     beside: tuple[Edge, ...]
 
     @property

@@ -11,7 +11,7 @@ from bemcontact.analysis.study import MeshLevel, Study
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Found
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.errors import NotConvexError, OptionError, Path, SolverError
+from bemcontact.errors import KeyPath, NotConvexError, OptionError, SolverError
 from bemcontact.formulations import FORMULATIONS, OPTIONS, qp3
 from bemcontact.formulations.formulation import ensure_whole
 from bemcontact.formulations.plan import COMPARED, ComparisonPlan, Plan, planned_comparison
@@ -130,7 +130,7 @@ def outdated(problem: Problem | CondensedContact, changes: Sequence[str]) -> fro
     return frozenset({*problem.reference} - renewed)
 
 
-def _alters(path: Path) -> bool:
+def _alters(path: KeyPath) -> bool:
     """Whether a change of the value at a path of keys changes the answer that is sought."""
     return path[0] not in HARMLESS and not (path[0] == "boundary" and path[-1] in MESHING)
 

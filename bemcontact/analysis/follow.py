@@ -12,7 +12,7 @@ from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
-from bemcontact.errors import Complaint, ProblemError
+from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.parametric.path import COMMON, SAME, ensure_same_body, load_path
@@ -127,7 +127,7 @@ def stated_value(problem: Problem, key: str) -> float:
     for step in path:
         if isinstance(data, Mapping) and step not in data:
             message = f"there is no number to vary: {unknown_word('entry', str(step), map(str, data))}"
-            raise ProblemError(Complaint(path=path, message=message))
+            raise ProblemError(Issue(path=path, message=message))
         data = None if data is None else data[step]
     if isinstance(data, Mapping) and "constant" in data and not any(data[name] for name in data if name != "constant"):
         data = data["constant"]
@@ -136,7 +136,7 @@ def stated_value(problem: Problem, key: str) -> float:
         if data is not None:
             found = f"it is {described(data)}; give a path to a number, or the value to begin with"
         message = f"there is no number to vary, {found}"
-        raise ProblemError(Complaint(path=path, message=message))
+        raise ProblemError(Issue(path=path, message=message))
     return float(data)
 
 
@@ -160,7 +160,9 @@ def between(problem: Problem, key: str, start: float, end: float) -> tuple[Conde
         If neither end can be condensed, more than gaps and loads depend on the value, or these not linearly.
     """
     if parsed_path(key)[0] in BODY:
-        raise ProblemError(Complaint(path=parsed_path(key), message=f"the compliance depends on it; {EXACT}"))
+        raise ProblemError(Issue(path=parsed_path(key), message=f"the compliance depends on it; {EXACT}"))
+    if _acts_on_contact(problem, key):
+        return _stepped(problem, key, start, end)
     first, last = (_attempted(problem, key, value) for value in (start, end))
     if isinstance(first, ProblemError):
         if isinstance(last, ProblemError):
@@ -171,6 +173,35 @@ def between(problem: Problem, key: str, start: float, end: float) -> tuple[Conde
     share, middle = _farthest(problem, key, start, end)
     _ensure_linear(key, first, middle, last, share)
     return first, last
+
+
+def _acts_on_contact(problem: Problem, key: str) -> bool:
+    """Whether a key is the factor of a load case or a component of a tool, which needs no second condensation."""
+    path = parsed_path(key)
+    of_tool = path[0] == "tools" and len(path) == 4 and path[2] in ("displacement", "force")
+    return of_tool or _case_of(problem, key) is not None
+
+
+def _stepped(problem: Problem, key: str, start: float, end: float) -> tuple[CondensedContact, CondensedContact]:
+    """The ends of a path over a factor or a component of a tool, condensed once: at an end that can be condensed."""
+    at, contact = start, _attempted(problem, key, start)
+    if isinstance(contact, ProblemError):
+        at, contact = end, _attempted(problem, key, end)
+    if isinstance(contact, ProblemError):
+        raise contact
+    first, last = (_with_step(contact, parsed_path(key), value, value - at) for value in (start, end))
+    return first, last
+
+
+def _with_step(contact: CondensedContact, path: KeyPath, value: float, step: float) -> CondensedContact:
+    """Set the factor of a load case to a value, or change a component of a tool by a step."""
+    if not step:
+        return contact
+    if path[0] == "load_cases":
+        factors = dict(zip(contact.cases.names, contact.cases.factors.tolist(), strict=True))
+        return contact.with_factors({**factors, str(path[1]): value})
+    steps = step * (np.array(contact.tools.keys) == ".".join(map(str, path)))
+    return contact.with_tools(contact.tools.position + steps, contact.tools.force + steps)
 
 
 def _farthest(problem: Problem, key: str, start: float, end: float) -> tuple[float, CondensedContact]:
@@ -218,7 +249,7 @@ def _ensure_linear(
         except ProblemError:
             found = next(what for name, what in COMMON.items() if _differs(getattr(middle, name), getattr(end, name)))
             message = f"the {found} depends on it; {EXACT}"
-            raise ProblemError(Complaint(path=parsed_path(key), message=message)) from None
+            raise ProblemError(Issue(path=parsed_path(key), message=message)) from None
     displacement, pressure = np.max([first.scales, last.scales], axis=0)
     least = {"offset": displacement, "motion_load": pressure * np.abs(middle.equilibrium).sum(axis=0)}
     for name, what in (("offset", "gap"), ("motion_load", "load")):
@@ -226,7 +257,7 @@ def _ensure_linear(
         size = np.maximum(np.abs([one, other]).max(axis=0), least[name])
         if (bend := float((np.abs(inner - (1 - share) * one - share * other) / size).max(initial=0.0))) > SAME:
             message = f"the {what} does not change in proportion to it, it bends by {bend:.2g}; {LINEAR}"
-            raise ProblemError(Complaint(path=parsed_path(key), message=message))
+            raise ProblemError(Issue(path=parsed_path(key), message=message))
 
 
 EXACT = "a path is exact only for loads, gaps and tools"

@@ -17,7 +17,7 @@ from bemcontact.bem.recovery import boundary_state
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.errors import Complaint, ProblemError
+from bemcontact.errors import Issue, ProblemError
 from bemcontact.formulations import FORMULATIONS, Start
 from bemcontact.formulations.formulation import ensure_whole
 from bemcontact.formulations.plan import Plan, planned
@@ -67,7 +67,7 @@ def ensure_acting(problem: Problem | CondensedContact) -> None:
     ensure_kind(problem)
     if isinstance(problem, Problem) and problem.load_cases and problem.case is None:
         message = f"say which one acts, by case or --case: {', '.join(problem.case_names)}; or solve all of them"
-        raise ProblemError(Complaint(path=("load_cases",), message=message))
+        raise ProblemError(Issue(path=("load_cases",), message=message))
 
 
 def solve(

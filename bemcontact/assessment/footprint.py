@@ -200,8 +200,7 @@ def _paths(contact: CondensedContact, solution: ContactSolution) -> list[tuple[i
 
 def _path(contact: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
     """Gather the points of a run."""
-    index = np.flatnonzero((contact.zone == zone) & (contact.run == run))
-    index = index[np.argsort(contact.arc_position[index], kind="stable")]
+    index = contact.in_order(np.flatnonzero((contact.zone == zone) & (contact.run == run)))
     perimeter = contact.run_length[run]
     turns = np.array([-1.0, 0.0, 1.0]) if np.isfinite(perimeter) else np.zeros(1)
     around = np.tile(index, len(turns))
@@ -317,7 +316,7 @@ def _peak(contact: CondensedContact, pressure: Array) -> Peak | None:
 
 def _resultant(contact: CondensedContact, pressure: Array) -> Resultant:
     """Force Σ w p n, its moment, and its line of action."""
-    forces = (contact.weights * pressure)[:, None] * contact.normals
+    forces = contact.forces(pressure)
     x, y = contact.points.T
     fx, fy = map(float, forces.sum(axis=0))
     moment = float((x * forces[:, 1] - y * forces[:, 0]).sum())

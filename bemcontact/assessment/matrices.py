@@ -70,8 +70,7 @@ def weighted_compliance(contact: CondensedContact, weights: Weights) -> Weighted
     U, T = contact.scales
     J = contact.weight_matrix(weights)
     J = J / np.abs(J).max()
-    weighted, ell = J @ contact.compliance * (T / U), contact.equilibrium
-    Z = np.linalg.qr(ell, mode="complete")[0][:, ell.shape[1] :]
+    weighted, Z = J @ contact.compliance * (T / U), contact.equilibrium_space
     symmetric = weighted + weighted.T
     eigenvalues = eigvalsh(Z.T @ symmetric @ Z / 2) if Z.shape[1] else None
     motions = contact.rigid_motions / np.abs(contact.rigid_motions).max(axis=0, initial=0.0)

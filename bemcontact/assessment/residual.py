@@ -59,16 +59,14 @@ def residuals(contact: CondensedContact, solution: ContactSolution, force_balanc
     p, u_n = solution.pressure, solution.displacement
     gap = contact.initial_gap + u_n
     K, B, r = contact.stiffness_rows
-    R = contact.rigid_motions
-    strange = u_n - contact.free_displacement - contact.compliance @ p
-    root = np.sqrt(contact.weights)
-    strange = strange - R @ np.linalg.lstsq(root[:, None] * R, root * strange, rcond=None)[0]
+    apart = u_n - contact.free_displacement - contact.compliance @ p
+    apart = apart - contact.rigid_motions @ contact.amplitudes_of(apart)
     return Residuals(
         penetration=_largest(-gap / U),
         tension=_largest(-p / T),
         complementarity=_largest(np.abs(np.minimum(p / T, gap / U))),
         work=float(contact.weights @ (p * gap)) / (U * T * float(contact.weights.max())),
-        equilibrium=_largest(np.abs(strange) / U),
+        equilibrium=_largest(np.abs(apart) / U),
         stiffness_rows=_largest(np.abs(K @ u_n - B @ p - r) / T),
         balance=_largest(_imbalance(contact, p) / (T * np.abs(contact.equilibrium).sum(axis=0))),
         round_off=_largest(_round_off(contact, solution)[contact.touching(p, u_n)] / U),
@@ -86,7 +84,7 @@ def _round_off(contact: CondensedContact, solution: ContactSolution) -> Array:
 
 def _imbalance(contact: CondensedContact, pressure: Array) -> Array:
     """|ℓᵀp + load| (k,)."""
-    return np.abs(contact.equilibrium.T @ pressure + contact.motion_load)
+    return np.abs(contact.imbalance(pressure))
 
 
 def _largest(values: Array) -> float:

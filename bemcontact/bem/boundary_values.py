@@ -4,15 +4,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.mesh import Mesh
-from bemcontact.errors import Complaint, ProblemError
+from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.problem import Problem
-
-Array = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 CONTRADICTION = 1e-9
 """Difference of two displacements prescribed at one corner, relative to the largest prescribed one, that is refused."""
@@ -53,7 +50,7 @@ def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:
     )
     owner = np.full((N, 2), -1)
     largest = _largest_displacement(problem, mesh)
-    complaints = []
+    issues = []
     for index, name in enumerate(mesh.edge_names):
         if name not in problem.conditions:
             continue
@@ -63,7 +60,7 @@ def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:
             value = field.at(mesh.nodes[nodes])
             taken = values.displacement_given[nodes, axis]
             wrong = taken & (abs(value - values.displacement[nodes, axis]) > CONTRADICTION * largest)
-            complaints += [
+            issues += [
                 _contradiction(mesh, mesh.edge_names[owner[node, axis]], name, axis, int(node)) for node in nodes[wrong]
             ]
             values.displacement[nodes, axis] = value
@@ -73,8 +70,8 @@ def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:
         values.traction[elements] = applied_traction(
             condition, mesh.nodes[mesh.elements[elements]], mesh.normals[elements]
         )
-    if complaints:
-        raise ProblemError(complaints)
+    if issues:
+        raise ProblemError(issues)
     return values
 
 
@@ -109,10 +106,10 @@ def _largest_displacement(problem: Problem, mesh: Mesh) -> float:
     return largest
 
 
-def _contradiction(mesh: Mesh, first: str, second: str, axis: int, node: int) -> Complaint:
+def _contradiction(mesh: Mesh, first: str, second: str, axis: int, node: int) -> Issue:
     x, y = mesh.nodes[node]
     message = (
         f"at ({x:.6g}, {y:.6g}), where '{second}' meets '{first}', the two prescribe different displacements "
         f"along {'xy'[axis]}; make them agree at that corner"
     )
-    return Complaint(path=("conditions", second, "displacement", "xy"[axis]), message=message)
+    return Issue(path=("conditions", second, "displacement", "xy"[axis]), message=message)

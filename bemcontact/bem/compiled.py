@@ -10,14 +10,10 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, ComplexArray, IntArray
 from bemcontact.bem.kernels import Factors
 from bemcontact.bem.shape_functions import INTEGRALS
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-ComplexArray = NDArray[np.complex128]
 
 FarSums = Callable[[Array, Array, ComplexArray, IntArray, int, ComplexArray, ComplexArray, Array, Factors], None]
 """A function with the parameters of `add_far`."""

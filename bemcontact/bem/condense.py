@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
+from bemcontact.arrays import Array
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.deflection import deflections
 from bemcontact.bem.factorisation import solve
@@ -21,13 +21,11 @@ from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.system import System
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.gauge import Gauge, fix_gauge
+from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
 from bemcontact.contact.load_cases import LoadCases
 from bemcontact.contact.tools import BALANCED, Pinned, Tools
-from bemcontact.errors import Complaint, ProblemError
+from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.problem import Problem
-
-Array = NDArray[np.float64]
 
 IDLE = 1e-7
 """Normal displacement in a motion that opens gaps, over that of the motion, from which it is one."""
@@ -186,7 +184,7 @@ def ensure_held(body: Body) -> None:
         if case is None:
             raise
         path = ("load_cases" if case in body.problem.load_cases else "combinations", case)
-        raise ProblemError(Complaint(path=path, message=str(error))) from None
+        raise ProblemError(Issue(path=path, message=str(error))) from None
 
 
 def _check_support(body: Body) -> None:
@@ -279,11 +277,9 @@ def condense(body: Body) -> Condensation:
     R, load = body.normal_motion(body.seen), body.motion_load(body.seen)
     own = np.any(body.seen.body.coefficients, axis=1)
     gauge = fix_gauge(
+        MotionAlgebra(rigid_motions=R[:, own], weights=points.tributary, motion_load=load[own]),
         compliance=observed[:, s:] * (system.length / system.stress),
         free_displacement=observed[:, :s] * system.length + np.column_stack(prescribed),
-        rigid_motions=R[:, own],
-        weights=points.tributary,
-        motion_load=load[own],
     )
     on_body = np.where(own[:, None], load, 0.0)
     contact = CondensedContact(

@@ -7,17 +7,14 @@ from itertools import pairwise
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import quadrature, shape_functions
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Closest, DeflectedContour, RigidSurface
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 PARALLEL = 1e-9
 """Sine of the angle below which the rigid normal lies along a prescribed axis."""
@@ -176,16 +173,14 @@ def _closest(surface: RigidSurface, mesh: Mesh, nodes: IntArray, deflection: Arr
     return surface.closest(mesh.nodes[nodes])
 
 
-def _on_surface(
-    mesh: Mesh, values: Sequence[BoundaryValues], nodes: IntArray, normals: Array, gap: Array
-) -> NDArray[np.bool_]:
+def _on_surface(mesh: Mesh, values: Sequence[BoundaryValues], nodes: IntArray, normals: Array, gap: Array) -> BoolArray:
     """Whether prescribed displacements put nodes on the rigid surface, and no load case moves them off it."""
     moved = [np.sum(normals * item.displacement[nodes], axis=1) for item in values]
     return np.all(np.abs([gap + moved[0], *moved[1:]]) <= ALIKE * mesh.size, axis=0)
 
 
 def _goes_on(
-    mesh: Mesh, values: BoundaryValues, elements: IntArray, normals: Array, on_surface: NDArray[np.bool_]
+    mesh: Mesh, values: BoundaryValues, elements: IntArray, normals: Array, on_surface: BoolArray
 ) -> tuple[bool, bool]:
     """Whether contact goes on beyond the first and the last node of a run, over an element that a condition holds."""
     first, after = elements[0], mesh.elements[elements[-1], 2]  # an element has the number of its start node
@@ -261,7 +256,7 @@ def _first_alike(mesh: Mesh, node: IntArray, normals: Array, gap: Array, tool: S
     return first
 
 
-def _runs(mesh: Mesh, in_zone: NDArray[np.bool_]) -> Iterator[tuple[IntArray, bool]]:
+def _runs(mesh: Mesh, in_zone: BoolArray) -> Iterator[tuple[IntArray, bool]]:
     """Unbroken pieces of a zone: their elements in order, and whether the piece closes on itself."""
     after = mesh.elements[:, 2]
     before = mesh.before
@@ -285,6 +280,6 @@ def _nodes_along(mesh: Mesh, halves: Array, elements: IntArray, *, closed: bool)
     return (nodes[:-1], arc[:-1]) if closed else (nodes, arc)
 
 
-def _held_along(normals: Array, given: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _held_along(normals: Array, given: BoolArray) -> BoolArray:
     """Whether prescribed displacements (n, 2) span the normal."""
     return np.all((abs(normals) <= PARALLEL) | given, axis=1)

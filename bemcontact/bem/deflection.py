@@ -2,9 +2,7 @@
 
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from bemcontact.arrays import Array
 from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.factorisation import solve
@@ -13,11 +11,9 @@ from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import free_rigid_motions
 from bemcontact.bem.system import System
 from bemcontact.bem.volume_loads import particular_solution
-from bemcontact.errors import Complaint, Path, ProblemError
+from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
-
-Array = NDArray[np.float64]
 
 
 def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
@@ -48,7 +44,7 @@ def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
     }
 
 
-def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: Path) -> Array:
+def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> Array:
     """Displacement (N, 2) [L] of the body under the loads that shape a contour, whose path of keys is given."""
     values = _boundary_values(problem, mesh, surface, path)
     motions = free_rigid_motions(mesh, values.displacement_given)
@@ -57,7 +53,7 @@ def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: P
             f"with these conditions nothing holds the body against the {' and the '.join(motions.describe())}, for "
             "there is no contact where the contour is found; prescribe displacements that hold it"
         )
-        raise ProblemError(Complaint(path=(*path, "conditions"), message=message))
+        raise ProblemError(Issue(path=(*path, "conditions"), message=message))
     loading = Loading(values=values, particular=particular_solution(surface.loads, problem.material, mesh))
     system = System(
         mesh=mesh, material=problem.material, points=ContactPoints.none(mesh), motions=motions, loadings=(loading,),
@@ -66,14 +62,14 @@ def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: P
     return displacement
 
 
-def _boundary_values(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: Path) -> BoundaryValues:
-    """Spread the conditions of a contour; complaints about its own get the path to them."""
+def _boundary_values(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> BoundaryValues:
+    """Spread the conditions of a contour; issues about its own get the path to them."""
     other = problem.model_copy(update={"conditions": problem.conditions | surface.conditions})
     try:
         return boundary_values(other, mesh)
     except ProblemError as error:
-        complaints = [
+        issues = [
             replace(item, path=(*path, *item.path)) if item.path[1] in surface.conditions else item
-            for item in error.complaints
+            for item in error.issues
         ]
-        raise ProblemError(complaints) from None
+        raise ProblemError(issues) from None

@@ -1,14 +1,14 @@
 """The bordered system of a body set up, factorised and solved."""
 
-import numpy as np
-from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs
+from functools import partial
 
+import numpy as np
+
+from bemcontact.arrays import Array
 from bemcontact.bem.influence import Block
 from bemcontact.bem.system import System
+from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
-
-Array = NDArray[np.float64]
 
 SINGULAR = 1e-15
 """Reciprocal condition number below which the system counts as singular."""
@@ -60,19 +60,15 @@ def solve(system: System) -> Array:
     ------
     SingularSystemError
     """
-    lange, getrf, gecon, getrs = get_lapack_funcs(("lange", "getrf", "gecon", "getrs"), dtype=float)
     matrix, right = assemble(system)
-    norm = lange("1", matrix)
-    factors, pivots, info = getrf(matrix, overwrite_a=True)
-    reciprocal = gecon(factors, norm)[0] if info == 0 else 0.0
-    if reciprocal < SINGULAR:
+    lu = LU.of(matrix, overwrite=True)
+    if lu.reciprocal_condition < SINGULAR:
         raise SingularSystemError(
             "the equations of the body have no unique solution (reciprocal condition number "
-            f"{reciprocal:.1e}); look for coincident edges, or elements of very different length side by side"
+            f"{lu.reciprocal_condition:.1e}); look for coincident edges, or for neighboring elements of very different "
+            "length"
         )
-    response, _ = getrs(factors, pivots, right)
-    correction, _ = getrs(factors, pivots, residual(system, response), overwrite_b=True)
-    return response + correction
+    return lu.solve(right, partial(residual, system))
 
 
 def residual(system: System, response: Array) -> Array:

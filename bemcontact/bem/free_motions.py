@@ -4,15 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.rigid_motions import RigidMotions, echelon
+from bemcontact.problem.contact_zone import RigidTool, ToolAction
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_tool import RigidTool, ToolAction
-
-Array = NDArray[np.float64]
 
 UNSEEN = 1e-9
 """Largest normal displacement, relative to the motion's own, of a rigid motion that no contact point sees."""
@@ -37,7 +35,7 @@ class PlacedTools:
     names: tuple[str, ...]
     point: Array
     motions: Array
-    free: NDArray[np.bool_]
+    free: BoolArray
     position: Array
     force: Array
 

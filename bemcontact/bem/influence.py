@@ -18,17 +18,13 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import compiled, kernels, quadrature
 from bemcontact.bem.kernels import Components, GaussRule
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-ComplexArray = NDArray[np.complex128]
 
 ROWS_PER_BLOCK = 160
 LARGEST_BLOCK = 400_000
@@ -137,7 +133,7 @@ class Influence:
     @cached_property
     def _loaded(self) -> IntArray:
         """Elements whose U is needed, for a column or for the sum, ascending."""
-        loaded: NDArray[np.bool_] = np.any(self._known, axis=(0, 1, 2))
+        loaded: BoolArray = np.any(self._known, axis=(0, 1, 2))
         loaded[self.traction_elements] = True
         return np.flatnonzero(loaded)
 
@@ -223,7 +219,7 @@ class Influence:
         for first, last in itertools.pairwise([0, *ends.tolist(), len(kind)]):
             yield slice(first, last)
 
-    def _far_tiers(self, z: ComplexArray, nodes: ComplexArray) -> tuple[IntArray, NDArray[np.bool_]]:
+    def _far_tiers(self, z: ComplexArray, nodes: ComplexArray) -> tuple[IntArray, BoolArray]:
         """The rule (m,) that each element may share for all points of a block, and whether it is far from the block.
 
         |z - c0| = |c1 r + c2 r²| bounds |r| from below, and ρ >= |r| + sqrt(|r|² - 1).
@@ -363,7 +359,7 @@ def _sums(traction: Array, U: Array) -> Array:
     return np.stack([x @ xx + y @ xy, x @ xy + y @ yy], axis=1)
 
 
-def _within(index: IntArray, rows: slice) -> NDArray[np.bool_]:
+def _within(index: IntArray, rows: slice) -> BoolArray:
     return (index >= rows.start) & (index < rows.stop)
 
 

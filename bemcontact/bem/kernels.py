@@ -19,8 +19,8 @@ continuation of the map: Helsing and Ojala (2008), af Klinteberg and Barnett (20
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, ComplexArray
 from bemcontact.bem.quadrature import bernstein_parameter, gauss_legendre
 from bemcontact.bem.shape_functions import (
     DERIVATIVE_MONOMIALS,
@@ -30,9 +30,6 @@ from bemcontact.bem.shape_functions import (
     derivatives,
     values,
 )
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 SMOOTH_ORDER = 24
 """Gauss points for what is left when the near root has been split off."""

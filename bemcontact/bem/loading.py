@@ -4,19 +4,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array
 from bemcontact.bem.boundary_values import BoundaryValues, applied_traction, boundary_values
 from bemcontact.bem.mesh import Mesh, along_curve
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.volume_loads import ParticularSolution, particular_solution, true_resultant
 from bemcontact.errors import ProblemError
-from bemcontact.problem.conditions import AxisFields, Condition, Field
+from bemcontact.problem.conditions import AxisFields, Condition, Field, Loads
 from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.loads import Loads
 from bemcontact.problem.problem import Problem
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -133,6 +130,4 @@ def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase) -> Lo
     try:
         return _loading(problem, mesh, conditions, case.loads)
     except ProblemError as error:
-        raise ProblemError(
-            [replace(item, path=("load_cases", name, *item.path)) for item in error.complaints]
-        ) from None
+        raise ProblemError([replace(item, path=("load_cases", name, *item.path)) for item in error.issues]) from None

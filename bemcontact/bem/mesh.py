@@ -5,15 +5,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, IntArray
 from bemcontact.bem import quadrature, shape_functions
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.problem import Problem
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 
 CURVE_ORDER = 16
 """Gauss points for each element's piece of the curve itself."""

@@ -9,9 +9,8 @@ double pole in B and by ρ^-(2n-2)/(2n) for the logarithm in L; the pole in A li
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from bemcontact.arrays import Array, ComplexArray, IntArray
 
 TOLERANCE = 1e-14
 """Error of one integral over one element, relative to integrals of order one."""
@@ -35,12 +34,12 @@ def gauss_legendre(order: int) -> tuple[Array, Array]:
     return xi, weights
 
 
-def bernstein_parameter(root: NDArray[np.complex128]) -> Array:
+def bernstein_parameter(root: ComplexArray) -> Array:
     """ρ >= 1 of the ellipse with foci -1, 1 through each root."""
     step = np.sqrt(root - 1) * np.sqrt(root + 1)
     return np.maximum(abs(root + step), abs(root - step))
 
 
-def tier(rho: Array, smallest: Array = SMALLEST_RHO) -> NDArray[np.int64]:
+def tier(rho: Array, smallest: Array = SMALLEST_RHO) -> IntArray:
     """Index into `ORDERS` of the cheapest sufficient rule; `len(ORDERS)` where none is."""
     return np.searchsorted(-smallest, -np.asarray(rho), side="left")

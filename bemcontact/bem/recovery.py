@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.condense import Condensation
 from bemcontact.bem.rigid_motions import all_rigid_motions
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.mesh import Mesh
-
-Array = NDArray[np.float64]
 
 HELD = 1e-9
 """Singular value, relative to one, below which a prescribed displacement does not hold a motion."""
@@ -69,7 +68,7 @@ def all_rigid_motions(mesh: Mesh) -> RigidMotions:
     return RigidMotions(coefficients=np.eye(3), center=mesh.center, radius=mesh.size / 2)
 
 
-def free_rigid_motions(mesh: Mesh, prescribed: NDArray[np.bool_]) -> RigidMotions:
+def free_rigid_motions(mesh: Mesh, prescribed: BoolArray) -> RigidMotions:
     """Find the rigid motions that leave every prescribed displacement component at rest.
 
     Parameters

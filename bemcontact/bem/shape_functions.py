@@ -4,9 +4,8 @@ Axes: the last one counts the local nodes. Displacement, geometry and t·J (trac
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from bemcontact.arrays import Array
 
 NODES = np.array([-1.0, 0.0, 1.0])
 """Local coordinate of each node."""

@@ -11,14 +11,10 @@ of by its sources is from [MR05].
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
+from bemcontact.arrays import Array, ComplexArray, IntArray
 from bemcontact.bem.quadrature import TOLERANCE
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-ComplexArray = NDArray[np.complex128]
 
 RATIO = 0.5
 """Radius of a block over the distance from its middle up to which an element is far."""

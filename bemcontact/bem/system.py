@@ -13,9 +13,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, shape_functions
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
@@ -24,9 +24,6 @@ from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.problem.material import Material
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 OFFSET = 2 / 3
 """|ξ| of the collocation points inside the two elements at a node where both prescribe the displacement."""
@@ -71,7 +68,7 @@ def number_unknowns(mesh: Mesh, values: BoundaryValues) -> Unknowns:
     return Unknowns(displacement=displacement, traction=traction, size=count)
 
 
-def _continues_straight(mesh: Mesh) -> NDArray[np.bool_]:
+def _continues_straight(mesh: Mesh) -> BoolArray:
     """Whether each element (m,) goes on in the direction of the one before it, on the same edge."""
     return (mesh.edge == mesh.edge[mesh.before]) & (abs(mesh.turns) < STRAIGHT)
 
@@ -90,7 +87,7 @@ class Equations:
     row: IntArray
 
 
-def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: NDArray[np.complex128]) -> Equations:
+def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Equations:
     """Put collocation points at the nodes, or inside both elements where a node has two unknown tractions.
 
     A node has one equation along each axis for its one unknown there. Where two elements meet with an unknown traction
@@ -187,7 +184,7 @@ class System:
     @cached_property
     def influence(self) -> Influence:
         """The integrals, with columns of G for unknown tractions and pressures and the sum for known ones."""
-        needed: NDArray[np.bool_] = np.any(self.unknowns.traction >= 0, axis=(1, 2))
+        needed: BoolArray = np.any(self.unknowns.traction >= 0, axis=(1, 2))
         needed[self.points.element] = True
         jacobians = self.mesh.jacobians / self.length
         return Influence(

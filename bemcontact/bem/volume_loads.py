@@ -6,15 +6,13 @@ Each is a polynomial that satisfies the equations of elasticity with its load; i
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array
 from bemcontact.bem import quadrature, shape_functions
 from bemcontact.bem.mesh import Mesh, along_curve
-from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
+from bemcontact.problem.conditions import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 from bemcontact.problem.problem import Problem
-
-Array = NDArray[np.float64]
 
 EXACT_ORDER = 6
 """Gauss points that integrate x² y dx exactly along a quadratic element."""

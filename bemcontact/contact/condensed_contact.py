@@ -15,14 +15,13 @@ from pathlib import Path
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
 from bemcontact.contact import archive
-from bemcontact.contact.gauge import fix_gauge
+from bemcontact.contact.free_motions import MotionAlgebra, StiffnessRows, fix_gauge, stiffness_rows
 from bemcontact.contact.load_cases import Change, LoadCases
 from bemcontact.contact.scales import ContactScales, typical_scales
-from bemcontact.contact.stiffness import StiffnessRows, stiffness_rows
 from bemcontact.contact.tools import Pinned, Tools
 from bemcontact.errors import ProblemError
 from bemcontact.options import Weights
@@ -32,7 +31,7 @@ PEAK = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class CondensedContact:
+class CondensedContact(MotionAlgebra):
     """An elastic body condensed to its n contact points: u_n = Δ1 + M p + R a with ℓᵀp = -load, [SS92] (35)-(38).
 
     A contact point is a pair (zone, node): a node in two zones is two points, with two normals, gaps and pressures.
@@ -79,10 +78,7 @@ class CondensedContact:
     run_length: Array
     compliance: Array
     free_displacement: Array
-    rigid_motions: Array
-    motion_load: Array
     initial_gap: Array
-    weights: Array
     consistent_weights: Array | None = None
     element_length_weights: Array | None = None
     held_arc: Array | None = None
@@ -178,7 +174,7 @@ class CondensedContact:
             )
         if R.shape[1] and np.linalg.matrix_rank(R) < R.shape[1]:
             raise ProblemError("rigid_motions needs independent columns: a motion that no point sees holds nothing")
-        gauge = fix_gauge(M, np.zeros(n), R, J, load)
+        gauge = fix_gauge(MotionAlgebra(rigid_motions=R, weights=J, motion_load=load), M, np.zeros(n))
         return cls(
             name=name,
             motion_names=tuple(f"motion {j + 1}" for j in range(R.shape[1])),
@@ -215,17 +211,6 @@ class CondensedContact:
     def offset(self) -> Array:
         """The gap q = ε + Δ1 (n,) [L] at p = 0, a = 0."""
         return self.initial_gap + self.free_displacement
-
-    @cached_property
-    def equilibrium(self) -> Array:
-        """ℓ = J R (n, k) with the tributary weights: equilibrium is ℓᵀp = -load."""
-        return self.weights[:, None] * self.rigid_motions
-
-    @cached_property
-    def balancing_pressure(self) -> Array:
-        """p0 = -R (ℓᵀR)⁻¹ load (n,) [p]: the pressure of least weighted square in equilibrium, of either sign."""
-        R = self.rigid_motions
-        return -R @ np.linalg.solve(self.equilibrium.T @ R, self.motion_load)
 
     @cached_property
     def scales(self) -> ContactScales:
@@ -344,15 +329,39 @@ class CondensedContact:
 
         `SingularSystemError` where that has no inverse.
         """
-        return stiffness_rows(
-            self.compliance, self.rigid_motions, self.equilibrium, self.free_displacement, self.motion_load, self.scales
-        )
+        return stiffness_rows(self, self.compliance, self.free_displacement, self.scales)
 
     def gap(self, pressure: Array, rigid_amplitudes: Array) -> Array:
         """δ = ε + Δ1 + M p + R a, (n,) [L], from p (n,) [p] and a (k,)."""
         return self.offset + self.compliance @ pressure + self.rigid_motions @ rigid_amplitudes
 
-    def touching(self, pressure: Array, displacement: Array) -> NDArray[np.bool_]:
+    def resultants(self, pressure: Array) -> Array:
+        """Σ w p n (..., zones, 2) [p L]: the force of each zone's rigid surface on the body, from p (..., n) [p]."""
+        forces = self.forces(pressure)
+        each = [forces[..., self.zone == i, :].sum(axis=-2) for i in range(len(self.zone_names))]
+        return np.stack(each, axis=-2)
+
+    def forces(self, pressure: Array) -> Array:
+        """W p n (..., n, 2) [p L] at each contact point, from p (..., n) [p]."""
+        return (self.weights * pressure)[..., None] * self.normals
+
+    def tool_reactions(self, pressure: Array) -> Array:
+        """Force (t, 3) of the body on each tool: x, y [p L] and moment [p L²], from p (n,) [p]."""
+        return (self.tools.motions.T @ (self.weights * pressure)).reshape(-1, 3)
+
+    def in_order(self, index: IntArray) -> IntArray:
+        """Contact points (m,) run by run, in the order of the boundary."""
+        return index[np.lexsort((self.arc_position[index], self.run[index]))]
+
+    def points_of_run(self, run: int) -> IntArray:
+        """Contact points of a run in the order of the boundary."""
+        return self.in_order(np.flatnonzero(self.run == run))
+
+    def at_rest(self) -> Self:
+        """Switch all load cases off, and leave all tools undisplaced and unloaded, balanced or not."""
+        return self.stepped(-self.cases.factors, -self.tools.position, -self.tools.force)
+
+    def touching(self, pressure: Array, displacement: Array) -> BoolArray:
         """Which points (n,) are in contact, p/T > δ/U, from p (n,) [p] and u_n (n,) [L]: unmoved by a solver's dust."""
         U, T = self.scales
         return pressure / T > (self.initial_gap + displacement) / U

@@ -83,7 +83,7 @@ def _tools_record(contact: CondensedContact, solution: ContactSolution) -> list[
             tools.names,
             tools.point,
             tools.displacement(solution.rigid_amplitudes),
-            tools.reaction(contact.weights * solution.pressure),
+            contact.tool_reactions(solution.pressure),
             tools.free.reshape(-1, 3),
             strict=True,
         )

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, freeze_arrays
+from bemcontact.arrays import Array, BoolArray, freeze_arrays
 
 BALANCED = 1e-9
 """Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as none."""
@@ -35,7 +34,7 @@ class Tools:
     point: Array
     motions: Array
     amplitudes: Array
-    free: NDArray[np.bool_]
+    free: BoolArray
     position: Array
     force: Array
 
@@ -58,10 +57,6 @@ class Tools:
     def displacement(self, rigid_amplitudes: Array) -> Array:
         """Where the tools are (t, 3): x, y [L] and rotation [rad], for amplitudes a (k,)."""
         return (self.position + self.amplitudes @ rigid_amplitudes).reshape(-1, 3)
-
-    def reaction(self, contact_forces: Array) -> Array:
-        """Force (t, 3) of the body on each tool: x, y [p L] and moment [p L²], from w p at the points (n,) [p L]."""
-        return (self.motions.T @ contact_forces).reshape(-1, 3)
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -89,7 +84,7 @@ class Pinned:
     """
 
     motions: tuple[str, ...]
-    turns: NDArray[np.bool_]
+    turns: BoolArray
     load: Array
     tools: Array
     magnitude: Array

@@ -1,1 +1,1 @@
-"""Files that appear whole or not at all, and files that are read as text."""
+"""Writing of complete files and folders, and reading of text files."""

@@ -1,4 +1,4 @@
-"""Files and folders that appear whole or not at all."""
+"""Writing of files and folders that are complete, or do not appear at all."""
 
 import ctypes
 import errno
@@ -13,35 +13,25 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 EXCHANGES = {"linux": ("renameat2", 2), "darwin": ("renameatx_np", 2)}
-"""System -> its call that exchanges two names at once, and the flag that asks for it."""
+"""System -> its call that exchanges two names, and the flag for the exchange."""
 HERE = {"linux": -100, "darwin": -2}
-"""System -> the descriptor that means the working directory (AT_FDCWD)."""
+"""System -> descriptor of the working directory (AT_FDCWD)."""
 ABANDONED = 3600.0
-"""Age in seconds of a temporary folder from which on nobody is writing it any more."""
+"""Age in seconds above which a temporary folder is no longer in use."""
 
 
 def _beside(target: Path) -> Path:
-    """Return a name beside the target that nobody else uses."""
+    """Unused path in the folder of the target."""
     return target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
 
 
 def ensure_writable(path: Path) -> None:
-    """Find out, before any work is done, whether `whole_file` will be able to write here.
-
-    Parameters
-    ----------
-    path : where the file is to appear
-
-    Raises
-    ------
-    OSError
-        With a sentence that says why not: a directory, a device, no such folder, no permission.
-    """
+    """Raise `OSError` with the reason if `whole_file` cannot write this file."""
     target = path.resolve()
     if target.is_dir():
         raise IsADirectoryError(f"{path} is a directory; name a file in it")
     if target.exists() and not target.is_file():
-        raise OSError(f"{path} is not an ordinary file; name one that can be replaced")
+        raise OSError(f"{path} is not a regular file; name a regular or a new file")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no directory {target.parent}; make it first")
     probe = _beside(target)
@@ -54,16 +44,9 @@ def ensure_writable(path: Path) -> None:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Give a temporary path to write to, and put it in the place of `path` when the block ends without an error.
+    """Yield a temporary path that replaces `path` when the block ends without an error; links are followed.
 
-    Parameters
-    ----------
-    path : where the file is to appear; a link is followed
-
-    Yields
-    ------
-    Path
-        In the same directory, so that the last step is one rename; removed if the block fails.
+    The temporary file is in the same directory, so that the replacement is one rename; it is removed on a failure.
     """
     target = path.resolve()
     temporary = _beside(target)
@@ -75,24 +58,14 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 
 def ensure_folder_place(path: Path) -> None:
-    """Find out, before any work is done, whether `whole_folder` will be able to write here; contents are not looked at.
-
-    Parameters
-    ----------
-    path : where the folder is to appear, or is
-
-    Raises
-    ------
-    OSError
-        With a sentence that says why not: a file, a mount point, no such parent, no permission.
-    """
+    """Raise `OSError` with the reason if `whole_folder` cannot write this folder; its contents are not checked."""
     target = path.resolve()
     if target.exists() and not target.is_dir():
         raise NotADirectoryError(f"{path} is a file; name a folder")
     if target.is_mount():
-        raise OSError(f"{path} is where a file system is mounted, and cannot be replaced; name a folder in it")
+        raise OSError(f"{path} is a mount point and cannot be replaced; name a folder in it")
     if target in (here := Path.cwd(), *here.parents):
-        raise OSError(f"{path} is the current directory or one above it, and cannot be replaced; name a folder in it")
+        raise OSError(f"{path} is the current directory or contains it, and cannot be replaced; name a folder in it")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no directory {target.parent}; make it first")
     probe = _beside(target)
@@ -109,26 +82,18 @@ def ensure_folder_place(path: Path) -> None:
 
 @contextmanager
 def whole_folder(path: Path) -> Iterator[Path]:
-    """Give a temporary folder to write to, and put it in the place of `path` when the block ends without an error.
+    """Yield an empty temporary folder that replaces `path` when the block ends without an error; links are followed.
 
-    A run that is killed leaves the whole old folder or the whole new one under the name. What it may leave beside is a
-    hidden folder, ``.NAME.xxxxxxxx.part``, which a run removes that begins an hour later.
-
-    Parameters
-    ----------
-    path : where the folder is to appear; a link is followed. What a folder of this name holds is lost
-
-    Yields
-    ------
-    Path
-        An empty folder in the same directory; removed if the block fails.
+    The contents of an old folder are lost. If the block fails, the temporary folder is removed. If the run is killed,
+    the complete old folder or the complete new one has the name. A hidden folder ``.NAME.xxxxxxxx.part`` may remain; a
+    run that starts an hour later removes it.
 
     Notes
     -----
-    A new name is one rename. A folder that exists is exchanged with the new one by one call of the system (renameat2 of
-    Linux, renameatx_np of macOS) and then removed. Where there is no such call, or the file system refuses it, the old
-    folder is put aside as ``.NAME.xxxxxxxx.old`` and the new one renamed: killed between these two, neither has the
-    name, but both are whole.
+    A new folder takes one rename. An old folder is exchanged with the new one by one system call (renameat2 of Linux,
+    renameatx_np of macOS) and then removed. If there is no such call, or the file system refuses it, the old folder is
+    renamed to ``.NAME.xxxxxxxx.old`` before the new one is renamed. If the run is killed between these two steps, both
+    folders are complete, but neither has the name.
     """
     target = path.resolve()
     _remove_abandoned(target)
@@ -143,7 +108,7 @@ def whole_folder(path: Path) -> Iterator[Path]:
 
 
 def _put(new: Path, target: Path) -> None:
-    """Give a folder the name of another, which loses it; the other is left under the first name, or removed."""
+    """Replace a folder by a new one; the old folder is removed, or remains under the name of the new one."""
     if not target.exists():
         os.rename(new, target)
         _flush_directory(target.parent)
@@ -162,7 +127,7 @@ def _put(new: Path, target: Path) -> None:
 
 
 def _exchanged(one: Path, other: Path) -> bool:
-    """Exchange two names at once; tell whether system and file system can."""
+    """Exchange two names in one step; False if the system or the file system cannot."""
     if sys.platform not in EXCHANGES:
         return False
     name, flag = EXCHANGES[sys.platform]
@@ -181,13 +146,13 @@ def _exchanged(one: Path, other: Path) -> bool:
 def _remove_abandoned(target: Path) -> None:
     """Remove the temporary folders of runs that were killed long ago."""
     for folder in target.parent.glob(f".{glob.escape(target.name)}.????????.part"):
-        with suppress(OSError):  # another run may just have removed it
+        with suppress(OSError):  # another run may have removed it
             if time.time() - folder.stat().st_mtime > ABANDONED:
                 shutil.rmtree(folder, ignore_errors=True)
 
 
 def _flush(folder: Path) -> None:
-    """Have all files and folders in a folder on the disk before it gets its name."""
+    """Write all files and folders in a folder to the disk."""
     for place, _, names in os.walk(folder):
         for name in names:
             with open(os.path.join(place, name), "rb+") as file:
@@ -196,7 +161,7 @@ def _flush(folder: Path) -> None:
 
 
 def _flush_directory(folder: Path) -> None:
-    """Have the names in a folder on the disk, where a system lets folders be opened."""
+    """Write the names in a folder to the disk, if the system can open folders."""
     if os.name == "posix":
         descriptor = os.open(folder, os.O_RDONLY)
         try:

@@ -1,19 +1,20 @@
-"""Primal-dual active set for the contact problem: guess who touches, solve linear equations, correct the guess.
+"""Primal-dual active set for the contact problem, and the equations of contact on given points.
 
-It is Newton's method on min(p, δ) = 0 (Hintermüller, Ito and Kunisch, SIAM J. Optim. 13(3), 2002, 865-888): exact when
-it stops, a handful of steps on contact problems, but it may cycle.
+The method guesses which points touch, solves linear equations, and corrects the guess. It is Newton's method on
+min(p, δ) = 0 (Hintermüller, Ito and Kunisch, SIAM J. Optim. 13(3), 2002, 865-888). It is exact when it stops, after a
+handful of steps on contact problems, but it may cycle.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.contact.load_cases import Change
+from bemcontact.contact.lu import LU
+from bemcontact.errors import SingularSystemError
 from bemcontact.formulations.scaling import ScaledContact
-
-BoolArray = NDArray[np.bool_]
 
 EPS = float(np.finfo(float).eps)
 STEP_LIMIT = 100
@@ -22,8 +23,81 @@ SETTLED = 1e-14
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class ContactBlock:
+    """The equations of contact: δ = 0 on points A, p = 0 elsewhere, ℓᵀp = -load; factorized once.
+
+    The matrix is [[M, R], [ℓᵀ, 0]] on A and all motions, unsymmetric and indefinite.
+
+    Parameters
+    ----------
+    contact : ScaledContact
+    points : A, indices of points, ascending
+    """
+
+    contact: ScaledContact
+    points: IntArray
+
+    @property
+    def touching(self) -> BoolArray:
+        """True on A, (n,)."""
+        mask = np.zeros(len(self.contact.offset), bool)
+        mask[self.points] = True
+        return mask
+
+    @cached_property
+    def matrix(self) -> Array:
+        """The matrix, with |A| + k rows and columns."""
+        A, k = self.points, self.contact.rigid_motions.shape[1]
+        M, R, ell = self.contact.compliance[np.ix_(A, A)], self.contact.rigid_motions[A], self.contact.equilibrium[A]
+        return np.block([[M, R], [ell.T, np.zeros((k, k))]])
+
+    @cached_property
+    def _columns(self) -> Array:
+        """M on A (n, |A|): gaps per pressure."""
+        return self.contact.compliance[:, self.points]
+
+    @cached_property
+    def _lu(self) -> LU:
+        """The factors; `SingularSystemError` if the matrix is singular to working precision."""
+        lu = LU.of(self.matrix)
+        if lu.reciprocal_condition < len(self.matrix) * EPS:
+            raise SingularSystemError(
+                "the points in contact do not determine their pressures and the position of the body: the equations of "
+                "contact are singular"
+            )
+        return lu
+
+    def inverse(self, right: Array) -> Array:
+        """Solve for right sides (|A| + k,) or (|A| + k, m), with one step of iterative refinement."""
+        return self._lu.solve(right, lambda x: right - self.matrix @ x) if right.size else right
+
+    def solve(self, *given: Change) -> tuple[Array, Array, Array]:
+        """Solve the equations of contact for several offsets and loads.
+
+        Parameters
+        ----------
+        given : m offsets with their loads, dimensionless
+
+        Returns
+        -------
+        pressure : (m, n), zero off A, of either sign
+        gap : (m, n), zero on A
+        amplitudes : (m, k)
+        """
+        A = self.points
+        offset = np.array([change.offset for change in given])
+        load = np.array([change.motion_load for change in given])
+        x = self.inverse(-np.hstack([offset[:, A], load]).T).T
+        pressure, amplitudes = np.zeros_like(offset), x[:, len(A) :]
+        pressure[:, A] = x[:, : len(A)]
+        gap = offset + pressure[:, A] @ self._columns.T + amplitudes @ self.contact.rigid_motions.T
+        gap[:, A] = 0.0
+        return pressure, gap, amplitudes
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class ActiveSetEnd:
-    """The best point that the iteration has seen: p >= 0 (n,), a (k,), and the relative residual after each step."""
+    """The best point of the iteration: p >= 0 (n,), a (k,), and the relative residual after each step."""
 
     pressure: Array
     amplitudes: Array
@@ -31,35 +105,36 @@ class ActiveSetEnd:
 
     @property
     def residual(self) -> float:
-        """That of the best point."""
+        """Residual of the best point."""
         return min(self.residuals)
 
     @property
     def steps(self) -> int:
-        """How many were made."""
+        """Number of steps."""
         return len(self.residuals)
 
 
-def first_active_set(problem: ScaledContact) -> BoolArray:
-    """Points (n,) that would penetrate without pressure, {q < 0}; for a free body once it is laid as close as can be.
+def first_active_set(contact: ScaledContact) -> BoolArray:
+    """Points (n,) that penetrate without pressure, {q < 0}; of a free body once its gaps have no part along a motion.
 
-    "Close" is in the least squares of the weights: q is replaced by P q, P = I - R(ℓᵀR)⁻¹ℓᵀ.
+    For a free body q is replaced by P q, P = I - R(ℓᵀR)⁻¹ℓᵀ: the body lies as close as can be in the least squares of
+    the weights.
     """
-    R, ell = problem.rigid_motions, problem.equilibrium
+    R = contact.rigid_motions
     if not R.shape[1]:
-        return problem.offset < 0
-    return problem.offset <= R @ np.linalg.solve(ell.T @ R, ell.T @ problem.offset)
+        return contact.offset < 0
+    return contact.offset <= R @ contact.amplitudes_of(contact.offset)
 
 
-def primal_dual(problem: ScaledContact, active: BoolArray, limit: int = STEP_LIMIT) -> ActiveSetEnd:
+def primal_dual(contact: ScaledContact, active: BoolArray, limit: int = STEP_LIMIT) -> ActiveSetEnd:
     """Iterate from an active set until nothing changes, a set comes back, or the limit is reached.
 
-    Each step solves `contact_equations`, then releases the points in tension and adds the points that penetrate.
+    Each step solves `solve_active_set`, then releases the points in tension and adds the points that penetrate.
 
     Parameters
     ----------
-    problem : ScaledContact
-    active : (n,) the points thought to be in contact
+    contact : ScaledContact
+    active : (n,) the points assumed to be in contact
     limit : most steps to make
 
     Returns
@@ -72,47 +147,36 @@ def primal_dual(problem: ScaledContact, active: BoolArray, limit: int = STEP_LIM
     visited: set[bytes] = set()
     while len(points) < limit and active.tobytes() not in visited:
         visited.add(active.tobytes())
-        p, a = contact_equations(problem, active)
+        p, a = solve_active_set(contact, active)
         points.append((np.maximum(p, 0.0), a))
-        residuals.append(problem.residual(*points[-1]))
+        residuals.append(contact.residual(*points[-1]))
         if residuals[-1] <= SETTLED:
             break
-        active = np.where(active, p > 0, problem.gap(p, a) < 0)
+        active = np.where(active, p > 0, contact.gap(p, a) < 0)
     pressure, amplitudes = points[residuals.index(min(residuals))]
     return ActiveSetEnd(pressure=pressure, amplitudes=amplitudes, residuals=tuple(residuals))
 
 
-def contact_equations(problem: ScaledContact, active: BoolArray) -> tuple[Array, Array]:
+def solve_active_set(contact: ScaledContact, active: BoolArray) -> tuple[Array, Array]:
     """Solve δ = 0 on the active set A, p = 0 off it, and ℓᵀp = -load.
 
     Parameters
     ----------
-    problem : ScaledContact
+    contact : ScaledContact
     active : (n,) True on A
 
     Returns
     -------
     pressure : (n,), of either sign
     amplitudes : (k,)
-        The shortest least-squares solution where A holds the body too little or too often.
+        The shortest least-squares solution if A holds the body too little or too often.
     """
-    A = np.flatnonzero(active)
-    M, R, ell = problem.compliance[np.ix_(A, A)], problem.rigid_motions[A], problem.equilibrium[A]
-    k = R.shape[1]
-    unknowns = _solve(np.block([[M, R], [ell.T, np.zeros((k, k))]]), -np.append(problem.offset[A], problem.motion_load))
+    block = ContactBlock(contact=contact, points=np.flatnonzero(active))
+    right = -np.append(contact.offset[block.points], contact.motion_load)
+    try:
+        unknowns = block.inverse(right)
+    except SingularSystemError:
+        unknowns = np.asarray(np.linalg.lstsq(block.matrix, right, rcond=None)[0], float)
     pressure = np.zeros(len(active))
-    pressure[A] = unknowns[: len(A)]
-    return pressure, unknowns[len(A) :]
-
-
-def _solve(matrix: Array, right: Array) -> Array:
-    """LU with one step of iterative refinement; least squares where the matrix is singular to working precision."""
-    if not right.size:
-        return right
-    factorise, condition, substitute = get_lapack_funcs(("getrf", "gecon", "getrs"), (matrix,))
-    lu, pivots, singular = factorise(matrix)
-    norm = np.abs(matrix).sum(axis=0).max()
-    if singular or condition(lu, norm)[0] < len(right) * EPS:
-        return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0], float)
-    x = substitute(lu, pivots, right)[0]
-    return x + substitute(lu, pivots, right - matrix @ x)[0]
+    pressure[block.points] = unknowns[: len(block.points)]
+    return pressure, unknowns[len(block.points) :]

@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 from scipy.linalg import qr
 from scipy.optimize import nnls
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.active_set import ActiveSetEnd, BoolArray, first_active_set, primal_dual
+from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled

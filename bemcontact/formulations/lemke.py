@@ -8,9 +8,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.solution import Status
 
 PIVOT = 1e-11
@@ -33,7 +32,7 @@ class LemkeEnd:
     """
 
     status: Status
-    active: NDArray[np.bool_]
+    active: BoolArray
     covers: tuple[float, ...]
 
     @property
@@ -90,7 +89,7 @@ class _Basis:
         self.age = 0
 
     @property
-    def active(self) -> NDArray[np.bool_]:
+    def active(self) -> BoolArray:
         """(n,) True where z is basic."""
         active = np.zeros(self.cover + 1, bool)
         active[self.basic] = True

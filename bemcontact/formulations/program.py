@@ -194,6 +194,4 @@ def start_vector(contact: CondensedContact, start: Start | None, size: int) -> A
 
 def amplitudes(contact: CondensedContact, pressure: Array, displacement: Array) -> Array:
     """The a (k,) with which u_n = Δ1 + M p + R a comes closest, in the least squares of the weights."""
-    R, ell = contact.rigid_motions, contact.equilibrium
-    rest = displacement - contact.free_displacement - contact.compliance @ pressure
-    return np.asarray(np.linalg.solve(ell.T @ R, ell.T @ rest), float)
+    return contact.amplitudes_of(displacement - contact.free_displacement - contact.compliance @ pressure)

@@ -7,19 +7,16 @@ In equilibrium the objective is pᵀJδ, (19). M stays unsymmetric in the constr
 part only, which changes no value of it.
 """
 
-import warnings
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from clarabel import DefaultSettings, DefaultSolver, NonnegativeConeT, ZeroConeT  # pyright: ignore (has no stubs)
 from scipy.linalg import eigvalsh
-from scipy.sparse import triu
 
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace
 from bemcontact.errors import NotConvexError, SolverError
+from bemcontact.formulations.clarabel import STATUSES, minimize
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_weights, unscaled
@@ -27,22 +24,10 @@ from bemcontact.options import FormulationName, Weights
 
 OPTIONS = ("weights",)
 """Those of `FormulationOptions` that have a meaning here."""
-ITERATIONS = 200
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR, or negative eigenvalue, that is round-off; by the scaling the numbers are of size one."""
 SLIGHT = 1e-2
 """Negative part of a Hessian, relative to its largest eigenvalue, that is blamed on the mesh."""
-TOLERANCES = 1e-11, 1e-8
-"""Asked of Clarabel one after the other, the second where the first cannot be reached; the polish does the rest."""
-STATUSES = {
-    "optimal": Status.SOLVED,
-    "optimal_inaccurate": Status.SOLVED,
-    "user_limit": Status.ITERATION_LIMIT,
-    "infeasible": Status.INFEASIBLE,
-    "infeasible_inaccurate": Status.INFEASIBLE,
-    "unbounded": Status.UNBOUNDED,
-    "unbounded_inaccurate": Status.UNBOUNDED,
-}
 
 
 def load() -> None:
@@ -89,16 +74,13 @@ def objective(problem: ScaledContact, J: Array) -> Objective:
     -------
     Objective
     """
-    M, R, ell, load = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.motion_load
-    weighted = J @ M
+    weighted, project, p0 = J @ problem.compliance, problem.projector, problem.balancing_pressure
     hessian = weighted + weighted.T
-    project = np.eye(len(M)) - R @ np.linalg.solve(ell.T @ R, ell.T)
-    p0 = -R @ np.linalg.solve(ell.T @ R, load)
-    share = np.linalg.lstsq(ell, J @ R, rcond=None)[0]
+    share = np.linalg.lstsq(problem.equilibrium, J @ problem.rigid_motions, rcond=None)[0]
     return Objective(
         hessian=project.T @ hessian @ project,
         pressure=J @ problem.offset + project.T @ (hessian @ p0),
-        amplitudes=-share.T @ load,
+        amplitudes=-share.T @ problem.motion_load,
         constant=float(p0 @ weighted @ p0),
     )
 
@@ -171,35 +153,37 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
             f"QP3 is not convex on this mesh (smallest eigenvalue {eigenvalue:.1e}): it was solved without the "
             "negative part of its Hessian, as a start for the active-set step"
         )
-    found = _minimise(problem, work, options.max_iterations)
-    widest = float(np.abs(problem.offset).max(initial=0.0))
-    if found.status in (Status.UNBOUNDED, Status.INFEASIBLE) and widest > 1 and not escape_note(contact, problem):
-        found = _in_units_of(widest, problem, work, options.max_iterations)
-    p, u_n, a = unscaled(contact, found.pressure, found.amplitudes)
-    if found.status is Status.INFEASIBLE and (note := escape_note(contact, problem)):
-        notes.append(note)
+    optimum = _minimized(problem, work, options.max_iterations)
+    widest, escape = float(np.abs(problem.offset).max(initial=0.0)), None
+    if optimum.status in (Status.UNBOUNDED, Status.INFEASIBLE):
+        escape = escape_note(contact, problem)
+        if widest > 1 and not escape:  # the widest gaps drown the pressures
+            optimum = _minimized(problem, work, options.max_iterations, widest)
+    if optimum.status is Status.INFEASIBLE and escape:
+        notes.append(escape)
+    p, u_n, a = unscaled(contact, optimum.pressure, optimum.amplitudes)
     solution = ContactSolution(
         formulation=FormulationName.QP3,
         solver="Clarabel",
-        status=found.status,
+        status=optimum.status,
         pressure=p,
         displacement=u_n,
         rigid_amplitudes=a,
-        iterations=found.iterations,
+        iterations=optimum.iterations,
         smallest_eigenvalue=eigenvalue,
         history=tuple(
             Trace(quantity=quantity, first=0, values=tuple(values.tolist()))
-            for quantity, values in zip(("objective", "infeasibility"), found.progress.T, strict=True)
+            for quantity, values in zip(("objective", "infeasibility"), optimum.progress.T, strict=True)
         ),
         notes=tuple(notes),
     )
     exact = options.weights is not Weights.CONSISTENT
-    return polish(contact, solution) if options.polish and exact and found.has_point else solution
+    return polish(contact, solution) if options.polish and exact and optimum.has_point else solution
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Found:
-    """What came out of cvxpy: the status, the point if there is one (else zeros), the iterations.
+class _Optimum:
+    """Outcome of the quadratic program; pressure and amplitudes are zeros if there is no point.
 
     `progress` is the objective and the relative residual of the constraints at the start and after each iteration.
     """
@@ -212,88 +196,35 @@ class _Found:
     progress: Array
 
 
-def _in_units_of(size: float, problem: ScaledContact, objective: Objective, max_iterations: int | None) -> _Found:
-    """Minimise with pressures and gaps over a larger size, where the widest gaps drown the pressures otherwise."""
-    smaller = replace(problem, offset=problem.offset / size, motion_load=problem.motion_load / size)
-    linear = replace(
-        objective,
-        pressure=objective.pressure / size,
-        amplitudes=objective.amplitudes / size,
-        constant=objective.constant / size**2,
-    )
-    found = _minimise(smaller, linear, max_iterations)
-    return replace(
-        found,
-        pressure=found.pressure * size,
-        amplitudes=found.amplitudes * size,
-        progress=found.progress * np.array([size**2, 1.0]),
-    )
-
-
-def _minimise(problem: ScaledContact, objective: Objective, max_iterations: int | None) -> _Found:
-    """State the quadratic program in cvxpy, solve it, and take the arrays out."""
+def _minimized(problem: ScaledContact, work: Objective, max_iterations: int | None, size: float = 1.0) -> _Optimum:
+    """State the quadratic program in cvxpy, and solve it with pressures and gaps divided by a size."""
     import cvxpy as cp
 
     M, R, ell, load = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.motion_load
     n, k = R.shape
     p = cp.Variable(n, nonneg=True, name="pressure")
     a = cp.Variable(k, name="rigid_amplitudes") if k else None
-    work = 0.5 * cp.quad_form(p, cp.psd_wrap(objective.hessian)) + objective.pressure @ p + objective.constant
+    goal = 0.5 * cp.quad_form(p, cp.psd_wrap(work.hessian)) + work.pressure @ p
     gap, balance = problem.offset + M @ p, []
     if a is not None:
-        work, gap, balance = work + objective.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
-    program = cp.Problem(cp.Minimize(work), [gap >= 0, *balance])
-
-    failure = None
-    for tolerance in TOLERANCES:
-        try:
-            progress = _solve(program, tolerance, max_iterations or ITERATIONS)
-        except cp.SolverError as error:
-            failure = error
-        else:
-            break
-    else:
+        goal, gap, balance = goal + work.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
+    program = cp.Problem(cp.Minimize(goal), [gap >= 0, *balance])
+    try:
+        progress = minimize(program, max_iterations, equilibrate=False, size=size)
+    except SolverError as error:
         raise SolverError(
             "Clarabel found no solution of QP3; check the mesh for very short elements, or solve the "
             "complementarity problem directly"
-        ) from failure
+        ) from error
     has_point = p.value is not None
-    return _Found(
-        status=STATUSES[program.status],
+    return _Optimum(
+        status=STATUSES[str(program.status)],
         pressure=np.asarray(p.value, float) if has_point else np.zeros(n),
         amplitudes=np.asarray(a.value, float) if has_point and a is not None else np.zeros(k),
         iterations=program.solver_stats.num_iters or 0,
         has_point=has_point,
-        progress=progress + np.array([objective.constant, 0.0]),
+        progress=progress + np.array([work.constant, 0.0]),
     )
-
-
-def _solve(program: Any, tolerance: float, limit: int) -> Array:
-    """Solve a cvxpy problem by Clarabel called directly, because cvxpy does not pass on the progress of a solver.
-
-    Returns the objective without its constant and the relative residual of the constraints, (iterations + 1, 2), or one
-    row less where Clarabel gave up in the last iteration.
-    """
-    data, chain, inverse = program.get_problem_data("CLARABEL", solver_opts={})
-    settings = DefaultSettings()
-    settings.verbose, settings.max_iter = False, limit
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
-    cones = [ZeroConeT(data["dims"].zero), NonnegativeConeT(data["dims"].nonneg)]
-    solver = DefaultSolver(triu(data["P"], format="csc"), data["c"], data["A"], data["b"], cones, settings)
-    rows: list[tuple[float, float]] = []
-
-    def look(info: Any) -> bool:
-        rows.append((info.cost_primal, info.res_primal))
-        return False  # go on
-
-    solver.set_termination_callback(look)
-    solution = solver.solve()
-    with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status tells the same
-        program.unpack_results(solution, chain, inverse)
-    if np.isfinite(solution.obj_val):
-        rows[-1] = solution.obj_val, solution.r_prim  # Clarabel may have taken back its last step
-    progress = np.array(rows)
-    return progress[np.logical_and.accumulate(np.isfinite(progress).all(axis=1))]
 
 
 def nearly_convex(work: Objective, eigenvalue: float, weights: Weights) -> Objective:

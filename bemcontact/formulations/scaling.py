@@ -6,19 +6,19 @@ unchanged.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.free_motions import MotionAlgebra
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.scales import ContactScales
 from bemcontact.options import Weights
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ScaledContact:
+class ScaledContact(MotionAlgebra):
     """gap = q + M p + R a >= 0, p >= 0, p·gap = 0, Rᵀ J p = -load, in dimensionless numbers.
 
     Parameters
@@ -32,19 +32,6 @@ class ScaledContact:
 
     compliance: Array
     offset: Array
-    rigid_motions: Array
-    motion_load: Array
-    weights: Array
-
-    @cached_property
-    def equilibrium(self) -> Array:
-        """ℓ = J R (n, k)."""
-        return self.weights[:, None] * self.rigid_motions
-
-    @property
-    def equilibrium_space(self) -> Array:
-        """Z (n, n - k), an orthonormal basis of {p : ℓᵀp = 0}."""
-        return np.linalg.qr(self.equilibrium, mode="complete")[0][:, self.rigid_motions.shape[1] :]
 
     def gap(self, pressure: Array, amplitudes: Array) -> Array:
         """δ = q + M p + R a, (n,)."""
@@ -53,7 +40,7 @@ class ScaledContact:
     def residual(self, pressure: Array, amplitudes: Array) -> float:
         """Largest of |min(p, δ)| and |ℓᵀp + load| / Σ|ℓ|, over the size 1 + max|p| + Σ|a| of the numbers in them."""
         natural = np.abs(np.minimum(pressure, self.gap(pressure, amplitudes)))
-        balance = np.abs(self.equilibrium.T @ pressure + self.motion_load) / np.abs(self.equilibrium).sum(axis=0)
+        balance = np.abs(self.imbalance(pressure)) / np.abs(self.equilibrium).sum(axis=0)
         size = 1.0 + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum()
         return float(max(natural.max(initial=0.0), balance.max(initial=0.0)) / size)
 

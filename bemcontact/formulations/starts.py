@@ -218,9 +218,8 @@ def _same(contact: CondensedContact, one: ContactSolution, other: ContactSolutio
     if one.status is not other.status or one.status in NOWHERE:
         return one.status is other.status
     U, T = contact.scales
-    R, ell = contact.rigid_motions, contact.equilibrium
     apart = one.displacement - other.displacement
-    apart = apart - R @ np.linalg.solve(ell.T @ R, ell.T @ apart)
+    apart = apart - contact.rigid_motions @ contact.amplitudes_of(apart)
     return _near(one.pressure / T, other.pressure / T) and bool(np.abs(apart).max() <= SAME * U)
 
 

@@ -14,9 +14,9 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.scales import ContactScales
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import qp3
+from bemcontact.formulations.clarabel import minimize
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
 from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
-from bemcontact.modelling.clarabel import minimise
 from bemcontact.modelling.model_result import ModelResult, judged, solution_at, taken_out
 from bemcontact.modelling.parameters import Parameters, Value
 from bemcontact.options import Weights
@@ -113,8 +113,7 @@ class ContactModel:
         if zone is not None and zone not in names:
             raise ProblemError(f"there is no contact zone '{zone}'; there are: {', '.join(names)}")
         inside = np.ones(self.condensed.size, bool) if zone is None else self.condensed.zone == names.index(zone)
-        forces = np.where(inside, self.condensed.weights, 0.0)[:, None] * self.condensed.normals
-        return forces.T @ self.pressure
+        return self.condensed.forces(inside.astype(float)).T @ self.pressure
 
     @property
     def contact(self) -> CondensedContact:
@@ -192,7 +191,7 @@ class ContactModel:
         chosen = problem or (self.problem(extra_objective, extra_constraints) if added else self._pure)
         if chosen is self._pure and (found := self._from_last()) is not None:
             return found
-        minimise(chosen, max_iterations)
+        minimize(chosen, max_iterations)
         return self.result(chosen)
 
     def _from_last(self) -> ModelResult | None:
@@ -335,14 +334,13 @@ def _work(
     With P and p0 of `qp3.objective` every p in equilibrium is P p + p0 and p0 = (I - P) p, so that
     pᵀJM p = ½ (P p)ᵀH P p + p0ᵀH P p + ½ p0ᵀH (I - P) p: linear in parameters, and no constant is left.
     """
-    M, R, ell, J = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.weights
+    J = problem.weights
     work = 0.5 * cp.quad_form(p, cp.psd_wrap(hessian)) + cp.multiply(J, offset) @ p
     if a is None:
         return work
-    weighted = J[:, None] * M
-    inverse = np.linalg.inv(ell.T @ R)
-    project = np.eye(len(M)) - R @ inverse @ ell.T
-    held = -0.5 * (np.eye(len(M)) + project.T) @ (weighted + weighted.T) @ R @ inverse
+    weighted = J[:, None] * problem.compliance
+    balancing = problem.balancing(np.eye(problem.rigid_motions.shape[1]))
+    held = 0.5 * (np.eye(len(J)) + problem.projector.T) @ (weighted + weighted.T) @ balancing
     return work + (held @ load) @ p - load @ a
 
 

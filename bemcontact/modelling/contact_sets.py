@@ -12,20 +12,17 @@ from typing import NamedTuple
 
 import cvxpy as cp
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.scales import ContactScales
 from bemcontact.errors import SolverError
 from bemcontact.formulations import qp3
+from bemcontact.formulations.clarabel import minimize
 from bemcontact.formulations.scaling import ScaledContact, scaled
-from bemcontact.modelling.clarabel import minimise
 from bemcontact.modelling.designed_gap import Goal
 from bemcontact.modelling.parameters import value_of
 from bemcontact.modelling.relief import Profiles
-
-BoolArray = NDArray[np.bool_]
 
 WEAK = 1e-6
 """Scaled pressure or gap that is none to the tolerance of the solver."""
@@ -145,7 +142,7 @@ class SharedProfile:
         sets = program.with_contact(touching)
         problem = cp.Problem(cp.Minimize(program.top), [*program.constraints, *sets.constraints])
         try:
-            minimise(problem)
+            minimize(problem)
         except SolverError:  # sets that hardly fit together; others will do
             return None
         return None if program.top.value is None else self._piece(program, touching, sets.promise())
@@ -169,7 +166,7 @@ class SharedProfile:
         size = float(np.abs(self.profiles.shapes @ piece.coefficients).max()) / self.scales.displacement
         goal = cp.Minimize(cp.sum_squares(cp.multiply(width / (size or 1.0), program.relief)))
         try:
-            minimise(cp.Problem(goal, [*program.constraints, *sets.constraints, as_good]))
+            minimize(cp.Problem(goal, [*program.constraints, *sets.constraints, as_good]))
         except SolverError:
             return piece
         found = None if program.top.value is None else self._piece(program, piece.touching, sets.promise())
@@ -208,9 +205,9 @@ class SharedProfile:
         signs = [sign for p, gap in zip(program.pressures, program.gaps, strict=True) for sign in (p >= 0, gap >= 0)]
         work = self._work_cuts(program, best * (1 + MARGIN))
         try:
-            minimise(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs, *work]))
+            minimize(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs, *work]))
         except SolverError:  # the bound without F3 is a lower one, but a bound
-            minimise(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs]))
+            minimize(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs]))
         pairs = zip(program.pressures, program.gaps, strict=True)
         return Relaxation(
             float(value_of(program.top)) * T,

@@ -14,7 +14,6 @@ from bemcontact.assessment.residual import Residuals
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
-from bemcontact.modelling.rest import at_rest
 from bemcontact.problem.rigid_surface import Polyline, Spline
 
 AGREED = 1e-6
@@ -181,12 +180,12 @@ class GapDesign:
         """
         if kind not in SURFACES:
             raise ProblemError(f"there is no surface of kind {kind!r} to write; there are: {', '.join(SURFACES)}")
-        contact = at_rest(self.before[0].contact)
+        contact = self.before[0].contact.at_rest()
         inside = np.flatnonzero(contact.zone == contact.zone[self.points[0]])
         runs = np.unique(contact.run[inside])
         if len(runs) > 1 or np.isfinite(contact.run_length[runs[0]]):
             raise ProblemError(f"zone '{self.zone}' goes round or is in pieces, which no {kind} does; divide the zone")
-        inside = inside[np.argsort(contact.arc_position[inside], kind="stable")]
+        inside = contact.in_order(inside)
         normals = contact.normals[inside]
         feet = contact.points[inside] - (contact.initial_gap + self.profile)[inside, None] * normals
         steps = np.diff(feet, axis=0)

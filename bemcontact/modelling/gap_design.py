@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
@@ -17,7 +17,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import complementarity
-from bemcontact.modelling.contact_sets import BoolArray, Piece, SharedProfile
+from bemcontact.modelling.contact_sets import Piece, SharedProfile
 from bemcontact.modelling.designed_gap import GapDesign, Goal, LoadState, relieved
 from bemcontact.modelling.relief import Profiles, Relief
 

@@ -12,8 +12,8 @@ from bemcontact.assessment.residual import Residuals, residuals
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
+from bemcontact.formulations.clarabel import STATUSES
 from bemcontact.formulations.complementarity import escape_note, polish
-from bemcontact.formulations.qp3 import STATUSES
 from bemcontact.formulations.scaling import scaled
 
 SEEN = 1e-5

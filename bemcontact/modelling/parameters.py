@@ -9,7 +9,6 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
-from bemcontact.modelling.rest import at_rest
 
 Value = cp.Expression | Array
 
@@ -36,7 +35,7 @@ class Parameters:
     def of(cls, contact: CondensedContact) -> "Parameters":
         """Parameters with the values that are in effect."""
         cases, tools = contact.cases, contact.tools
-        rest = at_rest(contact)
+        rest = contact.at_rest()
         position = (tools.position - cases.position @ cases.factors).reshape(-1, 3)
         force = (tools.force - cases.force @ cases.factors).reshape(-1, 3)
         return cls(

@@ -234,7 +234,7 @@ def _interval(contact: CondensedContact, zone: str | None, arc: tuple[float, flo
         raise ProblemError(
             f"there is no contact point {where}; arc positions are lengths along the edge from its start"
         )
-    return points[np.lexsort((contact.arc_position[points], contact.run[points]))]
+    return contact.in_order(points)
 
 
 def _shapes(relief: Relief, position: Array) -> Array:

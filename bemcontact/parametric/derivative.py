@@ -19,14 +19,13 @@ import numpy as np
 from scipy.linalg import eigvalsh, qr
 from scipy.optimize import nnls
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.active_set import BoolArray
+from bemcontact.formulations.active_set import EPS, ContactBlock
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import ScaledContact
-from bemcontact.parametric.contact_block import EPS, ContactBlock
 
 WEAK = 1e-10
 """Pressure and gap, over the size of the numbers in them, that count as zero together."""
@@ -65,14 +64,14 @@ class Tangent:
 
     Parameters
     ----------
-    problem : ScaledContact
+    contact : ScaledContact
     strong : S, indices of points
     weak : W, indices of points
     unique : whether sym(JM) is known to be positive definite on the equilibrium space
     before : the equations of points that hold the body, S and some of W, if there are any at hand
     """
 
-    problem: ScaledContact
+    contact: ScaledContact
     strong: IntArray
     weak: IntArray
     unique: bool
@@ -81,7 +80,7 @@ class Tangent:
     @classmethod
     def at(
         cls,
-        problem: ScaledContact,
+        contact: ScaledContact,
         pressure: Array,
         gap: Array,
         amplitudes: Array,
@@ -92,7 +91,7 @@ class Tangent:
         small = WEAK * (1.0 + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
         loaded, closed = pressure > small, gap <= small
         return cls(
-            problem=problem,
+            contact=contact,
             strong=np.array(np.flatnonzero(loaded & closed), np.int64),
             weak=np.array(np.flatnonzero(~loaded & closed), np.int64),
             unique=unique,
@@ -102,14 +101,14 @@ class Tangent:
     @property
     def loaded(self) -> BoolArray:
         """(n,) True on S."""
-        return ContactBlock(problem=self.problem, points=self.strong).touching
+        return ContactBlock(contact=self.contact, points=self.strong).touching
 
     def escape(self, change: Change) -> Array:
         """The part r (k,) of a change of load that neither S nor W can answer: the least ℓᵀṗ + ḟ by norm.
 
         Where it is not zero, it is a motion that moves no point of S, closes none of W, and on which the load works.
         """
-        ell, load = self.problem.equilibrium, change.motion_load
+        ell, load = self.contact.equilibrium, change.motion_load
         if not (load.any() and self._unresisted.size):
             return np.zeros_like(load)
         free = self._unresisted
@@ -120,7 +119,7 @@ class Tangent:
     @cached_property
     def _unresisted(self) -> Array:
         """An orthonormal basis (k, ·) of the motions that move no point of S."""
-        R = self.problem.rigid_motions[self.strong]
+        R = self.contact.rigid_motions[self.strong]
         k = R.shape[1]
         _, sizes, motions = np.linalg.svd(np.linalg.qr(np.vstack([R, np.zeros((k, k))]), mode="r"))
         return motions[sizes <= RANK].T
@@ -137,14 +136,14 @@ class Tangent:
         if free.size:
             if self.weak.size < free.shape[1]:
                 raise ProblemError(NOT_HELD)
-            seen = (self.problem.rigid_motions[self.weak] @ free).T
+            seen = (self.contact.rigid_motions[self.weak] @ free).T
             found = qr(seen, mode="r", pivoting=True)
             triangle, order = np.asarray(found[0]), np.asarray(found[-1])
             sizes = np.abs(np.diag(triangle))
             if sizes.min() <= RANK:
                 raise ProblemError(NOT_HELD)
             joined = self.weak[order[: free.shape[1]]]
-        return ContactBlock(problem=self.problem, points=np.union1d(self.strong, joined))
+        return ContactBlock(contact=self.contact, points=np.union1d(self.strong, joined))
 
     @cached_property
     def exchanged(self) -> IntArray:
@@ -154,13 +153,13 @@ class Tangent:
     @cached_property
     def _small(self) -> tuple[IntArray, Array]:
         """The points of W, those of B first, and w = N z on them: z is δ̇ on B, ṗ elsewhere, w the other one."""
-        M, A, B = self.problem.compliance, self.held.points, self.exchanged
+        M, A, B = self.contact.compliance, self.held.points, self.exchanged
         rest, place, b = np.setdiff1d(self.weak, B, assume_unique=True), np.searchsorted(A, B), len(B)
         right = np.zeros((len(self.held.matrix), len(self.weak)))
         right[place, np.arange(b)] = 1.0
-        right[: len(A), b:], right[len(A) :, b:] = -M[np.ix_(A, rest)], -self.problem.equilibrium[rest].T
+        right[: len(A), b:], right[len(A) :, b:] = -M[np.ix_(A, rest)], -self.contact.equilibrium[rest].T
         inner = self.held.inverse(right)
-        below = np.hstack([M[np.ix_(rest, A)], self.problem.rigid_motions[rest]]) @ inner
+        below = np.hstack([M[np.ix_(rest, A)], self.contact.rigid_motions[rest]]) @ inner
         below[:, b:] += M[np.ix_(rest, rest)]
         return np.append(B, rest), np.vstack([inner[place], below])
 
@@ -202,7 +201,7 @@ class Tangent:
         vector = np.append(pressure[points[:b]], gap[points[b:]])
         vector[np.abs(vector) <= STILL * size_of(change, pressure, amplitudes)] = 0.0
         scale = _scale(N, b)
-        rows = scale * self.problem.weights[points]
+        rows = scale * self.contact.weights[points]
         matrix, vector = rows[:, None] * N * scale, rows * vector
         end = lemke(matrix / (np.abs(matrix).max() or 1.0), vector / (np.abs(vector).max() or 1.0))
         if end.status is not Status.SOLVED:
@@ -210,7 +209,7 @@ class Tangent:
         if not self.unique and eigvalsh(matrix + matrix.T)[0] <= len(matrix) * EPS * np.abs(matrix).max():
             raise ProblemError(NOT_UNIQUE)
         loaded = points[end.active ^ (np.arange(len(points)) < b)]
-        return ContactBlock(problem=self.problem, points=np.sort(np.append(self.strong, loaded)))
+        return ContactBlock(contact=self.contact, points=np.sort(np.append(self.strong, loaded)))
 
 
 def _scale(N: Array, b: int) -> Array:
@@ -224,11 +223,11 @@ def size_of(change: Change, pressure: Array, amplitudes: Array) -> float:
     return float(np.abs(change.offset).max(initial=0.0) + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
 
 
-def is_monotone(problem: ScaledContact) -> bool:
+def is_monotone(contact: ScaledContact) -> bool:
     """Whether sym(JM) is positive definite on the equilibrium space, so that each contact state is the only one."""
-    Z = problem.equilibrium_space
+    Z = contact.equilibrium_space
     if not Z.shape[1]:
         return True
-    weighted = problem.weights[:, None] * problem.compliance
+    weighted = contact.weights[:, None] * contact.compliance
     smallest = eigvalsh(Z.T @ (weighted + weighted.T) @ Z / 2, subset_by_index=(0, 0))[0]
     return bool(smallest > len(weighted) * EPS)

@@ -137,8 +137,6 @@ class ParameterPath:
         """Look at breakpoint i, or at a state at t."""
         solution = self.path.at(t) if i is None else self.path.breakpoint(i)
         p, contact = solution.pressure, self.path.contact(t)
-        forces = (contact.weights * p)[:, None] * contact.normals
-        zones = range(len(contact.zone_names))
         return PathState(
             value=self.value(t),
             breakpoint=i is not None,
@@ -146,7 +144,7 @@ class ParameterPath:
             left=() if i is None else self.path.left[i],
             peak=float(p.max(initial=0.0)),
             at=int(p.argmax()) if p.any() else None,
-            resultant=tuple((float(x), float(y)) for x, y in (forces[contact.zone == z].sum(axis=0) for z in zones)),
+            resultant=tuple((float(x), float(y)) for x, y in contact.resultants(p)),
             touching=tuple(np.flatnonzero(p > 0).tolist()),
             footprint=footprint(contact, solution),
         )

@@ -5,9 +5,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, freeze_arrays
+from bemcontact.arrays import Array, BoolArray, freeze_arrays
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change, LoadCases
@@ -16,7 +15,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
 from bemcontact.options import FormulationName
-from bemcontact.parametric.following import Line, Trail, follow
+from bemcontact.parametric.pivoting import Line, Trail, follow
 
 COMMON = {
     "compliance": "compliance",
@@ -59,7 +58,7 @@ class LoadPath:
     pressure: Array
     gap: Array
     rigid_amplitudes: Array
-    touching: NDArray[np.bool_]
+    touching: BoolArray
     unique: bool
     note: str
 
@@ -111,7 +110,7 @@ class LoadPath:
         """For each breakpoint, the points that leave contact there, as t rises."""
         return self._changed(self.touching[:-1] & ~self.touching[1:])
 
-    def _changed(self, masks: NDArray[np.bool_]) -> tuple[tuple[int, ...], ...]:
+    def _changed(self, masks: BoolArray) -> tuple[tuple[int, ...], ...]:
         """Indices of points at the breakpoints between the first and the last."""
         found = (tuple(np.flatnonzero(mask).tolist()) for mask in masks)
         return ((), *found, ())[: len(self.parameter)]
@@ -129,7 +128,7 @@ class LoadPath:
     @property
     def resultant(self) -> Array:
         """(b, zones, 2) force Σ w p n of each rigid surface on the body at the breakpoints [p L]."""
-        return resultants(self.start, self.pressure)
+        return self.start.resultants(self.pressure)
 
     @cached_property
     def residual(self) -> float:
@@ -245,12 +244,6 @@ class LoadPath:
                 f"the path reaches from {self.begins_at:g} to {self.ends_at:g}, there is nothing at {t:g}"
                 + (f": {self.note}" if self.note else "")
             )
-
-
-def resultants(contact: CondensedContact, pressure: Array) -> Array:
-    """Σ w p n over each zone, (..., zones, 2) [p L], of pressures (..., n)."""
-    forces = (contact.weights * pressure)[..., None] * contact.normals
-    return np.stack([forces[..., contact.zone == i, :].sum(axis=-2) for i in range(len(contact.zone_names))], axis=-2)
 
 
 def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:

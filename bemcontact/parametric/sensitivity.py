@@ -17,7 +17,7 @@ from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
 from bemcontact.parametric.derivative import WEAK, Tangent, is_monotone
-from bemcontact.parametric.path import NOT_PROVED, resultants
+from bemcontact.parametric.path import NOT_PROVED
 
 EXACT = 1e-9
 """Residual up to which a solution is one whose derivative has a meaning."""
@@ -275,7 +275,7 @@ def _rates(
         pressure=pressure,
         gap=gap,
         rigid_amplitudes=amplitudes,
-        resultant=resultants(contact, pressure),
+        resultant=contact.resultants(pressure),
         peak=side * float((side * pressure[highest]).max()),
         interval_ends=end_rates(contact, solution, np.where(about_to_change, np.nan, gap)),
     )

@@ -1,16 +1,24 @@
-"""What is asked: the body, what acts on it, and the rigid surfaces that it may touch; frozen, checked, no numerics."""
+"""The problem as the user gives it: body, conditions, loads, contact zones, tools; frozen and checked."""
 
 from bemcontact.problem.boundary import Boundary
-from bemcontact.problem.closed_form import Crack, FlatPunch, Hertz, ProppedBeam, ShrinkFit, Uniform
-from bemcontact.problem.conditions import AxisFields, Condition, Field
-from bemcontact.problem.contact_zone import ContactZone
+from bemcontact.problem.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
+from bemcontact.problem.contact_zone import ContactZone, RigidTool, ToolAction, ToolDisplacement, ToolForce
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import Arc, EllipseArc, Grading, Line
 from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
-from bemcontact.problem.problem import MeshDensity, Problem, Units
-from bemcontact.problem.reference import Reference, Table, Values
+from bemcontact.problem.problem import MeshDensity, Problem, Units, Variant
+from bemcontact.problem.reference import (
+    Crack,
+    FlatPunch,
+    Hertz,
+    ProppedBeam,
+    Reference,
+    ShrinkFit,
+    Table,
+    Uniform,
+    Values,
+)
 from bemcontact.problem.rigid_surface import (
     Circle,
     Closest,
@@ -21,8 +29,6 @@ from bemcontact.problem.rigid_surface import (
     Shape,
     Spline,
 )
-from bemcontact.problem.rigid_tool import RigidTool, ToolAction, ToolDisplacement, ToolForce
-from bemcontact.problem.variant import Variant
 
 __all__ = [
     "Arc",

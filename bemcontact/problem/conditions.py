@@ -1,34 +1,32 @@
-"""What is prescribed on an edge: a displacement or a traction along each axis, or a pressure along the normal."""
+"""Conditions on the edges of the body (displacement, traction, pressure) and loads on its volume."""
 
 from collections.abc import Mapping
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from bemcontact.problem.validation import Number, Stated, complain, described
+from bemcontact.arrays import Array
+from bemcontact.problem.validation import Number, Point, Positive, SpecModel, described, invalid
 
-Array = NDArray[np.float64]
 
-
-class Field(Stated):
-    """A quantity over the plane, constant + x X + y Y + xx X² + xy X Y + yy Y²; a number alone is constant."""
+class Field(SpecModel):
+    """A constant number, or a polynomial in the coordinates: constant + x X + y Y + xx X² + xy X Y + yy Y²."""
 
     constant: Number = 0.0
-    """Value at the origin."""
+    """The value at the origin."""
     x: Number = 0.0
-    """Factor of X."""
+    """The factor of X."""
     y: Number = 0.0
-    """Factor of Y."""
+    """The factor of Y."""
     xx: Number = 0.0
-    """Factor of X²."""
+    """The factor of X²."""
     xy: Number = 0.0
-    """Factor of X Y."""
+    """The factor of X Y."""
     yy: Number = 0.0
-    """Factor of Y²."""
+    """The factor of Y²."""
 
     @model_validator(mode="before")
     @classmethod
@@ -38,14 +36,14 @@ class Field(Stated):
             return {"constant": data}
         if not isinstance(data, Mapping | Field):
             keys = ", ".join(cls.model_fields)
-            raise complain(f"expected a number, or a mapping with keys out of {keys}; found {described(data)}")
-        if not data if isinstance(data, Mapping) else False:
-            raise complain("an empty mapping states nothing; give a number")
+            raise invalid(f"expected a number, or a mapping with some of the keys {keys}; found {described(data)}")
+        if isinstance(data, Mapping) and not data:
+            raise invalid("the mapping is empty; give a number")
         return data
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        """Allow both forms in the JSON Schema; what it says of keys concerns mappings only."""
+        """Allow a number or a mapping in the JSON Schema."""
         return {**handler.resolve_ref_schema(handler(schema)), "type": ["number", "object"], "minProperties": 1}
 
     def at(self, points: Array) -> Array:
@@ -54,13 +52,13 @@ class Field(Stated):
         return self.constant + self.x * x + self.y * y + self.xx * x * x + self.xy * x * y + self.yy * y * y
 
 
-class AxisFields(Stated):
-    """A field for each axis; an axis that is left out is not prescribed."""
+class AxisFields(SpecModel):
+    """A component along each axis; an axis that is left out is not prescribed."""
 
     x: Field | None = None
-    """Component along x: a number, or a polynomial in the coordinates."""
+    """The component along x: a number, or a polynomial in the coordinates."""
     y: Field | None = None
-    """Component along y: a number, or a polynomial in the coordinates."""
+    """The component along y: a number, or a polynomial in the coordinates."""
 
     @property
     def given(self) -> tuple[str, ...]:
@@ -68,32 +66,74 @@ class AxisFields(Stated):
         return tuple(axis for axis, field in (("x", self.x), ("y", self.y)) if field is not None)
 
 
-class Condition(Stated):
-    """What is prescribed on an edge; along an axis that it leaves out, the edge is free of traction.
-
-    Raises
-    ------
-    ProblemError
-        If an axis has both displacement and traction, if a pressure has company, or if nothing is stated.
-    """
+class Condition(SpecModel):
+    """The condition on an edge. Along an axis without a condition, the edge is free of traction."""
 
     displacement: AxisFields = AxisFields()
-    """Prescribed displacement; a symmetry line has 0 across it."""
+    """The prescribed displacement. A symmetry line has displacement 0 along its normal."""
     traction: AxisFields = AxisFields()
-    """Prescribed force per area, along the axes."""
+    """The prescribed force per area along x and y."""
     pressure: Field | None = None
-    """Push along the inward normal; positive in compression."""
+    """The prescribed pressure on the edge, positive in compression."""
 
     @model_validator(mode="after")
-    def _one_statement_per_axis(self) -> Self:
-        """Refuse contradictions and emptiness."""
+    def _one_value_per_axis(self) -> Self:
+        """Refuse contradictions, and a condition without a value."""
         displacement, traction = self.displacement.given, self.traction.given
         if self.pressure is not None and (displacement or traction):
-            company = "displacement" if displacement else "traction"
-            raise complain(f"pressure acts on both axes and leaves no room for {company}; give one of them only")
+            other = "displacement" if displacement else "traction"
+            raise invalid(f"pressure acts along both axes, so {other} cannot be given too; give only one of them")
         for axis in displacement:
             if axis in traction:
-                raise complain(f"both displacement and traction are given along {axis}; give one of them only")
+                raise invalid(f"both displacement and traction are given along {axis}; give only one of them")
         if self.pressure is None and not displacement and not traction:
-            raise complain("it states nothing; give displacement, traction or pressure, or leave the edge out")
+            raise invalid("the condition is empty; give displacement, traction or pressure, or leave the edge out")
         return self
+
+
+class Gravity(SpecModel):
+    """Weight: the body force density · acceleration."""
+
+    density: Positive
+    """The mass per volume."""
+    acceleration: Point
+    """The acceleration of gravity [gx, gy], such as [0, -9.81]."""
+
+
+class Centrifugal(SpecModel):
+    """Steady rotation: the body force density · angular_velocity² · (x - center)."""
+
+    density: Positive
+    """The mass per volume."""
+    angular_velocity: Number
+    """The angular velocity in radians per time."""
+    center: Point = (0.0, 0.0)
+    """The axis of rotation [x, y]."""
+
+
+class Temperature(SpecModel):
+    """Thermal expansion: the strain expansion · change in all directions."""
+
+    expansion: Number
+    """The coefficient of thermal expansion, per degree."""
+    change: Field
+    """The change of temperature in degrees: a number, or a polynomial with the keys constant, x and y."""
+
+    @model_validator(mode="after")
+    def _linear(self) -> Self:
+        """Refuse a change for which the thermal displacement has no simple closed form."""
+        change = self.change
+        if excess := [term for term in ("xx", "xy", "yy") if getattr(change, term) != 0]:
+            raise invalid(f"a change of temperature may have constant, x and y only; leave out {', '.join(excess)}")
+        return self
+
+
+class Loads(SpecModel):
+    """The loads on the volume of the body; they are added."""
+
+    gravity: Gravity | None = None
+    """The weight of the body."""
+    centrifugal: Centrifugal | None = None
+    """The centrifugal load of steady rotation."""
+    temperature: Temperature | None = None
+    """A change of temperature."""

@@ -1,30 +1,137 @@
-"""Contact zones: edges of the body, and the rigid surface that they may touch."""
+"""Contact zones, and the tools that move their rigid surfaces."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
-from bemcontact.problem.rigid_surface import StatedSurface
-from bemcontact.problem.validation import Name, Stated
+from bemcontact.problem.rigid_surface import SurfaceSpec
+from bemcontact.problem.validation import Name, Number, Point, SpecModel, invalid
 
 
 def _as_list(value: Any) -> Any:
-    """Read one edge name as a list of one; a number is taken for a name without quotes, and refused as such."""
+    """Read one name as a list of one name; a number is refused later as a name without quotes."""
     return (value,) if isinstance(value, str | int | float) else value
 
 
-EdgeNames = Annotated[
+Names = Annotated[
     tuple[Name, ...],
     Field(min_length=1),
     BeforeValidator(_as_list),
     WithJsonSchema({"type": ["string", "array"], "items": {"type": "string"}, "minItems": 1}),
 ]
+"""One name, or a list of names."""
 
 
-class ContactZone(Stated):
+class ContactZone(SpecModel):
     """Edges of the body that may touch a rigid surface without friction."""
 
-    edges: EdgeNames
+    edges: Names
     """The name of the edge, or a list of names of edges, that may touch the surface."""
-    surface: StatedSurface
+    surface: SurfaceSpec
     """The rigid surface."""
+
+
+class ToolDisplacement(SpecModel):
+    """The displacement of a tool. The tool does not move along a component that is left out."""
+
+    x: Number | None = None
+    """The displacement along x."""
+    y: Number | None = None
+    """The displacement along y."""
+    rotation: Number | None = None
+    """The small rotation about the point, in radians, counterclockwise."""
+
+
+class ToolForce(SpecModel):
+    """The force on a tool per thickness. The tool is free to move along each given component, even if it is 0."""
+
+    x: Number | None = None
+    """The force along x."""
+    y: Number | None = None
+    """The force along y."""
+    moment: Number | None = None
+    """The moment about the point, counterclockwise. If it is left out, the tool cannot tilt."""
+
+
+TOOL_COMPONENTS = (("x", "x", "along x"), ("y", "y", "along y"), ("rotation", "moment", "in rotation"))
+"""Component of the displacement, component of the force, and its name in messages."""
+
+
+class ToolAction(SpecModel):
+    """The displacement of a tool, or the force on it, or a displacement along one axis and a force along another."""
+
+    displacement: ToolDisplacement = ToolDisplacement()
+    """The small displacement of the tool along x and y, and its rotation; its normal component changes the gaps."""
+    force: ToolForce = ToolForce()
+    """The force on the tool along x and y, and the moment. The tool moves until contact balances them."""
+
+    @model_validator(mode="after")
+    def _one_value_per_axis(self) -> Self:
+        """Refuse contradictions, and an action without a value."""
+        for move, force, where in TOOL_COMPONENTS:
+            if getattr(self.displacement, move) is not None and getattr(self.force, force) is not None:
+                name = "moment" if force == "moment" else "force"
+                raise invalid(f"both displacement and {name} are given {where}; give only one of them")
+        if not any(self.displaced) and not any(self.free):
+            raise invalid("the tool has no displacement and no force; give one of them, or leave the tool out")
+        return self
+
+    @property
+    def displaced(self) -> tuple[bool, ...]:
+        """Whether a displacement along x, a displacement along y and a rotation are given."""
+        return tuple(getattr(self.displacement, move) is not None for move, _, _ in TOOL_COMPONENTS)
+
+    @property
+    def free(self) -> tuple[bool, ...]:
+        """Whether the tool is free to move along x, along y, and to rotate: whether a force or moment is given."""
+        return tuple(getattr(self.force, force) is not None for _, force, _ in TOOL_COMPONENTS)
+
+    @property
+    def position(self) -> tuple[float, ...]:
+        """Displacement along x and y, and rotation; zero where none is given."""
+        return tuple(getattr(self.displacement, move) or 0.0 for move, _, _ in TOOL_COMPONENTS)
+
+    @property
+    def load(self) -> tuple[float, ...]:
+        """Force along x and y, and moment; zero where none is given."""
+        return tuple(getattr(self.force, force) or 0.0 for _, force, _ in TOOL_COMPONENTS)
+
+    def plus(self, factor: float, other: "ToolAction") -> "ToolAction":
+        """Add a multiple of another action; the sum has each component that one of them has."""
+        displacement = ToolDisplacement(**_sum(self.displacement, factor, other.displacement))
+        return ToolAction(displacement=displacement, force=ToolForce(**_sum(self.force, factor, other.force)))
+
+
+def _sum(one: SpecModel, factor: float, other: SpecModel) -> dict[str, float]:
+    """Sum of the components of one model and a multiple of those of another, by name."""
+    total: dict[str, float] = {}
+    for weight, part in ((1.0, one), (factor, other)):
+        for key, value in part:
+            if value is not None:
+                total[key] = total.get(key, 0.0) + weight * value
+    return total
+
+
+def _without_repeats(value: tuple[str, ...]) -> tuple[str, ...]:
+    """Refuse a zone that occurs twice."""
+    for i, name in enumerate(value):
+        if name in value[:i]:
+            raise invalid(f"the zone '{name}' occurs twice in the list; list it once")
+    return value
+
+
+class RigidTool(ToolAction):
+    """The rigid surfaces of some contact zones, which move together as one rigid body."""
+
+    zones: Annotated[Names, AfterValidator(_without_repeats)]
+    """The name of the contact zone, or a list of names of zones, whose rigid surfaces move together."""
+    point: Point | None = None
+    """The point [x, y] where the force acts. Rotation and moment are about this point."""
+
+    @model_validator(mode="after")
+    def _moment_has_a_point(self) -> Self:
+        """Refuse a rotation or a moment without a point."""
+        if self.point is None and (self.displaced[2] or self.free[2]):
+            name = "rotation" if self.displaced[2] else "moment"
+            raise invalid(f"a {name} needs a point; give point: [x, y]")
+        return self

@@ -1,74 +1,233 @@
-"""Checks of the geometry of a problem as a whole: the mesh on its curves, and the rigid surfaces beside them."""
+"""Checks of the parts of a problem against each other: names first, then the geometry."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import degrees, radians
 
 import numpy as np
 
-from bemcontact.errors import Complaint, Path
+from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.boundary import Boundary
-from bemcontact.problem.contact_zone import ContactZone
+from bemcontact.problem.conditions import Condition
+from bemcontact.problem.contact_zone import TOOL_COMPONENTS, ContactZone, RigidTool, ToolAction
 from bemcontact.problem.curves import Edge
-from bemcontact.problem.geometry import MOST_ELEMENTS
+from bemcontact.problem.geometry import MOST_ELEMENTS, Line
+from bemcontact.problem.key_path import RawValue
+from bemcontact.problem.load_case import LoadCase
+from bemcontact.problem.reference import Hertz, Table, Values
 from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, Polyline, RigidSurface, Shape, Spline
+from bemcontact.problem.validation import KeyIssue, unknown_word
 
 LARGEST_TURNING = radians(60)
-"""Largest angle by which a quadratic element may turn: beyond it the element strays visibly from its arc."""
+"""Largest angle by which a quadratic element may turn; beyond it the element deviates visibly from its arc."""
 
 ALONG = 0.5
-"""Cosine between two normals above which they point the same way, for an edge that should face its surface."""
+"""Cosine of the angle between two normals above which they point the same way."""
 
 
-def mesh_complaints(boundary: Boundary, path: Path, refine: int) -> list[Complaint]:
-    """Check that elements are neither too many for a dense matrix, nor too few for the curves.
+def edge_name_issues(boundary: RawValue, conditions: Iterable[RawValue], zones: RawValue) -> list[Issue]:
+    """Issues of conditions and contact zones that name unknown edges, or the same edge.
+
+    Conditions are those of the problem and of its load cases. A deflected contour does not touch anything, so its
+    conditions may name the edges of a contact zone.
+    """
+    names = _edge_names(boundary)
+    prescribed = [condition for group in conditions for condition in group.each()]
+    issues: list[Issue] = []
+    for condition in (*prescribed, *_conditions_of_contours(zones)):
+        if names is not None and (name := str(condition.path[-1])) not in names:
+            issues.append(KeyIssue(path=condition.path, message=unknown_word("edge", name, names)))
+    zone_of: dict[str, str] = {}
+    for zone, member in _edges_of_zones(zones):
+        name = member.value
+        if names is not None and name not in names:
+            issues.append(Issue(path=member.path, message=unknown_word("edge", name, names)))
+        elif name in zone_of:
+            issues.append(Issue(path=member.path, message=_repeated_edge(name, zone_of[name], zone)))
+        zone_of.setdefault(name, zone)
+    for condition in prescribed:
+        if (name := str(condition.path[-1])) in zone_of:
+            message = f"edge '{name}' is in the contact zone '{zone_of[name]}' and can have no condition; remove one"
+            issues.append(KeyIssue(path=condition.path, message=message))
+    return issues
+
+
+def _edge_names(boundary: RawValue) -> list[str] | None:
+    """Names of all edges; None if one cannot be read, because no name is known to be wrong then."""
+    loops = [boundary.below(Boundary, "outer"), *boundary.below(Boundary, "holes").each()]
+    names = [edge.below(Line, "name").value for loop in loops for edge in loop.each()]
+    readable = all(any(loop.each()) for loop in loops) and all(isinstance(name, str) for name in names)
+    return names if readable else None
+
+
+def _edges_of_zones(zones: RawValue) -> Iterator[tuple[str, RawValue]]:
+    """Edge names in all contact zones, each with the name of its zone."""
+    for zone in zones.each():
+        for member in _one_or_more(zone.below(ContactZone, "edges")):
+            if isinstance(member.value, str):
+                yield str(zone.path[-1]), member
+
+
+def _one_or_more(names: RawValue) -> Iterator[RawValue]:
+    """Entries of a list of names; a name alone counts as a list of one."""
+    return RawValue(names.path, [names.value]).each() if isinstance(names.value, str) else names.each()
+
+
+def _conditions_of_contours(zones: RawValue) -> Iterator[RawValue]:
+    """Conditions of all deflected contours."""
+    for zone in zones.each():
+        surface = zone.below(ContactZone, "surface")
+        if surface.below(DeflectedContour, "kind").value == "deflected_contour":
+            yield from surface.below(DeflectedContour, "conditions").each()
+
+
+def _repeated_edge(edge: str, first: str, second: str) -> str:
+    if first == second:
+        return f"edge '{edge}' occurs twice in the zone; list it once"
+    return f"edge '{edge}' is already in the contact zone '{first}'; an edge can touch only one surface"
+
+
+def tool_issues(tools: RawValue, zones: RawValue) -> Iterator[Issue]:
+    """Issues of tools that name unknown contact zones, or the same zone."""
+    names = [str(zone.path[-1]) for zone in zones.each()]
+    tool_of: dict[str, str] = {}
+    for tool in tools.each():
+        members = tool.below(RigidTool, "zones")
+        for member in [members] if isinstance(members.value, str) else members.each():
+            zone, name = member.value, str(tool.path[-1])
+            if names and isinstance(zone, str) and zone not in names:
+                yield Issue(path=member.path, message=unknown_word("contact zone", zone, names))
+            elif isinstance(zone, str) and tool_of.setdefault(zone, name) != name:
+                message = f"zone '{zone}' already belongs to the tool '{tool_of[zone]}'; a surface moves with one tool"
+                yield Issue(path=member.path, message=message)
+
+
+def load_case_issues(cases: RawValue, combinations: RawValue, parts: Mapping[str, RawValue]) -> Iterator[Issue]:
+    """Issues of load cases that contradict the "conditions" and "tools" of the problem, and of combinations."""
+    conditions = {str(item.path[-1]): item.read(Condition) for item in parts["conditions"].each()}
+    tools = {str(item.path[-1]): item.read(RigidTool) for item in parts["tools"].each()}
+    for case in cases.each():
+        for item in case.below(LoadCase, "conditions").each():
+            name = str(item.path[-1])
+            if name not in conditions or conditions[name] is not None:  # else the one of the problem is wrong
+                yield from _condition_issues(item, conditions.get(name))
+        for item in case.below(LoadCase, "tools").each():
+            name = str(item.path[-1])
+            if name not in tools:
+                yield KeyIssue(path=item.path, message=unknown_word("tool", name, tools))
+            elif (tool := tools[name]) is not None:
+                yield from _action_issues(item, tool)
+    names = [str(case.path[-1]) for case in cases.each()]
+    for combination in combinations.each():
+        if (name := str(combination.path[-1])) in names:
+            message = f"a load case has the name '{name}' already; give the combination another name"
+            yield KeyIssue(path=combination.path, message=message)
+        for factor in combination.each():
+            if (name := str(factor.path[-1])) not in names:
+                yield KeyIssue(path=factor.path, message=unknown_word("load case", name, names))
+
+
+def _condition_issues(item: RawValue, base: Condition | None) -> Iterator[Issue]:
+    """Issues of a condition of a load case that would change the supports of the body."""
+    condition = item.read(Condition)
+    if condition is None:
+        return
+    held = base.displacement.given if base else ()
+    for axis in condition.displacement.given:
+        if axis not in held:
+            message = (
+                f"a load case cannot hold an edge that the problem leaves free along {axis}; add the displacement 0 "
+                f"along {axis} to the conditions of the problem"
+            )
+            yield Issue(path=(*item.path, "displacement", axis), message=message)
+    axes = ("x", "y") if condition.pressure is not None else condition.traction.given
+    for axis in sorted({*axes} & {*held}):
+        key = ("pressure",) if condition.pressure is not None else ("traction", axis)
+        message = f"the problem prescribes the displacement of this edge along {axis}; remove one of the two"
+        yield Issue(path=(*item.path, *key), message=message)
+
+
+def _action_issues(item: RawValue, tool: RigidTool) -> Iterator[Issue]:
+    """Issues of an action of a load case that would change how the tool is guided."""
+    action = item.read(ToolAction)
+    if action is None:
+        return
+    for (move, force, where), free, moved, loaded in zip(
+        TOOL_COMPONENTS, tool.free, action.displaced, action.free, strict=True
+    ):
+        if moved and free:
+            name = "moment" if force == "moment" else "force"
+            message = f"the tool is free {where}, because the problem loads it there; give a {name}"
+            yield Issue(path=(*item.path, "displacement", move), message=message)
+        if loaded and not free:
+            message = f"the tool is held {where}; add {force}: 0 to the force of this tool in the problem to free it"
+            yield Issue(path=(*item.path, "force", force), message=message)
+        if move == "rotation" and moved and tool.point is None:
+            message = "a rotation needs a point; give the tool a point: [x, y]"
+            yield Issue(path=(*item.path, "displacement", "rotation"), message=message)
+
+
+def reference_issues(references: RawValue, zones: RawValue, cases: Sequence[str]) -> list[Issue]:
+    """Issues of references that name an unknown zone or load case, or no zone where there are several."""
+    names = [str(zone.path[-1]) for zone in zones.each()]
+    issues = []
+    for reference in references.each():
+        zone, case = reference.below(Hertz, "zone"), reference.below(Hertz, "case")
+        if isinstance(case.value, str) and case.value not in cases:
+            issues.append(Issue(path=case.path, message=unknown_word("load case", case.value, cases)))
+        if isinstance(zone.value, str) and names and zone.value not in names:
+            issues.append(Issue(path=zone.path, message=unknown_word("contact zone", zone.value, names)))
+        elif zone.value is None and len(names) > 1 and _needs_one_zone(reference):
+            message = f"there are {len(names)} contact zones; give zone: {' or '.join(names)}"
+            issues.append(Issue(path=reference.path, message=message))
+    return issues
+
+
+def _needs_one_zone(reference: RawValue) -> bool:
+    """Whether a reference is about a single contact zone."""
+    kind, against = (reference.below(Table, key).value for key in ("kind", "against"))
+    half_width = reference.below(Values, "half_width").value is not None and kind == "values"
+    return kind in ("hertz", "flat_punch", "crack", "propped_beam") or against == "arc" or half_width
+
+
+def mesh_issues(boundary: Boundary, path: KeyPath, refine: int) -> list[Issue]:
+    """Issues of a mesh with too many elements for a dense matrix, or too few for its curves.
 
     Parameters
     ----------
-    boundary : with the elements of each edge
-    path : path of keys to it
-    refine : number of parts into which each of them is cut
+    boundary : the boundary, with the elements of each edge
+    path : key path of the boundary
+    refine : number of parts into which each element is cut
     """
     total = refine * sum(edge.elements for edge in boundary.edges)
     if total > MOST_ELEMENTS:
-        message = f"{total} elements are more than a dense matrix can hold; take at most {MOST_ELEMENTS}"
-        return [Complaint(path=("mesh", "refine") if refine > 1 else path, message=message)]
+        message = f"{total} elements are too many for a dense matrix; take at most {MOST_ELEMENTS}"
+        return [Issue(path=("mesh", "refine") if refine > 1 else path, message=message)]
     return [
-        Complaint(path=(*path, *place, "elements"), message=_turns_too_much(edge, refine))
-        for edge, place in _placed_edges(boundary)
+        Issue(path=(*path, *loop_path, i, "elements"), message=_too_few_elements(edge, refine))
+        for loop_path, loop in zip(boundary.loop_paths, boundary.loops, strict=True)
+        for i, edge in enumerate(loop)
         if edge.turning(refine) > LARGEST_TURNING * (1 + 1e-9)
     ]
 
 
-def _placed_edges(boundary: Boundary) -> Iterator[tuple[Edge, Path]]:
-    """List all edges with their paths in the boundary."""
-    for path, loop in zip(boundary.loop_paths, boundary.loops, strict=True):
-        for i, edge in enumerate(loop):
-            yield edge, (*path, i)
-
-
-def _turns_too_much(edge: Edge, refine: int) -> str:
-    """Say by how much one element turns, and how many elements there should be."""
-    limit = f"{degrees(LARGEST_TURNING):.0f}"
-    found = f"too few elements for the bend: one of '{edge.name}' turns by {degrees(edge.turning(refine)):.0f} degrees"
+def _too_few_elements(edge: Edge, refine: int) -> str:
+    """Say by how much one element turns, and how many elements are enough."""
+    turning, limit = f"{degrees(edge.turning(refine)):.0f}", f"{degrees(LARGEST_TURNING):.0f}"
+    start = f"'{edge.name}' has too few elements: one of them turns by {turning} degrees, more than {limit}"
     for elements in range(edge.elements + 1, edge.elements + 200):
         if replace(edge, elements=elements).turning(refine) <= LARGEST_TURNING * (1 + 1e-9):
-            return f"{found}, more than {limit}; give it {elements} elements or more"
-    return f"{found}, more than {limit}; give it more elements, and grade them towards the bend"
+            return f"{start}; give it {elements} elements or more"
+    return f"{start}; give it more elements, and grade them towards the bend"
 
 
-def facing_complaints(boundary: Boundary, zones: Mapping[Path, ContactZone]) -> list[Complaint]:
-    """Check that the normal of each rigid surface points into the body, where they are closest to each other.
+def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> list[Issue]:
+    """Issues of rigid surfaces whose normal points out of the body where they are closest to it.
 
-    The direction of a deflected contour, which is close to its own body, must nowhere point out of it.
-
-    Parameters
-    ----------
-    boundary : with the edges of the zones
-    zones : contact zones by their path of keys
+    The direction of a deflected contour must not point out of the body at any point of the zone.
     """
     edges = {edge.name: edge for edge in boundary.edges}
-    complaints = []
+    issues = []
     for path, zone in zones.items():
         members = [edges[name] for name in zone.edges]
         if isinstance(zone.surface, DeflectedContour):
@@ -76,12 +235,12 @@ def facing_complaints(boundary: Boundary, zones: Mapping[Path, ContactZone]) -> 
         else:
             _, cosine, name = min((*_facing(edge, zone.surface), edge.name) for edge in members)
         if cosine > ALONG:
-            complaints.append(Complaint(path=(*path, "surface"), message=_faces_away(name, zone.surface)))
-    return complaints
+            issues.append(Issue(path=(*path, "surface"), message=_faces_away(name, zone.surface)))
+    return issues
 
 
 def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:
-    """Least distance of an edge from a surface, and the cosine between its outward and the surface's normal there."""
+    """Least distance between edge and surface, and there the cosine between outward normal and surface normal."""
     fractions = np.linspace(0, 1, 8 * edge.elements + 1)
     gap, normals = surface.closest(edge.points(fractions))
     cosine = np.einsum("ki,ki->k", normals, edge.normals(fractions))
@@ -90,22 +249,22 @@ def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:
 
 
 def _outward(edge: Edge, surface: DeflectedContour) -> float:
-    """Largest cosine between an outward normal and the direction: a contour may be near to any point of the edge."""
+    """Largest cosine between an outward normal of the edge and the direction of the contour."""
     return float((edge.normals(np.linspace(0, 1, 8 * edge.elements + 1)) @ surface.unit_direction).max())
 
 
 def _faces_away(edge: str, surface: RigidSurface) -> str:
-    """Say how the surface is to be turned round."""
+    """Say that the surface faces away from the body, and how to turn it."""
     match surface:
         case Plane():
             x, y = surface.normal
-            way_out = f"turn the normal round: [{0 - x:g}, {0 - y:g}]"
+            remedy = f"reverse the normal: [{0 - x:g}, {0 - y:g}]"
         case Circle():
-            way_out = f"is the body {'inside' if surface.body == 'outside' else 'outside'} the circle?"
+            remedy = f"is the body {'inside' if surface.body == 'outside' else 'outside'} the circle?"
         case Polyline() | Spline():
-            way_out = "list its points in the opposite order, so that the body is on their left"
+            remedy = "list its points in the opposite order, so that the body is on their left"
         case DeflectedContour():
             x, y = surface.direction
-            way_out = f"turn the direction round: [{0 - x:g}, {0 - y:g}], or make the zone smaller"
-    rule = "the rigid surface's normal must point from the surface into the body"
-    return f"{rule}, but at '{edge}' it points out of it; {way_out}"
+            remedy = f"reverse the direction: [{0 - x:g}, {0 - y:g}], or make the zone smaller"
+    rule = "the normal of the rigid surface must point from the surface into the body"
+    return f"{rule}, but at '{edge}' it points out of the body; {remedy}"

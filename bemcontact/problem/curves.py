@@ -1,4 +1,4 @@
-"""The curves of a boundary once all their ends are known: length, points and directions by fraction of arc length."""
+"""Edges with both ends, and their curves: length, points and directions by fraction of the arc length."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -6,17 +6,16 @@ from math import atan2, cos, degrees, hypot, pi, radians, sin
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipeinc
 
+from bemcontact.arrays import Array
 from bemcontact.problem.element_ends import graded_ends
 
-Array = NDArray[np.float64]
 Pair = tuple[float, float]
 
 
 class Curve(Protocol):
-    """A plane curve, run through at constant speed."""
+    """A plane curve parametrized by its arc length."""
 
     @property
     def length(self) -> float:
@@ -32,11 +31,11 @@ class Curve(Protocol):
         ...
 
     def polyline(self) -> Array:
-        """Points (k, 2) from start to end between which the curve is as good as straight."""
+        """Points (k, 2) from start to end of a polyline that approximates the curve."""
         ...
 
     def fraction_at(self, point: Pair) -> float:
-        """Fraction in [0, 1] of the arc length at which a point of the curve lies, or near which one beside it."""
+        """Fraction in [0, 1] of the arc length at a point on the curve or near it."""
         ...
 
 
@@ -66,7 +65,7 @@ class Segment:
         return np.array([self.start, self.end])
 
     def fraction_at(self, point: Pair) -> float:
-        """Fraction in [0, 1] of the arc length, of the nearest point."""
+        """Fraction in [0, 1] of the arc length at the nearest point of the line."""
         along, off = np.subtract(self.end, self.start), np.subtract(point, self.start)
         return float(np.clip(along @ off / self.length**2, 0, 1))
 
@@ -75,7 +74,7 @@ class Segment:
 class CircularArc:
     """center + r (cos θ, sin θ) with θ from start_angle over sweep, in radians, anticlockwise if sweep > 0.
 
-    `radii` are r at both ends: equal, or as equal as the coordinates of the ends were written.
+    `radii` are r at both ends; they are equal up to the rounding of the given coordinates.
     """
 
     center: Pair
@@ -99,11 +98,11 @@ class CircularArc:
         return self.start_angle + fractions * self.sweep + np.copysign(pi / 2, self.sweep)
 
     def polyline(self) -> Array:
-        """Points (k, 2) about one degree apart: the chords stray from the arc by 4e-5 of the radius."""
+        """Points (k, 2) about one degree apart: the distance between chords and arc is 4e-5 of the radius."""
         return self.at(np.linspace(0, 1, _chords(self.sweep) + 1))
 
     def fraction_at(self, point: Pair) -> float:
-        """Fraction in [0, 1] of the arc length, of the point in the same direction from the centre."""
+        """Fraction in [0, 1] of the arc length at the point in the same direction from the center."""
         x, y = np.subtract(point, self.center)
         return _part_of_sweep(atan2(y, x), self.start_angle, self.sweep)
 
@@ -132,16 +131,16 @@ class EllipticArc:
         """Angle (k,) of the direction of travel to the x axis in radians, continuous along the arc."""
         a, b = self.semi_axes
         t = self._eccentric_angle(fractions)
-        # The polar angle of the normal (b cos t, a sin t) never strays from t by a quarter turn.
-        stray = np.arctan2((a - b) * np.sin(t) * np.cos(t), b * np.cos(t) ** 2 + a * np.sin(t) ** 2)
-        return t + stray + self.rotation + np.copysign(pi / 2, self.sweep)
+        # The polar angle of the normal (b cos t, a sin t) differs from t by less than a quarter turn.
+        difference = np.arctan2((a - b) * np.sin(t) * np.cos(t), b * np.cos(t) ** 2 + a * np.sin(t) ** 2)
+        return t + difference + self.rotation + np.copysign(pi / 2, self.sweep)
 
     def polyline(self) -> Array:
         """Points (k, 2) about one degree of eccentric angle apart."""
         return self._at_eccentric_angle(self.start_angle + np.linspace(0, 1, _chords(self.sweep) + 1) * self.sweep)
 
     def fraction_at(self, point: Pair) -> float:
-        """Fraction in [0, 1] of the arc length, of the point with the same eccentric angle."""
+        """Fraction in [0, 1] of the arc length at the point with the same eccentric angle."""
         (a, b), (x, y) = self.semi_axes, np.subtract(point, self.center)
         c, s = cos(self.rotation), sin(self.rotation)
         part = _part_of_sweep(atan2((c * y - s * x) / b, (c * x + s * y) / a), self.start_angle, self.sweep)
@@ -156,7 +155,7 @@ class EllipticArc:
         return np.array(self.center) + np.column_stack([c * x - s * y, s * x + c * y])
 
     def _arc_length(self, t: Array) -> Array:
-        """Arc length from a fixed point to eccentric angle t, written so that the parameter m is in [0, 1)."""
+        """Arc length from a fixed point to eccentric angle t; the parameter of the elliptic integral is in [0, 1)."""
         a, b = self.semi_axes
         if a > b:
             return a * ellipeinc(t - pi / 2, 1 - (b / a) ** 2)
@@ -166,7 +165,7 @@ class EllipticArc:
         return np.hypot(self.semi_axes[0] * np.sin(t), self.semi_axes[1] * np.cos(t))
 
     def _eccentric_angle(self, fractions: Array) -> Array:
-        """Invert the arc length by Newton's method, by bisection where a step would leave the bracket."""
+        """Invert the arc length by Newton's method, with bisection if a step leaves the bracket."""
         ends = self.start_angle + np.array([0.0, self.sweep])
         low, high = np.full(len(fractions), ends.min()), np.full(len(fractions), ends.max())
         first, last = self._arc_length(ends)
@@ -185,17 +184,17 @@ class EllipticArc:
 
 @dataclass(frozen=True, kw_only=True)
 class Edge:
-    """A named piece of a boundary with both ends known, and how it is divided into elements.
+    """A named edge of the boundary with both ends, and its division into elements.
 
     Parameters
     ----------
     name : name of the edge
-    curve : its shape
-    start, end : ends [L]; the very same numbers as the neighbours have
+    curve : shape of the edge
+    start, end : ends [L]; exactly equal to those of the neighboring edges
     elements : number of elements
-    ratio : longest over shortest element, in geometric progression
-    towards : where the short elements are: "start", "end", "both", "middle", or a fraction of the arc length
-    ends_at : fractions of the arc length at which elements end, ascending, beside 0 and 1
+    ratio : ratio of the longest element to the shortest, in geometric progression
+    towards : place of the short elements: "start", "end", "both", "middle", or a fraction of the arc length
+    ends_at : fractions of the arc length at which elements end besides 0 and 1, ascending
     """
 
     name: str
@@ -221,12 +220,12 @@ class Edge:
         return points
 
     def directions(self, fractions: Array) -> Array:
-        """Unit tangents (k, 2) at fractions (k,); the body is on their left."""
+        """Unit tangents (k, 2) at fractions (k,) of the arc length; the body is on their left."""
         angle = self.curve.tangent_angle(np.asarray(fractions, float))
         return np.column_stack([np.cos(angle), np.sin(angle)])
 
     def normals(self, fractions: Array) -> Array:
-        """Unit normals (k, 2) out of the body at fractions (k,)."""
+        """Outward unit normals (k, 2) at fractions (k,) of the arc length."""
         directions = self.directions(fractions)
         return np.column_stack([directions[:, 1], -directions[:, 0]])
 
@@ -235,7 +234,7 @@ class Edge:
         return graded_ends(self.elements, self.ratio, self.towards, self.ends_at)
 
     def breakpoints(self, refine: int = 1) -> Array:
-        """Fractions (elements · refine + 1,) of the element ends, each stated element cut into `refine` equal parts."""
+        """Fractions (elements · refine + 1,) of the element ends, with each element cut into `refine` equal parts."""
         coarse = self._coarse_breakpoints
         parts = np.arange(refine) / refine
         fine = coarse[:-1, None] + np.diff(coarse)[:, None] * parts
@@ -246,14 +245,14 @@ class Edge:
         return float(np.abs(np.diff(self.curve.tangent_angle(self.breakpoints(refine)))).max())
 
     def polyline(self) -> Array:
-        """Points (k, 2) from start to end between which the edge is as good as straight."""
+        """Points (k, 2) from start to end of a polyline that approximates the edge."""
         points = self.curve.polyline()
         points[0], points[-1] = self.start, self.end
         return points
 
 
 def _part_of_sweep(angle: float, start: float, sweep: float) -> float:
-    """Part in [0, 1] of a sweep at which an angle in radians lies, or the end of it that is nearer."""
+    """Part in [0, 1] of a sweep at an angle in radians; for angles outside the sweep, its nearer end."""
     turned = (angle - start if sweep > 0 else start - angle) % (2 * pi)
     if turned > (abs(sweep) + 2 * pi) / 2:
         turned = 0.0
@@ -261,12 +260,12 @@ def _part_of_sweep(angle: float, start: float, sweep: float) -> float:
 
 
 def _chords(sweep: float) -> int:
-    """Number of chords for an arc of this sweep in radians, of which none exceeds a degree."""
+    """Number of chords of at most one degree for a sweep in radians."""
     return int(degrees(abs(sweep))) + 1
 
 
 def unit_vector(angle: float) -> Pair:
-    """(cos, sin) of an angle in degrees, without round-off at right angles."""
+    """(cos, sin) of an angle in degrees, exact at multiples of 90 degrees."""
     quarter, rest = divmod(angle, 90.0)
     if rest == 0:
         return [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][int(quarter) % 4]

@@ -1,24 +1,19 @@
-"""Where the elements of an edge end, by fraction of its length."""
+"""Element ends on an edge, as fractions of its length."""
 
 from collections.abc import Sequence
 from itertools import pairwise
 from math import fsum, log
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from bemcontact.arrays import Array
 
 
 def graded_ends(elements: int, ratio: float, towards: str | float, places: Sequence[float] = ()) -> Array:
-    """Element ends (elements + 1,) from 0 to 1, some of them at given places.
+    """Element ends (elements + 1,) from 0 to 1 with lengths from `graded_lengths`, some of them at given places.
 
-    For each place the nearest end that is free is moved onto it; the others follow in proportion.
-
-    Parameters
-    ----------
-    elements, ratio, towards : as of `graded_lengths`; a place towards which elements are graded is one of the ends
-    places : ascending, inside (0, 1), fewer than elements
+    The nearest free end moves to each place, and the others move in proportion. Places ascend, are inside (0, 1), and
+    are fewer than the elements. A place `towards` which elements are graded is one of the ends.
     """
     ends = np.concatenate([[0.0], np.cumsum(graded_lengths(elements, ratio, towards))])
     ends[-1] = 1.0
@@ -27,14 +22,14 @@ def graded_ends(elements: int, ratio: float, towards: str | float, places: Seque
 
 
 def graded_lengths(elements: int, ratio: float, towards: str | float) -> Array:
-    """Lengths (elements,) of sum 1 in geometric progression, longest : shortest = ratio.
+    """Lengths (elements,) with sum 1 in geometric progression, longest : shortest = ratio.
 
     Parameters
     ----------
     elements : number of elements, at least 1; at least 2 for a place
-    ratio : longest over shortest; on both sides of a place lengths grow by the same factor, which gives this ratio
-        where there are more elements
-    towards : where the short elements are: "start", "end", "both" ends, "middle", or a place inside (0, 1)
+    ratio : ratio of the longest length to the shortest. On both sides of a place, lengths grow by the same factor; the
+        side with more elements has this ratio
+    towards : place of the short elements: "start", "end", "both", "middle", or a fraction inside (0, 1)
     """
     if not isinstance(towards, str):
         return _lengths_about(elements, ratio, towards)
@@ -50,28 +45,28 @@ def graded_lengths(elements: int, ratio: float, towards: str | float) -> Array:
 
 
 def _lengths_about(elements: int, ratio: float, place: float) -> Array:
-    """Lengths that shrink towards a place, divided between its sides so that its two elements are about as long."""
+    """Lengths (elements,) that shrink towards a place; the two elements at the place have about the same length."""
 
     def sides(before: int) -> tuple[Array, Array]:
         growth = ratio ** (1 / max(before - 1, elements - before - 1, 1))
         left, right = growth ** np.arange(before)[::-1], growth ** np.arange(elements - before)
         return left * (place / fsum(left)), right * ((1 - place) / fsum(right))
 
-    def unlike(before: int) -> float:
+    def mismatch(before: int) -> float:
         left, right = sides(before)
         return abs(log(left[-1] / right[0]))
 
-    return np.concatenate(sides(min(range(1, elements), key=unlike)))
+    return np.concatenate(sides(min(range(1, elements), key=mismatch)))
 
 
 def cubic_ends(elements: int, *, both: bool, shortest: float = 0.0) -> Array:
-    """Element ends (elements + 1,) from 0 to 1 that crowd to 0 like the cubes of equal steps, or to both ends.
+    """Element ends (elements + 1,) from 0 to 1 at the cubes of equal steps, dense at 0, or at both ends.
 
     Parameters
     ----------
     elements : number of elements, at least 1
-    both : whether to crowd to both ends, from the middle
-    shortest : least length; where cubes would be shorter, they are mixed with as many equal steps as that takes
+    both : whether the ends are dense at 0 and at 1
+    shortest : smallest length; if cubes give shorter lengths, a linear term is mixed in
     """
     step = np.arange(elements + 1) / elements
     if not both:
@@ -81,18 +76,15 @@ def cubic_ends(elements: int, *, both: bool, shortest: float = 0.0) -> Array:
 
 
 def _cubed(step: Array, count: float, shortest: float) -> Array:
-    """(1 - e) s³ + e s of steps s, with the least e >= 0 for which the first is not too short."""
+    """(1 - e) s³ + e s for steps s, with the smallest e >= 0 for which the first length is long enough."""
     even = max(0.0, shortest - count**-3) / (1 / count - count**-3) if count > 1 else 0.0
     return (1 - even) * step**3 + even * step
 
 
 def moved_onto(ends: Array, places: Sequence[float]) -> Array:
-    """Move ascending element ends (m + 1,) so that some lie exactly at given places, the others in proportion.
+    """Move ascending element ends (m + 1,) so that some are exactly at given places, and the others in proportion.
 
-    Parameters
-    ----------
-    ends : the first and the last stay
-    places : ascending, between them, fewer than m
+    The first and the last end stay. Places ascend, are between them, and are fewer than m.
     """
     if not places:
         return ends
@@ -107,11 +99,11 @@ def moved_onto(ends: Array, places: Sequence[float]) -> Array:
 
 
 def _nearest(ends: Array, places: Sequence[float]) -> list[int]:
-    """An end for each place, in order and none twice, with the least sum of squared distances."""
+    """Index of a different end for each place, in order, with the smallest sum of squared distances."""
     inner = np.arange(1, len(ends) - 1)
     total, before = np.zeros(len(inner)), []
     for number, place in enumerate(places):
-        if number:  # an earlier end for the place before: the cheapest of those up to here
+        if number:  # the best end for the previous place among the earlier ends
             least = np.minimum.accumulate(total)
             cheapest = np.maximum.accumulate(np.where(total == least, inner, 0))
             before.append(np.append(0, cheapest[:-1]))

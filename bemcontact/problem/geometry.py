@@ -1,13 +1,12 @@
-"""Edges as they are written: a line, an arc of a circle or of an ellipse, with its number of elements."""
+"""Edges as the user gives them: lines, circular arcs and elliptic arcs, each with its number of elements."""
 
 from math import atan2, hypot, isfinite, pi, radians
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_validator
 
-from bemcontact.errors import Path
+from bemcontact.errors import KeyPath
 from bemcontact.problem.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
-from bemcontact.problem.tagged_union import ByKind
 from bemcontact.problem.validation import (
     Count,
     Flag,
@@ -16,39 +15,39 @@ from bemcontact.problem.validation import (
     Point,
     Positive,
     PositivePair,
-    Stated,
-    complain,
+    SpecModel,
+    TaggedUnion,
     described,
+    invalid,
 )
 
 MOST_ELEMENTS = 10_000
-"""On one boundary; the dense matrix of so many quadratic elements takes 13 gigabytes."""
-
+"""Largest number of elements of a problem; its dense matrix takes 13 gigabytes."""
 
 SIDES = ("start", "end", "both", "middle")
-"""Words for where the short elements of an edge are."""
+"""Names of the places of the short elements of an edge."""
 
 
 def _place(value: Any) -> float | Point:
-    """Read a place on an edge, a fraction of its length or a point."""
+    """Validate a place on an edge: a fraction of its length or a point."""
     numbers = value if isinstance(value, list | tuple) else [value]
     if not all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers):
-        raise complain(f"expected a fraction of the length such as 0.4, or a point [x, y]; found {described(value)}")
+        raise invalid(f"expected a fraction of the length such as 0.4, or a point [x, y]; found {described(value)}")
     if isinstance(value, list | tuple):
         if len(value) != 2 or not all(map(isfinite, value)):
-            raise complain(f"a point has two coordinates such as [0.0, 1.5]; found {described(value)}")
+            raise invalid(f"expected two coordinates such as [0.0, 1.5]; found {described(value)}")
         return float(value[0]), float(value[1])
     if not 0 < value < 1:
-        raise complain(f"a fraction of the length lies between 0 and 1, where the edge itself ends; found {value:g}")
+        raise invalid(f"a fraction of the length must be between 0 and 1, found {value:g}")
     return float(value)
 
 
 def _towards(value: Any) -> str | float | Point:
-    """Read where the short elements are."""
+    """Validate the place of the short elements."""
     if isinstance(value, str):
         if value not in SIDES:
-            words = f"{', '.join(SIDES)}, a fraction of the length, or a point [x, y]"
-            raise complain(f"expected one of {words}; found {described(value)}")
+            expected = f"{', '.join(SIDES)}, a fraction of the length, or a point [x, y]"
+            raise invalid(f"expected {expected}; found {described(value)}")
         return value
     return _place(value)
 
@@ -68,108 +67,108 @@ Towards = Annotated[
     PlainValidator(_towards),
     WithJsonSchema({"anyOf": [{"enum": [*SIDES]}, _PLACE_SCHEMA]}),
 ]
-"""Where the short elements are."""
+"""The place of the short elements."""
 
 
-class Grading(Stated):
+class Grading(SpecModel):
     """Element lengths in geometric progression along an edge."""
 
     ratio: Annotated[float, Strict(), Field(ge=1, le=1e6)]
     """The ratio of the longest element to the shortest, such as 4."""
     towards: Towards
-    """Where the short elements are: start, end, both, middle, or a place at which elements then end: a fraction of the
-    length of the edge, or a point [x, y] on it."""
+    """The place of the short elements: start, end, both, middle, a fraction of the length of the edge, or a point
+    [x, y] on it. An element ends at a fraction or point."""
 
 
-class _StatedEdge(Stated):
-    """What every edge states, whatever its shape."""
+class _EdgeBase(SpecModel):
+    """Base class of all edges."""
 
     name: Name
     """The name of the edge, by which conditions and contact zones refer to it."""
     elements: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)]
     """The number of boundary elements along the edge, such as elements: 8."""
     grading: Grading | None = None
-    """Grading of the element lengths; equal lengths if left out."""
+    """The grading of the element lengths; equal lengths if left out."""
     ends_at: tuple[Place, ...] = ()
-    """Places at which elements must end: fractions of the length of the edge, or points [x, y] on it. The nearest
-    element ends are moved there, the others in proportion."""
+    """The places where elements must end: fractions of the length of the edge, or points [x, y] on it. The nearest
+    element ends move to these places, and the others in proportion."""
 
     @property
-    def places(self) -> tuple[tuple[Path, Place], ...]:
-        """All places at which elements must end, each with its path of keys."""
-        stated: list[tuple[Path, Place]] = [(("ends_at", i), place) for i, place in enumerate(self.ends_at)]
+    def places(self) -> tuple[tuple[KeyPath, Place], ...]:
+        """All places where elements must end, each with its key path."""
+        places: list[tuple[KeyPath, Place]] = [(("ends_at", i), place) for i, place in enumerate(self.ends_at)]
         if self.grading is not None and not isinstance(self.grading.towards, str):
-            stated.append((("grading", "towards"), self.grading.towards))
-        return tuple(stated)
+            places.append((("grading", "towards"), self.grading.towards))
+        return tuple(places)
 
 
-class Line(_StatedEdge):
-    """A straight edge. An end that is left out is where the neighbouring edge begins or ends."""
+class Line(_EdgeBase):
+    """A straight edge. An end that is left out is taken from the neighboring edge."""
 
     kind: Literal["line"] = "line"
     """The shape of the edge: line, arc, or ellipse."""
     start: Point | None = None
-    """The first point [x, y]."""
+    """The first point [x, y]; if left out, the end of the previous edge."""
     end: Point | None = None
-    """The last point [x, y]."""
+    """The last point [x, y]; if left out, the start of the next edge."""
 
     def own_ends(self) -> tuple[Point | None, Point | None]:
-        """Both ends as far as this edge knows them by itself."""
+        """Both ends; None for an end that is left out."""
         return self.start, self.end
 
-    def states_points(self) -> bool:
-        """Tell that the ends are written as coordinates, and not computed from angles."""
+    def has_coordinates(self) -> bool:
+        """Whether the ends are given by coordinates, not by angles."""
         return True
 
     def curve(self, start: Point, end: Point) -> Curve:
-        """Make the curve between two points."""
+        """The line between two points."""
         return Segment(start=start, end=end)
 
 
-class Arc(_StatedEdge):
-    """A circular edge: a centre, and either radius and angles, or start, end and the sense of rotation."""
+class Arc(_EdgeBase):
+    """A circular edge: center, radius and angles, or center, start, end and direction."""
 
     kind: Literal["arc"] = "arc"
     """The shape of the edge: line, arc, or ellipse."""
     center: Point
-    """The centre [x, y]."""
+    """The center [x, y]."""
     radius: Positive | None = None
-    """The radius, together with angles."""
+    """The radius; only together with angles."""
     angles: Point | None = None
-    """Polar angles [first, last] in degrees; anticlockwise if the last is the larger."""
+    """The polar angles [first, last] in degrees; counterclockwise if the last angle is the larger one."""
     start: Point | None = None
-    """The first point [x, y], if the arc is given by its ends; left out, it is where the edge before ends."""
+    """The first point [x, y] of an arc without angles; if left out, the end of the previous edge."""
     end: Point | None = None
-    """The last point [x, y], if the arc is given by its ends; left out, it is where the next edge begins."""
+    """The last point [x, y] of an arc without angles; if left out, the start of the next edge."""
     clockwise: Flag = False
-    """Whether an arc given by its ends runs clockwise."""
+    """Whether an arc without angles runs clockwise."""
 
     @model_validator(mode="after")
     def _one_form(self) -> Self:
-        """Refuse a mixture of the two forms."""
+        """Refuse a mixture of angles and ends."""
         by_angles, by_points = "radius and angles", "start, end and clockwise"
         if (self.radius is None) != (self.angles is None):
             given, missing = ("angles", "radius") if self.radius is None else ("radius", "angles")
-            raise complain(f"an arc with {given} needs {missing} too; or give {by_points} instead")
+            raise invalid(f"an arc with {given} needs {missing} too; give both, or {by_points} instead")
         if self.angles is not None:
             if self.start is not None or self.end is not None or self.clockwise:
-                raise complain(f"give either {by_angles}, or {by_points}, not both")
+                raise invalid(f"an arc has either {by_angles}, or {by_points}, not both; remove one form")
             _check_sweep(self.angles)
         return self
 
     def own_ends(self) -> tuple[Point | None, Point | None]:
-        """Both ends as far as this edge knows them by itself."""
+        """Both ends; None for an end that is left out."""
         if self.radius is None or self.angles is None:
             return self.start, self.end
         first, last = (_moved(self.center, self.radius, unit_vector(angle)) for angle in self.angles)
         return first, last
 
-    def states_points(self) -> bool:
-        """Tell whether the ends are written as coordinates."""
+    def has_coordinates(self) -> bool:
+        """Whether the ends are given by coordinates, not by angles."""
         return self.angles is None
 
     def curve(self, start: Point, end: Point) -> Curve:
-        """Make the curve; an arc that is given by its ends takes them from here."""
+        """The arc by its angles, or between two points."""
         if self.radius is not None and self.angles is not None:
             first, last = map(radians, self.angles)
             return CircularArc(
@@ -182,40 +181,40 @@ class Arc(_StatedEdge):
         return CircularArc(center=self.center, radii=radii, start_angle=first, sweep=sweep)
 
 
-class EllipseArc(_StatedEdge):
-    """A piece of an ellipse: center + rotated (a cos t, b sin t)."""
+class EllipseArc(_EdgeBase):
+    """An elliptic edge: center + rotated (a cos t, b sin t)."""
 
     kind: Literal["ellipse"] = "ellipse"
     """The shape of the edge: line, arc, or ellipse."""
     center: Point
-    """The centre [x, y]."""
+    """The center [x, y]."""
     semi_axes: PositivePair
-    """The half-lengths [a, b] of the axes."""
+    """The semi-axes [a, b]."""
     angles: Point
-    """Eccentric angles t [first, last] in degrees; anticlockwise if the last is the larger."""
+    """The eccentric angles t [first, last] in degrees; counterclockwise if the last angle is the larger one."""
     rotation: Number = 0.0
-    """Angle in degrees from the x axis to the axis a."""
+    """The angle in degrees from the x axis to the axis a."""
 
     @model_validator(mode="after")
-    def _sound(self) -> Self:
+    def _at_most_one_turn(self) -> Self:
         """Refuse more than a full turn."""
         _check_sweep(self.angles)
         return self
 
     def own_ends(self) -> tuple[Point | None, Point | None]:
-        """Both ends, from the angles."""
+        """Both ends, computed from the angles."""
         (a, b), (c, s) = self.semi_axes, unit_vector(self.rotation)
         ends = []
         for x, y in map(unit_vector, self.angles):
             ends.append((self.center[0] + c * a * x - s * b * y, self.center[1] + s * a * x + c * b * y))
         return ends[0], ends[1]
 
-    def states_points(self) -> bool:
-        """Tell that the ends are computed from angles."""
+    def has_coordinates(self) -> bool:
+        """Whether the ends are given by coordinates, not by angles."""
         return False
 
     def curve(self, start: Point, end: Point) -> Curve:
-        """Make the curve; its ends follow from the angles."""
+        """The elliptic arc; its ends follow from the angles."""
         first, last = map(radians, self.angles)
         return EllipticArc(
             center=self.center,
@@ -227,10 +226,10 @@ class EllipseArc(_StatedEdge):
 
 
 def _check_sweep(angles: Point) -> None:
-    """Refuse an arc of no length, or of more than a full turn."""
+    """Refuse an arc without length, or of more than a full turn."""
     sweep = abs(angles[1] - angles[0])
     if not 0 < sweep <= 360:
-        raise complain(f"angles must differ by more than 0 and at most 360 degrees; found {list(angles)}")
+        raise invalid(f"angles must differ by more than 0 and at most 360 degrees; found {list(angles)}")
 
 
 def _moved(center: Point, distance: float, direction: Point) -> Point:
@@ -239,9 +238,9 @@ def _moved(center: Point, distance: float, direction: Point) -> Point:
 
 AnyEdge = Line | Arc | EllipseArc
 """An edge of any shape."""
-StatedEdge = Annotated[
-    AnyEdge, ByKind(what="an edge", kinds={"line": Line, "arc": Arc, "ellipse": EllipseArc}, default="line")
+EdgeSpec = Annotated[
+    AnyEdge, TaggedUnion(what="an edge", kinds={"line": Line, "arc": Arc, "ellipse": EllipseArc}, default="line")
 ]
-"""An edge as it is written; `kind` says which."""
-StatedLoop = Annotated[tuple[StatedEdge, ...], Field(min_length=1)]
-"""Edges in order, each of which begins where the one before ends, the last closing the loop."""
+"""An edge whose class is chosen by the key `kind`."""
+LoopSpec = Annotated[tuple[EdgeSpec, ...], Field(min_length=1)]
+"""Edges in order: each edge starts at the end of the previous one, and the last one closes the loop."""

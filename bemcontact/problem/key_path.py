@@ -1,17 +1,20 @@
-"""Paths of keys into nested mappings and lists: read from text, followed, and used to replace one entry."""
+"""Key paths into nested mappings and lists, and raw values of a problem together with their key paths."""
 
 import re
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple, Self, TypeVar
 
-from bemcontact.errors import Complaint, Path, ProblemError, dotted
-from bemcontact.problem.validation import described, unknown_word
+from pydantic import BaseModel, ValidationError
+
+from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
+from bemcontact.problem.validation import SpecModel, described, misspelled, unknown_word
 
 _STEP = re.compile(r"\.([^.\[\]=]+)|\[(\d+)\]")
+Part = TypeVar("Part", bound=SpecModel)
 
 
-def parsed_path(text: str) -> Path:
-    """Read a path such as ``boundary.outer[2].elements``; `ProblemError` if it is none."""
+def parsed_path(text: str) -> KeyPath:
+    """Parse a path such as ``boundary.outer[2].elements``; `ProblemError` if it is none."""
     path: list[str | int] = []
     position = 0
     rest = f".{text}"
@@ -24,58 +27,48 @@ def parsed_path(text: str) -> Path:
     return tuple(path)
 
 
-def existing_path(data: Any, path: Path) -> Path:
-    """Follow a path as far as there is something, with names of list entries replaced by their places.
+def existing_path(data: Any, path: KeyPath) -> KeyPath:
+    """Follow a path through nested data, and replace names of list entries by their positions.
 
-    Parameters
-    ----------
-    data : nested mappings and lists
-    path : keys and places; in a list of mappings, an entry may be meant by its `name`
-
-    Returns
-    -------
-    tuple of str and int
-        Keys of mappings that do not exist yet are kept as they are.
-
-    Raises
-    ------
-    ProblemError
-        If the path leads into something that has no entries, or to a place that a list does not have.
+    Keys of mappings that do not exist yet are kept. `ProblemError` if the path leads into a value without entries, or
+    to an entry that a list does not have.
     """
-    found: Path = ()
+    followed: KeyPath = ()
     for step in path:
         if isinstance(data, list | tuple):
-            step = _place(data, step, found)
+            step = _position(data, step, followed)
             data = data[step]
         elif isinstance(step, str) and (data is None or isinstance(data, Mapping)):
             data = (data or {}).get(step)
         else:
-            message = f"has no entry {dotted((step,))}, it is {described(data)}; give a path to a value"
-            raise ProblemError(Complaint(path=found, message=message))
-        found = (*found, step)
-    return found
+            message = f"it has no entry {dotted((step,))}, because it is {described(data)}; give the path of a value"
+            raise ProblemError(Issue(path=followed, message=message))
+        followed = (*followed, step)
+    return followed
 
 
-def _place(data: list[Any] | tuple[Any, ...], step: str | int, found: Path) -> int:
-    """Find the place in a list that a number or a name means."""
+def _position(data: list[Any] | tuple[Any, ...], step: str | int, path: KeyPath) -> int:
+    """Position in a list of the entry with a number or a name."""
     if isinstance(step, int):
         if step < len(data):
             return step
         message = f"there is no entry [{step}], the list has {len(data)}; count from 0"
-        raise ProblemError(Complaint(path=found, message=message))
+        raise ProblemError(Issue(path=path, message=message))
     names = [entry.get("name") if isinstance(entry, Mapping) else None for entry in data]
     if step in names:
         return names.index(step)
     known = [name for name in names if isinstance(name, str)]
-    place = step if step.isdecimal() else "0"
+    position = step if step.isdecimal() else "0"
     message = (
-        unknown_word("entry", step, known) if known else f"a list has places, not keys: write [{place}] for {step!r}"
+        unknown_word("entry", step, known)
+        if known
+        else f"a list has positions, not keys; write [{position}] instead of {step!r}"
     )
-    raise ProblemError(Complaint(path=found, message=message))
+    raise ProblemError(Issue(path=path, message=message))
 
 
-def with_entry(data: Any, path: Path, value: Any) -> Any:
-    """Copy nested data with one entry replaced or added; the path is one that `existing_path` returned."""
+def with_entry(data: Any, path: KeyPath, value: Any) -> Any:
+    """Copy nested data with one entry replaced or added; the path comes from `existing_path`."""
     if not path:
         return value
     step, rest = path[0], path[1:]
@@ -83,3 +76,43 @@ def with_entry(data: Any, path: Path, value: Any) -> Any:
         return [*data[:step], with_entry(data[step], rest, value), *data[step + 1 :]]
     data = data or {}
     return {**data, step: with_entry(data.get(step), rest, value)}
+
+
+class RawValue(NamedTuple):
+    """A value of a problem before validation, with its key path as the user spelled it.
+
+    One part can then be checked although another one is wrong.
+    """
+
+    path: KeyPath
+    value: Any
+
+    def below(self, model: type[SpecModel], key: str) -> Self:
+        """Value under a key of the model, even if the key is misspelled; None if there is no value."""
+        if isinstance(self.value, BaseModel):
+            return self._replace(path=(*self.path, key), value=getattr(self.value, key, None))
+        if not isinstance(self.value, Mapping):
+            return self._replace(path=(*self.path, key), value=None)
+        spelled = {meant: wrong for wrong, meant in misspelled(model, self.value).items()}.get(key, key)
+        return self._replace(path=(*self.path, spelled), value=self.value.get(spelled))
+
+    def each(self) -> Iterator[Self]:
+        """Entries of a list or of a mapping; other values have none."""
+        match self.value:
+            case list() | tuple():
+                entries = enumerate(self.value)
+            case Mapping():
+                entries = self.value.items()
+            case _:
+                return
+        for key, value in entries:
+            yield self._replace(path=(*self.path, key), value=value)
+
+    def read(self, model: type[Part]) -> Part | None:
+        """Validate the value as a part of a problem; None if it is wrong."""
+        if isinstance(self.value, model):
+            return self.value
+        try:
+            return model.model_validate(self.value)
+        except ValidationError:
+            return None

@@ -1,79 +1,66 @@
-"""Whether closed loops of edges bound one body: they cross nowhere, run the right way round, and nest once."""
+"""Checks that closed loops of edges enclose one body: no crossings, the right orientation, holes inside."""
 
 from collections.abc import Iterator, Sequence
 from math import dist
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.errors import Complaint, Path
+from bemcontact.arrays import Array, BoolArray
+from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.curves import Edge
 
-Array = NDArray[np.float64]
-
 TOUCHING = 1e-9
-"""Distance over the size of the body below which two edges touch."""
+"""Distance of two edges, relative to the size of the body, up to which they touch."""
 
 
-def loop_complaints(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> list[Complaint]:
-    """Check closed loops; which side they bound is asked only where none crosses another.
-
-    Parameters
-    ----------
-    loops : the outer loop, then the holes
-    paths : path of keys to each loop
-
-    Returns
-    -------
-    list of Complaint
-        Each names the edges concerned.
-    """
+def loop_issues(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> list[Issue]:
+    """Issues of the outer loop and the holes: crossings, else orientations, else positions of holes."""
     return [*_crossings(loops, paths)] or [*_orientations(loops, paths)] or [*_nestings(loops, paths)]
 
 
 def polygon(loop: Sequence[Edge]) -> Array:
-    """Corners (k, 2) of a polygon as good as the loop, the first not repeated."""
+    """Corners (k, 2) of a polygon that approximates the loop; the first corner is not repeated."""
     return np.vstack([edge.polyline()[:-1] for edge in loop])
 
 
 def signed_area(corners: Array) -> float:
-    """Area inside a polygon (k, 2), positive if it is run through anticlockwise."""
+    """Area of a polygon (k, 2), positive if it is counterclockwise."""
     x, y = (corners - corners.mean(axis=0)).T
     return float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2)
 
 
 def contains(corners: Array, point: Array) -> bool:
-    """Tell whether a point (2,) is inside a polygon (k, 2): a ray to the right leaves it an odd number of times."""
+    """Whether a point (2,) is inside a polygon (k, 2): a ray to the right crosses it an odd number of times."""
     (x0, y0), (x1, y1) = (corners - point).T, (np.roll(corners, -1, axis=0) - point).T
     straddles = (y0 > 0) != (y1 > 0)
-    # The ray meets the side right of the point if the turn from one end to the other agrees with the side's sense.
+    # The ray crosses a side if the point is on its left for a rising side, on its right for a falling one.
     right = np.where(y1 > y0, 1.0, -1.0) * (x0 * y1 - x1 * y0) > 0
     return bool(np.count_nonzero(straddles & right) % 2)
 
 
-def _crossings(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> Iterator[Complaint]:
-    """Find edges that meet an earlier one, or themselves, elsewhere than in a common joint; each is named once."""
+def _crossings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iterator[Issue]:
+    """Issues of edges that meet an earlier edge, or themselves, except at a common end; one for each edge."""
     placed = [(edge, (*path, i)) for loop, path in zip(loops, paths, strict=True) for i, edge in enumerate(loop)]
     lines = [edge.polyline() for edge, _ in placed]
     tolerance = TOUCHING * float(np.hypot(*np.ptp(np.vstack(lines), axis=0)))
-    found: set[int] = set()
+    reported: set[int] = set()
     for i, j in _pairs_close_by(lines, tolerance):
         (one, _), (other, path) = placed[i], placed[j]
-        if j in found:
+        if j in reported:
             continue
         point = first_meeting(lines[i], lines[j], tolerance, itself=i == j)
         if point is None and i != j and dist(one.start, other.start) <= tolerance:
             point = one.start
         if point is not None:
-            found.add(j)
+            reported.add(j)
             what = "itself" if i == j else f"'{one.name}'"
             where = f"at ({point[0]:.6g}, {point[1]:.6g})"
-            message = f"'{other.name}' crosses or touches {what} {where}; only neighbours may meet, in their common end"
-            yield Complaint(path=path, message=message)
+            message = f"'{other.name}' crosses or touches {what} {where}; neighbors may meet at their common end only"
+            yield Issue(path=path, message=message)
 
 
 def _pairs_close_by(lines: Sequence[Array], tolerance: float) -> list[tuple[int, int]]:
-    """Find the pairs i <= j of polylines whose bounding boxes meet."""
+    """Pairs i <= j of polylines whose bounding boxes overlap."""
     low, high = np.array([line.min(axis=0) for line in lines]), np.array([line.max(axis=0) for line in lines])
     meets = (low[:, None] <= high + tolerance).all(axis=2)
     i, j = np.nonzero(np.triu(meets & meets.T))
@@ -81,13 +68,9 @@ def _pairs_close_by(lines: Sequence[Array], tolerance: float) -> list[tuple[int,
 
 
 def first_meeting(one: Array, other: Array, tolerance: float, *, itself: bool = False) -> Array | None:
-    """Find where two polylines (k, 2), (m, 2) meet other than in a common corner; None if nowhere.
+    """First common point (2,) [L] of two polylines (k, 2), (m, 2) except common corners; None if there is none.
 
-    Parameters
-    ----------
-    one, other : corners of the polylines [L]
-    tolerance : distance below which they touch [L]
-    itself : whether both are the same line
+    Up to the distance `tolerance` they touch; `itself` tells that both are the same polyline.
     """
     for i in range(len(one) - 1):
         others = other[i + 1 :] if itself else other
@@ -100,7 +83,7 @@ def first_meeting(one: Array, other: Array, tolerance: float, *, itself: bool = 
 
 
 def _meetings(p: Array, p_end: Array, q: Array, q_end: Array, tolerance: float) -> tuple[Array, Array]:
-    """Tell which sides q + u s (m, 2) cross the side p + t r (2,), touch it or lie on it, and where."""
+    """Which sides q + u s (m, 2) cross, touch or overlap the side p + t r (2,), and the common points (m, 2)."""
     r, s = p_end - p, q_end - q
     length, lengths = np.hypot(*r), np.hypot(s[:, 0], s[:, 1])
     turn, off = _cross(r, s), _cross(q - p, r)
@@ -116,8 +99,8 @@ def _meetings(p: Array, p_end: Array, q: Array, q_end: Array, tolerance: float) 
     return crossing | overlapping, p + np.where(parallel, (low + high) / 2, t)[:, None] * r
 
 
-def _share_a_corner(ends: tuple[Array, Array], others: tuple[Array, Array]) -> NDArray[np.bool_]:
-    """Tell which sides (m,) begin or end in an end of a side, in the very same numbers."""
+def _share_a_corner(ends: tuple[Array, Array], others: tuple[Array, Array]) -> BoolArray:
+    """Which sides (m,) have exactly the same point as one of the ends."""
     return np.any([(end == other).all(axis=1) for end in ends for other in others], axis=0)
 
 
@@ -125,34 +108,34 @@ def _cross(a: Array, b: Array) -> Array:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
-def _orientations(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> Iterator[Complaint]:
-    """Find loops that have the body on their right."""
+def _orientations(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iterator[Issue]:
+    """Issues of loops that have the body on their right."""
     for number, (loop, path) in enumerate(zip(loops, paths, strict=True)):
-        anticlockwise = signed_area(polygon(loop)) > 0
-        if number == 0 and not anticlockwise:
-            message = "the outer loop must run anticlockwise, it runs clockwise; "
-        elif number > 0 and anticlockwise:
-            message = "a hole must run clockwise, it runs anticlockwise; "
+        counterclockwise = signed_area(polygon(loop)) > 0
+        if number == 0 and not counterclockwise:
+            message = "the outer loop must run counterclockwise, but runs clockwise; "
+        elif number > 0 and counterclockwise:
+            message = "a hole must run clockwise, but runs counterclockwise; "
         else:
             continue
-        yield Complaint(path=path, message=message + _way_round(loop))
+        yield Issue(path=path, message=message + _how_to_reverse(loop))
 
 
-def _way_round(loop: Sequence[Edge]) -> str:
-    """Say how to turn a loop round."""
+def _how_to_reverse(loop: Sequence[Edge]) -> str:
+    """Say how to reverse a loop."""
     if len(loop) == 1:
         return "exchange its two angles"
     return "list its edges in the opposite order and exchange the start and end (or the angles) of each"
 
 
-def _nestings(loops: Sequence[Sequence[Edge]], paths: Sequence[Path]) -> Iterator[Complaint]:
-    """Find holes that are outside the body, or inside one another."""
+def _nestings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iterator[Issue]:
+    """Issues of holes that are outside the body, or inside another hole."""
     outlines = [polygon(loop) for loop in loops]
     for i in range(1, len(loops)):
         name = loops[i][0].name
         if not contains(outlines[0], outlines[i][0]):
-            yield Complaint(path=paths[i], message=f"the hole of '{name}' is outside the outer loop; move it inside")
+            yield Issue(path=paths[i], message=f"the hole of '{name}' is outside the outer loop; move it inside")
         for j in range(1, len(loops)):
             if i != j and contains(outlines[j], outlines[i][0]):
-                message = f"the hole of '{name}' is inside the hole of '{loops[j][0].name}'; leave it out"
-                yield Complaint(path=paths[i], message=message)
+                message = f"the hole of '{name}' is inside the hole of '{loops[j][0].name}'; leave one of them out"
+                yield Issue(path=paths[i], message=message)

@@ -1,4 +1,4 @@
-"""Rigid surfaces: gap and unit normal, from the surface into the body."""
+"""Rigid surfaces: gap and unit normal, which points from the surface into the body."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -6,39 +6,32 @@ from itertools import pairwise
 from typing import Annotated, Any, Literal, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 from scipy.interpolate import CubicSpline
 
-from bemcontact.problem.conditions import Condition
-from bemcontact.problem.loads import Loads
-from bemcontact.problem.tagged_union import ByKind
-from bemcontact.problem.validation import Name, Point, Positive, Stated, complain
-
-Array = NDArray[np.float64]
-
+from bemcontact.arrays import Array
+from bemcontact.problem.conditions import Condition, Loads
+from bemcontact.problem.validation import Name, Point, Positive, SpecModel, TaggedUnion, invalid
 
 ON_CORNER = 1e-9
-"""Distance from a corner, over the extent of line and points, below which a point is on it."""
-
-
+"""Distance of a point from a corner, relative to the extent of line and points, up to which it is on the corner."""
 SAMPLES = 16
-"""Of a spline between two of its points, to start from."""
+"""Number of starting points for the nearest point, between two points of a spline."""
 NEWTON_STEPS = 60
 
 
 class Closest(NamedTuple):
-    """Gap (k,) [L] along the unit normals (k, 2), which point from the surface into the body; negative inside it.
+    """Gap (k,) [L] and unit normals (k, 2) from the surface into the body; the gap is negative inside the surface.
 
-    The foot of a point x on the surface is x - gap · normal.
+    The point of the surface that is closest to x is x - gap · normal.
     """
 
     gap: Array
     normals: Array
 
 
-class Plane(Stated):
-    """A straight surface without end."""
+class Plane(SpecModel):
+    """An infinite straight surface."""
 
     kind: Literal["plane"] = "plane"
     """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
@@ -49,14 +42,14 @@ class Plane(Stated):
 
     @model_validator(mode="after")
     def _directed(self) -> Self:
-        """Refuse a normal without direction."""
+        """Refuse a zero normal."""
         if not np.hypot(*self.normal) > 0:
-            raise complain("the normal [0, 0] has no direction; let it point from the surface into the body")
+            raise invalid("the normal [0, 0] has no direction; give the direction from the surface into the body")
         return self
 
     @property
     def unit_normal(self) -> Point:
-        """The normal, of length 1."""
+        """The normal with length 1."""
         return _of_length_one(self.normal)
 
     def closest(self, points: Array) -> Closest:
@@ -66,17 +59,17 @@ class Plane(Stated):
         return Closest(offset @ normal, np.tile(normal, (len(offset), 1)))
 
 
-class Circle(Stated):
-    """A rigid disc with the body outside, or a rigid hole with the body inside."""
+class Circle(SpecModel):
+    """A rigid disk with the body outside, or a rigid hole with the body inside."""
 
     kind: Literal["circle"] = "circle"
     """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
     center: Point
-    """The centre [x, y]."""
+    """The center [x, y]."""
     radius: Positive
     """The radius."""
     body: Literal["outside", "inside"]
-    """The side of the circle on which the body is: outside or inside."""
+    """The side of the circle with the body: outside or inside."""
 
     def closest(self, points: Array) -> Closest:
         """Gap and normal at points (k, 2) [L]."""
@@ -85,24 +78,25 @@ class Circle(Stated):
         return Closest(side * (np.hypot(*offset.T) - self.radius), side * _unit(offset, np.array([0.0, 1.0])))
 
 
-class Polyline(Stated):
-    """Straight pieces from point to point, the first and the last going on without end, the body on the left."""
+class Polyline(SpecModel):
+    """A polygonal line with the body on its left; its first and last segments are infinite."""
 
     kind: Literal["polyline"] = "polyline"
     """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
     points: Annotated[tuple[Point, ...], Field(min_length=2)]
-    """The corners [x, y] in order; the body is on the left of one who walks along them."""
+    """The corners [x, y] in order; the body is on the left of the line."""
 
     @model_validator(mode="after")
     def _simple(self) -> Self:
-        """Refuse points that repeat and pieces that fold back on the one before."""
+        """Refuse repeated points, and segments that fold back on the previous one."""
         _ensure_simple(self.points)
         return self
 
     def closest(self, points: Array) -> Closest:
-        """Gap and normal at points (k, 2) [L], of the nearest piece; beyond a corner the normal is radial from it.
+        """Gap and normal at points (k, 2) [L] for the nearest segment.
 
-        On a corner, up to round-off, it is the bisector of the normals before and after.
+        If a corner is nearest, the normal is radial from the corner. On a corner, up to round-off, the normal is the
+        bisector of the normals of both segments.
         """
         points, corners = np.asarray(points, float), np.array(self.points)
         sides = np.diff(corners, axis=0)
@@ -131,8 +125,8 @@ class Polyline(Stated):
         return Closest(np.einsum("ki,ki->k", offset, normals), normals)
 
 
-class Spline(Stated):
-    """A smooth curve through points, straight at both ends and going on so without end, the body on the left.
+class Spline(SpecModel):
+    """A smooth curve through points with the body on its left; it continues straight beyond both ends.
 
     Both coordinates are natural cubic splines of the length along the chords.
     """
@@ -140,25 +134,25 @@ class Spline(Stated):
     kind: Literal["spline"] = "spline"
     """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
     points: Annotated[tuple[Point, ...], Field(min_length=2)]
-    """The points [x, y] in order; the body is on the left of one who walks along them."""
+    """The points [x, y] in order; the body is on the left of the curve."""
 
     @model_validator(mode="after")
     def _simple(self) -> Self:
-        """Refuse points that repeat, and chords that fold back on the one before."""
+        """Refuse repeated points, and chords that fold back on the previous one."""
         _ensure_simple(self.points)
         return self
 
     @cached_property
     def curve(self) -> CubicSpline:
-        """The points (2,) of the curve by the length along the chords, from zero."""
+        """Points (2,) of the curve by the length along the chords, which starts at zero."""
         points = np.array(self.points)
         return CubicSpline(np.append(0.0, np.hypot(*np.diff(points, axis=0).T).cumsum()), points, bc_type="natural")
 
     def closest(self, points: Array) -> Closest:
-        """Gap and normal at points (k, 2) [L], of the nearest point of the curve or of its straight ends.
+        """Gap and normal at points (k, 2) [L] for the nearest point of the curve or of its straight ends.
 
-        Newton's method starts from the nearest of the samples on the curve, which finds the nearest point unless the
-        curve bends more than once between two samples.
+        Newton's method starts from the nearest sample on the curve. It finds the nearest point unless the curve bends
+        more than once between two samples.
         """
         points = np.asarray(points, float)
         t = np.stack([self._along_end(points, 0), self._on_curve(points), self._along_end(points, -1)], axis=1)
@@ -170,20 +164,20 @@ class Spline(Stated):
         return Closest(np.einsum("ki,ki->k", points - foot, normals), normals)
 
     def _at(self, t: Array) -> tuple[Array, Array]:
-        """Points and tangents (..., 2) at parameters (...,), which may be beyond the ends."""
+        """Points and tangents (..., 2) at parameters (...,), also beyond the ends."""
         curve = self.curve
         inside = np.clip(t, 0.0, curve.x[-1])
         tangents = curve(inside, 1)
         return curve(inside) + (t - inside)[..., None] * tangents, tangents
 
     def _along_end(self, points: Array, end: int) -> Array:
-        """Parameter (k,) of the nearest point of a straight end: the first (0) or the last (-1)."""
+        """Parameters (k,) of the nearest points on a straight end: the first (0) or the last (-1)."""
         t, tangent = self.curve.x[end], self.curve(self.curve.x[end], 1)
         along = (points - np.array(self.points[end])) @ tangent / (tangent @ tangent)
         return t + (np.minimum(along, 0.0) if end == 0 else np.maximum(along, 0.0))
 
     def _on_curve(self, points: Array) -> Array:
-        """Parameter (k,) of the nearest point of the curve: Newton between two samples, halving where it strays."""
+        """Parameters (k,) of the nearest points on the curve, by Newton's method with bisection between two samples."""
         curve = self.curve
         knots = np.concatenate([np.linspace(a, b, SAMPLES, endpoint=False) for a, b in pairwise(curve.x)])
         samples = np.append(knots, curve.x[-1])
@@ -203,66 +197,66 @@ class Spline(Stated):
         return t
 
 
-def _says_something(value: Any) -> Any:
-    """Refuse a condition of the contour that states nothing: here, it may be meant to take a load away."""
+def _not_empty(value: Any) -> Any:
+    """Refuse an empty condition of a contour, which may be meant to remove a load."""
     if isinstance(value, Mapping) and all(part == {} for part in value.values()):
-        raise complain(
-            "it states nothing; give traction: {x: 0, y: 0} if nothing acts there while the contour is deflected, or "
-            "leave the edge out, which then keeps the condition of the problem"
+        raise invalid(
+            "the condition is empty; give traction: {x: 0, y: 0} to remove the load of the problem, or leave the edge "
+            "out to keep it"
         )
     return value
 
 
-OtherCondition = Annotated[Condition, BeforeValidator(_says_something)]
-"""A condition in place of the problem's own."""
+OtherCondition = Annotated[Condition, BeforeValidator(_not_empty)]
+"""A condition that replaces that of the problem."""
 
 
-class DeflectedContour(Stated):
-    """The contour that the body itself is deflected to by other loads, touching nothing.
+class DeflectedContour(SpecModel):
+    """The contour of the body itself, deflected by other loads without contact.
 
-    The gap is measured between the two places of one material point, along a fixed direction d: ε = -u·d, where u is
-    the displacement under the other loads. Those are the conditions of the problem with those given here in place of
-    what they have for the same edges, and the loads on the volume given here; those of the problem do not act.
+    The initial gap of a material point is its displacement against a fixed direction d: ε = -u·d, where u is the
+    displacement under the other loads. These are the conditions of the problem, with those given here in place of the
+    conditions of the same edges, and the volume loads given here. The volume loads of the problem do not act.
     """
 
     kind: Literal["deflected_contour"] = "deflected_contour"
     """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
     conditions: Annotated[dict[Name, OtherCondition], Field(default_factory=dict)]
-    """What is prescribed on edges instead of the problem's own conditions there, by edge name; others are kept."""
+    """The conditions that replace those of the problem, by edge name; other edges keep their conditions."""
     loads: Loads = Loads()
-    """Loads on the volume that deflect the contour; none if left out, whatever the problem has."""
+    """The loads on the volume that deflect the contour. The volume loads of the problem do not act on it."""
     direction: Point
     """The direction [x, y] in which the gap is measured, from the surface into the body, of any length."""
 
     @model_validator(mode="after")
     def _deflected(self) -> Self:
-        """Refuse a direction that is none, and a contour of the very problem."""
+        """Refuse a zero direction, and a contour without loads of its own."""
         if not np.hypot(*self.direction) > 0:
-            raise complain("the direction [0, 0] is none; let it point from the surface into the body")
+            raise invalid("the direction [0, 0] has no direction; give the direction from the surface into the body")
         if not self.conditions and self.loads == Loads():
-            raise complain("nothing says what deflects the contour; give conditions that differ from the problem's")
+            raise invalid("the contour has no loads of its own; give conditions or loads that deflect it")
         return self
 
     @property
     def unit_direction(self) -> Point:
-        """The direction, of length 1."""
+        """The direction with length 1."""
         return _of_length_one(self.direction)
 
     def behind(self, displacement: Array) -> Closest:
-        """Gap and normal at points that the other loads displace by (k, 2) [L]."""
+        """Gap and normal at points whose displacement (k, 2) [L] under the other loads is given."""
         direction = np.array(self.unit_direction)
         return Closest(-(displacement @ direction), np.tile(direction, (len(displacement), 1)))
 
 
 def _ensure_simple(points: tuple[Point, ...]) -> None:
-    """Refuse points that repeat and pieces that fold back on the one before."""
+    """Refuse repeated points, and segments that fold back on the previous one."""
     sides = np.diff(np.array(points), axis=0)
     for i, side in enumerate(sides):
         if not np.hypot(*side) > 0:
-            raise complain(f"points {i} and {i + 1} are the same: {list(points[i])}; leave one out")
+            raise invalid(f"points {i} and {i + 1} are the same: {list(points[i])}; leave one of them out")
     for i, (side, after) in enumerate(pairwise(sides)):
         if side @ after <= -(1 - 1e-12) * np.hypot(*side) * np.hypot(*after):
-            raise complain(f"the line folds back on itself at point {i + 1}: {list(points[i + 1])}")
+            raise invalid(f"the line folds back on itself at point {i + 1}: {list(points[i + 1])}; correct it")
 
 
 def _of_length_one(vector: Point) -> Point:
@@ -271,7 +265,7 @@ def _of_length_one(vector: Point) -> Point:
 
 
 def _unit(vectors: Array, otherwise: Array) -> Array:
-    """Unit vectors along vectors (k, 2); along `otherwise` where they vanish."""
+    """Unit vectors (k, 2) along vectors (k, 2); along `otherwise` where they are zero."""
     length = np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
     vectors = np.where(length > 0, vectors, otherwise)
     return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
@@ -281,9 +275,9 @@ Shape = Plane | Circle | Polyline | Spline
 """A rigid surface that has a gap at any point of the plane."""
 RigidSurface = Shape | DeflectedContour
 """The surface that the body may touch."""
-StatedSurface = Annotated[
+SurfaceSpec = Annotated[
     RigidSurface,
-    ByKind(
+    TaggedUnion(
         what="a rigid surface",
         kinds={
             "plane": Plane,
@@ -294,4 +288,4 @@ StatedSurface = Annotated[
         },
     ),
 ]
-"""A rigid surface as it is written; `kind` says which."""
+"""A rigid surface whose class is chosen by the key `kind`."""

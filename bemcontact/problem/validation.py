@@ -1,4 +1,4 @@
-"""What all parts of a problem share: they are frozen, strict about types, and complain in the user's words."""
+"""The base class of all parts of a problem, the types of their values, and plain texts for validation errors."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -12,49 +12,52 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
     ModelWrapValidatorHandler,
     Strict,
     ValidationError,
     model_validator,
 )
-from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, ErrorDetails, InitErrorDetails, PydanticCustomError, core_schema
 
-from bemcontact.errors import Complaint, ProblemError
+from bemcontact.errors import Issue, ProblemError
 
 LARGEST_NUMBER = 1e100
-"""Its square is still a floating-point number, so that lengths and areas can be computed."""
+"""The square of this number is still finite, so that lengths and areas can be computed."""
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
 
 
 @dataclass(frozen=True, kw_only=True)
-class KeyComplaint(Complaint):
-    """A complaint about the last key of the path itself, not about what stands there."""
+class KeyIssue(Issue):
+    """An issue with the last key of the path, not with the value under it."""
 
 
-def complain(message: str) -> PydanticCustomError:
-    """Make the error that a validator raises about the value it looks at."""
-    return PydanticCustomError("complaint", "{message}", {"message": message})
+def invalid(message: str) -> PydanticCustomError:
+    """Make the error that a validator raises for the value it checks."""
+    return PydanticCustomError("issue", "{message}", {"message": message})
 
 
-def validation_error(title: str, complaints: Iterable[Complaint]) -> ValidationError:
-    """Make the error that a validator raises about several places inside the value it looks at."""
-    return ValidationError.from_exception_data(title, [_line_error(complaint) for complaint in complaints])
+def validation_error(title: str, issues: Iterable[Issue]) -> ValidationError:
+    """Make the error that a validator raises for several places inside the value it checks."""
+    return ValidationError.from_exception_data(title, [_line_error(issue) for issue in issues])
 
 
-def complaints_of(error: ValidationError) -> list[Complaint]:
-    """Read the complaints back from an error that `Stated` has worded."""
-    return [_complaint(details) for details in error.errors(include_url=False, include_input=False)]
+def issues_of(error: ValidationError) -> list[Issue]:
+    """List the issues in an error that `SpecModel` has translated."""
+    return [_issue(details) for details in error.errors(include_url=False, include_input=False)]
 
 
 def near_by(word: str, known: Iterable[str]) -> str | None:
-    """Find the known word that was probably meant, or None."""
+    """Return the known word that is closest to a misspelled one, or None."""
     lower = {candidate.lower(): candidate for candidate in known}
     matches = get_close_matches(word.lower(), lower, n=1)
     return lower[matches[0]] if matches else None
 
 
 def described(value: object) -> str:
-    """Say what was found, as its author would: the text 'abc', a list of 3, nothing."""
+    """Describe a value for an error message: the text 'abc', a list of 3, nothing."""
     match value:
         case None:
             return "nothing"
@@ -69,14 +72,8 @@ def described(value: object) -> str:
     return _shortened(str(value))
 
 
-class Stated(BaseModel):
-    """Base of everything that a user states.
-
-    Raises
-    ------
-    ProblemError
-        If a part is made from something that it cannot be, with one complaint for each mistake.
-    """
+class SpecModel(BaseModel):
+    """Base class of all parts of a problem: frozen, strict about types; `ProblemError` lists every issue at once."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
 
@@ -84,48 +81,48 @@ class Stated(BaseModel):
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise ProblemError(complaints_of(error)) from None
+            raise ProblemError(issues_of(error)) from None
 
-    # A part inside a part is then validated as pydantic does it, so that its complaints get their full path.
+    # Pydantic then validates nested parts itself, so that their issues get the full path.
     __init__.__pydantic_base_init__ = True  # pyright: ignore[reportFunctionMemberAccess]
 
     @model_validator(mode="wrap")
     @classmethod
-    def _complain_in_words(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        """Translate what pydantic says about the keys of this very class; inner parts have done so already."""
+    def _translate_errors(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Translate the errors of pydantic for the keys of this class; nested parts have translated their own."""
         try:
             return handler(data)
         except ValidationError as error:
-            complaints = [*_worded(cls, error), *_below_misspelled(cls, data, handler)]
-            raise validation_error(cls.__name__, complaints) from None
+            issues = [*_translated_errors(cls, error), *_below_misspelled(cls, data, handler)]
+            raise validation_error(cls.__name__, issues) from None
 
 
 def _finite(value: float) -> float:
-    """Refuse what cannot be computed with."""
+    """Refuse numbers whose square overflows."""
     if abs(value) > LARGEST_NUMBER:
-        raise complain(f"{value:.3g} is too large to compute with; choose other units")
+        raise invalid(f"{value:.3g} is too large to compute with; choose other units")
     return value
 
 
 def _pair(value: Any) -> Any:
-    """Refuse a list that is not a pair, before its entries are looked at."""
+    """Refuse a list that is not a pair, before its entries are checked."""
     if not isinstance(value, list | tuple) or len(value) != 2:
-        raise complain(f"expected two numbers such as [0.0, 1.5], found {described(value)}")
+        raise invalid(f"expected two numbers such as [0.0, 1.5], found {described(value)}")
     return value
 
 
 def _usable_name(value: str) -> str:
-    """Refuse names that could not stand in a key path."""
+    """Refuse names that a key path cannot contain."""
     if not value.strip():
-        raise complain("a name must not be empty")
+        raise invalid("a name must not be empty")
     if bad := sorted(set(value) & set(".[]=")):
-        raise complain(f"a name must not contain {' '.join(bad)}, which key paths use; found {value!r}")
+        raise invalid(f"a name must not contain {' '.join(bad)}, which key paths use; found {value!r}")
     return value
 
 
 Number = Annotated[float, Strict(), AfterValidator(_finite)]
-"""A finite number; text that looks like one is refused."""
-# Limits stand before the function: behind it, pydantic would not write them into the JSON Schema as its keywords.
+"""A finite number; a text such as '1.5' is refused."""
+# Limits come before the function: after it, pydantic would not write them into the JSON Schema as keywords.
 Positive = Annotated[float, Strict(), Field(gt=0), AfterValidator(_finite)]
 """A finite number greater than 0."""
 Count = Annotated[int, Strict()]
@@ -133,151 +130,221 @@ Count = Annotated[int, Strict()]
 Flag = Annotated[bool, Strict()]
 """True or false."""
 Text = Annotated[str, Strict()]
-"""Text; a number is refused."""
+"""A text; a number is refused."""
 Name = Annotated[Text, AfterValidator(_usable_name)]
-"""The name of an edge or a zone."""
+"""A name of an edge, a contact zone, a tool or a load case."""
 Point = Annotated[tuple[Number, Number], BeforeValidator(_pair)]
 """Coordinates or components (x, y)."""
 PositivePair = Annotated[tuple[Positive, Positive], BeforeValidator(_pair)]
 """Two numbers greater than 0."""
 
 
-def _worded(cls: type[BaseModel], error: ValidationError) -> list[Complaint]:
-    """Put the errors of one class into words; a missing key is not reported beside its misspelling."""
+def _translated_errors(cls: type[BaseModel], error: ValidationError) -> list[Issue]:
+    """Translate the errors of one class; a missing key is not reported together with its misspelling."""
     details = error.errors(include_url=False)
     unknown = {str(item["loc"][-1]) for item in details if item["type"] == "extra_forbidden" and len(item["loc"]) == 1}
     meant = {near_by(key, cls.model_fields) for key in unknown}
     return [
-        _complaint(item) if _is_worded(item) else _translated(cls, item)
+        _issue(item) if _is_translated(item) else _translated(cls, item)
         for item in details
         if not (item["type"] == "missing" and item["loc"][-1] in meant) and not _is_consequence(item)
     ]
 
 
 def misspelled(cls: type[BaseModel], data: Mapping[str, Any]) -> dict[str, str]:
-    """Find unknown keys that probably mean a known one which is not given: found key -> meant key."""
+    """Find unknown keys that are probably misspelled: key in the data -> known key that is not given."""
     unknown = [key for key in data if isinstance(key, str) and key not in cls.model_fields]
     meant = {key: near_by(key, cls.model_fields) for key in unknown}
     return {key: word for key, word in meant.items() if word is not None and word not in data}
 
 
-def _below_misspelled(cls: type[BaseModel], data: Any, handler: ModelWrapValidatorHandler[Any]) -> list[Complaint]:
-    """Complain about what stands under misspelled keys too, as if they were spelled right."""
-    found = []
+def _below_misspelled(cls: type[BaseModel], data: Any, handler: ModelWrapValidatorHandler[Any]) -> list[Issue]:
+    """List the issues of values under misspelled keys, as if the keys were spelled right."""
+    issues = []
     for key, meant in misspelled(cls, data).items() if isinstance(data, Mapping) else ():
         try:
             handler({meant: data[key]})
         except ValidationError as error:
-            complaints = [complaint for complaint in _worded(cls, error) if complaint.path[:1] == (meant,)]
-            found += [replace(complaint, path=(key, *complaint.path[1:])) for complaint in complaints]
-    return found
+            below = [issue for issue in _translated_errors(cls, error) if issue.path[:1] == (meant,)]
+            issues += [replace(issue, path=(key, *issue.path[1:])) for issue in below]
+    return issues
 
 
 def _is_consequence(details: ErrorDetails) -> bool:
-    """Tell that a list is called too short only because its entries are wrong."""
+    """Whether a list counts as too short only because some of its entries are wrong."""
     return details["type"] == "too_short" and len(details["input"]) >= details.get("ctx", {})["min_length"]
 
 
-def _is_worded(details: ErrorDetails) -> bool:
-    return details["type"] in {"complaint", "key_complaint"}
+def _is_translated(details: ErrorDetails) -> bool:
+    return details["type"] in {"issue", "key_issue"}
 
 
-def _complaint(details: ErrorDetails) -> Complaint:
-    kind = KeyComplaint if details["type"] == "key_complaint" else Complaint
-    return kind(path=details["loc"], message=details["msg"])
+def _issue(details: ErrorDetails) -> Issue:
+    path = details["loc"]
+    if path and path[-1] == "[key]":
+        return KeyIssue(path=path[:-1], message=details["msg"])
+    return (KeyIssue if details["type"] == "key_issue" else Issue)(path=path, message=details["msg"])
 
 
-def _line_error(complaint: Complaint) -> InitErrorDetails:
-    kind = "key_complaint" if isinstance(complaint, KeyComplaint) else "complaint"
-    error = PydanticCustomError(kind, "{message}", {"message": complaint.message})
-    return InitErrorDetails(type=error, loc=complaint.path, input=None)
+def _line_error(issue: Issue) -> InitErrorDetails:
+    kind = "key_issue" if isinstance(issue, KeyIssue) else "issue"
+    error = PydanticCustomError(kind, "{message}", {"message": issue.message})
+    return InitErrorDetails(type=error, loc=issue.path, input=None)
 
 
-def _translated(cls: type[BaseModel], details: ErrorDetails) -> Complaint:
-    """Turn one of pydantic's own errors into a complaint."""
+def _translated(cls: type[BaseModel], details: ErrorDetails) -> Issue:
+    """Translate one error of pydantic."""
     path = details["loc"]
     if path and path[-1] == "[key]":
         name = str(path[-2])
-        return KeyComplaint(path=path[:-1], message=f"a name must be a text; write it in quotes: '{name}'")
+        return KeyIssue(path=path[:-1], message=f"a name must be a text; write it in quotes: '{name}'")
     if details["type"] == "extra_forbidden":
-        return KeyComplaint(path=path, message=unknown_word("key", str(path[-1]), cls.model_fields))
+        return KeyIssue(path=path, message=unknown_word("key", str(path[-1]), cls.model_fields))
     if details["type"] == "missing":
-        return Complaint(path=path, message=_missing(cls, str(path[-1])))
+        return Issue(path=path, message=_missing(cls, str(path[-1])))
     if details["type"] == "model_type":
-        expected = f"a mapping with the keys {listed(cls.model_fields)}"
-        return Complaint(path=path, message=f"expected {expected}; found {described(details['input'])}")
-    return Complaint(path=path, message=_wrong_value(details))
+        expected = f"a mapping with the keys {', '.join(cls.model_fields)}"
+        return Issue(path=path, message=f"expected {expected}; found {described(details['input'])}")
+    return Issue(path=path, message=_wrong_value(details))
 
 
 def unknown_word(what: str, word: str, known: Iterable[str]) -> str:
-    """Say that a word is unknown or empty, which one was probably meant, and which there are."""
+    """Say that a word is unknown or empty, and name the closest known word, or all of them."""
     known = tuple(known)
     if not word.strip():
-        return f"the name of the {what} is empty; there is: {listed(known)}"
+        return f"the name of the {what} is empty; {_available(known)}"
     meant = near_by(word, known)
-    hint = f"did you mean '{meant}'?" if meant else f"there is: {listed(known)}"
+    hint = f"did you mean '{meant}'?" if meant else _available(known)
     return f"unknown {what} {_shortened(repr(word))}; {hint}"
 
 
+def _available(words: tuple[str, ...]) -> str:
+    match words:
+        case ():
+            return "there are none"
+        case (word,):
+            return f"there is only '{word}'"
+    return f"there are: {', '.join(words)}"
+
+
 def _missing(cls: type[BaseModel], key: str) -> str:
-    """Say that a key is missing, with the description that the class gives of it."""
+    """Say that a key is missing, and what to give for it: its description in the class."""
     text = cls.model_fields[key].description if key in cls.model_fields else None
     return f"missing; give {text[0].lower()}{text[1:].rstrip('.')}" if text else "missing"
 
 
 def _wrong_value(details: ErrorDetails) -> str:
-    """Say what was expected of a value and what was found."""
-    found, context = details["input"], details.get("ctx", {})
-    was = f"found {described(found)}"
+    """Say what was expected and what was found."""
+    value, context = details["input"], details.get("ctx", {})
+    found = f"found {described(value)}"
     match details["type"]:
         case "float_type" | "float_parsing":
-            return f"expected a number, {was}{number_hint(found)}"
+            return f"expected a number, {found}{number_hint(value)}"
         case "finite_number":
-            return f"expected a finite number, {was}"
+            return f"expected a finite number, {found}"
         case "int_type" | "int_from_float" | "int_parsing" | "int_parsing_size":
-            return f"expected a whole number, {was}{number_hint(found)}"
+            return f"expected a whole number, {found}{number_hint(value)}"
         case "bool_type":
-            return f"expected true or false, {was}"
+            return f"expected true or false, {found}"
         case "string_type":
-            quotes = f"; write '{described(found)}' in quotes" if isinstance(found, int | float) else ""
-            return f"expected a text, {was}{quotes}"
+            quotes = f"; write '{described(value)}' in quotes" if isinstance(value, int | float) else ""
+            return f"expected a text, {found}{quotes}"
         case "greater_than":
-            return f"must be greater than {context['gt']:g}, {was}"
+            return f"must be greater than {context['gt']:g}, {found}"
         case "greater_than_equal":
-            return f"must be at least {context['ge']:g}, {was}"
+            return f"must be at least {context['ge']:g}, {found}"
         case "less_than":
-            return f"must be less than {context['lt']:g}, {was}"
+            return f"must be less than {context['lt']:g}, {found}"
         case "less_than_equal":
-            return f"must be at most {context['le']:g}, {was}"
+            return f"must be at most {context['le']:g}, {found}"
         case "literal_error":
-            return f"expected {context['expected']}, {was}"
+            return f"expected {context['expected']}, {found}"
         case "tuple_type":
-            return f"expected a list, {was}"
+            return f"expected a list, {found}"
         case "too_short":
-            return f"expected at least {context['min_length']} in the list, {was}"
+            return f"expected at least {context['min_length']} in the list, {found}"
         case "dict_type":
-            return f"expected a mapping of names, {was}"
-    return f"{details['msg'][0].lower()}{details['msg'][1:]}, {was}"
+            return f"expected a mapping of names, {found}"
+    return f"{details['msg'][0].lower()}{details['msg'][1:]}, {found}"
 
 
-def number_hint(found: object) -> str:
-    """Say how a number in a text is to be written, if it is one; nothing otherwise."""
-    if not isinstance(found, str):
+def number_hint(value: object) -> str:
+    """Say how to write the number that a text contains; empty if it contains none."""
+    if not isinstance(value, str):
         return ""
-    if _THOUSANDS.fullmatch(found):
-        otherwise = f", or {found.replace(',', '.')} if the comma is the decimal sign" * (found.count(",") == 1)
-        return f"; write {found.replace(',', '')} without a comma between thousands{otherwise}"
+    if _THOUSANDS.fullmatch(value):
+        otherwise = f", or {value.replace(',', '.')} if the comma is the decimal sign" * (value.count(",") == 1)
+        return f"; write {value.replace(',', '')} without a comma between thousands{otherwise}"
     try:
-        float(found.replace(",", ".", 1))
+        float(value.replace(",", ".", 1))
     except ValueError:
         return ""
-    return "; the decimal sign is a point" if "," in found else "; leave the quotes out"
-
-
-def listed(words: Iterable[str]) -> str:
-    """Write words as an enumeration."""
-    return ", ".join(words) or "none"
+    return "; the decimal sign is a point" if "," in value else "; leave the quotes out"
 
 
 def _shortened(text: str, longest: int = 48) -> str:
     return text if len(text) <= longest else f"{text[: longest - 3]}..."
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaggedUnion:
+    """Annotation of a union whose member is chosen by the key `kind`, here and in the JSON Schema.
+
+    Parameters
+    ----------
+    what : name of the thing with its article, for error messages
+    kinds : members of the union by their kind
+    default : kind of a mapping without the key `kind`; if None, the key is required
+    """
+
+    what: str
+    kinds: Mapping[str, type[SpecModel]]
+    default: str | None = None
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Validate with the chosen member; the union itself serves the JSON Schema only."""
+        return core_schema.no_info_wrap_validator_function(lambda value, _: self._chosen(value), handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        """Choose by `kind` in the schema too, so that an editor checks the keys of the chosen kind."""
+        members = handler(schema)["anyOf"]
+        kinds = [handler.resolve_ref_schema(member)["properties"]["kind"]["const"] for member in members]
+        chosen: JsonSchemaValue = {"type": "object", "properties": {"kind": {"enum": kinds}}}
+        if self.default is None:
+            chosen["required"] = ["kind"]
+        return chosen | {"allOf": [self._choice(*pair) for pair in zip(kinds, members, strict=True)]}
+
+    def _choice(self, kind: str, member: JsonSchemaValue) -> JsonSchemaValue:
+        """Apply the schema of a member if its kind is given, or left out for the default."""
+        condition: JsonSchemaValue = {"properties": {"kind": {"const": kind}}}
+        if kind != self.default:
+            condition["required"] = ["kind"]
+        return {"if": condition, "then": member}
+
+    def _chosen(self, value: Any) -> SpecModel:
+        """Validate a mapping as the kind that it names."""
+        if isinstance(value, tuple(self.kinds.values())):
+            return value
+        if not isinstance(value, Mapping):
+            raise invalid(f"expected a mapping that describes {self.what}, found {described(value)}")
+        kind = value.get("kind", self.default)
+        if not isinstance(kind, str) or kind not in self.kinds:
+            raise validation_error(self.what, [Issue(path=("kind",), message=self._wrong_kind(value))])
+        if "kind" not in value and (better := self._fitting(kind, value)):
+            message = f"missing; {self.what} with these keys needs {' or '.join(f'kind: {word}' for word in better)}"
+            raise validation_error(self.what, [Issue(path=("kind",), message=message)])
+        return self.kinds[kind].model_validate(value)
+
+    def _wrong_kind(self, value: Mapping[str, Any]) -> str:
+        """Say that the kind is missing, not a text, or unknown."""
+        if "kind" not in value:
+            return f"missing; give the kind of {self.what}: {', '.join(self.kinds)}"
+        if not isinstance(kind := value["kind"], str):
+            return f"expected one of {', '.join(self.kinds)}; found {described(kind)}"
+        return unknown_word("kind", kind, self.kinds)
+
+    def _fitting(self, kind: str, value: Mapping[str, Any]) -> list[str]:
+        """List the kinds that have all keys of a mapping, if the default kind does not."""
+        if set(value) <= set(self.kinds[kind].model_fields):
+            return []
+        return [word for word, member in self.kinds.items() if set(value) <= set(member.model_fields)]

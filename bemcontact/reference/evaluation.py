@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.problem import (
@@ -28,7 +28,7 @@ from bemcontact.reference.closed_forms import (
     contact_modulus,
 )
 from bemcontact.reference.expectation import Expected, Point
-from bemcontact.reference.positions import BoolArray, Frame, coordinates, in_zone, reach, spacing
+from bemcontact.reference.positions import Frame, coordinates, in_zone, reach, spacing
 
 HERTZ_RANGE = 0.1
 """Largest b/R for which Hertz is held against an answer; its peak is off by 0.23 % then."""

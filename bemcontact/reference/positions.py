@@ -3,14 +3,12 @@
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Problem, Table, Values
 
 Point = tuple[float, float]
-BoolArray = NDArray[np.bool_]
 
 LEVEL = 1e-9
 """Part of the size of the contact below which two places are the same."""
@@ -90,7 +88,7 @@ def coordinates(stated: Values | Table, points: Array, arc: Array) -> Array:
 
 def spacing(contact: CondensedContact) -> Array:
     """Arc length (n,) [L] from each contact point to the farther of its neighbours in the run."""
-    order = np.lexsort((contact.arc_position, contact.run))
+    order = contact.in_order(np.arange(contact.size))
     step = np.diff(contact.arc_position[order])
     step[np.diff(contact.run[order]) != 0] = 0.0
     farther = np.empty(contact.size)

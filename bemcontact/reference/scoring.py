@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Table, Values
 from bemcontact.reference.expectation import Expected
-from bemcontact.reference.positions import LEVEL, BoolArray, Frame, coordinates, in_zone
+from bemcontact.reference.positions import LEVEL, Frame, coordinates, in_zone
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,7 +139,7 @@ def _course(along: Values | Table, contact: CondensedContact, interval: ContactI
 
 def _force(contact: CondensedContact, pressure: Array, here: BoolArray) -> float:
     """Magnitude |Σ w p n| [p L] of the force of the rigid surface, over some of the contact points."""
-    force = (contact.weights * pressure)[here] @ contact.normals[here]
+    force = contact.forces(pressure)[here].sum(axis=0)
     return float(np.hypot(*force))
 
 

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bemcontact.analysis.result import Result
+from bemcontact.arrays import Array
 from bemcontact.assessment.contender import Contender
 from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -71,7 +71,7 @@ def field_on(field: Field, edge: Edge, unit: str = "") -> str:
     return with_unit(_range(field.at(edge.points(np.linspace(0, 1, 41)))), unit)
 
 
-def _range(values: NDArray[np.float64]) -> str:
+def _range(values: Array) -> str:
     """Write a value, or from where to where values (k,) go."""
     low, high = float(values.min()), float(values.max())
     return number(low) if np.isclose(low, high) else f"{number(low)} … {number(high)}"
@@ -242,10 +242,9 @@ def zone_forces(result: Result) -> list[str]:
     contact, unit = result.contact, per_thickness(units_of(result.contact))
     if len(contact.zone_names) == 1:
         return []
-    forces = (contact.weights * result.solution.pressure)[:, None] * contact.normals
-    scale = float(np.abs(forces).sum())
-    sums = [forces[contact.zone == i].sum(axis=0) for i in range(len(contact.zone_names))]
-    named = zip(contact.zone_names, sums, strict=True)
+    pressure = result.solution.pressure
+    scale = float(np.abs(contact.forces(pressure)).sum())
+    named = zip(contact.zone_names, contact.resultants(pressure), strict=True)
     return [f"{zone}: {vector((float(x), float(y)), unit, scale=scale)}" for zone, (x, y) in named]
 
 

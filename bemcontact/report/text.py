@@ -281,7 +281,7 @@ def _add_tools(facts: Table, result: Result) -> None:
     size, moves = size_of(contact), contact.scales.displacement
     pressed = float(contact.weights @ np.abs(result.solution.pressure))
     places = contact.tools.displacement(result.solution.rigid_amplitudes)
-    forces = contact.tools.reaction(contact.weights * result.solution.pressure)
+    forces = contact.tool_reactions(result.solution.pressure)
     each = zip(contact.tools.names, contact.tools.point.tolist(), places, forces, strict=True)
     for name, point, (x, y, turn), (fx, fy, moment) in each:
         turned = settled(turn * size, moves) / (size or 1.0)
@@ -296,7 +296,7 @@ def _edge_table(problem: Problem) -> Table:
     """List the edges, loop by loop."""
     table = table_of("edge", "kind", "length", "elements", "condition")
     boundary = problem.boundary
-    for number_of_loop, (stated, loop) in enumerate(zip(boundary.stated_loops, boundary.loops, strict=True)):
+    for number_of_loop, (stated, loop) in enumerate(zip(boundary.loop_specs, boundary.loops, strict=True)):
         if number_of_loop:
             table.add_row(Text(f"hole {number_of_loop}", "italic"))
         for shape, edge in zip(stated, loop, strict=True):

@@ -7,15 +7,13 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bemcontact.analysis.result import Result
+from bemcontact.arrays import Array
 from bemcontact.bem.recovery import BoundaryState
 from bemcontact.errors import ProblemError
 from bemcontact.files import output
 from bemcontact.problem.problem import Problem
-
-Array = NDArray[np.float64]
 
 FORMATS = {".vtu": "vtu", ".vtk": "vtk"}
 """Ending of a file that can be written -> the name of its format."""

@@ -1,4 +1,4 @@
-"""From YAML to a problem, with the line and column of every mistake; the only room that knows YAML."""
+"""Problems from YAML, with line and column of each mistake; no other part of the package reads YAML."""
 
 from bemcontact.spec.reading import as_run, load, loads, located, schema
 

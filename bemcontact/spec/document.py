@@ -1,30 +1,30 @@
-"""Plain data as it was written, and the place in the text, or the override, that each value comes from."""
+"""Data of a spec, with the place in the text, or the override, of each value."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from bemcontact.errors import Complaint, Path
+from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.key_path import with_entry
-from bemcontact.problem.validation import KeyComplaint
+from bemcontact.problem.validation import KeyIssue
 
 
 @dataclass(frozen=True, order=True)
 class Mark:
-    """A place in a text, or an override; `text` begins the complaint."""
+    """A place in a text, or an override; `text` is the start of the error message."""
 
     line: int
     column: int
     text: str
 
 
-Finding = tuple[Mark, str]
-"""What was found wrong, and where."""
+LocatedMessage = tuple[Mark, str]
+"""An error message and its place."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Place:
-    """Where a complaint about a value points to, and where one about its key does."""
+    """Places of a value and of its key; `scalar` tells that the value has no entries in the text."""
 
     value: Mark
     key: Mark
@@ -33,31 +33,31 @@ class Place:
 
 @dataclass(frozen=True, kw_only=True)
 class Document:
-    """Plain data with the place of each value by its path.
+    """Data of a spec with the place of each value.
 
     Parameters
     ----------
     data : nested mappings and lists
-    places : place of each value
-    findings : what was found wrong while reading
-    change : the override that made it from another document, if one did
+    places : place of each value by its key path
+    messages : errors found while reading
+    change : override that made this document from another one, if any
     """
 
     data: Any
-    places: Mapping[Path, Place]
-    findings: tuple[Finding, ...] = ()
+    places: Mapping[KeyPath, Place]
+    messages: tuple[LocatedMessage, ...] = ()
     change: Mark | None = None
 
-    def below(self, path: Path) -> "Document":
-        """Take the value at a path as a document of its own."""
+    def below(self, path: KeyPath) -> "Document":
+        """Document of the value at a path."""
         data = self.data
         for key in path:
             data = data[key]
         places = {other[len(path) :]: place for other, place in self.places.items() if other[: len(path)] == path}
         return Document(data=data, places=places)
 
-    def changed(self, path: Path, entry: "Document", mark: Mark) -> "Document":
-        """Replace or add one value, all of which comes from the place of the mark."""
+    def changed(self, path: KeyPath, entry: "Document", mark: Mark) -> "Document":
+        """Copy with one value replaced or added; the place of the new value is the mark."""
         kept = {other: place for other, place in self.places.items() if other[: len(path)] != path}
         added = {
             (*path, *below): Place(value=mark, key=mark, scalar=place.scalar) for below, place in entry.places.items()
@@ -65,22 +65,22 @@ class Document:
         return Document(
             data=with_entry(self.data, path, entry.data),
             places={**kept, **added},
-            findings=(*self.findings, *((mark, message) for _, message in entry.findings)),
+            messages=(*self.messages, *((mark, message) for _, message in entry.messages)),
             change=mark,
         )
 
-    def located(self, complaint: Complaint) -> Finding:
-        """Find the place of a complaint, or of the nearest thing above that stands in the text."""
-        path = complaint.path
+    def located(self, issue: Issue) -> LocatedMessage:
+        """Place of an issue; if its path is not in the text, the place of the value that contains it."""
+        path = issue.path
         while path not in self.places:
             path = path[:-1]
         place = self.places[path]
-        if place.scalar:  # its entries exist in the model only: a number as a field, a name as a list of one
-            complaint = replace(complaint, path=path)
-        is_key = isinstance(complaint, KeyComplaint) and path == complaint.path
-        return (place.key if is_key else place.value), str(complaint)
+        if place.scalar:  # the text has no entries: a number is a field, a name is a list of one name
+            issue = replace(issue, path=path)
+        is_key = isinstance(issue, KeyIssue) and path == issue.path
+        return (place.key if is_key else place.value), str(issue)
 
 
-def one_line_each(findings: Iterable[Finding]) -> str:
-    """Write findings in the order of the text, a line each."""
-    return "\n".join(f"{mark.text}: {message}" for mark, message in sorted(findings))
+def error_text(messages: Iterable[LocatedMessage]) -> str:
+    """One line for each message, in the order of the text."""
+    return "\n".join(f"{mark.text}: {message}" for mark, message in sorted(messages))

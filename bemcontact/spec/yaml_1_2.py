@@ -1,4 +1,4 @@
-"""YAML as its version 1.2 has it, to read and to write: ``2e6`` is a number, ``no`` and ``on`` are texts."""
+"""Reading and writing YAML 1.2: ``2e6`` is a number, ``no`` and ``on`` are texts."""
 
 import re
 from collections.abc import Callable
@@ -26,32 +26,32 @@ READERS: dict[str, Callable[[str], Any]] = {
 
 
 def _tag(kind: type[yaml.Node], value: Any, implicit: Any, otherwise: Callable[..., str]) -> str:
-    """Say which tag a node has that bears none: no sexagesimals, dates, underscores, yes and no."""
+    """Tag of a node without a tag: there are no sexagesimals, dates, underscores, yes and no."""
     if kind is yaml.ScalarNode and implicit[0]:
         return next((tag for tag, pattern in PLAIN_SCALARS.items() if pattern.fullmatch(value)), f"{TAG}str")
     return otherwise(kind, value, implicit)
 
 
 class Loader(yaml.SafeLoader):
-    """PyYAML's parser with the plain scalars of YAML 1.2."""
+    """The parser of PyYAML with the plain scalars of YAML 1.2."""
 
     def resolve(self, kind: type[yaml.Node], value: Any, implicit: Any) -> str:
-        """Say which tag a node has that bears none."""
+        """Tag of a node without a tag."""
         return _tag(kind, value, implicit, super().resolve)
 
 
 class _Dumper(yaml.SafeDumper):
-    """PyYAML's writer with the same, so that what it writes is read as what it was."""
+    """The writer of PyYAML with the plain scalars of YAML 1.2, so that `Loader` reads the same data."""
 
     def resolve(self, kind: type[yaml.Node], value: Any, implicit: Any) -> str:
-        """Say which tag a node will be read with."""
+        """Tag with which `Loader` reads a node."""
         return _tag(kind, value, implicit, super().resolve)
 
     def ignore_aliases(self, data: Any) -> bool:
-        """Write everything out."""
+        """Write no aliases."""
         return True
 
 
-def written(data: Any) -> str:
-    """Write plain data as YAML, the innermost lists and mappings on one line."""
+def to_yaml(data: Any) -> str:
+    """Data as YAML, with the innermost lists and mappings on one line."""
     return yaml.dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, default_flow_style=None, width=110)

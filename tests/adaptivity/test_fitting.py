@@ -395,9 +395,9 @@ def test_a_problem_without_a_contact_state_is_not_fitted(monkeypatch):
     ("ends", "words"),
     [
         ({"sole": [0.5]}, "unknown edge 'sole'"),
-        ({"foot": [0.5, 0.5]}, "ends there anyway"),
+        ({"foot": [0.5, 0.5]}, "ends here already"),
         ({"foot": [1.5]}, "between 0 and 1"),
-        ({"flank": []}, "too few elements for the bend"),
+        ({"flank": []}, "too few elements"),
     ],
 )
 def test_element_ends_are_checked(ends, words):

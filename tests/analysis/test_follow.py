@@ -98,11 +98,11 @@ def test_path_of_a_factor_ends_where_the_tool_lifts_off_and_is_named_after_the_p
         ("material.young_modulus", 2e3, "young_modulus: the compliance depends on it; a path is exact only for loads"),
         ("boundary.outer.top.elements", 8, "elements: the compliance depends on it"),
         ("name", 1.0, "name: there is no number to vary"),
-        ("material.colour", 1.0, "there is no number to vary: unknown entry 'colour'; there is: "),
+        ("material.colour", 1.0, "there is no number to vary: unknown entry 'colour'; there are: "),
         ("conditions.tpo.pressure", 1.0, "there is no number to vary: unknown entry 'tpo'; did you mean 'top'?"),
         ("conditions.top.traction.x", 1.0, "there is no number to vary, it is left out; state it, or give the value"),
         ("contact_zones.foot.surface.point", 1.0, "there is no number to vary, it is a list of 2; give a path to a"),
-        ("contact_zones.foot.surface.point.1", 1.0, "a list has places, not keys: write [1] for '1'"),
+        ("contact_zones.foot.surface.point.1", 1.0, "a list has positions, not keys; write [1] instead of '1'"),
         (PRESSURE, 50.625, "a path needs two different finite values; found 50.625 and 50.625"),
         (PRESSURE, np.nan, "a path needs two different finite values"),
         ("no path[", 1.0, "is not a key path"),
@@ -240,3 +240,22 @@ def test_public_names_are_there(cylinder: Problem):
     assert isinstance(path, bemcontact.LoadPath)
     assert isinstance(bemcontact.sensitivities(contact), bemcontact.Sensitivities)
     assert isinstance(bemcontact.follow(cylinder, PRESSURE, 25), bemcontact.ParameterPath)
+
+
+@pytest.mark.parametrize(("key", "to"), [("load_cases.lift", 2.0), ("tools.press.force.y", -7.0)])
+def test_factors_and_tools_are_followed_with_one_condensation(monkeypatch: pytest.MonkeyPatch, key: str, to: float):
+    """Only gaps and loads change; the state at the end is that of the problem condensed anew."""
+    cases = {"lift": {"tools": {"press": {"force": {"y": 4}}}}}
+    tools = {"press": {"zones": "press", "force": {"y": -10}}}
+    problem = made(BETWEEN, tools=tools, load_cases=cases).with_factors({"lift": 1.0})
+    calls: list[Problem] = []
+
+    def counted(varied: Problem) -> CondensedContact:
+        calls.append(varied)
+        return condense(varied)
+
+    monkeypatch.setattr("bemcontact.analysis.follow.condense", counted)
+    path = follow(problem, key, to).path
+    assert len(calls) == 1
+    varied = problem.with_factors({"lift": to}) if key.startswith("load_cases") else problem.with_value(key, to)
+    assert apart(path.end, condense(varied), path.at(1.0).pressure) <= 1e-10

@@ -49,7 +49,7 @@ def where(result: Result) -> np.ndarray:
 
 def reaction(result: Result) -> np.ndarray:
     """What the body does to the tools (t, 3)."""
-    return result.contact.tools.reaction(result.contact.weights * result.solution.pressure)
+    return result.contact.tool_reactions(result.solution.pressure)
 
 
 def gap(result: Result) -> np.ndarray:

@@ -12,7 +12,7 @@ from bemcontact.bem.mesh import Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
 from bemcontact.bem.system import System
 from bemcontact.bem.volume_loads import particular_solution
-from bemcontact.problem.loads import Loads
+from bemcontact.problem.conditions import Loads
 from bemcontact.problem.material import Material
 
 Curve = Callable[[np.ndarray], np.ndarray]

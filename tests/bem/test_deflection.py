@@ -123,7 +123,7 @@ def test_body_must_be_held_without_contact():
         ProblemError, match=r"against the translation along \(0, 1\).*prescribe displacements"
     ) as caught:
         body_of(bar(contour({"top": {"pressure": 1}}), {"top": {"pressure": 3}, "left": {"displacement": {"x": 0}}}))
-    assert caught.value.complaints[0].path == (*CONTOUR, "conditions")
+    assert caught.value.issues[0].path == (*CONTOUR, "conditions")
 
 
 @pytest.mark.parametrize(
@@ -137,4 +137,4 @@ def test_contradictions_are_found_where_they_are_stated(own, kept, path):
     """The second edge at the corner is blamed: by what is kept of the problem, or by what replaces it."""
     with pytest.raises(ProblemError, match="different displacements") as caught:
         body_of(bar(contour(own), kept))
-    assert {complaint.path[: len(path)] for complaint in caught.value.complaints} == {path}
+    assert {issue.path[: len(path)] for issue in caught.value.issues} == {path}

@@ -75,6 +75,6 @@ def test_contradiction_at_a_corner_is_told_with_the_load_case():
     cases = {"settle": {"conditions": {"left": {"displacement": {"y": -0.1}}}}}
     with pytest.raises(ProblemError) as caught:
         body_of(made(HELD, conditions=conditions, load_cases=cases))
-    (complaint,) = caught.value.complaints
-    assert complaint.path[:4] == ("load_cases", "settle", "conditions", "left")
-    assert "prescribe different displacements along y; make them agree" in complaint.message
+    (issue,) = caught.value.issues
+    assert issue.path[:4] == ("load_cases", "settle", "conditions", "left")
+    assert "prescribe different displacements along y; make them agree" in issue.message

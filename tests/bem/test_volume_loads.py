@@ -5,7 +5,7 @@ import pytest
 from bodies import arc, even, mesh_of, rectangle, solved, values_of, without_rigid_motion
 
 from bemcontact.bem.volume_loads import particular_solution
-from bemcontact.problem.loads import Centrifugal, Gravity, Loads, Temperature
+from bemcontact.problem.conditions import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 
 STATES = ("plane_strain", "plane_stress")

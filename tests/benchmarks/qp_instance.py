@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.stiffness import StiffnessRows
+from bemcontact.contact.free_motions import StiffnessRows
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled
 

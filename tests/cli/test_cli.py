@@ -304,7 +304,7 @@ BROKEN = {
     "fractional elements": ("elements: 4", "elements: 4.5", "4.5"),
     "pulled off its support": ("pressure: 3", "pressure: -3", "off|away|lift|pull"),
     "held by nothing": ("left: {displacement: {x: 0}}", "left: {traction: {x: 1}}", "h[oe]ld|resist"),
-    "empty condition": ("{pressure: 3}", "{}", "states nothing"),
+    "empty condition": ("{pressure: 3}", "{}", "the condition is empty"),
     "normal away from the body": ("normal: [0, 1]", "normal: [0, -1]", "normal"),
     "unknown kind": ("kind: plane", "kind: plain", "plane"),
     "infinite number": ("pressure: 3", "pressure: .inf", "finite"),

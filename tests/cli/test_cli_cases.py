@@ -63,7 +63,7 @@ def test_figure_of_all_cases(tmp_path: Path):
             ("solve", "--set", "tools.press.force.y=1000"),
             "load_cases.off the middle: the load pulls the tool 'press' off what it touches",
         ),
-        (("check", "--set", "load_cases.raised.tools.table.force.x=1"), "the tool is held along x; give x: 0"),
+        (("check", "--set", "load_cases.raised.tools.table.force.x=1"), "the tool is held along x; add x: 0"),
     ],
 )
 def test_mistakes_are_told_before_any_work(arguments: tuple[str, ...], words: str, tmp_path: Path):

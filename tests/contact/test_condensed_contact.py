@@ -8,7 +8,7 @@ from contact_problems import random_contact
 
 import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.gauge import fix_gauge
+from bemcontact.contact.free_motions import MotionAlgebra, fix_gauge
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
 from bemcontact.options import Weights
@@ -99,7 +99,7 @@ def test_gauge_keeps_the_displacement_of_every_balanced_pressure():
     n, k = 9, 2
     M, R, J = rng.standard_normal((n, n)), rng.standard_normal((n, k)), rng.uniform(0.5, 1, n)
     free, load, a = rng.standard_normal(n), rng.standard_normal(k), rng.standard_normal(k)
-    gauge = fix_gauge(M, free, R, J, load)
+    gauge = fix_gauge(MotionAlgebra(rigid_motions=R, weights=J, motion_load=load), M, free)
     ell = J[:, None] * R
     p = rng.standard_normal(n)
     p -= R @ np.linalg.solve(ell.T @ R, ell.T @ p + load)
@@ -115,8 +115,9 @@ def test_gauge_forgets_how_the_body_was_held():
     X, Y = rng.standard_normal((2, n, k))
     free, load, b = rng.standard_normal(n), rng.standard_normal(k), rng.standard_normal(k)
     ell = J[:, None] * R
-    one = fix_gauge(M, free, R, J, load)
-    other = fix_gauge(M + R @ X.T + Y @ ell.T, free + R @ b + Y @ load, R, J, load)
+    motions = MotionAlgebra(rigid_motions=R, weights=J, motion_load=load)
+    one = fix_gauge(motions, M, free)
+    other = fix_gauge(motions, M + R @ X.T + Y @ ell.T, free + R @ b + Y @ load)
     np.testing.assert_allclose(other.compliance, one.compliance, atol=1e-12)
     np.testing.assert_allclose(other.free_displacement, one.free_displacement, atol=1e-12)
 

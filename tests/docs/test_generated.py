@@ -72,7 +72,7 @@ def test_values_are_described_in_words():
         "[Flat punch](#yaml-flatpunch)": {"$ref": "#/$defs/FlatPunch"},
         "`a` or `b`": {"$ref": "#/$defs/Name"},
         "integer ≥ 1 and ≤ 9": {"type": "integer", "minimum": 1, "maximum": 9},
-        "list of 2 number > 0": {
+        "list of 2 numbers > 0": {
             "type": "array",
             "items": {"type": "number", "exclusiveMinimum": 0},
             "minItems": 2,

@@ -97,6 +97,13 @@ def test_each_page_is_in_a_table_of_contents():
     assert reached == {page for page in pages.pages() if page.is_relative_to(pages.DOCS)}
 
 
+def test_each_picture_is_shown():
+    """Those in the folder of pictures, and no others."""
+    text = "".join(page.read_text(encoding="utf-8") for page in pages.pages())
+    shown = set(re.findall(r"[(\"](?:\S*/)?pictures/([^)\"\s]+)", text))
+    assert shown == {picture.name for picture in (pages.DOCS / "pictures").iterdir()}
+
+
 def test_sources_that_the_code_cites_are_listed():
     listed = set(re.findall(r"^- \[\[(\w+)\]\]", (pages.DOCS / "reference" / "literature.md").read_text("utf-8"), re.M))
     sources = [path.read_text(encoding="utf-8") for path in (ROOT / "bemcontact").rglob("*.py")]

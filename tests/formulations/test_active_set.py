@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.formulations.active_set import contact_equations, first_active_set, primal_dual
+from bemcontact.formulations.active_set import first_active_set, primal_dual, solve_active_set
 from bemcontact.formulations.scaling import ScaledContact, scaled
 
 
@@ -48,7 +48,7 @@ def test_too_few_contacts_for_the_motions():
     problem = scaled(
         CondensedContact.from_compliance(np.eye(3), np.ones(3), rigid_motions=R, motion_load=np.array([-1.0, -1.0]))
     )
-    p, a = contact_equations(problem, np.array([True, False, False]))
+    p, a = solve_active_set(problem, np.array([True, False, False]))
     assert np.isfinite(p).all()
     assert np.isfinite(a).all()
 
@@ -56,7 +56,7 @@ def test_too_few_contacts_for_the_motions():
 def test_coincident_points_share_the_load():
     """Two copies of one point: the equations are singular, and the shortest solution gives each half."""
     M = np.array([[1.0, 1.0], [1.0, 1.0]])
-    p, _ = contact_equations(plain(M, np.array([-1.0, -1.0])), np.array([True, True]))
+    p, _ = solve_active_set(plain(M, np.array([-1.0, -1.0])), np.array([True, True]))
     assert p[0] == pytest.approx(p[1], rel=1e-14)
 
 

@@ -40,6 +40,7 @@ def through_the_chain(load: float, kind: str) -> CondensedContact:
     return bemcontact.condense(spec.loads(spec_of(load, indent(relieved_punch(load).to_yaml(kind), "    "))))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["spline", "polyline"])
 def test_surface_is_at_the_designed_gap(kind):
     """The nearest point is not farther than the foot straight below, and by a tilt θ nearer by 1 - cos θ at most.
@@ -56,6 +57,7 @@ def test_surface_is_at_the_designed_gap(kind):
     np.testing.assert_array_equal(read.initial_gap, gap)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["spline", "polyline"])
 def test_whole_chain_differs_by_the_tilt_of_the_normals(kind):
     """Solved on the written surface, the pressure is the designed one but for what the tilted normals do.

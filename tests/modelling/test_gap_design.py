@@ -5,6 +5,7 @@ from functools import cache
 from itertools import product
 from pathlib import Path
 
+import cvxpy as cp
 import numpy as np
 import pytest
 from contact_problems import random_contact, resting
@@ -256,12 +257,55 @@ def test_a_peak_outside_of_the_interval_is_told(arc, told):
     assert ("outside of the interval" in design.words) is told
 
 
-def test_uniform_design_goes_on_where_the_best_profile_of_a_contact_set_is_not_the_only_one():
-    """With one point more in contact 1074.8 is reached, by the optimum of the program of that set; without, 1105.
+def uniform_program(
+    contact: CondensedContact, relief: Relief, touching: np.ndarray
+) -> tuple[cp.Expression, cp.Expression, list[cp.Constraint]]:
+    """Deviation of the pressure from its mean, gaps (n,) and constraints of all designs with one contact set.
 
-    That point is open in the best profile that a solver finds first, and about to touch in the gentlest of them.
+    Pressures are in 1000 N/mm² and gaps in 1e-3 mm, so that all numbers are of order one.
+    """
+    p, g, a = cp.Variable(contact.size), cp.Variable(contact.size), cp.Variable(contact.rigid_motions.shape[1])
+    gap = g + 1e3 * contact.offset + 1e6 * contact.compliance @ p + contact.rigid_motions @ a
+    weights = contact.weights / contact.weights.sum()
+    constraints = [
+        gap[touching] == 0,
+        gap[~touching] >= 0,
+        p[touching] >= 0,
+        p[~touching] == 0,
+        contact.equilibrium.T @ p == -contact.motion_load / 1e3,
+        g >= 1e3 * relief.lower,
+        g <= 1e3 * relief.upper,
+        cp.abs(cp.diff(g)) <= 1e3 * relief.slope * np.diff(contact.arc_position),
+    ]
+    return cp.norm(cp.multiply(np.sqrt(weights), p - weights @ p)), gap, constraints
+
+
+def least_deviation(contact: CondensedContact, relief: Relief, touching: np.ndarray) -> float:
+    """Least deviation in N/mm² for one contact set, by a convex program."""
+    deviation, _, constraints = uniform_program(contact, relief, touching)
+    return 1e3 * cp.Problem(cp.Minimize(deviation), constraints).solve(solver=cp.CLARABEL)
+
+
+def smallest_gap(contact: CondensedContact, relief: Relief, touching: np.ndarray, point: int) -> float:
+    """Smallest gap in 1e-3 mm at a point among all designs of least deviation for one contact set."""
+    deviation, gap, constraints = uniform_program(contact, relief, touching)
+    optimal = deviation <= least_deviation(contact, relief, touching) / 1e3 * (1 + 1e-6)
+    return cp.Problem(cp.Minimize(gap[point]), [*constraints, optimal]).solve(solver=cp.CLARABEL)
+
+
+def test_uniform_design_goes_on_from_all_optimal_profiles_of_a_contact_set():
+    """Several profiles are optimal for a contact set, and only some of them touch at the next point.
+
+    The search ends if no optimal profile of its contact set touches at the next point. The contact set without the last
+    point is such a place where it must go on: with the last point the deviation is smaller.
     """
     contact, relief = condensed("hertz_small"), Relief(lower=0, upper=0.00207155, slope=0.0588938)
     design = design_gap(contact, relief, goal="uniform")
+    touching = design.after[0].pressure > 1e-6 * design.peak
+    last = np.flatnonzero(touching)[-1]
+    before = touching & (np.arange(contact.size) != last)
     assert design.verified
-    assert design.value <= 1074.8
+    assert design.value == pytest.approx(least_deviation(contact, relief, touching), rel=1e-4)
+    assert smallest_gap(contact, relief, touching, last + 1) > 1e-3
+    assert smallest_gap(contact, relief, before, last) < 1e-6
+    assert design.value < least_deviation(contact, relief, before)

@@ -15,7 +15,6 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.parametric.path import resultants
 from bemcontact.parametric.sensitivity import Rates, Sensitivities, modulus_change, sensitivities
 
 ROUND_OFF = 4e-13
@@ -32,7 +31,7 @@ def quantities(contact: CondensedContact) -> dict[str, np.ndarray]:
         "pressure": solution.pressure,
         "gap": contact.initial_gap + solution.displacement,
         "rigid_amplitudes": solution.rigid_amplitudes,
-        "resultant": resultants(contact, solution.pressure),
+        "resultant": contact.resultants(solution.pressure),
         "peak": np.array(seen.peak.pressure if seen.peak else 0.0),
         "interval_ends": np.array([(item.start_arc, item.end_arc) for item in seen.intervals]),
     }

@@ -1,4 +1,4 @@
-"""Curves against closed forms, and the division of edges into elements."""
+"""Comparison of curves with closed forms, and the division of edges into elements."""
 
 from itertools import pairwise
 from math import cos, hypot, pi, radians, sin
@@ -26,7 +26,7 @@ ELLIPSES = [name for name, curve in CURVES.items() if isinstance(curve, Elliptic
 
 
 def elliptic_length(curve, first, last):
-    """∫ |d(a cos t, b sin t)| by adaptive quadrature in 30 digits, cut where a needle bends."""
+    """∫ |d(a cos t, b sin t)| by adaptive quadrature with 30 digits, split where a needle bends."""
     a, b = curve.semi_axes
     first, last = sorted((first, last))
     cuts = [first, *(k * pi / 2 for k in range(-20, 21) if first < k * pi / 2 < last), last]
@@ -109,7 +109,7 @@ def test_tangent_is_the_derivative_by_arc_length(name):
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_polyline_keeps_to_the_curve_and_has_its_ends(name):
+def test_polyline_approximates_the_curve_and_has_its_ends(name):
     curve = CURVES[name]
     edge = edge_on(curve)
     line = edge.polyline()
@@ -125,7 +125,7 @@ def test_polyline_keeps_to_the_curve_and_has_its_ends(name):
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_ends_of_an_edge_are_exactly_the_given_numbers(name):
+def test_ends_of_an_edge_are_exactly_the_given_points(name):
     edge = edge_on(CURVES[name])
     points = edge.points(np.array([0.0, 0.5, 1.0]))
     assert tuple(points[0]) == edge.start
@@ -138,7 +138,7 @@ def test_directions_are_unit_vectors_with_the_body_on_the_left():
 
 
 @given(st.integers(1, 40), st.floats(1, 1e3), st.sampled_from(["start", "end", "both"]))
-def test_graded_lengths_fill_the_edge_with_the_stated_ratio(elements, ratio, towards):
+def test_graded_lengths_fill_the_edge_with_the_given_ratio(elements, ratio, towards):
     lengths = graded_lengths(elements, ratio, towards)
     assert lengths.sum() == pytest.approx(1, rel=1e-14)
     places = (elements + 1) // 2 if towards == "both" else elements
@@ -188,7 +188,7 @@ def test_unit_vectors_have_length_one(angle):
 
 @pytest.mark.parametrize("name", CURVES)
 @pytest.mark.parametrize("fraction", [0.0, 1e-6, 0.3, 0.7, 1.0])
-def test_a_point_of_a_curve_knows_where_it_is(name, fraction):
+def test_fraction_at_a_point_of_a_curve_is_recovered(name, fraction):
     curve = CURVES[name]
     (point,) = curve.at(np.array([fraction]))
     assert curve.fraction_at(tuple(point)) == pytest.approx(fraction, abs=1e-14)

@@ -1,4 +1,4 @@
-"""Element ends along an edge: at stated places, graded towards a place, crowded to an end of contact."""
+"""Element ends along an edge: at given places, graded towards a place, dense at an end of contact."""
 
 from itertools import combinations
 
@@ -14,7 +14,7 @@ PLACES = st.lists(st.integers(1, 99), min_size=1, max_size=4, unique=True).map(l
 
 
 @given(PLACES, st.integers(5, 20), st.floats(1, 50), st.sampled_from(["start", "end", "both", "middle"]))
-def test_elements_end_exactly_where_they_are_asked_to(places, elements, ratio, towards):
+def test_elements_end_exactly_at_given_places(places, elements, ratio, towards):
     fractions = [place / 100 for place in places]
     ends = graded_ends(elements, ratio, towards, fractions)
     assert len(ends) == elements + 1
@@ -23,7 +23,7 @@ def test_elements_end_exactly_where_they_are_asked_to(places, elements, ratio, t
     assert set(fractions) <= set(ends.tolist())
 
 
-def test_ends_in_between_keep_their_proportions():
+def test_ends_between_places_keep_their_proportions():
     """Of four equal elements the first end goes to 0.3; from 0.3 to 1 are three equal ones."""
     np.testing.assert_allclose(
         graded_ends(4, 1.0, "start", [0.3]), [0, 0.3, 0.3 + 0.7 / 3, 0.3 + 1.4 / 3, 1], rtol=1e-15
@@ -31,8 +31,8 @@ def test_ends_in_between_keep_their_proportions():
 
 
 @given(st.lists(st.floats(0.01, 0.99), min_size=1, max_size=3, unique=True), st.integers(4, 7))
-def test_the_ends_that_move_are_the_nearest(places, elements):
-    """Against all ways to choose them, by the sum of squared distances that they move."""
+def test_the_nearest_ends_move(places, elements):
+    """Comparison with all choices, by the sum of squared distances."""
     places, ends = sorted(places), np.linspace(0, 1, elements + 1)
     moved = moved_onto(ends, places)
     chosen = [int(np.flatnonzero(moved == place)[0]) for place in places]
@@ -45,7 +45,7 @@ def test_the_ends_that_move_are_the_nearest(places, elements):
     )
 
 
-def test_all_ends_stated_are_all_ends():
+def test_as_many_places_as_inner_ends_are_all_ends():
     places = [0.001, 0.01, 0.1, 0.9]
     assert graded_ends(5, 1.0, "start", places).tolist() == [0, *places, 1]
 
@@ -66,7 +66,7 @@ def test_elements_shrink_towards_a_place_by_one_factor(place, elements, ratio):
     np.testing.assert_allclose(lengths[at:][1:] / lengths[at:][:-1], growth, rtol=1e-8)
 
 
-def test_a_place_in_the_middle_is_graded_alike_on_both_sides():
+def test_grading_towards_the_middle_place_is_symmetric():
     ends = graded_ends(8, 20.0, 0.5)
     np.testing.assert_allclose(ends, 1 - ends[::-1], atol=1e-15)
     lengths = np.diff(ends)
@@ -79,7 +79,7 @@ def test_ends_towards_contact_are_cubes(elements):
     np.testing.assert_allclose(cubic_ends(elements, both=False), (np.arange(elements + 1) / elements) ** 3, rtol=1e-14)
 
 
-def test_ends_between_two_contact_edges_are_cubes_of_either_side():
+def test_ends_between_two_contact_ends_are_cubes_on_both_sides():
     """Four elements: (1/2)³ and 1 of the half; five: the middle one straddles the half at (4/5)³."""
     np.testing.assert_allclose(cubic_ends(4, both=True), [0, 1 / 16, 0.5, 15 / 16, 1], rtol=1e-15)
     np.testing.assert_allclose(cubic_ends(5, both=True)[:3], [0, 0.5 * 0.4**3, 0.5 * 0.8**3], rtol=1e-14)
@@ -88,7 +88,7 @@ def test_ends_between_two_contact_edges_are_cubes_of_either_side():
 
 @pytest.mark.parametrize("both", [False, True])
 @pytest.mark.parametrize("elements", [40, 51, 500])
-def test_elements_never_become_shorter_than_stated(elements, both):
+def test_elements_have_the_smallest_length(elements, both):
     lengths = np.diff(cubic_ends(elements, both=both, shortest=1e-3))
     assert lengths[0] == pytest.approx(1e-3, rel=1e-12)
     assert lengths.min() == pytest.approx(1e-3, rel=1e-9)

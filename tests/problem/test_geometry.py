@@ -1,4 +1,4 @@
-"""Edges as they are written: which forms there are, and which mixtures are refused."""
+"""Edges: valid forms, and mixtures that are refused."""
 
 import pytest
 
@@ -18,7 +18,7 @@ from bemcontact.problem import Arc, EllipseArc, Grading, Line
         ({"radius": 0, "angles": (0, 90)}, "radius: must be greater than 0, found 0"),
     ],
 )
-def test_arc_is_given_in_one_form(keys, words):
+def test_mixed_forms_of_an_arc_are_refused(keys, words):
     with pytest.raises(ProblemError) as caught:
         Arc(name="arc", elements=2, center=(0, 0), **keys)
     assert words in str(caught.value)
@@ -28,7 +28,7 @@ def test_arc_is_given_in_one_form(keys, words):
     ("axes", "angles", "words"),
     [((1, 0), (0, 90), r"semi_axes\[1\]: must be greater than 0"), ((2, 1), (0, 361), "at most 360 degrees")],
 )
-def test_ellipse_has_axes_and_at_most_one_turn(axes, angles, words):
+def test_ellipse_has_positive_axes_and_at_most_one_turn(axes, angles, words):
     with pytest.raises(ProblemError, match=words):
         EllipseArc(name="ellipse", elements=2, center=(0, 0), semi_axes=axes, angles=angles)
 
@@ -39,7 +39,7 @@ def test_ends_of_a_rotated_ellipse_at_right_angles_are_exact():
 
 
 @pytest.mark.parametrize("ratio", [0.99, 2e6])
-def test_grading_is_longest_over_shortest(ratio):
+def test_grading_ratio_is_in_its_range(ratio):
     with pytest.raises(ProblemError, match="ratio: must be at"):
         Grading(ratio=ratio, towards="end")
 

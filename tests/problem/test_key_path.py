@@ -1,11 +1,12 @@
-"""Key paths: reading them, following them, and replacing one entry."""
+"""Key paths: parsing, following and replacing; raw values with misspelled keys."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bemcontact.errors import ProblemError, dotted
-from bemcontact.problem.key_path import existing_path, parsed_path, with_entry
+from bemcontact.problem import Line, Material, Problem
+from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, with_entry
 
 KEY = st.text(st.characters(codec="ascii", categories=["L", "N"], include_characters="_- "), min_size=1).filter(
     lambda key: key == key.strip()
@@ -14,18 +15,18 @@ DATA = {"name": "block", "outer": [{"name": "top", "n": 1}, {"name": "left", "n"
 
 
 @given(KEY, st.lists(KEY | st.integers(0, 999)))
-def test_reading_is_the_inverse_of_writing(first, rest):
+def test_parsing_is_the_inverse_of_writing(first, rest):
     path = (first, *rest)
     assert parsed_path(dotted(path)) == path
 
 
 @pytest.mark.parametrize("text", ["", ".", "a.", ".a", "a..b", "[0]", "a[b]", "a[0", "a]b", "a[-1]", "a[0]b=", " "])
-def test_what_is_no_path_is_refused(text):
+def test_invalid_path_is_refused(text):
     with pytest.raises(ProblemError, match="is not a key path"):
         parsed_path(text)
 
 
-def test_entry_of_a_list_may_be_meant_by_its_name():
+def test_entry_of_a_list_may_be_given_by_its_name():
     assert existing_path(DATA, ("outer", "left", "n")) == ("outer", 1, "n")
     assert existing_path(DATA, ("outer", 1, "n")) == ("outer", 1, "n")
     assert existing_path(DATA, ("loads", "gravity", "density")) == ("loads", "gravity", "density")
@@ -36,18 +37,46 @@ def test_entry_of_a_list_may_be_meant_by_its_name():
     [
         (("outer", 2), "outer: there is no entry [2], the list has 2; count from 0"),
         (("outer", "lift"), "outer: unknown entry 'lift'; did you mean 'left'?"),
-        (("name", "x"), "name: has no entry x, it is the text 'block'; give a path to a value"),
-        (("loads", 0), "loads: has no entry [0], it is nothing; give a path to a value"),
+        (("name", "x"), "name: it has no entry x, because it is the text 'block'; give the path of a value"),
+        (("loads", 0), "loads: it has no entry [0], because it is nothing; give the path of a value"),
     ],
 )
-def test_path_to_nowhere_is_refused(path, message):
+def test_path_to_a_missing_entry_is_refused(path, message):
     with pytest.raises(ProblemError) as caught:
         existing_path(DATA, path)
     assert str(caught.value) == message
 
 
-def test_replacing_an_entry_leaves_the_original_alone():
+def test_replacing_an_entry_does_not_change_the_original():
     changed = with_entry(DATA, ("outer", 1, "n"), 7)
     assert changed["outer"] == [{"name": "top", "n": 1}, {"name": "left", "n": 7}]
     assert DATA["outer"][1]["n"] == 2
     assert with_entry(DATA, ("loads", "gravity", "density"), 7)["loads"] == {"gravity": {"density": 7}}
+
+
+def test_value_under_a_misspelled_key_is_read():
+    problem = RawValue((), {"materiel": {"young_modulus": 1, "poisson_ratio": 0}})
+    material = problem.below(Problem, "material")
+    assert material.path == ("materiel",)
+    assert material.read(Material) == Material(young_modulus=1, poisson_ratio=0)
+
+
+def test_correct_key_takes_precedence_over_a_misspelled_one():
+    assert RawValue((), {"nam": "a", "name": "b"}).below(Line, "name") == RawValue(("name",), "b")
+
+
+def test_raw_value_may_be_an_object():
+    assert RawValue(("edge",), Line(name="top", elements=1)).below(Line, "name") == RawValue(("edge", "name"), "top")
+
+
+def test_missing_value_is_none_and_has_no_entries():
+    for value in ({}, None, 3, "text", []):
+        absent = RawValue((), value).below(Problem, "material")
+        assert absent == RawValue(("material",), None)
+        assert list(absent.each()) == []
+        assert absent.read(Material) is None
+
+
+def test_entries_have_their_key_paths():
+    assert [*RawValue(("a",), [1, 2]).each()] == [RawValue(("a", 0), 1), RawValue(("a", 1), 2)]
+    assert [*RawValue(("a",), {"b": 1}).each()] == [RawValue(("a", "b"), 1)]

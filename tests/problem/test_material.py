@@ -28,16 +28,16 @@ def test_ratio_beyond_positive_energy_is_refused(poisson_ratio):
             Material(young_modulus=1, poisson_ratio=poisson_ratio, state=state)
 
 
-def test_incompressible_material_is_for_sheets_only():
+def test_incompressible_material_needs_plane_stress():
     assert Material(young_modulus=1, poisson_ratio=0.5, state="plane_stress").effective_poisson_ratio == 0.5 / 1.5
     with pytest.raises(ProblemError, match=r"take 0\.499, or state: plane_stress"):
         Material(young_modulus=1, poisson_ratio=0.5)
 
 
-def test_all_complaints_come_together():
+def test_all_issues_are_reported_together():
     with pytest.raises(ProblemError) as caught:
         Material(young_modulus=-1, poisson_ratio="0.3")
-    assert [str(complaint) for complaint in caught.value.complaints] == [
+    assert [str(issue) for issue in caught.value.issues] == [
         "young_modulus: must be greater than 0, found -1",
         "poisson_ratio: expected a number, found the text '0.3'; leave the quotes out",
     ]

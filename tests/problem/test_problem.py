@@ -1,4 +1,4 @@
-"""A problem as a whole: made in Python, changed value by value, and refused with every complaint at once."""
+"""Problems made in Python, changes of single values, and errors that list every issue."""
 
 import pytest
 
@@ -20,9 +20,9 @@ from bemcontact.problem.problem import MeshDensity
 
 
 def parts():
-    """A quarter disc that stands on a plane, in Python objects."""
+    """Parts of a quarter disk on a plane, as Python objects."""
     return {
-        "name": "quarter disc",
+        "name": "quarter disk",
         "material": Material(young_modulus=1000, poisson_ratio=0.3),
         "boundary": Boundary(
             outer=[
@@ -36,13 +36,13 @@ def parts():
     }
 
 
-def complaints(**changes):
+def issues(**changes):
     with pytest.raises(ProblemError) as caught:
         Problem(**{**parts(), **changes})
-    return [str(complaint) for complaint in caught.value.complaints]
+    return [str(issue) for issue in caught.value.issues]
 
 
-def test_problem_of_objects_is_the_problem_of_its_data():
+def test_problem_of_objects_equals_the_problem_of_its_data():
     problem = Problem(**parts())
     assert Problem(**problem.model_dump()) == problem
     assert Problem.model_validate_json(problem.model_dump_json()) == problem
@@ -55,13 +55,14 @@ def test_edges_are_found_by_name():
         problem.edge("tap")
 
 
-def test_stress_has_a_label_if_force_and_length_have():
+def test_unit_of_stress_needs_units_of_force_and_length():
     assert Units(length="cm", force="kN").stress == "kN/cm²"
     assert Units(length="cm").stress == ""
 
 
-def test_refining_multiplies():
+def test_refinements_multiply():
     problem = Problem(**parts()).refined(2).refined(3)
+    assert problem.refined(1) is problem
     assert problem.mesh == MeshDensity(refine=6)
 
 
@@ -81,25 +82,25 @@ def test_with_value_makes_a_new_problem(path, value, found):
     assert problem == Problem(**parts())
 
 
-def test_with_value_checks_anew():
+def test_with_value_checks_the_new_problem():
     with pytest.raises(ProblemError, match=r"^material\.poisson_ratio: must be greater than -1 and less than 0\.5"):
         Problem(**parts()).with_value("material.poisson_ratio", 0.7)
     with pytest.raises(ProblemError, match="is not a key path"):
         Problem(**parts()).with_value("a..b", 1)
 
 
-def test_names_are_checked_in_a_problem_that_has_ill_parts():
+def test_names_are_checked_in_a_problem_with_invalid_parts():
     boundary = parts()["boundary"].model_dump()
-    first, second = complaints(boundary=boundary, material={"young_modulus": 1}, conditions={"tip": {"pressure": 1}})
-    assert first.startswith("material.poisson_ratio: missing; give the ratio")
+    first, second = issues(boundary=boundary, material={"young_modulus": 1}, conditions={"tip": {"pressure": 1}})
+    assert first.startswith("material.poisson_ratio: missing; give the Poisson ratio")
     assert second == "conditions.tip: unknown edge 'tip'; did you mean 'top'?"
 
 
-def test_geometry_is_checked_in_a_problem_that_has_ill_parts():
+def test_geometry_is_checked_in_a_problem_with_invalid_parts():
     boundary = parts()["boundary"].model_dump()
     boundary["outer"][0]["elements"] = 1
     zone = {"edges": "arc", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, -1]}}
-    found = complaints(boundary=boundary, material={"young_modulus": 1}, contact_zones={"foot": zone})
+    found = issues(boundary=boundary, material={"young_modulus": 1}, contact_zones={"foot": zone})
     assert [line.partition(": ")[0] for line in found] == [
         "material.poisson_ratio",
         "contact_zones.foot.surface",
@@ -107,13 +108,13 @@ def test_geometry_is_checked_in_a_problem_that_has_ill_parts():
     ]
 
 
-def test_what_stands_under_a_misspelled_key_is_checked():
+def test_value_under_a_misspelled_key_is_checked():
     data = parts()
     data["materiel"] = {"young_modulus": 0, "poison_ratio": 0.7}
     del data["material"]
     with pytest.raises(ProblemError) as caught:
         Problem(**data)
-    assert [str(complaint) for complaint in caught.value.complaints] == [
+    assert [str(issue) for issue in caught.value.issues] == [
         "materiel: unknown key 'materiel'; did you mean 'material'?",
         "materiel.young_modulus: must be greater than 0, found 0",
         "materiel.poison_ratio: unknown key 'poison_ratio'; did you mean 'poisson_ratio'?",
@@ -121,34 +122,34 @@ def test_what_stands_under_a_misspelled_key_is_checked():
     ]
 
 
-def test_zone_lists_an_edge_once():
+def test_edge_that_occurs_twice_in_a_zone_is_refused():
     zone = ContactZone(edges=["arc", "arc"], surface=Plane(point=(0, 0), normal=(0, 1)))
-    assert complaints(contact_zones={"foot": zone}) == [
-        "contact_zones.foot.edges[1]: edge 'arc' is listed twice in the zone; list it once"
+    assert issues(contact_zones={"foot": zone}) == [
+        "contact_zones.foot.edges[1]: edge 'arc' occurs twice in the zone; list it once"
     ]
 
 
 @pytest.mark.parametrize(
-    ("surface", "way_out"),
+    ("surface", "remedy"),
     [
-        ({"kind": "plane", "point": [0, 0], "normal": [0, -2]}, "turn the normal round: [0, 2]"),
+        ({"kind": "plane", "point": [0, 0], "normal": [0, -2]}, "reverse the normal: [0, 2]"),
         ({"kind": "circle", "center": [0, -9], "radius": 9, "body": "inside"}, "is the body outside the circle?"),
         ({"kind": "circle", "center": [0, 20], "radius": 20, "body": "outside"}, "is the body inside the circle?"),
         ({"kind": "polyline", "points": [[1, 0], [-1, 0]]}, "list its points in the opposite order"),
         ({"kind": "spline", "points": [[1, 0], [0, 0], [-1, 0]]}, "list its points in the opposite order"),
     ],
 )
-def test_surface_that_faces_away_is_refused_with_the_way_out(surface, way_out):
+def test_surface_that_faces_away_is_refused_with_a_remedy(surface, remedy):
     zone = {"edges": ["arc"], "surface": surface}
-    [complaint] = complaints(contact_zones={"foot": zone})
-    assert complaint.startswith(
-        "contact_zones.foot.surface: the rigid surface's normal must point from the surface into"
+    [issue] = issues(contact_zones={"foot": zone})
+    assert issue.startswith(
+        "contact_zones.foot.surface: the normal of the rigid surface must point from the surface into"
     )
-    assert way_out in complaint
+    assert remedy in issue
 
 
 @pytest.mark.parametrize("data", [None, 3, [], "block"])
-def test_what_is_no_mapping_is_refused(data):
+def test_data_without_keys_is_refused(data):
     with pytest.raises(ProblemError, match="expected a mapping with the keys name, description"):
         Problem.model_validate(data)
 
@@ -158,7 +159,7 @@ def on_its_contour(**changes):
     return {"foot": {"edges": ["arc"], "surface": surface}}
 
 
-def test_contour_is_part_of_the_data():
+def test_problem_with_a_contour_survives_serialization():
     problem = Problem(**{**parts(), "contact_zones": on_its_contour()})
     assert Problem(**problem.model_dump()) == problem
     changed = problem.with_value("contact_zones.foot.surface.conditions.top.pressure", 30)
@@ -167,14 +168,15 @@ def test_contour_is_part_of_the_data():
     assert surface.conditions["top"].pressure == Field(constant=30)
 
 
-def test_contour_may_load_the_edges_that_touch():
+def test_contour_may_load_edges_of_its_zone():
     assert Problem(**{**parts(), "contact_zones": on_its_contour(conditions={"arc": {"pressure": 1}})})
 
 
-def test_contour_is_checked_with_the_body():
-    assert complaints(contact_zones=on_its_contour(conditions={"tap": {"pressure": 1}})) == [
+def test_contour_is_checked_against_the_body():
+    assert issues(contact_zones=on_its_contour(conditions={"tap": {"pressure": 1}})) == [
         "contact_zones.foot.surface.conditions.tap: unknown edge 'tap'; did you mean 'top'?"
     ]
-    (found,) = complaints(contact_zones=on_its_contour(direction=[0, -3]))
-    assert found.startswith("contact_zones.foot.surface: the rigid surface's normal must point from the surface into")
-    assert found.endswith("at 'arc' it points out of it; turn the direction round: [0, 3], or make the zone smaller")
+    (issue,) = issues(contact_zones=on_its_contour(direction=[0, -3]))
+    assert issue.startswith("contact_zones.foot.surface: the normal of the rigid surface must point ")
+    assert "at 'arc'" in issue
+    assert "reverse the direction: [0, 3]" in issue

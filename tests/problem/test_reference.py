@@ -1,4 +1,4 @@
-"""What a spec may say of the answer, and where and in which words each mistake is refused."""
+"""References in a spec, and the place and text of the error for each mistake."""
 
 import re
 from pathlib import Path
@@ -56,12 +56,12 @@ def test_each_kind_is_read(name: str):
     assert problem.refined(2).reference == problem.reference
 
 
-def test_without_the_block_nothing_is_known():
+def test_a_spec_may_have_no_reference():
     assert bemcontact.loads(BODY).reference == {}
 
 
 REFUSED = {
-    "no kind": ("{load: 810}", "{load: 810}", "kind: missing; say which kind a reference is: hertz, flat_punch,"),
+    "no kind": ("{load: 810}", "{load: 810}", "kind: missing; give the kind of a reference: hertz, flat_punch,"),
     "unknown kind": (
         "{kind: herz, load: 1}",
         "herz, load: 1}",
@@ -76,7 +76,7 @@ REFUSED = {
     "no load": (
         "{kind: hertz, radius: 1}",
         "{kind: hertz, ra",
-        "reference.it.load: missing; give force per thickness over the whole",
+        "reference.it.load: missing; give the force per thickness",
     ),
     "load as a text": (
         "{kind: hertz, load: '1', radius: 1}",
@@ -91,12 +91,12 @@ REFUSED = {
     "no radius": (
         "{kind: hertz, load: 1, radius: 0}",
         "0}",
-        "reference.it.radius: must not be 0: positive where it bulges",
+        "reference.it.radius: must not be 0",
     ),
     "hollow on a plane": (
         "{kind: hertz, load: 1, radius: -8}",
         "{kind: hertz, lo",
-        "reference.it: a hollow body (radius < 0) needs",
+        "give surface_radius",
     ),
     "tight groove": (
         "{kind: hertz, load: 1, radius: 8, surface_radius: -8}",
@@ -111,7 +111,7 @@ REFUSED = {
     "beside the punch": (
         "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0], eccentricity: -2}",
         "-2}",
-        "reference.it.eccentricity: must be less than half_width = 2 either way, found -2",
+        "reference.it.eccentricity: must be between -half_width and half_width = 2, found -2",
     ),
     "of no case": (
         "{kind: uniform, pressure: 1, case: wind}",
@@ -121,7 +121,7 @@ REFUSED = {
     "half and eccentric": (
         "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0], eccentricity: 1, half: true}",
         "1, half: true}",
-        "reference.it.eccentricity: must be 0 where only one half is modelled",
+        "reference.it.eccentricity: must be 0",
     ),
     "no wall": (
         "{kind: shrink_fit, inner_radius: 2, outer_radius: 2, interference: 1}",
@@ -131,7 +131,7 @@ REFUSED = {
     "pin in a disc": (
         "{kind: shrink_fit, inner_radius: 0, outer_radius: 2, interference: 1}",
         "0, outer_radius:",
-        "reference.it.inner_radius: must be greater than 0 on a pin; a disc",
+        "reference.it.inner_radius: must be greater than 0 on a pin",
     ),
     "unknown support": (
         "{kind: propped_beam, support: middle, load: 1, span: 20, height: 1, gap: 0}",
@@ -151,37 +151,37 @@ REFUSED = {
     "reason for nothing": (
         "{kind: uniform, pressure: 5, reason: digits}",
         "{kind: uniform,",
-        "reference.it: a reason without a tolerance explains nothing",
+        "give tolerance",
     ),
     "no value": (
         "{kind: values, source: s}",
         "{kind: values, s",
-        "reference.it: it states no value; give one or more of peak, half_width",
+        "give one or more of peak, half_width",
     ),
     "no source": (
         "{kind: values, peak: 3}",
         "{kind: values, p",
-        "reference.it.source: missing; give where the values come from",
+        "reference.it.source: missing",
     ),
     "blank source": (
         "{kind: values, source: ' ', peak: 3}",
         "' ', peak: 3}",
-        "reference.it.source: an empty text tells nothing",
+        "reference.it.source: the text is empty",
     ),
     "end before start": (
         "{kind: values, source: s, start: 3, end: 2}",
         "2}",
         "reference.it.end: must be greater than start = 3, found 2",
     ),
-    "angle without centre": (
+    "angle without center": (
         "{kind: values, source: s, start: 3, against: angle}",
         "{kind: values, s",
-        "reference.it: angles are measured around a centre",
+        "give center: [x, y]",
     ),
-    "centre without angle": (
+    "center without angle": (
         "{kind: values, source: s, start: 3, center: [0, 0]}",
         "{kind: values, s",
-        "reference.it: center and zero belong to angles",
+        "leave them out, or write against: angle",
     ),
     "no direction": (
         "{kind: values, source: s, start: 3, against: angle, center: [0, 0], zero: [0, 0]}",
@@ -191,13 +191,13 @@ REFUSED = {
     "position twice": (
         "{kind: table, source: s, pressure: [[1, 3], [0, 2], [1, 4]]}",
         "1, 4]]}",
-        "reference.it.pressure[2][0]: the position 1 stands in pressure[0] too; keep one",
+        "reference.it.pressure[2][0]: the position 1 occurs in pressure[0] too",
     ),
     "one point": ("{kind: table, source: s, pressure: [[1, 3]]}", "[[1, 3]]}", "expected at least 2 in the list"),
     "pull in a table": (
         "{kind: table, source: s, pressure: [[1, 3], [0, -2]]}",
         "-2]]}",
-        "reference.it.pressure[1][1]: a contact pressure is not negative, found -2",
+        "reference.it.pressure[1][1]: a contact pressure must not be negative, found -2",
     ),
     "no pair": (
         "{kind: table, source: s, pressure: [[1, 3], [0]]}",
@@ -207,7 +207,7 @@ REFUSED = {
     "angle beyond half a turn": (
         "{kind: table, source: s, against: angle, center: [0, 0], pressure: [[0, 1], [270, 2]]}",
         "270, 2]]}",
-        "reference.it.pressure[1][0]: angles go from -180 to 180 degrees, found 270",
+        "reference.it.pressure[1][0]: an angle must be between -180 and 180 degrees, found 270",
     ),
     "unknown zone": (
         "{kind: uniform, pressure: 5, zone: fot}",
@@ -218,8 +218,8 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_each_mistake_is_refused_with_its_place(case: str):
-    """The entry stands in line 13 and begins in column 7; the place is that of what is wrong in it."""
+def test_each_mistake_is_reported_at_its_place(case: str):
+    """The entry starts in line 13, column 7; the error gives the place of the wrong value in it."""
     text, wrong, words = REFUSED[case]
     with pytest.raises(bemcontact.SpecError) as caught:
         bemcontact.loads(spec(text), "body.yaml")
@@ -239,23 +239,25 @@ def test_each_mistake_is_refused_with_its_place(case: str):
         "{kind: table, source: s, against: arc, pressure: [[0, 1], [1, 1]]}",
     ],
 )
-def test_of_several_zones_one_is_meant(text: str):
-    with pytest.raises(bemcontact.SpecError, match=r"reference\.it: there are 2 contact zones; say which one is meant"):
+def test_reference_names_one_of_several_zones(text: str):
+    with pytest.raises(
+        bemcontact.SpecError, match=r"reference\.it: there are 2 contact zones; give zone: foot or wall"
+    ):
         bemcontact.loads(spec(text, WALL))
     bemcontact.loads(spec(text.replace("}", ", zone: wall}"), WALL))
 
 
-def test_of_all_zones_something_may_be_known():
+def test_reference_without_a_zone_is_for_all_zones():
     bemcontact.loads(spec("{kind: uniform, pressure: 5}", WALL))
     bemcontact.loads(spec("{kind: values, source: s, peak: 5}", WALL))
 
 
-def test_name_must_say_something():
-    with pytest.raises(bemcontact.SpecError, match="an empty text tells nothing"):
+def test_name_is_not_empty():
+    with pytest.raises(bemcontact.SpecError, match="the text is empty"):
         bemcontact.loads(spec("{kind: uniform, pressure: 5}", name="' '"))
 
 
-def test_references_are_checked_beside_other_mistakes():
+def test_references_are_checked_together_with_other_mistakes():
     text = spec("{kind: uniform, pressure: 5, zone: fot}").replace("poisson_ratio: 0.3", "poisson_ratio: 3")
     with pytest.raises(bemcontact.SpecError) as caught:
         bemcontact.loads(text)
@@ -271,15 +273,15 @@ def test_value_of_a_reference_can_be_set():
     assert problem.with_value("reference.it.load", 3).reference["it"].load == 3
 
 
-def seen_by_an_editor(text: str) -> list[str]:
-    """What JSON Schema says of a spec."""
+def schema_errors(text: str) -> list[str]:
+    """Error messages of JSON Schema for a spec."""
     validator = Draft202012Validator(bemcontact.schema())
     return [error.message for error in validator.iter_errors(yaml.load(text, yaml.SafeLoader))]
 
 
 @pytest.mark.parametrize("name", GOOD)
-def test_schema_takes_what_is_right(name: str):
-    assert seen_by_an_editor(spec(GOOD[name][0], name=f"'{name}'")) == []
+def test_schema_accepts_valid_references(name: str):
+    assert schema_errors(spec(GOOD[name][0], name=f"'{name}'")) == []
 
 
 @pytest.mark.parametrize(
@@ -297,8 +299,8 @@ def test_schema_takes_what_is_right(name: str):
         ("no mapping", "183 is not of type 'object'"),
     ],
 )
-def test_schema_refuses_what_is_wrong(case: str, words: str):
-    first, *_ = seen_by_an_editor(spec(REFUSED[case][0]))
+def test_schema_rejects_invalid_references(case: str, words: str):
+    first, *_ = schema_errors(spec(REFUSED[case][0]))
     assert words in first
 
 

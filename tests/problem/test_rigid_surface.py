@@ -1,4 +1,4 @@
-"""Rigid surfaces: the gap is the signed distance along the normal, whatever the shape."""
+"""Rigid surfaces: the gap is the signed distance along the normal for all shapes."""
 
 from itertools import pairwise
 from math import cos, hypot, sin, sqrt
@@ -15,9 +15,9 @@ COORDINATE = st.floats(-10, 10)
 POINT = st.tuples(COORDINATE, COORDINATE)
 ANGLE = st.floats(0, 6.28)
 RIDGE = Polyline(points=((-3, -1), (-1, 0), (1, 0), (2, -2)))
-"""Walked from left to right: the body is above, the rigid corners are convex."""
+"""From left to right: the body is above, the rigid corners are convex."""
 VALLEY = Polyline(points=((-3, 2), (-1, 0), (1, 0), (2, 3)))
-"""Walked from left to right: the body is above, the rigid corners are hollow."""
+"""From left to right: the body is above, the rigid corners are concave."""
 SURFACES = [
     Plane(point=(1, 2), normal=(0.3, -4)),
     Circle(center=(1, -1), radius=2, body="outside"),
@@ -33,7 +33,7 @@ def closest(surface, point):
 
 
 def distance_to_polyline(line, point):
-    """Least distance to the pieces, the outer two without end, by a formula of its own for each."""
+    """Smallest distance to the segments, the outer two infinite, by a separate formula for each."""
     corners = np.array(line.points, float)
     corners[0] += 1e3 * (corners[0] - corners[1])
     corners[-1] += 1e3 * (corners[-1] - corners[-2])
@@ -54,7 +54,7 @@ def test_normals_are_unit_vectors_and_the_foot_is_on_the_surface(surface, point)
 
 
 @given(st.sampled_from([SURFACES[0], SURFACES[1], RIDGE]), POINT, st.floats(0, 5))
-def test_moving_off_a_convex_surface_opens_the_gap_by_the_way(surface, point, way):
+def test_moving_off_a_convex_surface_opens_the_gap_by_the_distance(surface, point, way):
     gap, normal = closest(surface, point)
     if gap < 0:
         point, gap = np.array(point) - gap * normal, 0
@@ -63,7 +63,7 @@ def test_moving_off_a_convex_surface_opens_the_gap_by_the_way(surface, point, wa
 
 
 @given(ANGLE, st.floats(0.1, 5), st.floats(-1, 1))
-def test_moving_inside_a_rigid_hole_changes_the_gap_by_the_way_up_to_its_center(angle, radius, share):
+def test_moving_inside_a_rigid_hole_changes_the_gap_by_the_distance(angle, radius, share):
     hole = Circle(center=(1, -1), radius=2, body="inside")
     start = np.array([1 + radius * cos(angle), -1 + radius * sin(angle)])
     gap, normal = closest(hole, start)
@@ -71,7 +71,7 @@ def test_moving_inside_a_rigid_hole_changes_the_gap_by_the_way_up_to_its_center(
 
 
 @given(POINT, ANGLE, COORDINATE, st.floats(0.01, 100))
-def test_gap_of_a_plane_changes_by_the_way_in_both_directions(point, angle, way, length):
+def test_gap_of_a_plane_changes_by_the_distance_in_both_directions(point, angle, way, length):
     plane = Plane(point=(1, 2), normal=(length * cos(angle), length * sin(angle)))
     gap, normal = closest(plane, point)
     assert closest(plane, np.array(point) + way * normal)[0] == pytest.approx(gap + way, abs=1e-13)
@@ -84,7 +84,7 @@ def test_gap_of_a_polyline_is_the_least_distance(point, line):
 
 
 @given(POINT)
-def test_polyline_walked_the_other_way_has_the_body_on_the_other_side(point):
+def test_reversed_polyline_has_the_body_on_the_other_side(point):
     gap, normal = closest(RIDGE, point)
     other_gap, other_normal = closest(Polyline(points=RIDGE.points[::-1]), point)
     assert other_gap == pytest.approx(-gap, abs=1e-14)
@@ -93,7 +93,7 @@ def test_polyline_walked_the_other_way_has_the_body_on_the_other_side(point):
 
 
 @given(POINT, ANGLE)
-def test_polyline_of_one_piece_is_a_plane(point, angle):
+def test_polyline_of_one_segment_is_a_plane(point, angle):
     line = Polyline(points=((1, 2), (1 + cos(angle), 2 + sin(angle))))
     plane = Plane(point=(1, 2), normal=(-sin(angle), cos(angle)))
     assert closest(line, point)[0] == pytest.approx(closest(plane, point)[0], abs=1e-13)
@@ -105,14 +105,14 @@ def test_normal_beyond_a_convex_corner_is_radial():
     np.testing.assert_allclose(normal, np.array([0.25, 0.5]) / gap, rtol=1e-15)
 
 
-def test_corner_itself_has_a_normal_between_those_of_its_pieces():
+def test_normal_at_a_corner_is_between_those_of_its_segments():
     gap, normal = closest(RIDGE, (1, 0))
     assert gap == 0
     assert normal[1] > 0
     assert np.hypot(*normal) == pytest.approx(1, rel=1e-15)
 
 
-def test_center_of_a_circle_has_a_normal_too():
+def test_normal_at_the_center_of_a_circle_is_a_unit_vector():
     gap, normal = closest(Circle(center=(1, 1), radius=3, body="inside"), (1, 1))
     assert gap == 3
     assert np.hypot(*normal) == 1
@@ -133,7 +133,7 @@ def test_center_of_a_circle_has_a_normal_too():
         (Polyline, {"points": [(0, 0), (2, 0), (1, 0)]}, "folds back on itself at point 1"),
     ],
 )
-def test_surfaces_without_a_side_are_refused(surface, keys, words):
+def test_invalid_surfaces_are_refused(surface, keys, words):
     with pytest.raises(ProblemError) as caught:
         surface(**keys)
     assert words in str(caught.value)
@@ -142,7 +142,7 @@ def test_surfaces_without_a_side_are_refused(surface, keys, words):
 PULL = {"top": {"traction": {"y": -50}}}
 
 
-def test_gap_of_a_contour_is_the_way_of_the_same_material_point():
+def test_gap_of_a_contour_is_the_displacement_of_the_same_material_point():
     contour = DeflectedContour(conditions=PULL, direction=(0, 2))  # pyright: ignore
     gap, normals = contour.behind(np.array([[7.0, -3.0], [0.0, 0.5]]))
     assert contour.unit_direction == (0, 1)
@@ -153,21 +153,21 @@ def test_gap_of_a_contour_is_the_way_of_the_same_material_point():
 @pytest.mark.parametrize(
     ("parts", "words"),
     [
-        ({"conditions": PULL, "direction": (0, 0)}, "has no direction|is none"),
-        ({"direction": (0, 1)}, "nothing says what deflects"),
+        ({"conditions": PULL, "direction": (0, 0)}, "has no direction"),
+        ({"direction": (0, 1)}, "no loads of its own"),
         ({"conditions": PULL}, "direction: missing"),
         ({"conditions": {"top": {}}, "direction": (0, 1)}, "conditions.top"),
     ],
 )
-def test_contours_that_are_none(parts, words):
+def test_invalid_contours_are_refused(parts, words):
     with pytest.raises(ProblemError, match=words):
         DeflectedContour(**parts)
 
 
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
 @pytest.mark.parametrize("shift", [(0.0, 0.0), (1e-15, 0.0), (0.0, -1e-15), (-1e-15, 1e-15)])
-def test_on_a_corner_the_normal_is_the_bisector_whatever_round_off_says(size: float, shift: tuple[float, float]):
-    """Left of (1, 1) is (-1, 1), left of (5, -1) is (1, 5): each of length one, their sum halves the angle."""
+def test_normal_on_a_corner_is_the_bisector_in_spite_of_round_off(size: float, shift: tuple[float, float]):
+    """The normals of (1, 1) and (5, -1) are along (-1, 1) and (1, 5); the sum of unit vectors bisects their angle."""
     line = Polyline(points=tuple((size * x, size * y) for x, y in ((-30, -40), (10, 0), (60, -10))))
     gap, normals = line.closest(size * (np.array([[10.0, 0.0]]) + shift))
     bisector = np.array([-1.0, 1.0]) / np.sqrt(2) + np.array([1.0, 5.0]) / np.sqrt(26)
@@ -182,7 +182,7 @@ WAVE = Spline(points=tuple((x, 0.3 * sin(2 * x)) for x in np.linspace(-3, 3, 13)
 
 @given(st.sampled_from([WAVE, ARCH]), POINT)
 def test_gap_of_a_spline_is_the_least_distance(surface, point):
-    """Against 20 000 points of curve and straight ends: one of them is within half a step of the nearest point."""
+    """Comparison with 20 000 points of curve and straight ends, one of which is within half a step of the nearest."""
     t = np.linspace(0, surface.curve.x[-1], 20_000)
     ends = [surface.curve(t[i]) + np.linspace(0, 30, 20_000)[:, None] * sign * unit(surface.curve(t[i], 1))
             for i, sign in ((0, -1), (-1, 1))]  # fmt: skip
@@ -191,8 +191,8 @@ def test_gap_of_a_spline_is_the_least_distance(surface, point):
 
 
 @given(st.sampled_from([WAVE, ARCH]), st.floats(0, 1), st.floats(-0.05, 0.05))
-def test_spline_gap_is_what_one_steps_off_along_the_normal(surface, part, way):
-    """A step of less than the radius of curvature (0.8 at least) leads back to where it started, side and all."""
+def test_spline_gap_is_the_step_along_the_normal(surface, part, way):
+    """After a step shorter than the radius of curvature (at least 0.8), the starting point is the nearest one."""
     t = part * surface.curve.x[-1]
     tangent = unit(surface.curve(t, 1))
     normal = np.array([-tangent[1], tangent[0]])
@@ -205,7 +205,7 @@ def unit(vector):
     return vector / np.hypot(*vector)
 
 
-def test_spline_goes_through_its_points_and_on_straight():
+def test_spline_interpolates_its_points_and_has_straight_ends():
     gaps, _ = WAVE.closest(np.array(WAVE.points))
     assert abs(gaps).max() <= 1e-14
     for end, sign in ((0, -1), (-1, 1)):
@@ -225,8 +225,8 @@ def test_spline_of_two_points_is_a_plane(point, angle):
     assert normal == pytest.approx(plane_normal, abs=1e-12)
 
 
-def test_spline_through_a_circle_is_of_the_fourth_order_inside():
-    """Away from its ends, where the second derivative is another: half the chord, a sixteenth of the error."""
+def test_spline_through_a_circle_has_order_four_inside():
+    """Half the chord gives a sixteenth of the error, except at the ends, where the second derivative is 0."""
 
     def error(count):
         angles = np.linspace(0, np.pi, count)
@@ -239,7 +239,7 @@ def test_spline_through_a_circle_is_of_the_fourth_order_inside():
 
 @pytest.mark.parametrize("size", [1e-9, 1e6])
 def test_spline_in_other_units(size):
-    """A kilometre instead of a millimetre: the same normals, the gap times the factor."""
+    """A kilometer instead of a millimeter: equal normals, gaps times the factor."""
     points = np.random.default_rng(0).uniform(-2, 2, (50, 2))
     scaled = Spline(points=tuple((size * x, size * y) for x, y in WAVE.points))
     one, other = WAVE.closest(points), scaled.closest(size * points)
@@ -255,6 +255,6 @@ def test_spline_in_other_units(size):
         ([(0, 0), (2, 0), (1, 0)], "folds back on itself at point 1"),
     ],
 )
-def test_points_that_make_no_spline_are_refused(points, words):
+def test_invalid_points_of_a_spline_are_refused(points, words):
     with pytest.raises(ProblemError, match=words):
         Spline(points=points)

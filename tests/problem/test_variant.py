@@ -1,4 +1,4 @@
-"""Variants: values that replace others under a name, checked as soon as they are stated."""
+"""Variants: named sets of values that replace others, checked together with the problem."""
 
 import pytest
 
@@ -19,10 +19,10 @@ def block(variants, **more):
     )  # pyright: ignore
 
 
-def complaints(variants):
+def issues(variants):
     with pytest.raises(ProblemError) as caught:
         block(variants)
-    return [str(complaint) for complaint in caught.value.complaints]
+    return [str(issue) for issue in caught.value.issues]
 
 
 FINE = {"description": "more elements", "set": {"boundary.outer.bottom.elements": 8, "boundary.outer[2].elements": 6}}
@@ -57,7 +57,7 @@ def test_values_are_set_all_at_once():
 def test_an_unknown_variant_is_refused():
     with pytest.raises(ProblemError, match=r"^variants: unknown variant 'fime'; did you mean 'fine'\?"):
         block({"fine": FINE}).variant("fime")
-    with pytest.raises(ProblemError, match="unknown variant 'fine'; there is: none"):
+    with pytest.raises(ProblemError, match="unknown variant 'fine'; there are none"):
         block({}).variant("fine")
 
 
@@ -74,17 +74,17 @@ def test_an_unknown_variant_is_refused():
         ),
         ({"boundary.outer.tap.elements": 3}, "set.boundary.outer.tap.elements: boundary.outer: unknown entry 'tap'"),
         ({"a..b": 3}, "set.a..b: 'a..b' is not a key path"),
-        ({"variants.other.set": {}}, "set.variants.other.set: a variant varies the problem, no variants"),
+        ({"variants.other.set": {}}, "set.variants.other.set: a variant cannot change variants"),
         ({"contact_zones.foot.edges": "top"}, ": with this variant, conditions.top: edge 'top' is in the contact zone"),
-        ({}, "set: nothing is set; give values by their key paths"),
+        ({}, "set: the variant sets no value"),
         (None, "set: "),
     ],
 )
 def test_a_broken_variant_is_found_at_once(values, words):
-    (found,) = complaints({"fine": FINE, "broken": {"set": values}})
+    (found,) = issues({"fine": FINE, "broken": {"set": values}})
     assert words in found
     assert found.startswith("variants.broken")
 
 
 def test_misspelled_keys_are_named():
-    assert "did you mean 'set'" in complaints({"fine": {"sets": {"mesh.refine": 2}}})[0]
+    assert "did you mean 'set'" in issues({"fine": {"sets": {"mesh.refine": 2}}})[0]

@@ -1,4 +1,4 @@
-"""YAML is written so that it is read as what it was."""
+"""YAML that is written and read again gives the same data."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bemcontact.spec import as_run, load, loads
-from bemcontact.spec.yaml_1_2 import READERS, Loader, written
+from bemcontact.spec.yaml_1_2 import READERS, Loader, to_yaml
 
 SCALARS = st.none() | st.booleans() | st.integers(-(10**9), 10**9) | st.floats(allow_nan=False, allow_infinity=False)
 TEXTS = st.text(st.characters(codec="utf-8", exclude_categories=("Cs", "Cc")), max_size=12)
@@ -22,7 +22,7 @@ DATA = st.recursive(
 
 
 def read(text: str) -> object:
-    """The document with the readers of a spec, without its places."""
+    """Data of a text, with the readers of a spec."""
 
     def value(node: yaml.Node) -> object:
         if isinstance(node, yaml.MappingNode):
@@ -35,17 +35,17 @@ def read(text: str) -> object:
 
 
 @given(DATA)
-def test_what_is_written_is_read_as_it_was(data: object):
-    assert read(written(data)) == data
+def test_data_survives_writing_and_reading(data: object):
+    assert read(to_yaml(data)) == data
 
 
-def test_a_spec_as_run_states_the_problem_with_its_changes(request):
+def test_changed_text_gives_the_problem_with_its_changes(request):
     path = request.config.rootpath / "models" / "cylinder_on_plane.yaml"
     changes = ["material.young_modulus=2e6", "name='2e6'", "description='no'", "conditions.top.pressure=1e-7"]
     assert loads(as_run(path, changes)) == load(path, changes)
 
 
-def test_a_spec_without_changes_keeps_its_words(tmp_path: Path):
+def test_text_without_changes_keeps_its_comments(tmp_path: Path):
     path = tmp_path / "a.yaml"
     path.write_text("name: a  # why\n", encoding="utf-8")
     assert as_run(path) == "name: a  # why\n"

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorisations import is_definite, orthogonal, unit_rows, unit_sizes
-from bemcontact.formulations.local_solver.statement import Array
 from bemcontact.formulations.local_solver.working_set import DEPENDENT
 
 ZERO = 1e-11

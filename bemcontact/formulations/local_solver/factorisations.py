@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
-Array = NDArray[np.float64]
+from bemcontact.arrays import Array
+
 Inertia = tuple[int, int, int]
 
 geqp3, orgqr, trtri, pstrf, potrf = get_lapack_funcs(("geqp3", "orgqr", "trtri", "pstrf", "potrf"), dtype=np.float64)

@@ -3,8 +3,9 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from bemcontact.arrays import BoolArray
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorisations import Inertia
 from bemcontact.formulations.local_solver.progress import Progress
@@ -103,7 +104,7 @@ def _counts(value: object) -> bool:
     return isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(value >= 0)
 
 
-def _wanted(working_set: ArrayLike, size: int) -> NDArray[np.bool_]:
+def _wanted(working_set: ArrayLike, size: int) -> BoolArray:
     """Which constraints a warm start names."""
     wanted = np.asarray(working_set)
     if wanted.shape != (size,) or not np.isin(wanted, (-1, 0, 1, 2)).all():

@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.formulations.local_solver.dead_point import CriticalCone
 from bemcontact.formulations.local_solver.progress import Progress
-from bemcontact.formulations.local_solver.statement import EPS, Array, Statement, largest
+from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 
 WEAK = 10.0
 """Multipliers below this many optimality tolerances are treated as zero in the critical cone."""
@@ -30,8 +31,8 @@ class FirstOrder:
     """
 
     holds: bool
-    strong: NDArray[np.bool_]
-    weak: NDArray[np.bool_]
+    strong: BoolArray
+    weak: BoolArray
     sides: NDArray[np.int8]
     size: Array
 

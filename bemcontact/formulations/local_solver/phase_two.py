@@ -9,11 +9,11 @@ from math import sqrt
 
 import numpy as np
 
+from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.pricing import wrong_sign
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import Block, nearest
 from bemcontact.formulations.local_solver.reduced_hessian import ReducedHessian
-from bemcontact.formulations.local_solver.statement import Array
 from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, WorkingSet
 
 

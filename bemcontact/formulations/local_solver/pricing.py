@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bemcontact.formulations.local_solver.statement import Array
+from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.working_set import TEMPORARY, WorkingSet
 
 

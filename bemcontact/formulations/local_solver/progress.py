@@ -5,8 +5,9 @@ from math import sqrt
 
 import numpy as np
 
+from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.result import LogLine, QPOptions
-from bemcontact.formulations.local_solver.statement import EPS, Array, Statement, largest
+from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 
 FINE = 1e-3
 """Part of the optimality tolerance that counts where each component is held against its own terms."""

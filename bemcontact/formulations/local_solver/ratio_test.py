@@ -3,10 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, Progress
-from bemcontact.formulations.local_solver.statement import Array
 from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 INFINITY = float("inf")
@@ -23,7 +22,7 @@ class Block(NamedTuple):
 
 
 def nearest(
-    progress: Progress, along: Array, length: float, held: NDArray[np.bool_], working: WorkingSet | None = None
+    progress: Progress, along: Array, length: float, held: BoolArray, working: WorkingSet | None = None
 ) -> Block | None:
     """The first constraint met, those held aside, by Harris' two passes; None if the direction meets none.
 
@@ -44,7 +43,7 @@ def nearest(
     return block
 
 
-def _first(progress: Progress, along: Array, speed: Array, away: NDArray[np.bool_]) -> Block | None:
+def _first(progress: Progress, along: Array, speed: Array, away: BoolArray) -> Block | None:
     """The first constraint met but for those that are left away."""
     statement, values = progress.statement, progress.values
     # the bound ahead has the quotient that is not negative

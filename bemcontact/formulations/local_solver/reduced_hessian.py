@@ -11,8 +11,9 @@ from math import sqrt
 
 import numpy as np
 
+from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorisations import add_rank_one, inverse_triangle, pivoted_cholesky
-from bemcontact.formulations.local_solver.statement import EPS, Array, Statement
+from bemcontact.formulations.local_solver.statement import EPS, Statement
 
 
 class ReducedHessian:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorisations import Inertia, inertia
 
 
@@ -134,21 +135,21 @@ class QPResult:
         Each iteration.
     """
 
-    x: NDArray[np.float64]
+    x: Array
     status: QPStatus
     objective: float
-    bound_multipliers: NDArray[np.float64]
-    constraint_multipliers: NDArray[np.float64]
+    bound_multipliers: Array
+    constraint_multipliers: Array
     working_set: NDArray[np.int8]
     phase_one_iterations: int
     phase_two_iterations: int
     working_set_changes: int
-    hessian: NDArray[np.float64] = field(repr=False)
+    hessian: Array = field(repr=False)
     reduced_inertia_start: Inertia
     reduced_inertia_end: Inertia
     weakly_active: NDArray[np.intp]
-    ray: NDArray[np.float64] | None
-    certificate: NDArray[np.float64] | None
+    ray: Array | None
+    certificate: Array | None
     violation: float
     log: tuple[LogLine, ...] = field(repr=False)
 

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorisations import row_lengths
 
-Array = NDArray[np.float64]
 Sides = NDArray[np.int8]
 
 RUIZ_SWEEPS = 4
@@ -74,7 +74,7 @@ class Statement:
         return size
 
     @cached_property
-    def equality(self) -> NDArray[np.bool_]:
+    def equality(self) -> BoolArray:
         """Which constraints have one bound for both sides, or two that rounding does not tell apart (n + m,)."""
         return self.upper - self.lower <= 4.0 * EPS * self.bound_size
 

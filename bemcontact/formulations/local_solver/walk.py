@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.dead_point import examine
 from bemcontact.formulations.local_solver.factorisations import Inertia, inertia
 from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, first_order
@@ -13,7 +14,7 @@ from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.ratio_test import nearest
 from bemcontact.formulations.local_solver.result import QPStatus
-from bemcontact.formulations.local_solver.statement import EPS, Array, Sides, largest
+from bemcontact.formulations.local_solver.statement import EPS, Sides, largest
 from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 FAILURES = 6

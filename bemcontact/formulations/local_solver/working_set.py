@@ -14,8 +14,9 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorisations import add_rank_one, inverse_triangle, orthogonal, unit_rows
-from bemcontact.formulations.local_solver.statement import Array, Sides, Statement
+from bemcontact.formulations.local_solver.statement import Sides, Statement
 
 EQUALITY = 2
 TEMPORARY, FLAT = -1, -2

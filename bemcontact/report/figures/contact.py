@@ -6,21 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import PathPatch
-from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from bemcontact.analysis.result import Result
+from bemcontact.arrays import Array
 from bemcontact.bem import shape_functions
 from bemcontact.bem.recovery import BoundaryState
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, place_names
-from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
+from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain, without_glyph_warnings
 from bemcontact.report.figures.pieces import pieces_of
 from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
 from bemcontact.report.figures.shape import ground_of, loops_of, outline_of
 from bemcontact.report.formatting import number, units_of, with_unit
-
-Array = NDArray[np.float64]
 
 VISIBLE = 0.005
 """Largest displacement over the size of the body from which on the undeformed outline is drawn."""
@@ -35,6 +33,8 @@ CUT = 3.0
 SMALL, AROUND = 0.08, 4.0
 """Extent of the contact over the size of the body below which only the part around it is shown, and over how many
 extents to either side."""
+OVERHANG = 0.14
+"""Length of a rigid surface beyond its contact zone, and beyond the body, over the size of what is shown."""
 LEVEL = 1e-3
 """Difference from the peak pressure, over that, below which a point counts as one at the peak."""
 
@@ -98,8 +98,9 @@ def draw_contact(axes: Axes, result: Result) -> None:
     window, part = _window(fans, np.concatenate(loops))
     width, height = np.ptp(window, axis=0)
     size = float(np.hypot(width, height))
-    surfaces = _surfaces(result, problem, (1.0 if part else 0.12) * size)
-    marks = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in surfaces]
+    reach = size if part else OVERHANG * size
+    grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in _surfaces(result, problem, reach)]
+    marks = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
     if not part:
         displacement = _displacement(state)
         marks += [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
@@ -113,7 +114,8 @@ def draw_contact(axes: Axes, result: Result) -> None:
         names.append(_label(fan, tips[-1], units.stress, cut=fan.peak > scale * (1 + LEVEL)))
     drawn = np.concatenate([window, *tips] if part else [window, *tips, *marks])
     frame_plan(axes, drawn, units.length)
-    place_names(axes, names, drawn, loops)
+    with without_glyph_warnings():
+        place_names(axes, names, drawn, loops)
     for text in axes.texts:
         text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
 

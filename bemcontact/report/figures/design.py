@@ -75,6 +75,5 @@ def draw_relief(axes: Axes, design: GapDesign) -> None:
 def _points(design: GapDesign) -> tuple[IntArray, Array]:
     """Indices of the contact points of the zone, in order, and their arc positions; runs one after the other."""
     contact = design.before[0].contact
-    at = np.flatnonzero(contact.zone == contact.zone[design.points[0]])
-    at = at[np.lexsort((contact.arc_position[at], contact.run[at]))]
+    at = contact.in_order(np.flatnonzero(contact.zone == contact.zone[design.points[0]]))
     return at, contact.arc_position[at]

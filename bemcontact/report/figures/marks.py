@@ -9,11 +9,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
 from matplotlib.transforms import Bbox
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.report.placement import Box, centred, least_crowded
-
-Array = NDArray[np.float64]
 
 SYMBOL_REACH = 18.0
 """Half the length of a symbolic arrow, in pixels of the page."""
@@ -170,13 +168,13 @@ def _places(anchors: Array, directions: Array, size: tuple[float, float]) -> tup
     return np.tile(anchors, (len(distances), 1)), np.concatenate(centers)
 
 
-def _holds(frame: Bbox, centers: Array, size: tuple[float, float]) -> NDArray[np.bool_]:
+def _holds(frame: Bbox, centers: Array, size: tuple[float, float]) -> BoolArray:
     """Tell which texts lie inside a frame."""
     half = np.array(size) / 2
     return np.all((centers - half > frame.min) & (centers + half < frame.max), axis=1)
 
 
-def _beyond(walls: Sequence[Path], anchors: Array, centers: Array) -> NDArray[np.bool_]:
+def _beyond(walls: Sequence[Path], anchors: Array, centers: Array) -> BoolArray:
     """Tell from which places (c, 2) one would have to cross a wall to reach the anchor (c, 2)."""
     way = anchors + np.linspace(0.05, 1.0, 20)[:, None, None] * (centers - anchors)
     within = [wall.contains_points(way.reshape(-1, 2)).reshape(way.shape[:2]) for wall in walls]

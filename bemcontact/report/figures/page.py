@@ -6,16 +6,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from textwrap import wrap
 
-import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array
 from bemcontact.files import output
-
-Array = NDArray[np.float64]
 
 FORMATS = (".png", ".svg", ".pdf")
 """Endings of the files that can be written."""

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bemcontact.arrays import IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report.figures.page import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, shortened
 
@@ -18,7 +18,7 @@ class Piece:
 
     label: str
     order: int
-    index: NDArray[np.int64]
+    index: IntArray
 
     @property
     def colour(self) -> str:
@@ -34,8 +34,7 @@ class Piece:
 def pieces_of(contact: CondensedContact) -> Iterator[Piece]:
     """List the unbroken pieces of all contact zones, in the order of the contact points."""
     for order, run in enumerate(np.unique(contact.run)):
-        index = np.flatnonzero(contact.run == run)
-        index = index[np.argsort(contact.arc_position[index], kind="stable")]
+        index = contact.points_of_run(run)
         zone = int(contact.zone[index[0]])
         label = shortened(contact.zone_names[zone], 24)
         if len(np.unique(contact.run[contact.zone == zone])) > 1:

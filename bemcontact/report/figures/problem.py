@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array
 from bemcontact.bem import shape_functions
 from bemcontact.bem.boundary_values import applied_traction
 from bemcontact.bem.deflection import deflections
@@ -45,8 +45,6 @@ from bemcontact.report.figures.page import (
 )
 from bemcontact.report.figures.tool_marks import draw_tools
 from bemcontact.report.formatting import prescribed, volume_loads
-
-Array = NDArray[np.float64]
 
 Displacement = Callable[[Array], Array]
 """Points (k, 2) of the undeformed boundary -> how far (k, 2) they are displaced."""

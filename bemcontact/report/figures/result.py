@@ -20,7 +20,7 @@ def figure_of_result(result: Result) -> Figure:
     """Compose a page with pressure and gap and, where the body is known, its contact and its deformed shape."""
     state = result.boundary
     if state is None:
-        inches, figure = 7, new_page(7, 7)
+        inches, figure, contact = 7, new_page(7, 7), None
         pressure = figure.add_subplot(2, 1, 1)
         gap = figure.add_subplot(2, 1, 2, sharex=pressure)
     else:
@@ -28,7 +28,7 @@ def figure_of_result(result: Result) -> Figure:
         wide = width > 1.6 * height
         inches, figure = 12, new_page(12, 9.5 if wide else 9)
         grid = figure.add_gridspec(3, 2) if wide else figure.add_gridspec(2, 2)
-        draw_contact(contact := figure.add_subplot(grid[0, :] if wide else grid[0, 0]), result)
+        contact = figure.add_subplot(grid[0, :] if wide else grid[0, 0])
         contact.set_title("contact pressure, displacements to scale", loc="left", fontsize=10)
         pressure = figure.add_subplot(grid[1, 0] if wide else grid[0, 1])
         gap = figure.add_subplot(grid[1, 1], sharex=pressure)
@@ -38,6 +38,8 @@ def figure_of_result(result: Result) -> Figure:
     verdict = "certified" if result.certified else "NOT certified"
     title = f"{wrapped(result.contact.name, 6 * inches)}: {result.solution.formulation}, {verdict}"
     figure.suptitle(title, x=0.01, ha="left", fontweight="bold", color=BLACK if result.certified else VERMILION)
+    if contact is not None:
+        draw_contact(contact, result)  # the last one: labels are placed on the page as it is laid out
     return figure
 
 

@@ -7,17 +7,15 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
-from numpy.typing import NDArray
 
 from bemcontact.analysis.result import Result
+from bemcontact.arrays import Array
 from bemcontact.bem import shape_functions
 from bemcontact.bem.recovery import BoundaryState
 from bemcontact.report.figures.marks import draw_ground
 from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
 from bemcontact.report.figures.pieces import pieces_of
 from bemcontact.report.formatting import units_of, with_unit
-
-Array = NDArray[np.float64]
 
 VISIBLE = 0.05
 """Share of the body's size at which the largest displacement can be seen well; smaller ones are magnified."""

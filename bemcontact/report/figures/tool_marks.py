@@ -4,14 +4,12 @@ from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
+from bemcontact.arrays import Array
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.figures.marks import Name, draw_arrows
 from bemcontact.report.figures.page import BLUE, GREEN, wrapped
 from bemcontact.report.formatting import tool_in_words
-
-Array = NDArray[np.float64]
 
 REACH = 0.13
 """Length of an arrow over the size of the body."""

@@ -14,12 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
-from bemcontact.formulations.active_set import BoolArray
+from bemcontact.formulations.active_set import ContactBlock
 from bemcontact.formulations.scaling import ScaledContact
-from bemcontact.parametric.contact_block import ContactBlock
 from bemcontact.parametric.derivative import RANK, STILL, WEAK, Tangent, is_monotone, size_of
 
 
@@ -70,12 +69,12 @@ class Trail:
     unique: bool
 
 
-def follow(problem: ScaledContact, line: Line, pressure: Array, amplitudes: Array) -> Trail:
+def follow(contact: ScaledContact, line: Line, pressure: Array, amplitudes: Array) -> Trail:
     """Follow a state along the line, as far as it goes.
 
     Parameters
     ----------
-    problem : its compliance, motions and weights are used
+    contact : its compliance, motions and weights are used
     line : offsets and loads
     pressure, amplitudes : (n,) and (k,), a solution at s = 0
 
@@ -89,18 +88,18 @@ def follow(problem: ScaledContact, line: Line, pressure: Array, amplitudes: Arra
     SolverError
         If more points enter and leave than can be, which round-off alone could bring about.
     """
-    gap = line.first.offset + problem.compliance @ pressure + problem.rigid_motions @ amplitudes
+    gap = line.first.offset + contact.compliance @ pressure + contact.rigid_motions @ amplitudes
     states = [State(s=0.0, pressure=pressure, gap=np.maximum(gap, 0.0), amplitudes=amplitudes)]
     touching: list[BoolArray] = []
-    unique, block, escape, stop = is_monotone(problem), None, None, ""
+    unique, block, escape, stop = is_monotone(contact), None, None, ""
     for _ in range(limit := 1000 + 50 * len(pressure)):
         if (state := states[-1]).s >= 1.0:
             break
-        tangent = Tangent.at(problem, state.pressure, state.gap, state.amplitudes, unique, block)
+        tangent = Tangent.at(contact, state.pressure, state.gap, state.amplitudes, unique, block)
         motion = tangent.escape(line.rate)
         try:
             if motion.any():
-                block, following = None, _tipped(problem, state, tangent, motion)
+                block, following = None, _tipped(contact, state, tangent, motion)
             else:
                 block = tangent.after(line.rate)
                 following = _next(line, state.s, block)
@@ -141,9 +140,9 @@ def _next(line: Line, s: float, block: ContactBlock) -> State:
     )
 
 
-def _tipped(problem: ScaledContact, state: State, tangent: Tangent, motion: Array) -> State | None:
+def _tipped(contact: ScaledContact, state: State, tangent: Tangent, motion: Array) -> State | None:
     """Let the body move under a constant load until a point closes; None if none does, and the load carries it away."""
-    closed, opening = np.append(tangent.strong, tangent.weak), problem.rigid_motions @ motion
+    closed, opening = np.append(tangent.strong, tangent.weak), contact.rigid_motions @ motion
     opening[closed] = np.maximum(opening[closed], 0.0)
     step, blocking = first_zero(state.gap, opening, RANK * float(np.linalg.norm(motion)))
     if not blocking.any():

@@ -1,11 +1,11 @@
-"""What a spec may say of rigid surfaces that move, and where and in which words each mistake is refused."""
+"""Tools in a spec, and the place and text of the error for each mistake."""
 
 import pytest
 
 import bemcontact
 from bemcontact.errors import ProblemError
 from bemcontact.problem import Problem
-from bemcontact.problem.rigid_tool import RigidTool
+from bemcontact.problem.contact_zone import RigidTool
 
 BODY = """\
 name: block between planes
@@ -40,8 +40,8 @@ MIXED = "{zones: [foot, head], displacement: {x: 0.5}, force: {y: -4}}"
         ("{zones: head, force: {y: 0}}", (False,) * 3, (False, True, False), (0, 0, 0), (0, 0, 0)),
     ],
 )
-def test_each_way_is_read(text: str, displaced: tuple, free: tuple, position: tuple, load: tuple):
-    """A component with a force, be it 0, is free; what is left out, is neither."""
+def test_each_tool_is_read(text: str, displaced: tuple, free: tuple, position: tuple, load: tuple):
+    """A component with a force, even with force 0, is free; a missing component is neither free nor displaced."""
     problem = bemcontact.loads(spec(text))
     tool = problem.tools["it"]
     assert (tool.displaced, tool.free, tool.position, tool.load) == (displaced, free, position, load)
@@ -67,29 +67,29 @@ REFUSED = {
     "both along x": (
         "{zones: head, displacement: {x: 1}, force: {x: 1}}",
         "{zones",
-        "tools.it: both displacement and force are given along x; give one of them only",
+        "tools.it: both displacement and force are given along x; give only one of them",
     ),
     "both along y": (
         "{zones: head, displacement: {y: 1}, force: {y: 1}}",
         "{zones",
-        "tools.it: both displacement and force are given along y; give one of them only",
+        "tools.it: both displacement and force are given along y; give only one of them",
     ),
     "both in rotation": (
         "{zones: head, point: [0, 0], displacement: {rotation: 1}, force: {moment: 1}}",
         "{zones",
-        "tools.it: both displacement and moment are given in rotation; give one of them only",
+        "tools.it: both displacement and moment are given in rotation; give only one of them",
     ),
-    "nothing": ("{zones: head}", "{zones", "tools.it: it states nothing; give a displacement or a force, or leave"),
-    "empty force": ("{zones: head, force: {}}", "{zones", "tools.it: it states nothing"),
-    "rotation about nothing": (
+    "nothing": ("{zones: head}", "{zones", "tools.it: the tool has no displacement and no force"),
+    "empty force": ("{zones: head, force: {}}", "{zones", "tools.it: the tool has no displacement and no force"),
+    "rotation without a point": (
         "{zones: head, displacement: {rotation: 0.1}}",
         "{zones",
-        "tools.it: a rotation is about a point; give point: [x, y]",
+        "tools.it: a rotation needs a point; give point: [x, y]",
     ),
-    "moment about nothing": (
+    "moment without a point": (
         "{zones: head, force: {y: -1, moment: 0}}",
         "{zones",
-        "tools.it: a moment is about a point; give point: [x, y]",
+        "tools.it: a moment needs a point; give point: [x, y]",
     ),
     "no zones": ("{force: {y: -1}}", "{force", "tools.it.zones: missing; give the name of the contact zone, or a list"),
     "no zone": ("{zones: [], force: {y: -1}}", "[]", "tools.it.zones: expected at least 1 in the list"),
@@ -106,7 +106,7 @@ REFUSED = {
     "zone twice": (
         "{zones: [head, head], force: {y: -1}}",
         "[head",
-        "tools.it.zones: zone 'head' is listed twice; list it once",
+        "tools.it.zones: the zone 'head' occurs twice",
     ),
     "unknown key": (
         "{zones: head, force: {z: -1}}",
@@ -128,8 +128,8 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_each_mistake_is_refused_with_its_place(case: str):
-    """The entry stands in line 13 and begins in column 7; the place is that of what is wrong in it."""
+def test_each_mistake_is_reported_at_its_place(case: str):
+    """The entry starts in line 13, column 7; the error gives the place of the wrong value in it."""
     text, wrong, words = REFUSED[case]
     with pytest.raises(bemcontact.SpecError) as caught:
         bemcontact.loads(spec(text), "body.yaml")
@@ -142,13 +142,12 @@ def test_a_zone_moves_with_one_tool():
     text = spec(LOADED) + "  other: {zones: [foot, head], displacement: {y: 1}}\n"
     with pytest.raises(bemcontact.SpecError) as caught:
         bemcontact.loads(text, "body.yaml")
-    assert str(caught.value) == (
-        "body.yaml:14:25: tools.other.zones[1]: zone 'head' belongs to the tool 'it' already; a surface moves with "
-        "one tool"
+    assert str(caught.value).startswith(
+        "body.yaml:14:25: tools.other.zones[1]: zone 'head' already belongs to the tool 'it'"
     )
 
 
-def test_tools_are_checked_beside_other_mistakes():
+def test_tools_are_checked_together_with_other_mistakes():
     text = spec("{zones: heda, force: {y: -1}}").replace("poisson_ratio: 0.3", "poisson_ratio: 3")
     with pytest.raises(bemcontact.SpecError) as caught:
         bemcontact.loads(text)
@@ -158,6 +157,6 @@ def test_tools_are_checked_beside_other_mistakes():
     ]
 
 
-def test_python_gets_the_same_words():
-    with pytest.raises(ProblemError, match="a moment is about a point"):
+def test_tool_made_in_python_has_the_same_error():
+    with pytest.raises(ProblemError, match="a moment needs a point"):
         RigidTool(zones="head", force={"moment": 1})  # pyright: ignore

@@ -1,0 +1,149 @@
+"""Algebra of the free rigid motions: equilibrium ℓᵀp = -load with ℓ = J R, the gauge, and the stiffness rows."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from bemcontact.arrays import Array
+from bemcontact.contact.scales import ContactScales
+from bemcontact.errors import SingularSystemError
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MotionAlgebra:
+    """Free rigid motions of n contact points: what a contact problem in any units has of equilibrium ℓᵀp = -load.
+
+    With P = I - R (ℓᵀR)⁻¹ ℓᵀ and the balancing pressure p0 every p in equilibrium is P p + p0.
+
+    Parameters
+    ----------
+    rigid_motions : (n, k) R, of full column rank
+    weights : (n,) tributary J
+    motion_load : (k,) load, or (k, s) for s loadings
+    """
+
+    rigid_motions: Array
+    weights: Array
+    motion_load: Array
+
+    @cached_property
+    def equilibrium(self) -> Array:
+        """ℓ = J R (n, k) with the tributary weights: equilibrium is ℓᵀp = -load."""
+        return self.weights[:, None] * self.rigid_motions
+
+    @property
+    def equilibrium_space(self) -> Array:
+        """Z (n, n - k), an orthonormal basis of {p : ℓᵀp = 0}."""
+        return np.linalg.qr(self.equilibrium, mode="complete")[0][:, self.rigid_motions.shape[1] :]
+
+    @property
+    def projector(self) -> Array:
+        """P = I - R (ℓᵀR)⁻¹ ℓᵀ (n, n)."""
+        identity = np.eye(len(self.weights))
+        return identity - self.rigid_motions @ self.amplitudes_of(identity)
+
+    def amplitudes_of(self, displacement: Array) -> Array:
+        """(ℓᵀR)⁻¹ ℓᵀu (k,): the a with which R a is nearest to u (n,) in the least squares of the weights."""
+        ell = self.equilibrium
+        return np.asarray(np.linalg.solve(ell.T @ self.rigid_motions, ell.T @ displacement), float)
+
+    def balancing(self, load: Array) -> Array:
+        """p0 = -R (ℓᵀR)⁻¹ load (n,): the pressure of least weighted square with ℓᵀp = -load, of either sign."""
+        R = self.rigid_motions
+        return -R @ np.linalg.solve(self.equilibrium.T @ R, load)
+
+    @cached_property
+    def balancing_pressure(self) -> Array:
+        """p0 (n,) of the load itself."""
+        return self.balancing(self.motion_load)
+
+    def imbalance(self, pressure: Array) -> Array:
+        """ℓᵀp + load (k,), which is zero in equilibrium."""
+        return self.equilibrium.T @ pressure + self.motion_load
+
+
+class Gauge(NamedTuple):
+    """Compliance and free displacement in the fixed gauge, and the shift (k,), (k, n) of the amplitudes.
+
+    For s loadings at once, the free displacement is (n, s), and the shift by the load (k, s).
+
+    u_n = Δ1 + M p + R a holds before and after for every p in equilibrium, with
+    ``a_before = a_after - shift_load - shift_pressure @ p``.
+    """
+
+    compliance: Array
+    free_displacement: Array
+    shift_load: Array
+    shift_pressure: Array
+
+
+def fix_gauge(motions: MotionAlgebra, compliance: Array, free_displacement: Array) -> Gauge:
+    """Remove from M and Δ1 what depends on how the free rigid motions were held while solving.
+
+    With P and p0 of `MotionAlgebra`: M' = P M P and Δ1' = P (Δ1 + M p0).
+
+    Parameters
+    ----------
+    motions : R, J and the load
+    compliance : (n, n) M [L/p]
+    free_displacement : (n,) Δ1 [L], or (n, s) for s loadings
+
+    Returns
+    -------
+    Gauge
+    """
+    M, (n, k) = compliance, motions.rigid_motions.shape
+    project = motions.projector if n > k else np.zeros((n, n))
+    return Gauge(
+        compliance=project @ M @ project,
+        free_displacement=project @ (free_displacement + M @ motions.balancing_pressure),
+        shift_load=motions.amplitudes_of(free_displacement),
+        shift_pressure=motions.amplitudes_of(M),
+    )
+
+
+class StiffnessRows(NamedTuple):
+    """K u_n = B p + r, [SS92] (12), as contact stiffness rows: K (n, n) [p/L], B (n, n) [1], r (n,) [p]."""
+
+    K: Array
+    B: Array
+    r: Array
+
+
+def stiffness_rows(
+    motions: MotionAlgebra, compliance: Array, free_displacement: Array, scales: ContactScales
+) -> StiffnessRows:
+    """K u_n = B p + r, (12), with K = S, B = I, r = S Δ1 + V load; [S, V] the top of [[M, R], [ℓᵀ, 0]]⁻¹.
+
+    Parameters
+    ----------
+    motions : R, J and the load
+    compliance : (n, n) M [L/p]
+    free_displacement : (n,) Δ1 [L]
+    scales : of the problem
+
+    Returns
+    -------
+    StiffnessRows
+
+    Raises
+    ------
+    SingularSystemError
+        If the matrix has no inverse.
+    """
+    R, ell = motions.rigid_motions, motions.equilibrium
+    n, k = R.shape
+    U, T = scales
+    row_scale = np.abs(ell).max(axis=0, initial=0.0)
+    bordered = np.block([[compliance * (T / U), R], [(ell / row_scale).T, np.zeros((k, k))]])
+    try:
+        inverse = np.linalg.inv(bordered.T).T.astype(float)  # accurate as a left inverse, which is how K is used
+    except np.linalg.LinAlgError:
+        raise SingularSystemError(
+            "the compliance is singular: some change of pressure moves no contact point, so that pressures cannot "
+            "be told apart; give each contact point a compliance of its own"
+        ) from None
+    S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / row_scale
+    return StiffnessRows(S, np.eye(n), S @ free_displacement + V @ motions.motion_load)

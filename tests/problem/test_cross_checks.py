@@ -1,0 +1,40 @@
+"""Cross-checks of edge names in conditions and contact zones, also in a problem with other mistakes."""
+
+import pytest
+
+from bemcontact.problem.cross_checks import edge_name_issues
+from bemcontact.problem.key_path import RawValue
+
+EDGES = {"outer": [{"name": "top"}, {"name": "side"}]}
+
+
+def issues(boundary, conditions=None, zones=None):
+    conditions = [RawValue(("conditions",), conditions)]
+    all_issues = edge_name_issues(RawValue(("boundary",), boundary), conditions, RawValue(("contact_zones",), zones))
+    return [str(issue) for issue in all_issues]
+
+
+@pytest.mark.parametrize("boundary", [EDGES, {"outter": [{"nam": "top"}, {"name": "side", "elements": "many"}]}])
+def test_unknown_names_are_reported_together_with_other_mistakes(boundary):
+    zones = {"foot": {"edges": ["topp", 3], "surface": None}, "wall": {"edge": "sid"}, "none": 7}
+    assert issues(boundary, {"tip": 1}, zones) == [
+        "conditions.tip: unknown edge 'tip'; did you mean 'top'?",
+        "contact_zones.foot.edges[0]: unknown edge 'topp'; did you mean 'top'?",
+        "contact_zones.wall.edge[0]: unknown edge 'sid'; did you mean 'side'?",
+    ]
+
+
+@pytest.mark.parametrize(
+    "boundary", [None, 3, {}, {"outer": 3}, {"outer": [{"elements": 2}, {"name": "top"}]}, {"outer": [{"name": 3}]}]
+)
+def test_no_name_is_unknown_if_an_edge_name_is_unreadable(boundary):
+    assert issues(boundary, {"tip": 1}, {"foot": {"edges": "side"}}) == []
+
+
+def test_contradictory_names_are_reported_without_a_boundary():
+    zones = {"foot": {"edges": ["side"]}, "wall": {"edges": "side"}}
+    assert issues(None, {"side": 1}, zones) == [
+        "contact_zones.wall.edges[0]: edge 'side' is already in the contact zone 'foot'; "
+        "an edge can touch only one surface",
+        "conditions.side: edge 'side' is in the contact zone 'foot' and can have no condition; remove one",
+    ]
