@@ -60,7 +60,7 @@ def residuals(contact: CondensedContact, solution: ContactSolution, force_balanc
     gap = contact.initial_gap + u_n
     K, B, r = contact.stiffness_rows
     apart = u_n - contact.free_displacement - contact.compliance @ p
-    R, root = contact.rigid_motions, np.sqrt(contact.weights)  # not `amplitudes_of`: its round-off is larger
+    R, root = contact.rigid_motions, np.sqrt(contact.weights)  # on purpose not `amplitudes_of`, which solvers use
     apart = apart - R @ np.linalg.lstsq(root[:, None] * R, root * apart, rcond=None)[0]
     return Residuals(
         penetration=_largest(-gap / U),
