@@ -31,9 +31,9 @@ from .formulations.local_solver import minimize_qp as minimize_qp
 from .formulations.start import Start as Start
 from .modelling.contact_model import ContactModel as ContactModel
 from .modelling.contact_model import model as model
-from .modelling.designed_gap import GapDesign as GapDesign
-from .modelling.gap_design import design_gap as design_gap
-from .modelling.relief import Relief as Relief
+from .modelling.gap_design.design import design_gap as design_gap
+from .modelling.gap_design.designed_gap import GapDesign as GapDesign
+from .modelling.gap_design.relief import Relief as Relief
 from .options import Equilibrium as Equilibrium
 from .options import Rows as Rows
 from .options import SolveOptions as SolveOptions

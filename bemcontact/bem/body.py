@@ -121,11 +121,13 @@ class Body:
     def notes(self) -> tuple[str, ...]:
         """Decisions that a user should know."""
         pinned = tuple(
-            f"the {motion} is seen by no contact point and loaded by nothing: {_pinned(self.unseen.who(j))} against it"
+            f"the {motion} moves no contact point and has no load: {_pinned(self.unseen.who(j))} against it"
             for j, motion in enumerate(self.unseen.describe())
         )
         idle = self.idle_motion if self.relative_load[1].any() else None
-        left_open = f"the loads do no work in the {idle}, which only opens gaps: contact leaves open how far it goes"
+        left_open = (
+            f"the loads do no work in the {idle}, which only opens gaps: contact does not determine its amplitude"
+        )
         return pinned if idle is None else (*pinned, left_open)
 
 

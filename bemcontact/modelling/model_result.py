@@ -169,9 +169,9 @@ def _without_optimum(contact: CondensedContact, status: Status, *, added: bool) 
     of_whom = "what was added to the model" if added else "the contact problem"
     match status:
         case Status.INFEASIBLE:
-            return f"No pressure satisfies all constraints: {of_whom} asks for too much."
+            return f"No pressure satisfies all constraints: {of_whom} cannot be satisfied."
         case Status.UNBOUNDED:
-            return f"The objective has no lower bound: {of_whom} rewards something without limit."
+            return f"The objective has no lower bound: {of_whom} decreases it without limit."
         case _:
             return f"No optimum was found: the solver {status.value}."
 

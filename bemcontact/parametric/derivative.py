@@ -38,7 +38,7 @@ STILL = 1e-13
 
 NOT_HELD = "the points in contact do not hold the body, so that its position is not determined"
 NOT_UNIQUE = "the contact state may go on in more than one way here, as the compliance does not rule out"
-NO_WAY = "no contact state was found to continue this one: the path turns back or breaks off here"
+NO_WAY = "no contact state was found to continue this one: the path turns back or ends here"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -97,7 +97,7 @@ class LoadPath:
     def notes_between(self, begin: str, end: str) -> tuple[str, ...]:
         """Notes on a path from `begin` to `end`, one sentence each."""
         where = f"from {begin} on" if self.begins_at > 0.0 else f"up to {end}"
-        early = f"the path is there {where}; beyond, {self.note}" if self.note else ""
+        early = f"the path exists {where}; beyond that, {self.note}" if self.note else ""
         return tuple(text for text in (early, "" if self.unique else NOT_PROVED) if text)
 
     @cached_property

@@ -17,9 +17,9 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import complementarity
-from bemcontact.modelling.contact_sets import Piece, SharedProfile
-from bemcontact.modelling.designed_gap import GapDesign, Goal, LoadState, relieved
-from bemcontact.modelling.relief import Profiles, Relief
+from bemcontact.modelling.gap_design.contact_sets import Piece, SharedProfile
+from bemcontact.modelling.gap_design.designed_gap import GapDesign, Goal, LoadState, relieved
+from bemcontact.modelling.gap_design.relief import Profiles, Relief
 
 GAIN = 1e-8
 """Least relative gain of a step."""

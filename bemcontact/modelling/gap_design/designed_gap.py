@@ -156,7 +156,9 @@ class GapDesign:
         """Say if the largest pressure is where the profile is not."""
         highest = max(self.after, key=lambda state: state.peak)
         inside = self.goal is not Goal.PEAK or int(np.argmax(highest.pressure)) in self.points
-        return "" if inside else " It is now outside of the interval: there the profile can lower it no more."
+        return (
+            "" if inside else " The largest pressure is now outside of the interval, where the profile cannot lower it."
+        )
 
     def surface(self, kind: str = "spline") -> Spline | Polyline:
         """Make a rigid surface of the zone's own and the profile, through the feet of all its contact points.

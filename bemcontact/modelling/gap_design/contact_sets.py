@@ -20,9 +20,9 @@ from bemcontact.errors import SolverError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import minimize
 from bemcontact.formulations.scaling import ScaledContact, scaled
-from bemcontact.modelling.designed_gap import Goal
+from bemcontact.modelling.gap_design.designed_gap import Goal
+from bemcontact.modelling.gap_design.relief import Profiles
 from bemcontact.modelling.parameters import value_of
-from bemcontact.modelling.relief import Profiles
 
 WEAK = 1e-6
 """Scaled pressure or gap that is zero to the tolerance of the solver."""
