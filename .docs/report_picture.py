@@ -26,4 +26,6 @@ with tempfile.TemporaryDirectory() as folder:
     picture = Image.open(work / "report.png").convert("RGB")
     size = round(picture.width * 0.8), round(picture.height * 0.8)
     small = picture.resize(size, Image.Resampling.LANCZOS)
-    small.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(".docs/pictures/report.png", optimize=True)
+    small.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+        ".docs/pictures/report.png", optimize=True
+    )
