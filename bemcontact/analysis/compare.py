@@ -7,9 +7,9 @@ from dataclasses import replace
 from bemcontact.adaptivity.mesh_fit import MeshFit
 from bemcontact.analysis.solve import condensed, fitted_to_contact, judged
 from bemcontact.analysis.stopwatch import Progress, Stopwatch
-from bemcontact.analysis.study import MeshLevel, Study
+from bemcontact.analysis.study import MeshLevel, Settings, Study
 from bemcontact.assessment.comparison import Comparison, comparison
-from bemcontact.assessment.contender import Found
+from bemcontact.assessment.contender import Attempt
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import NotConvexError, OptionError, Path, SolverError
 from bemcontact.formulations import FORMULATIONS, OPTIONS, qp3
@@ -108,7 +108,7 @@ def study(
         watch = Stopwatch(progress=tell, seconds={} if levels else fitting.seconds)
         level = _side_by_side(plan, finer, watch, fit)
         levels.append(replace(level, refine=parts, outdated=outdated(problem, changes)))
-    return Study(settings={**plan.to_dict(), "changes": [*changes]}, levels=tuple(levels))
+    return Study(settings=Settings(**plan.to_dict(), changes=tuple(changes)), levels=tuple(levels))
 
 
 def outdated(problem: Problem | CondensedContact, changes: Sequence[str]) -> frozenset[str]:
@@ -145,19 +145,21 @@ def _side_by_side(
 ) -> MeshLevel:
     """Compare on one mesh, and judge the direct solution with the boundary behind it."""
     contact, condensation = condensed(problem, watch)
-    reference = _found(Setting(formulation=FormulationName.COMPLEMENTARITY), plan.reference, plan, contact, watch)
+    reference = _attempt(Setting(formulation=FormulationName.COMPLEMENTARITY), plan.reference, plan, contact, watch)
     assert reference.solution is not None  # the direct solver ends with a status, never refuses
     if any(setting.formulation == FormulationName.QP3 for setting, _ in plan.contenders):
         with watch.stage("loading cvxpy"):
             qp3.load()
-    found = [_found(setting, item, plan, contact, watch) for setting, item in plan.contenders]
+    found = [_attempt(setting, item, plan, contact, watch) for setting, item in plan.contenders]
     with watch.stage("comparison"):
         compared = comparison(contact, reference, found)
     answer = judged(problem, condensation, contact, reference.solution, Weights.TRIBUTARY, watch, fit=fit)
     return MeshLevel(refine=1, comparison=compared, answer=answer)
 
 
-def _found(setting: Setting, plan: Plan, whole: ComparisonPlan, contact: CondensedContact, watch: Stopwatch) -> Found:
+def _attempt(
+    setting: Setting, plan: Plan, whole: ComparisonPlan, contact: CondensedContact, watch: Stopwatch
+) -> Attempt:
     """Solve by one formulation, from the null start and from random ones if they are asked for."""
     statement, label = FORMULATIONS[plan.formulation], setting.label
     begin, ends = time.perf_counter(), None
@@ -176,5 +178,5 @@ def _found(setting: Setting, plan: Plan, whole: ComparisonPlan, contact: Condens
                     lambda done: say(f"{done} of {whole.starts}"),
                 )
     except (NotConvexError, OptionError, SolverError) as error:
-        return Found(setting=setting, solution=None, refusal=str(error))
-    return Found(setting=setting, solution=solution, seconds=seconds, starts=ends)
+        return Attempt(setting=setting, solution=None, refusal=str(error))
+    return Attempt(setting=setting, solution=solution, seconds=seconds, starts=ends)

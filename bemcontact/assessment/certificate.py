@@ -18,8 +18,7 @@ motions: a small pressure on a body lifted off its support has a small min(p, D�
 """
 
 from dataclasses import dataclass
-from enum import Enum
-from typing import Any
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +29,7 @@ from bemcontact.assessment.advice import advice
 from bemcontact.assessment.residual import Residuals
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.serialization import Leaf
 
 TOLERANCE = 1e-10
 """Residuals allowed: a thousand times above the round-off of the gap, a thousand below what shows in a result."""
@@ -38,8 +38,8 @@ LARGEST_BOUND = 1e-3
 NEWTON_STEPS = 20
 
 
-class CertificateKind(Enum):
-    """What has been proved of a solution."""
+class CertificateKind(StrEnum):
+    """What is proved of a solution."""
 
     UNIQUE = "unique"
     LOCAL = "local only"
@@ -48,58 +48,38 @@ class CertificateKind(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Certificate:
-    """What can be said of a solution without believing the solver.
-
-    Parameters
-    ----------
-    kind : CertificateKind
-    smallest_eigenvalue : λ of sym(DM) on the equilibrium space, D = J/max J and M of unit norm; None if n = k, where
-        equilibrium alone fixes the pressure
-    error_bound : no pressure differs from that of the solution by more [p]; None if none can be given
-    relative_error_bound : the same over the peak pressure; None likewise, or where nothing touches
-    complaint : what is wrong if this is no solution, else empty
-    words : two or three sentences for an engineer
-    """
+class Certificate(Leaf):
+    """What is proved of a solution from its pressures and displacements alone, without trust in the solver."""
 
     kind: CertificateKind
+    """What is proved."""
     smallest_eigenvalue: float | None
+    """Smallest eigenvalue λ of sym(DM) on the equilibrium space, with D = J/max J and M of unit norm.
+
+    The pressure is unique if λ > 0. Null if equilibrium alone fixes the pressure.
+    """
     error_bound: float | None
+    """Bound on the difference of each pressure from that of the solution [p]; null if there is none."""
     relative_error_bound: float | None
+    """Error bound over the peak pressure; null if there is none, or where nothing touches."""
     complaint: str
+    """Residual that is too large, if this is not a solution; otherwise empty."""
     words: str
+    """Two or three sentences for an engineer."""
 
     @property
     def certified(self) -> bool:
         """Whether this is the solution, the only one, to the tolerance."""
         return self.kind is CertificateKind.UNIQUE
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers and texts, ready for JSON."""
-        return {
-            "kind": self.kind.value,
-            "smallest_eigenvalue": self.smallest_eigenvalue,
-            "error_bound": self.error_bound,
-            "words": self.words,
-        }
-
 
 def certify(
     contact: CondensedContact, solution: ContactSolution, residuals: Residuals, tolerance: float = TOLERANCE
 ) -> Certificate:
-    """Judge a solution.
+    """Certify a solution from its residuals.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    solution : of any formulation
-    residuals : of that solution
-    tolerance : allowed penetration, tension, complementarity, equilibrium (12) and balance; where the peak pressure is
-        above T, gaps are judged relative to the displacement that goes with it, and never below their round-off
-
-    Returns
-    -------
-    Certificate
+    The tolerance is on penetration, tension, complementarity, equilibrium (12) and balance. Where the peak pressure is
+    above T, gaps are judged relative to the displacement that goes with it, and never below their round-off.
     """
     D, M = _scaled_compliance(contact)
     eigenvalue = _smallest_eigenvalue(D, M, contact.equilibrium)

@@ -305,7 +305,7 @@ def _followed(first: CondensedContact, last: CondensedContact) -> tuple[Trail | 
     """Solve the first problem and follow its state to the last; why it does not get there, or nothing."""
     solution = complementarity.solve(first)
     if solution.status is not Status.SOLVED:
-        return None, "; ".join(solution.notes) or solution.status.value
+        return None, "; ".join(solution.notes) or solution.status.words
     unit = measure(first, last)
     point = scaled_point(unit, solution.pressure, solution.rigid_amplitudes)
     trail = follow(scaled(unit), line_between(unit, first, last), *point)

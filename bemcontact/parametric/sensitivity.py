@@ -183,7 +183,7 @@ def sensitivities(
     wanted = contact.changes if changes is None else {key: _fitting(contact, key, *changes[key]) for key in changes}
     state = complementarity.solve(contact) if solution is None else solution
     if state.status is not Status.SOLVED:
-        why = "; ".join(state.notes) or state.status.value
+        why = "; ".join(state.notes) or state.status.words
         raise ProblemError(f"there is no contact state to differentiate: {why}")
     problem = scaled(contact)
     p, a = scaled_point(contact, state.pressure, state.rigid_amplitudes)

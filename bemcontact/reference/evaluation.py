@@ -27,8 +27,9 @@ from bemcontact.reference.closed_forms import (
     ShrunkRing,
     contact_modulus,
 )
-from bemcontact.reference.expectation import Expected, Point
+from bemcontact.reference.expectation import Expected
 from bemcontact.reference.positions import BoolArray, Frame, coordinates, in_zone, reach, spacing
+from bemcontact.serialization import Pair
 
 HERTZ_RANGE = 0.1
 """Largest b/R for which Hertz is held against an answer; its peak is off by 0.23 % then."""
@@ -306,7 +307,7 @@ def _within(contact: CondensedContact, stated: Reference, pressure: Array) -> Ar
     return np.where(in_zone(contact, stated.zone), pressure, np.nan)
 
 
-def _nearest(stated: Values, position: float, contact: CondensedContact) -> Point:
+def _nearest(stated: Values, position: float, contact: CondensedContact) -> Pair:
     """The contact point whose coordinate is nearest to a position."""
     index = np.flatnonzero(in_zone(contact, stated.zone))
     here = coordinates(stated, contact.points[index], contact.arc_position[index])
@@ -314,7 +315,7 @@ def _nearest(stated: Values, position: float, contact: CondensedContact) -> Poin
     return float(x), float(y)
 
 
-def _point(frame: Frame) -> Point:
+def _point(frame: Frame) -> Pair:
     x, y = frame.center
     return float(x), float(y)
 

@@ -1,83 +1,66 @@
 """What a reference expects of the answer, as numbers."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
+from pydantic import PlainSerializer, computed_field
 
 from bemcontact.arrays import Array
 from bemcontact.problem import Table, Values
+from bemcontact.serialization import Flags, Internal, Leaf, Pair
 
-Point = tuple[float, float]
+
+def _known(pressure: Array) -> list[float | None]:
+    """The pressures as a list, with None for those that are not numbers."""
+    return [float(p) if np.isfinite(p) else None for p in pressure]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Expected:
-    """What a reference expects of the answer; None, and not a number, where it says nothing.
-
-    Parameters
-    ----------
-    name : of the reference in the spec
-    source : where it comes from
-    closed_form : whether it is a formula, and not a list of values
-    zone : the contact zone that it is about; None for all
-    pressure : (n,) at the contact points [p], per undeformed length
-    compared : (n,) where a difference of pressure tells something: not at singular ends
-    peak : largest pressure [p]
-    half_width : distance of the farther end of contact from `center`, along the tangent there [L]
-    center : the middle of the contact
-    contact_length : length of the boundary in contact [L]
-    start, end : smallest and largest coordinate of contact, [L] or degrees
-    along : the reference that says which coordinate that is
-    ends : the contact points nearest to `start` and `end`, for drawing
-    resultant : magnitude of the force on what is modelled [p L]
-    tolerance, reason : relative difference up to which the answer agrees, and why
-    in_range : whether the reference is valid for this problem, so that a difference can be held against the answer
-    remark : why it is not, in a sentence; else empty
-    """
+class Expected(Leaf):
+    """Values that a reference expects of the answer; null where it says nothing."""
 
     name: str
+    """Name of the reference in the problem."""
     source: str
+    """Where the values come from."""
     closed_form: bool
+    """Whether it is a formula, and not a list of values."""
     zone: str | None
-    pressure: Array
-    compared: NDArray[np.bool_]
+    """Name of the contact zone that it is about; null for all."""
+    pressure: Annotated[Array, PlainSerializer(_known, return_type=list[float | None])]
+    """Pressure (n,) at each contact point per undeformed length [p]; null where it is unknown."""
+    compared: Flags
+    """Whether the pressure at each contact point (n,) is compared: not at singular ends."""
     tolerance: float
+    """Relative difference up to which the answer agrees."""
     reason: str
+    """Reason for this tolerance."""
     peak: float | None = None
+    """Largest pressure [p]."""
     half_width: float | None = None
-    center: Point | None = None
+    """Distance of the farther end of contact from `center`, along the tangent there [L]."""
+    center: Pair | None = None
+    """Middle (x, y) of the contact [L]."""
     contact_length: float | None = None
+    """Length of the boundary in contact [L]."""
     start: float | None = None
+    """Smallest coordinate of contact, [L] or degrees."""
     end: float | None = None
-    along: Values | Table | None = None
-    ends: tuple[Point, ...] = ()
+    """Largest coordinate of contact, [L] or degrees."""
+    along: Internal[Values | Table | None] = None
+    """Reference that has the coordinate of `start` and `end`."""
+    ends: tuple[Pair, ...] = ()
+    """Contact points (x, y) nearest to `start` and `end`, for drawing [L]."""
     resultant: float | None = None
+    """Magnitude of the contact force on what is modelled, per thickness [p L]."""
     in_range: bool = True
+    """Whether the reference is valid for this problem, so that the answer is judged by it."""
     remark: str = ""
+    """Why it is not valid, or empty."""
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give all of it as numbers, lists and texts, ready for JSON; a pressure of which nothing is said is None."""
-        pressure = [float(p) if np.isfinite(p) else None for p in self.pressure]
-        return {
-            "name": self.name,
-            "source": self.source,
-            "closed_form": self.closed_form,
-            "zone": self.zone,
-            "pressure": pressure,
-            "compared": self.compared.tolist(),
-            "peak": self.peak,
-            "half_width": self.half_width,
-            "center": None if self.center is None else list(self.center),
-            "contact_length": self.contact_length,
-            "start": self.start,
-            "end": self.end,
-            "against": None if self.along is None else self.along.against,
-            "ends": [list(point) for point in self.ends],
-            "resultant": self.resultant,
-            "tolerance": self.tolerance,
-            "reason": self.reason,
-            "in_range": self.in_range,
-            "remark": self.remark,
-        }
+    @computed_field
+    @property
+    def against(self) -> str | None:
+        """Coordinate of `start` and `end`: x, y, arc, or angle, which is in degrees; null without them."""
+        return None if self.along is None else self.along.against

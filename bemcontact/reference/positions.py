@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Problem, Table, Values
+from bemcontact.serialization import Pair
 
-Point = tuple[float, float]
 BoolArray = NDArray[np.bool_]
 
 LEVEL = 1e-9
@@ -31,7 +31,7 @@ class Frame(NamedTuple):
     inward: Array
 
     @classmethod
-    def at(cls, contact: CondensedContact, zone: str | None, center: Point | None) -> Self:
+    def at(cls, contact: CondensedContact, zone: str | None, center: Pair | None) -> Self:
         """Put the frame at a centre, or where the initial gap is smallest."""
         index = np.flatnonzero(in_zone(contact, zone))
         middle = np.array(foot(contact, zone) if center is None else center)
@@ -49,7 +49,7 @@ class Frame(NamedTuple):
         return (points - self.center) @ self.inward
 
 
-def foot(contact: CondensedContact, zone: str | None) -> Point:
+def foot(contact: CondensedContact, zone: str | None) -> Pair:
     """Where the initial gap of a zone is smallest: the vertex of the parabola around its lowest point.
 
     The lowest point itself, if it is the end of a run; the middle, if several are equally low.

@@ -172,7 +172,7 @@ def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
 
 def verdict(result: Result) -> str:
     """Say in words whether the answer is proved, and what to do where it is not."""
-    ending = "" if result.solution.status is Status.SOLVED else f"The solver: {result.solution.status.value}. "
+    ending = "" if result.solution.status is Status.SOLVED else f"The solver: {result.solution.status.words}. "
     return ending + result.certificate.words
 
 
