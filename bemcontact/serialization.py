@@ -43,8 +43,8 @@ Pairs = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list
 """An array (n, 2) that is a list of pairs in JSON."""
 Matrix = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list[list[float]])]
 """An array (m, n) that is a list of lists of numbers in JSON."""
-PairsByElement = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list[list[_ListOfTwo]])]
-"""An array (m, 3, 2) that is a list of lists of pairs in JSON."""
+PairTables = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list[list[_ListOfTwo]])]
+"""An array (m, n, 2) that is a list of lists of pairs in JSON."""
 Integers = Annotated[NDArray[np.int64], PlainSerializer(_listed, return_type=list[int])]
 """An array (n,) that is a list of whole numbers in JSON."""
 Flags = Annotated[NDArray[np.bool_], PlainSerializer(_listed, return_type=list[bool])]

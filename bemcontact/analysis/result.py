@@ -24,18 +24,18 @@ from bemcontact.contact.record import (
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
-from bemcontact.serialization import PairsByElement, Record, json_text
+from bemcontact.serialization import PairTables, Record, json_text
 from bemcontact.version import __version__
 
 
 class BoundaryRecord(Record):
     """State of the whole boundary, element by element; values at the three nodes of each."""
 
-    points: PairsByElement
+    points: PairTables
     """Undeformed nodes (x, y) [L]."""
-    displacement: PairsByElement
+    displacement: PairTables
     """Displacement (x, y) [L]."""
-    traction: PairsByElement
+    traction: PairTables
     """Force (x, y) on the body per undeformed length [p]; it may jump between elements."""
     edge: list[str]
     """Name of the edge of each element."""

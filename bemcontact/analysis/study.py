@@ -82,7 +82,7 @@ class StudyRecord(Record):
     units: UnitsRecord
     """Labels of the units."""
     settings: Settings
-    """What is compared."""
+    """Formulations, weights, penalties and starts that are compared."""
     levels: list[LevelRecord]
     """Comparison on each mesh, the coarsest first."""
     convergence: Convergence | None

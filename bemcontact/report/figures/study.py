@@ -62,8 +62,8 @@ def _recorded(level: MeshLevel) -> dict[str, list[Contender]]:
     """The contenders whose solvers recorded how they got there, by formulation and weights."""
     groups = dict[str, list[Contender]]()
     for item in level.comparison.everyone:
-        setting = item.found.setting
-        if item.judged is not None and item.judged.solution.history:
+        setting = item.attempt.setting
+        if item.assessment is not None and item.assessment.solution.history:
             weights = "" if setting.weights in (None, Weights.TRIBUTARY) else f"-{setting.weights.replace('_', '-')}"
             name = "direct" if setting.weights is None else setting.formulation.value
             groups.setdefault(f"{name}{weights}", []).append(item)
