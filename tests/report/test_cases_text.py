@@ -12,7 +12,7 @@ import bemcontact
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.bem.condense import body_of
-from bemcontact.report import cases_text, text, words
+from bemcontact.report import cases_text, formatting, text
 
 UNITS = {"units": {"length": "mm", "force": "N"}}
 
@@ -39,7 +39,7 @@ def test_each_case_has_a_row_with_its_own_numbers():
     for name, result in found().results.items():
         peak = result.footprint.peak
         assert peak is not None
-        assert f"{words.number(peak.pressure)} N/mm²" in lines[name]
+        assert f"{formatting.number(peak.pressure)} N/mm²" in lines[name]
         assert "certified" in lines[name]
 
 
@@ -111,7 +111,7 @@ def test_solve_tells_where_the_tools_are_and_what_presses_on_them():
     result = bemcontact.solve(made(FREE, **UNITS))
     told = " ".join(printed(text.result_summary(result)).split())
     x, y, turn = result.contact.tools.displacement(result.solution.rigid_amplitudes)[0]
-    assert f"punch: moves by {words.vector((x, y), 'mm')}, turns by {turn:g}" in told
+    assert f"punch: moves by {formatting.vector((x, y), 'mm')}, turns by {turn:g}" in told
     assert "the body presses on it with (0, 40) N/mm, moment -3 N about (1.5, 1)" in told
 
 

@@ -14,7 +14,7 @@ from tool_problems import BETWEEN, made
 from bemcontact.analysis import compare as comparing
 from bemcontact.analysis.study import Study
 from bemcontact.formulations.plan import planned_comparison
-from bemcontact.report import words
+from bemcontact.report import formatting
 from bemcontact.report.page import render
 
 SVG = b'<svg xmlns="http://www.w3.org/2000/svg"/>'
@@ -41,7 +41,7 @@ def test_the_page_is_whole_and_needs_nothing_else(study: Callable[[], Study]):
 def test_numbers_come_from_the_report_alone():
     """Another peak, difference and eigenvalue in the report are others on the page, and those of the study are gone."""
     report = report_of(on_three_meshes())
-    peak = words.number(report["levels"][-1]["comparison"]["reference"]["answer"]["peak"]["pressure"])
+    peak = formatting.number(report["levels"][-1]["comparison"]["reference"]["answer"]["peak"]["pressure"])
     changed = copy.deepcopy(report)
     compared = changed["levels"][-1]["comparison"]
     compared["reference"]["answer"]["peak"]["pressure"] = 77.125
@@ -139,7 +139,7 @@ def test_the_penalty_stands_beside_where_qp2_is_convex():
         if contender["formulation"] == "qp2" and contender["weights"] == "tributary":
             told = contender["answer"]["search"]["penalty"]
             row = section.split(f'">{contender["label"]}</th>')[1].split("</tr>")[0]
-            assert words.number(told["convexity_limit"]) in row
+            assert formatting.number(told["convexity_limit"]) in row
             assert (">yes<" in row) == (told["value"] <= told["convexity_limit"])
 
 

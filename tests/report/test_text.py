@@ -13,7 +13,7 @@ from bemcontact.bem.condense import body_of
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import LocalSearch, Penalty, Status
 from bemcontact.problem import Circle, DeflectedContour, Field, Plane, Polyline, Problem, Spline, Units
-from bemcontact.report import text, words
+from bemcontact.report import formatting, text
 
 
 def block() -> Problem:
@@ -41,39 +41,39 @@ def printed(renderable: RenderableType, width: int = 100) -> str:
 
 
 def test_numbers_and_vectors():
-    assert words.number(183.3349) == "183.33"
-    assert words.number(-0.0) == "0"
-    assert words.number(2e-7) == "2e-07"
-    assert words.vector((1.0, -1e-15)) == "(1, 0)"
-    assert words.vector((0.0, 0.0), "mm") == "(0, 0) mm"
-    assert words.vector((6e-16, 0.0), "mm", scale=1.0) == "(0, 0) mm"
-    assert words.with_unit("3", "") == "3"
-    assert words.with_unit("0", "mm") == "0"
+    assert formatting.number(183.3349) == "183.33"
+    assert formatting.number(-0.0) == "0"
+    assert formatting.number(2e-7) == "2e-07"
+    assert formatting.vector((1.0, -1e-15)) == "(1, 0)"
+    assert formatting.vector((0.0, 0.0), "mm") == "(0, 0) mm"
+    assert formatting.vector((6e-16, 0.0), "mm", scale=1.0) == "(0, 0) mm"
+    assert formatting.with_unit("3", "") == "3"
+    assert formatting.with_unit("0", "mm") == "0"
 
 
 def test_fields_are_said_by_their_values_on_the_edge():
     bottom = block().edge("bottom")  # from x = 0 to 40
-    assert words.field_on(Field(constant=2.5), bottom, "mm") == "2.5 mm"
-    assert words.field_on(Field(constant=1, x=0.5), bottom) == "1 … 21"
-    assert words.field_on(Field(constant=0), bottom, "mm") == "0"
+    assert formatting.field_on(Field(constant=2.5), bottom, "mm") == "2.5 mm"
+    assert formatting.field_on(Field(constant=1, x=0.5), bottom) == "1 … 21"
+    assert formatting.field_on(Field(constant=0), bottom, "mm") == "0"
 
 
 def test_surfaces_in_words():
     plane = Plane(kind="plane", point=(0, 0), normal=(0, 5))
-    assert words.surface_in_words(plane) == "plane through (0, 0), normal (0, 1)"
+    assert formatting.surface_in_words(plane) == "plane through (0, 0), normal (0, 1)"
     circle = Circle(kind="circle", center=(1, 2), radius=3, body="inside")
-    assert words.surface_in_words(circle) == "circle about (1, 2), radius 3, body inside"
+    assert formatting.surface_in_words(circle) == "circle about (1, 2), radius 3, body inside"
     polyline = Polyline(kind="polyline", points=((0, 0), (1, 0), (2, 1)))
-    assert words.surface_in_words(polyline) == "polyline of 3 points from (0, 0) to (2, 1)"
+    assert formatting.surface_in_words(polyline) == "polyline of 3 points from (0, 0) to (2, 1)"
     spline = Spline(points=((0, 0), (1, 0), (2, 1)))
-    assert words.surface_in_words(spline) == "spline of 3 points from (0, 0) to (2, 1)"
+    assert formatting.surface_in_words(spline) == "spline of 3 points from (0, 0) to (2, 1)"
     contour = DeflectedContour(conditions={"top": {"pressure": 1}}, direction=(0, 2))  # pyright: ignore
-    assert words.surface_in_words(contour) == "own contour, deflected; gap along (0, 1)"
+    assert formatting.surface_in_words(contour) == "own contour, deflected; gap along (0, 1)"
 
 
 def test_unit_labels():
-    assert words.per_thickness(Units(length="mm", force="N")) == "N/mm"
-    assert words.per_thickness(Units(length="mm")) == ""
+    assert formatting.per_thickness(Units(length="mm", force="N")) == "N/mm"
+    assert formatting.per_thickness(Units(length="mm")) == ""
 
 
 def test_problem_summary_says_what_is_there():
@@ -103,7 +103,7 @@ def test_a_result_that_is_not_certified_says_so(result: analysis.Result):
     certificate = dataclasses.replace(result.certificate, kind=CertificateKind.LOCAL, words="Another may exist.")
     solution = dataclasses.replace(result.solution, status=Status.ITERATION_LIMIT)
     doubtful = dataclasses.replace(result, certificate=certificate, solution=solution)
-    assert words.verdict(doubtful) == f"The solver: {Status.ITERATION_LIMIT.value}. Another may exist."
+    assert formatting.verdict(doubtful) == f"The solver: {Status.ITERATION_LIMIT.value}. Another may exist."
     assert "NOT certified" in printed(text.result_summary(doubtful))
 
 
@@ -137,7 +137,7 @@ PENALTY = Penalty(value=1.0, raw=833.41, convexity_limit=13.007, convexity_limit
 
 
 def test_a_search_is_told_with_both_phases_and_all_inertias(result: analysis.Result):
-    assert words.search_in_words(SEARCH, result.contact) == (
+    assert formatting.search_in_words(SEARCH, result.contact) == (
         "from the null vector: 136 iterations (1 to a feasible point, 135 from there); 152 changes of the working set; "
         "eigenvalues of the whole Hessian: 89 positive, 1 negative; on what the working set leaves free: 3 positive, "
         "1 negative at the feasible point, none at the end"
@@ -159,12 +159,12 @@ def test_a_search_is_told_with_both_phases_and_all_inertias(result: analysis.Res
 def test_a_penalty_is_told_in_units(result: analysis.Result, changes: dict, sentence: str):
     """(1/μ) p² is p L² for the stiffness rows, so that μ is force over L⁴; (1/μ) L² for the others, L² over force."""
     search = dataclasses.replace(SEARCH, penalty=dataclasses.replace(PENALTY, **changes))
-    assert words.search_in_words(search, result.contact).endswith(f"; {sentence}")
+    assert formatting.search_in_words(search, result.contact).endswith(f"; {sentence}")
 
 
 def test_a_penalty_of_a_held_body_without_units(result: analysis.Result):
     held = CondensedContact.from_compliance([[2.0]], [-3.0])
-    told = words.search_in_words(dataclasses.replace(SEARCH, penalty=PENALTY), held)
+    told = formatting.search_in_words(dataclasses.replace(SEARCH, penalty=PENALTY), held)
     raw = "in the units of the problem"
     assert told.endswith(f"; penalty 1 (833.41 {raw}), convex up to 13.007 (10840 {raw})")
 
@@ -204,7 +204,7 @@ def test_volume_loads_are_listed():
     loads = {"gravity": gravity, "centrifugal": spin, "temperature": heat}
     problem = Problem(**{**block().model_dump(), "loads": loads})
     lines = ["gravity (0, -9.81)", "rotation 5 about (1, 30)", "temperature change 20 … 30"]
-    assert [*words.volume_loads(problem)] == lines
+    assert [*formatting.volume_loads(problem)] == lines
     answer = printed(text.problem_summary(body_of(problem)))
     assert all(line in answer for line in lines)
 
