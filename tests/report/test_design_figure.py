@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.collections import LineCollection
 
 import bemcontact
 from bemcontact import GapDesign, Relief, design_gap, spec
@@ -57,12 +56,8 @@ def test_the_designed_surface_is_drawn_on_the_plan(design: GapDesign):
     nearest = [np.hypot(*(drawn - point).T).min() for point in points]
     assert max(nearest) <= np.hypot(*np.diff(points, axis=0).T).max() / 16
     assert np.ptp(drawn[:, 0]) > np.ptp(points[:, 0])
-    hatching = np.concatenate([np.concatenate(strokes) for strokes in hatchings(axes)])
+    hatching = np.concatenate([np.asarray(patch.get_path().vertices) for patch in axes.patches])
     assert hatching[:, 1].max() > points[:, 1].max() + 1  # the block is below
-
-
-def hatchings(axes):
-    return [item.get_segments() for item in axes.collections if isinstance(item, LineCollection)]
 
 
 def test_each_load_state_has_its_colour():

@@ -120,7 +120,11 @@ def test_ground_is_hatched_on_the_side_away_from_the_normals():
     covered = draw_ground(axes, points, up, 1.0, "black")
     assert covered[:, 1].max() == 0
     assert covered[:, 1].min() == pytest.approx(-0.7)
-    assert all(stroke[1, 1] < stroke[0, 1] == 0 for stroke in strokes(axes))
+    (hatching,) = axes.patches
+    hatches = np.asarray(hatching.get_path().vertices).reshape(-1, 2, 2)
+    assert len(hatches) == 16  # 0.6 apart on a length of 10
+    assert (hatches[:, 1, 1] < 0).all()
+    assert (hatches[:, 0, 1] == 0).all()
 
 
 def test_rigid_surfaces_are_drawn_where_they_are():
@@ -142,8 +146,10 @@ def test_a_deflected_contour_is_drawn_as_far_from_the_edge_as_the_gap_is():
     assert ground[:, 1] == pytest.approx(np.append(0.0, -gap), abs=1e-12 * 50)
 
 
-def test_result_page_has_pressure_gap_and_shape(result: analysis.Result):
-    pressure, gap, shape = figures.figure_of_result(result).axes
+def test_result_page_has_contact_pressure_gap_and_shape(result: analysis.Result):
+    contact, pressure, gap, shape = figures.figure_of_result(result).axes
+    assert contact.get_title(loc="left") == "contact pressure, displacements to scale"
+    assert contact.get_aspect() == 1
     assert "per undeformed length" in pressure.get_ylabel()
     assert gap.get_ylabel().startswith("gap")
     assert "deformed shape" in shape.get_title(loc="left")
@@ -312,6 +318,8 @@ def test_result_of_a_condensed_problem_has_no_shape():
     assert len(figures.figure_of_result(result).axes) == 2
     with pytest.raises(ValueError, match="no boundary"):
         figures.draw_deformed(Figure().add_subplot(), result)
+    with pytest.raises(ValueError, match="no boundary"):
+        figures.draw_contact(Figure().add_subplot(), result)
 
 
 @pytest.mark.parametrize(("ending", "magic"), [(".png", b"\x89PNG"), (".SVG", b"<?xml"), (".pdf", b"%PDF")])

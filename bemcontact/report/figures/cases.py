@@ -6,7 +6,8 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.report.figures.page import BLACK, GREY, VERMILION, labelled, new_page, shortened, wrapped
-from bemcontact.report.figures.result import PIECE_COLOURS, figure_of_result, pieces_of
+from bemcontact.report.figures.pieces import PIECE_COLOURS, pieces_of
+from bemcontact.report.figures.result import figure_of_result
 from bemcontact.report.formatting import units_of
 
 INCHES = 9

@@ -16,7 +16,8 @@ from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import FormulationName
 from bemcontact.report.figures.course import COLOURS, legend_below, show_decades
 from bemcontact.report.figures.page import BLACK, GREY, PURPLE, labelled, plain, shortened
-from bemcontact.report.figures.result import Piece, pieces_of, tell_closed
+from bemcontact.report.figures.pieces import Piece, pieces_of
+from bemcontact.report.figures.result import tell_closed
 from bemcontact.report.formatting import number, units_of, with_unit
 
 DASHES = ("solid", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))

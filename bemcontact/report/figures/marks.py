@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.patches import Polygon
+from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
@@ -50,8 +50,8 @@ def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, colour:
     roots = np.column_stack([np.interp(at, s, points[:, i]) for i in (0, 1)])
     inward = -np.column_stack([np.interp(at, s, normals[:, i]) for i in (0, 1)])
     tips = roots + 0.7 * depth * (inward + inward[:, ::-1] * (1, -1))
-    strokes = list(np.stack([roots, tips], axis=1))
-    axes.add_collection(LineCollection(strokes, colors=colour, linewidths=0.7, zorder=1))
+    strokes = Path.make_compound_path(*(Path(stroke) for stroke in np.stack([roots, tips], axis=1)))
+    axes.add_patch(PathPatch(strokes, facecolor="none", edgecolor=colour, linewidth=0.7, zorder=1))
     axes.plot(*points.T, color=colour, linewidth=1.3, zorder=1)
     return np.concatenate([roots, tips])
 

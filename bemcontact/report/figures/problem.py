@@ -1,7 +1,7 @@
 """The picture of what is asked: geometry, mesh, conditions, loads, rigid surfaces."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,13 +20,13 @@ from bemcontact.problem import (
     AxisFields,
     Circle,
     Condition,
+    ContactZone,
     DeflectedContour,
     Edge,
     Field,
     Plane,
     Polyline,
     Problem,
-    Shape,
     Spline,
 )
 from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
@@ -48,12 +48,17 @@ from bemcontact.report.formatting import prescribed, volume_loads
 
 Array = NDArray[np.float64]
 
+Displacement = Callable[[Array], Array]
+"""Points (k, 2) of the undeformed boundary -> how far (k, 2) they are displaced."""
+
 ROLES = {"may touch": VERMILION, "held": BLUE, "loaded": GREEN, "free": BLACK}
 """What an edge is for, and its colour."""
 ALONG = 0.3
 """Largest share of a traction across the edge with which it is drawn as one along the edge."""
 FREE = Condition(traction=AxisFields(x=Field(constant=0.0)))
 """What an edge without a condition means."""
+FLUSH = 1e-6
+"""Gap over the body's size between a plane and an edge that lies in it."""
 SHORT = 0.2
 """Length over the body's size of an edge that has too little room for its name; it may stand beyond the ends."""
 
@@ -82,7 +87,7 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     _fill_body(axes, problem)
     _draw_mesh(axes, problem, mesh)
     outline = [edge.points(np.linspace(0, 1, 60)) for edge in problem.boundary.edges]
-    marks = [*_draw_supports(axes, problem), *_draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
+    marks = [*draw_supports(axes, problem), *draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
     tools = [*draw_tools(axes, problem)]
     drawn = np.concatenate([*outline, *marks, *(covered for covered, _ in tools)])
     frame_plan(axes, drawn, problem.units.length)
@@ -154,24 +159,25 @@ def _spread(edge: Edge, size: float, spots: int, fewest: int = 2) -> tuple[Array
     return edge.points(fractions), edge.normals(fractions)
 
 
-def _draw_supports(axes: Axes, problem: Problem) -> Iterator[Array]:
-    """Draw a clamp as ground and one held axis as rollers that point along it."""
+def draw_supports(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:
+    """Draw a clamp as ground and one held axis as rollers that point along it, displaced; yield what they cover."""
     size = problem.boundary.size
     for edge in problem.boundary.edges:
         held = problem.conditions.get(edge.name, FREE).displacement
         if len(held.given) == 2:
             fractions = np.linspace(0, 1, 61)
-            yield draw_ground(axes, edge.points(fractions), -edge.normals(fractions), 0.025 * size, BLUE)
+            points = edge.points(fractions)
+            yield draw_ground(axes, points + displacement(points), -edge.normals(fractions), 0.025 * size, BLUE)
             continue
         points, normals = _spread(edge, size, 8)
         for axis in held.given:
             column = "xy".index(axis)
             away = np.zeros_like(normals)
             away[:, column] = np.where(normals[:, column] > -0.01, 1.0, -1.0)
-            yield draw_rollers(axes, points, away, 0.02 * size, BLUE)
+            yield draw_rollers(axes, points + displacement(points), away, 0.02 * size, BLUE)
 
 
-def _draw_loads(axes: Axes, problem: Problem) -> Iterator[Array]:
+def draw_loads(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:
     """Draw prescribed tractions as arrows to one scale; they end on the body if they push, start there if they pull.
 
     Those along an edge stand beside it, one after the other.
@@ -183,14 +189,16 @@ def _draw_loads(axes: Axes, problem: Problem) -> Iterator[Array]:
     for edge, (points, normals), traction in zip(problem.boundary.edges, across, tractions, strict=True):
         if not traction.any():
             continue
+        moved = points + displacement(points)
         pull = (traction * normals).sum(axis=1)
         if (np.abs(pull) <= ALONG * np.hypot(*traction.T)).all():
             points, normals = _spread(edge, size, 8, fewest=1)
             arrows = _traction(problem, edge.name, points, normals) * (0.1 * size / largest)
-            yield draw_arrows(axes, points + 0.02 * size * normals - arrows / 2, arrows, GREEN)
+            tails = points + displacement(points) + 0.02 * size * normals - arrows / 2
+            yield draw_arrows(axes, tails, arrows, GREEN)
             continue
         arrows = traction * (0.1 * size / largest)
-        yield draw_arrows(axes, np.where(pull[:, None] > 0, points, points - arrows), arrows, GREEN)
+        yield draw_arrows(axes, np.where(pull[:, None] > 0, moved, moved - arrows), arrows, GREEN)
 
 
 def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
@@ -212,10 +220,9 @@ def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     for zone in problem.contact_zones.values():
         if isinstance(zone.surface, DeflectedContour):
             continue
-        edges = [problem.edge(name) for name in zone.edges]
-        facing = np.concatenate([edge.points(np.linspace(0, 1, 60)) for edge in edges])
-        points, normals = _surface_line(zone.surface, facing, size)
+        points, normals = surface_line(problem, zone, 0.12 * size)
         yield draw_ground(axes, points, normals, 0.03 * size, GREY)
+        facing = _facing(problem, zone)
         middle = facing[len(facing) // 2][None]
         gap, normal = zone.surface.closest(middle)
         yield draw_arrows(axes, middle - gap[:, None] * normal, 0.09 * size * normal, GREY)
@@ -238,30 +245,42 @@ def _draw_contours(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
             yield draw_arrows(axes, feet[middle], 0.09 * size * normals[middle], GREY)
 
 
-def _surface_line(surface: Shape, facing: Array, size: float) -> tuple[Array, Array]:
-    """Points (k, 2) of a rigid surface, in order, and its unit normals there."""
+def _facing(problem: Problem, zone: ContactZone) -> Array:
+    """Points (k, 2) of the boundary that may touch in a zone, in order."""
+    return np.concatenate([problem.edge(name).points(np.linspace(0, 1, 60)) for name in zone.edges])
+
+
+def surface_line(problem: Problem, zone: ContactZone, overhang: float) -> tuple[Array, Array]:
+    """Points (k, 2) of the rigid surface of a zone, in order, some way beyond its ends, and the unit normals there.
+
+    A plane ends where the boundary beside the zone lies in it: it is the face of a punch.
+    """
+    surface, facing, size = zone.surface, _facing(problem, zone), problem.boundary.size
+    assert not isinstance(surface, DeflectedContour)
     match surface:
         case Plane():
             normal = np.array(surface.unit_normal)
             along = np.array([normal[1], -normal[0]])
+            beside = [edge for edge in problem.boundary.edges if edge.name not in zone.edges]
+            others = np.concatenate([edge.points(np.array([0.5])) for edge in beside])
+            flush = (others[np.abs(surface.closest(others)[0]) < FLUSH * size] - surface.point) @ along
             s = (facing - surface.point) @ along
-            points = surface.point + np.outer([s.min() - 0.12 * size, s.max() + 0.12 * size], along)
-            return points, np.tile(normal, (2, 1))
+            first = s.min() - (0.0 if (flush < s.min()).any() else overhang)
+            last = s.max() + (0.0 if (flush > s.max()).any() else overhang)
+            return surface.point + np.outer([first, last], along), np.tile(normal, (2, 1))
         case Circle():
             radial = facing - surface.center
             middle = radial.mean(axis=0)
             turn = np.arctan2(middle[0] * radial[:, 1] - middle[1] * radial[:, 0], radial @ middle)
-            reach = (
-                np.pi if surface.radius < size / 2 else min(np.abs(turn).max() + 0.12 * size / surface.radius, np.pi)
-            )
+            reach = np.pi if surface.radius < size / 2 else min(np.abs(turn).max() + overhang / surface.radius, np.pi)
             angle = np.arctan2(middle[1], middle[0]) + np.linspace(-reach, reach, 181)
             outward = np.column_stack([np.cos(angle), np.sin(angle)])
             return surface.center + surface.radius * outward, outward if surface.body == "outside" else -outward
         case Polyline():
             points = np.array(surface.points)
             first, last = points[1] - points[0], points[-1] - points[-2]
-            points[0] -= 0.12 * size * first / np.hypot(*first)
-            points[-1] += 0.12 * size * last / np.hypot(*last)
+            points[0] -= overhang * first / np.hypot(*first)
+            points[-1] += overhang * last / np.hypot(*last)
             ends = np.stack([points[:-1], points[1:]], axis=1)
             tangents = (ends[:, 1] - ends[:, 0]) / np.hypot(*(ends[:, 1] - ends[:, 0]).T)[:, None]
             normals = np.column_stack([-tangents[:, 1], tangents[:, 0]])
@@ -271,7 +290,7 @@ def _surface_line(surface: Shape, facing: Array, size: float) -> tuple[Array, Ar
             t = np.linspace(0.0, curve.x[-1], 16 * len(surface.points))
             points, tangents = curve(t), curve(t, 1)
             tangents = tangents / np.hypot(*tangents.T)[:, None]
-            reach = 0.12 * size * tangents[[0, -1]]
+            reach = overhang * tangents[[0, -1]]
             points = np.vstack([points[:1] - reach[:1], points, points[-1:] + reach[1:]])
             tangents = np.vstack([tangents[:1], tangents, tangents[-1:]])
             return points, np.column_stack([-tangents[:, 1], tangents[:, 0]])

@@ -1,85 +1,42 @@
-"""The picture of an answer: pressure and gap along the contact zones, the deformed shape."""
-
-from collections.abc import Iterator
-from dataclasses import dataclass
+"""The page of an answer: its contact, pressure and gap along the contact zones, the deformed shape."""
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import PathPatch
-from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from bemcontact.analysis.result import Result
-from bemcontact.bem import shape_functions
-from bemcontact.bem.recovery import BoundaryState
-from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.report.figures.marks import draw_ground
-from bemcontact.report.figures.page import (
-    BLACK,
-    BLUE,
-    BODY,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    frame_plan,
-    labelled,
-    new_page,
-    plain,
-    shortened,
-    wrapped,
-)
+from bemcontact.report.figures.contact import draw_contact
+from bemcontact.report.figures.page import BLACK, GREY, VERMILION, labelled, new_page, plain, wrapped
+from bemcontact.report.figures.pieces import pieces_of
+from bemcontact.report.figures.shape import draw_deformed, extent
 from bemcontact.report.formatting import number, units_of, with_unit
 
 Array = NDArray[np.float64]
-
-PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
-VISIBLE = 0.05
-"""Share of the body's size at which the largest displacement can be seen well; smaller ones are magnified."""
-
-NEAR = 0.15
-"""Share of the body's size up to which the rigid surface across a gap is shown."""
 
 CLOSED = 1e-9
 """Gap over the displacement scale that is round-off."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Piece:
-    """An unbroken piece of boundary in one contact zone: its points in order, and how it is drawn."""
-
-    label: str
-    order: int
-    index: NDArray[np.int64]
-
-    @property
-    def colour(self) -> str:
-        """Its colour; there are six."""
-        return PIECE_COLOURS[self.order % len(PIECE_COLOURS)]
-
-    @property
-    def dashes(self) -> str:
-        """Its line style: an unbroken line is never drawn over another."""
-        return "dashed" if self.order else "solid"
-
-
 def figure_of_result(result: Result) -> Figure:
-    """Compose a page with pressure, gap and, where the body is known, its deformed shape."""
-    width, height = _extent(result.boundary) if result.boundary else (0.0, 0.0)
-    wide = width > 1.6 * height
-    inches = 12 if result.boundary else 7
-    figure = new_page(inches, 7)
-    grid = figure.add_gridspec(2, 2 if result.boundary else 1)
-    pressure = figure.add_subplot(grid[0, 0])
-    gap = figure.add_subplot(grid[0, 1] if wide else grid[1, 0], sharex=pressure)
+    """Compose a page with pressure and gap and, where the body is known, its contact and its deformed shape."""
+    state = result.boundary
+    if state is None:
+        inches, figure = 7, new_page(7, 7)
+        pressure = figure.add_subplot(2, 1, 1)
+        gap = figure.add_subplot(2, 1, 2, sharex=pressure)
+    else:
+        width, height = extent(state)
+        wide = width > 1.6 * height
+        inches, figure = 12, new_page(12, 9.5 if wide else 9)
+        grid = figure.add_gridspec(3, 2) if wide else figure.add_gridspec(2, 2)
+        draw_contact(contact := figure.add_subplot(grid[0, :] if wide else grid[0, 0]), result)
+        contact.set_title("contact pressure, displacements to scale", loc="left", fontsize=10)
+        pressure = figure.add_subplot(grid[1, 0] if wide else grid[0, 1])
+        gap = figure.add_subplot(grid[1, 1], sharex=pressure)
+        draw_deformed(figure.add_subplot(grid[2, :] if wide else grid[1, 0]), result)
     draw_pressure(pressure, result)
     draw_gap(gap, result)
-    if result.boundary:
-        draw_deformed(figure.add_subplot(grid[1, :] if wide else grid[:, 1]), result)
     verdict = "certified" if result.certified else "NOT certified"
     title = f"{wrapped(result.contact.name, 6 * inches)}: {result.solution.formulation}, {verdict}"
     figure.suptitle(title, x=0.01, ha="left", fontweight="bold", color=BLACK if result.certified else VERMILION)
@@ -115,103 +72,6 @@ def tell_closed(axes: Axes, widest: float, scale: float) -> None:
     if widest <= CLOSED * scale:
         axes.set_ylim(-0.1 * scale, scale)
         axes.text(0.5, 0.5, "closed everywhere", transform=axes.transAxes, ha="center", color=BLACK)
-
-
-def draw_deformed(axes: Axes, result: Result) -> None:
-    """Draw the boundary before and after, in thick lines where it is in contact, and the rigid surfaces if to scale.
-
-    Displacements are magnified by a factor, which is stated. A rigid surface has none; beside a magnified body it would
-    seem penetrated or far away, and so it is left out unless the factor is one.
-
-    Parameters
-    ----------
-    axes : to draw into; limits and aspect are set
-    result : with its `boundary`
-
-    Raises
-    ------
-    ValueError
-        If the result has no boundary, as one of a condensed problem.
-    """
-    state = result.boundary
-    if state is None:
-        raise ValueError("the result of a condensed problem has no boundary to draw")
-    factor = _magnification(state)
-    curves = shape_functions.values(np.linspace(-1, 1, 9))
-    before = curves @ state.points
-    after = curves @ (state.points + factor * state.displacement)
-    axes.add_collection(LineCollection(list(before), colors=GREY, linewidths=0.9, linestyles="dashed", zorder=2))
-    axes.add_collection(LineCollection(list(after), colors=BLACK, linewidths=1.8, zorder=3))
-    outline = [Path(loop.reshape(-1, 2), closed=True) for loop in _loops(state, after)]
-    axes.add_patch(PathPatch(Path.make_compound_path(*outline), facecolor=BODY, edgecolor="none", zorder=0))
-    _draw_touching(axes, result, state, after)
-    covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
-    size = float(np.hypot(*_extent(state)))
-    if factor == 1:
-        covered += [draw_ground(axes, *ground, 0.025 * size, GREY) for ground in _ground(result, NEAR * size)]
-    unit = units_of(result.contact).length
-    frame_plan(axes, np.concatenate(covered), unit)
-    largest = with_unit(f"{float(np.hypot(*state.displacement.reshape(-1, 2).T).max()):.3g}", plain(unit))
-    scale = "displacements to scale" if factor == 1 else f"displacements × {factor:g}"
-    surfaces = "" if factor == 1 else "; rigid surfaces not drawn"
-    title = f"deformed shape, {scale} (largest {largest})\nthick: in contact; dashed: undeformed{surfaces}"
-    axes.set_title(title, loc="left", fontsize=10)
-
-
-def _draw_touching(axes: Axes, result: Result, state: BoundaryState, after: Array) -> None:
-    """Thicken the halves of elements, drawn as curves (m, 9, 2), whose nodes carry pressure, and dot these nodes."""
-    carrying = {tuple(point) for point in result.contact.points[result.touching].tolist()}
-    touching = np.array([[tuple(node) in carrying for node in element] for element in state.points.tolist()])
-    halves = [*after[touching[:, 0] & touching[:, 1], :5], *after[touching[:, 1] & touching[:, 2], 4:]]
-    axes.add_collection(LineCollection(halves, colors=VERMILION, linewidths=3.5, capstyle="round", zorder=4))
-    axes.scatter(*after[:, ::4][touching].T, s=10, color=VERMILION, zorder=4)
-
-
-def _extent(state: BoundaryState) -> tuple[float, float]:
-    """Width and height of the body."""
-    width, height = np.ptp(state.points.reshape(-1, 2), axis=0)
-    return float(width), float(height)
-
-
-def _loops(state: BoundaryState, curves: Array) -> list[Array]:
-    """Split curves (m, 9, 2) where one loop of elements ends and the next begins."""
-    breaks = (state.points[1:, 0] != state.points[:-1, 2]).any(axis=1)
-    return np.split(curves, np.flatnonzero(breaks) + 1)
-
-
-def _ground(result: Result, near: float) -> Iterator[tuple[Array, Array]]:
-    """Stretches (j, 2) of rigid surface, with normals, so near to the deformed body that they can be shown."""
-    contact = result.contact
-    moved = contact.tools.motions @ (contact.tools.amplitudes @ result.solution.rigid_amplitudes)
-    feet = contact.points - (contact.initial_gap + moved)[:, None] * contact.normals
-    shown = _gap(result) <= near
-    for piece in pieces_of(contact):
-        for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
-            if shown[stretch[0]] and len(stretch) > 1:
-                yield feet[stretch], contact.normals[stretch]
-
-
-def _magnification(state: BoundaryState) -> float:
-    """Choose 1, 2 or 5 times a power of ten so that the largest displacement can be seen."""
-    largest = float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
-    size = float(np.hypot(*_extent(state)))
-    if largest == 0 or largest >= VISIBLE * size / 2:
-        return 1.0
-    wanted = VISIBLE * size / largest
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(max(step for step in (1, 2, 5) if step * power <= wanted) * power)
-
-
-def pieces_of(contact: CondensedContact) -> Iterator[Piece]:
-    """List the unbroken pieces of all contact zones, in the order of the contact points."""
-    for order, run in enumerate(np.unique(contact.run)):
-        index = np.flatnonzero(contact.run == run)
-        index = index[np.argsort(contact.arc_position[index], kind="stable")]
-        zone = int(contact.zone[index[0]])
-        label = shortened(contact.zone_names[zone], 24)
-        if len(np.unique(contact.run[contact.zone == zone])) > 1:
-            label += f" ({contact.points[index[0], 0]:.3g}, {contact.points[index[0], 1]:.3g}) on"
-        yield Piece(label=label, order=order, index=index)
 
 
 def _draw_along(axes: Axes, result: Result, values: Array) -> None:

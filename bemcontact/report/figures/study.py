@@ -13,7 +13,7 @@ from bemcontact.report.figures.comparison import draw_differences, draw_gaps, dr
 from bemcontact.report.figures.course import draw_convergence, draw_history
 from bemcontact.report.figures.page import new_page
 from bemcontact.report.figures.problem import draw_problem
-from bemcontact.report.figures.result import draw_deformed
+from bemcontact.report.figures.shape import draw_deformed
 
 WIDTH = 5.2
 """Inches of a picture: its text can be read on a telephone, and two stand side by side on a page."""

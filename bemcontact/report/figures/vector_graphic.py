@@ -76,5 +76,6 @@ def _style_sheet() -> str:
 
 
 def _rounded(path: re.Match[str]) -> str:
-    """Write the points of a path with two decimals, a hundredth of a typographic point."""
-    return re.sub(r"-?\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", path[0])
+    """Write the points of a path with two decimals, a hundredth of a typographic point, and without needless space."""
+    rounded = re.sub(r"-?\d+\.\d+", lambda number: f"{round(float(number[0]), 2) + 0.0:.8g}", path[0])
+    return re.sub(r"\s*([MLQCz])\s*", r"\1", rounded)

@@ -1,0 +1,163 @@
+"""Write models/README.md and the pictures in .docs/pictures: every shipped problem, and how far off its answer is.
+
+    python .docs/gallery.py
+
+Solves all problems anew. A second run changes nothing.
+"""
+
+import os
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(threads, "1")  # the same rounding on each run; before the first import of NumPy
+
+from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.patches import Rectangle  # noqa: E402
+
+import bemcontact  # noqa: E402
+from bemcontact.reference import expected, score  # noqa: E402
+from bemcontact.report import figures  # noqa: E402
+from bemcontact.report.figures.page import new_page  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[1]
+PICTURES = Path(".docs", "pictures")
+PAGE = Path("models", "README.md")
+CASES = {"eccentric_punch": "beyond half", "roller_in_v_block": "down and aside"}
+"""The load case in the picture, where it is not the first one."""
+README = ("cylinder_on_plane", "bolt_in_plate")
+"""The picture at the beginning of the README."""
+ROUND_OFF = 1e-6
+"""Relative error below which it differs from machine to machine."""
+
+HEAD = """\
+# Gallery
+
+<!-- Written by `python .docs/gallery.py`. -->
+
+Each file here states one problem with a known answer. This command solves one and draws it:
+
+    bemcontact solve models/cylinder_on_plane.yaml --figure contact.svg
+
+- Grey: the body, with its displacements to scale, and hatched rigid surfaces. Dashed lines show the undeformed body.
+  Where the contact is small, only the part of the body around it is drawn.
+- Blue: supports. A model of a half or a quarter has rollers on its planes of symmetry.
+- Green: loads on the boundary.
+- Orange: the contact pressure, with its largest value in each contact. At the edge of a punch and at a corner that
+  presses on a surface, the largest value depends on the mesh. There the picture cuts the pressure off at three times
+  its mean.
+
+The errors are those of the default formulation on the mesh of the file. Each error is the largest over all load cases.
+An error of a pressure is relative to the peak of the reference. An error of a mean square is relative to the mean
+square of the reference, an error of an end of contact to the extent of contact, and every other error to its own
+quantity. *Round-off* is an error below 0.0001 %. `bemcontact compare` checks each error against the tolerance in the
+file.
+"""
+
+
+def models() -> list[Path]:
+    """All problems, those of the paper first."""
+    return [path for folder in ("models", "models/gallery") for path in sorted((ROOT / folder).glob("*.yaml"))]
+
+
+def page() -> str:
+    """Write the gallery."""
+    return "\n".join(
+        [
+            HEAD,
+            "## Problems of the paper, and the flat slit beside the crack\n",
+            *_table(path for path in models() if path.parent.name == "models"),
+            "\n## Problems with closed forms and statics\n",
+            *_table(path for path in models() if path.parent.name == "gallery"),
+            "",
+        ]
+    )
+
+
+def _table(paths: Iterable[Path]) -> Iterator[str]:
+    """One row a problem."""
+    yield "| picture | problem | closed form or source: measured error |"
+    yield "|---|---|---|"
+    for path in paths:
+        problem = bemcontact.load(path)
+        picture, file = ROOT / PICTURES / f"{path.stem}.svg", path.relative_to(ROOT / PAGE.parent)
+        shown = f" The picture shows the load case '{_case(path, problem)}'." if problem.case_names else ""
+        yield (
+            f'| <img src="../{picture.relative_to(ROOT).as_posix()}" width="320" alt="{problem.name}"> '
+            f"| [{problem.name}]({file.as_posix()}): {_first_sentence(problem.description)}{shown} "
+            f"| {'<br>'.join(_errors(problem))} |"
+        )
+
+
+def _first_sentence(description: str) -> str:
+    """The first sentence of a description, without what is in parentheses."""
+    text = re.sub(r" \([^)]*\)", "", " ".join(description.split()))
+    return re.split(r"(?<=[.:]) (?=[A-Z])", text)[0]
+
+
+def _case(path: Path, problem: bemcontact.Problem) -> str:
+    return CASES.get(path.stem, problem.case_names[0])
+
+
+def _errors(problem: bemcontact.Problem) -> Iterator[str]:
+    """For each source the largest error of each quantity over all load cases and references, in percent."""
+    names, errors = dict[str, dict[str, None]](), dict[str, dict[str, float]]()
+    for case in problem.case_names or (None,):
+        stated = problem if case is None else problem.with_case(case)
+        result = bemcontact.solve(stated)
+        known = expected(stated, result.contact)
+        sources = {item.name: item.source for item in known}
+        for item in known:
+            names.setdefault(item.source, {})[item.name] = None
+        for item in score(known, result.contact, result.footprint, result.solution.pressure):
+            if item.judged and item.difference is not None:
+                quantities = errors.setdefault(sources[item.reference], {})
+                quantities[item.quantity] = max(quantities.get(item.quantity, 0.0), abs(item.difference))
+    for source, named in names.items():
+        name = next(iter(named))
+        title = source if len(named) > 1 or name.lower() in source.lower() else f"{name}, {source}"
+        told = (f"{_QUANTITIES.get(key, key)} {_percent(error)}" for key, error in errors.get(source, {}).items())
+        yield f"{title}: {', '.join(told) or 'this problem is out of its range'}"
+
+
+_QUANTITIES = {"pressure (largest difference)": "pressure", "pressure (mean square)": "pressure in the mean square"}
+
+
+def _percent(error: float) -> str:
+    """A relative error with two figures."""
+    return f"{100 * error:.2g} %" if error > ROUND_OFF else "round-off"
+
+
+def pictures() -> Iterator[tuple[Path, bytes]]:
+    """Draw each problem, and two of them side by side for the README."""
+    readme = new_page(8.3, 3.2)
+    for axes, name in zip(readme.subplots(1, 2, width_ratios=(1, 1.7)), README, strict=True):
+        problem = bemcontact.load(ROOT / "models" / f"{name}.yaml")
+        _draw(axes, problem)
+        axes.set_title(problem.name, fontsize=10)
+    yield PICTURES / "contact.svg", figures.vector_graphic(readme)
+    for path in models():
+        problem = bemcontact.load(path)
+        figure = new_page(4.2, 3.0)
+        figure.add_artist(Rectangle((0, 0.5), 1, 0, facecolor="none", edgecolor="none"))  # all are equally wide
+        _draw(figure.add_subplot(), problem.with_case(_case(path, problem)) if problem.case_names else problem)
+        yield PICTURES / f"{path.stem}.svg", figures.vector_graphic(figure)
+
+
+def _draw(axes: Axes, problem: bemcontact.Problem) -> None:
+    """Solve a problem, and draw its contact."""
+    figures.draw_contact(axes, bemcontact.solve(problem))
+    axes.set_axis_off()
+
+
+def main() -> None:
+    """Write all files."""
+    (ROOT / PICTURES).mkdir(exist_ok=True)
+    for path, picture in pictures():
+        (ROOT / path).write_bytes(picture)
+    (ROOT / PAGE).write_text(page(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,215 @@
+"""The picture of a contact: the body to scale, the rigid surfaces, and the pressure as a fan along the normals."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import PathPatch
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from bemcontact.analysis.result import Result
+from bemcontact.bem import shape_functions
+from bemcontact.bem.recovery import BoundaryState
+from bemcontact.problem import DeflectedContour, Problem
+from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, place_names
+from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
+from bemcontact.report.figures.pieces import pieces_of
+from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
+from bemcontact.report.figures.shape import ground_of, loops_of, outline_of
+from bemcontact.report.formatting import number, units_of, with_unit
+
+Array = NDArray[np.float64]
+
+VISIBLE = 0.005
+"""Largest displacement over the size of the body from which on the undeformed outline is drawn."""
+TALL, LEAST = 0.3, 0.13
+"""Length of the fan over the root of width times height, but at least over the diagonal, of what is shown."""
+CROSSING = 0.45
+"""Share of the distance at which the normals of a hollow boundary cross that the fan may have."""
+BENT = 0.2
+"""Turn of the normals of a fan, in radians, from which on their crossing would be seen."""
+CUT = 3.0
+"""Multiple of the mean pressure at which the fan is cut off, as at the edge of a punch."""
+SMALL, AROUND = 0.08, 4.0
+"""Extent of the contact over the size of the body below which only the part around it is shown, and over how many
+extents to either side."""
+LEVEL = 1e-3
+"""Difference from the peak pressure, over that, below which a point counts as one at the peak."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fan:
+    """Pressure (j,) on an unbroken stretch of contact, with deformed points (j, 2) and unit normals (j, 2)."""
+
+    feet: Array
+    normals: Array
+    pressure: Array
+
+    @property
+    def peak(self) -> float:
+        """Largest pressure."""
+        return float(self.pressure.max())
+
+    @property
+    def closed(self) -> bool:
+        """Whether it goes all round a hole."""
+        return bool((self.feet[0] == self.feet[-1]).all())
+
+    @property
+    def mean(self) -> float:
+        """Mean pressure over the length."""
+        steps = np.hypot(*np.diff(self.feet, axis=0).T)
+        return float(steps @ (self.pressure[1:] + self.pressure[:-1]) / (2 * steps.sum()))
+
+    def longest(self, scale: float) -> float:
+        """Length at the pressure `scale` at which normals that are seen to bend would cross."""
+        steps, turns = np.diff(self.feet, axis=0), np.diff(self.normals, axis=0)
+        if np.hypot(*turns.T).sum() < BENT:
+            return np.inf
+        pressure = np.maximum(self.pressure[1:], self.pressure[:-1])
+        closing = np.maximum((steps * turns).sum(axis=1) * pressure / scale, 0.0)
+        return float(1 / (closing / (steps**2).sum(axis=1)).max()) if closing.any() else np.inf
+
+
+def draw_contact(axes: Axes, result: Result) -> None:
+    """Draw the deformed body to scale, its supports and loads, the rigid surfaces, and the pressure as a fan.
+
+    The fan stands outside of the body, along the normals of the rigid surface. The largest pressure of each unbroken
+    piece of contact is written beside it. Where the contact is small beside the body, only the part of the body around
+    it is shown, without supports and loads.
+
+    Parameters
+    ----------
+    axes : to draw into; limits and aspect are set
+    result : with its `boundary`
+
+    Raises
+    ------
+    ValueError
+        If the result has no boundary, as one of a condensed problem.
+    """
+    state, problem, units = result.boundary, result.problem, units_of(result.contact)
+    if state is None or problem is None:
+        raise ValueError("the result of a condensed problem has no boundary to draw")
+    loops = _draw_body(axes, state)
+    fans = [*_fans(result, state)]
+    window, part = _window(fans, np.concatenate(loops))
+    width, height = np.ptp(window, axis=0)
+    size = float(np.hypot(width, height))
+    surfaces = _surfaces(result, problem, (1.0 if part else 0.12) * size)
+    marks = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in surfaces]
+    if not part:
+        displacement = _displacement(state)
+        marks += [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
+    scale = min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans)) if fans else 1.0
+    length = max(TALL * float(np.sqrt(width * height)), LEAST * size)
+    length = min([length, *(CROSSING * fan.longest(scale) for fan in fans)])
+    names, tips = list[Name](), list[Array]()
+    for fan in fans:
+        tips.append(fan.feet - length * np.minimum(fan.pressure / scale, 1.0)[:, None] * fan.normals)
+        _draw_fan(axes, fan, tips[-1], 0.03 * size)
+        names.append(_label(fan, tips[-1], units.stress, cut=fan.peak > scale * (1 + LEVEL)))
+    drawn = np.concatenate([window, *tips] if part else [window, *tips, *marks])
+    frame_plan(axes, drawn, units.length)
+    place_names(axes, names, drawn, loops)
+    for text in axes.texts:
+        text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
+
+
+def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
+    """Draw the body as it is deformed, and its undeformed outline where that can be told apart; return loops (j, 2)."""
+    curves = shape_functions.values(np.linspace(-1, 1, 5))
+    before, after = curves @ state.points, curves @ (state.points + state.displacement)
+    outline = outline_of(state, after)
+    axes.add_patch(PathPatch(outline, facecolor=BODY, edgecolor="none", zorder=0))
+    axes.add_patch(PathPatch(outline, facecolor="none", edgecolor=BLACK, linewidth=1.8, zorder=3))
+    if float(np.abs(after - before).max()) > VISIBLE * float(np.ptp(after.reshape(-1, 2), axis=0).max()):
+        undeformed = outline_of(state, before)
+        axes.add_patch(PathPatch(undeformed, facecolor="none", edgecolor=GREY, linewidth=0.9, linestyle="dashed"))
+    return [loop.reshape(-1, 2) for loop in loops_of(state, after)]
+
+
+def _draw_fan(axes: Axes, fan: Fan, tips: Array, spacing: float) -> None:
+    """Fill the fan between its feet and tips (j, 2), with thin arrows so far apart."""
+    rim = tips if fan.closed else np.concatenate([fan.feet[:1], tips, fan.feet[-1:]])
+    axes.fill(*np.concatenate([fan.feet, tips[::-1]]).T, color=VERMILION, alpha=0.35, linewidth=0, zorder=4)
+    axes.plot(*rim.T, color=VERMILION, linewidth=1.6, zorder=4)
+    axes.plot(*fan.feet.T, color=VERMILION, linewidth=2.8, solid_capstyle="butt", zorder=4)
+    s = np.concatenate([[0.0], np.hypot(*np.diff(fan.feet, axis=0).T).cumsum()])
+    count = round(s[-1] / spacing)
+    at = (np.arange(count) + 0.5) * s[-1] / max(count, 1)
+    tails, heads = (np.column_stack([np.interp(at, s, line[:, i]) for i in (0, 1)]) for line in (tips, fan.feet))
+    draw_arrows(axes, tails, heads - tails, VERMILION)
+
+
+def _fans(result: Result, state: BoundaryState) -> Iterator[Fan]:
+    """The stretches of the contact zones that carry pressure, each with an open point at either end."""
+    contact, touching = result.contact, result.touching
+    pressure = np.where(touching, result.solution.pressure, 0.0)
+    nodes, moved = state.points.reshape(-1, 2), (state.points + state.displacement).reshape(-1, 2)
+    places = dict(zip(map(tuple, nodes.tolist()), moved, strict=True))
+    feet = np.array([places[x, y] for x, y in contact.points.tolist()])
+    for piece in pieces_of(contact):
+        closed = np.isfinite(contact.run_length[contact.run[piece.index[0]]])
+        index = np.append(piece.index, piece.index[0]) if closed else piece.index
+        pressed = touching[index]
+        shown = pressed | np.append(pressed[1:], False) | np.insert(pressed[:-1], 0, False)
+        for stretch in np.split(index, np.flatnonzero(np.diff(shown)) + 1):
+            if touching[stretch].any():
+                yield Fan(feet=feet[stretch], normals=contact.normals[stretch], pressure=pressure[stretch])
+
+
+def _window(fans: Sequence[Fan], body: Array) -> tuple[Array, bool]:
+    """Points (k, 2) to be shown, of all the body or of the part around a small contact; and whether it is a part."""
+    if fans:
+        feet = np.concatenate([fan.feet for fan in fans])
+        extent = float(np.ptp(feet, axis=0).max())
+        if extent < SMALL * float(np.ptp(body, axis=0).max()):
+            around = np.stack([feet.min(axis=0) - AROUND * extent, feet.max(axis=0) + AROUND * extent])
+            return np.clip(around, body.min(axis=0), body.max(axis=0)), True
+    return body, False
+
+
+def _label(fan: Fan, tips: Array, unit: str, *, cut: bool) -> Name:
+    """The largest pressure of a fan, to be placed beyond its tip in the middle of a level stretch, or in a hole."""
+    text = with_unit(number(fan.peak), plain(unit))
+    if fan.closed:
+        middle = tips.mean(axis=0, keepdims=True)
+        return Name(text=text.replace(" ", "\n"), colour=BLACK, anchors=middle, directions=np.zeros((1, 2)))
+    highest = np.flatnonzero(fan.pressure >= (1 - LEVEL) * fan.peak)
+    at = int(highest[len(highest) // 2])
+    outward, across = -fan.normals[at], fan.normals[at, ::-1] * (1, -1)
+    directions = np.array([outward, outward + across, outward - across, across, -across])
+    return Name(
+        text=text + (",\nfan cut off" if cut else ""),
+        colour=BLACK,
+        anchors=np.tile(tips[at], (5, 1)),
+        directions=directions / np.hypot(*directions.T)[:, None],
+    )
+
+
+def _surfaces(result: Result, problem: Problem, overhang: float) -> Iterator[tuple[Array, Array]]:
+    """Lines (j, 2) of the rigid surfaces and unit normals (j, 2), where their tools have come to."""
+    tools = result.contact.tools
+    moves = dict(zip(tools.names, tools.displacement(result.solution.rigid_amplitudes), strict=True))
+    points = dict(zip(tools.names, tools.point, strict=True))
+    for name, zone in problem.contact_zones.items():
+        if isinstance(zone.surface, DeflectedContour):
+            continue
+        line, normals = surface_line(problem, zone, overhang)
+        for tool in (tool for tool, stated in problem.tools.items() if name in stated.zones):
+            x, y, angle = moves[tool]
+            line = line + (x, y) + angle * (line - points[tool])[:, ::-1] * (-1, 1)
+        yield line, normals
+    if any(isinstance(zone.surface, DeflectedContour) for zone in problem.contact_zones.values()):
+        yield from ground_of(result, np.inf)
+
+
+def _displacement(state: BoundaryState) -> Displacement:
+    """Displacement of any point of the boundary: that of the nearest of some on each element."""
+    curves = shape_functions.values(np.linspace(-1, 1, 17))
+    nearest = KDTree((curves @ state.points).reshape(-1, 2))
+    displacement = (curves @ state.displacement).reshape(-1, 2)
+    return lambda points: displacement[nearest.query(points)[1]]

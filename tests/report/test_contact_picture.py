@@ -1,0 +1,133 @@
+"""The picture of a contact: body and rigid surfaces where they are, and a fan as long as the pressure is large."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+
+from bemcontact import spec
+from bemcontact.analysis import solve as analysis
+from bemcontact.report import figures
+from bemcontact.report.figures.page import GREY, VERMILION
+
+MODELS = Path(__file__).parents[2] / "models"
+
+
+@cache
+def solved(name: str, case: str | None = None) -> analysis.Result:
+    problem = spec.load(MODELS / f"{name}.yaml")
+    return analysis.solve(problem if case is None else problem.with_case(case))
+
+
+def drawn(result: analysis.Result) -> Axes:
+    axes = Figure(figsize=(4, 4)).add_subplot()
+    figures.draw_contact(axes, result)
+    return axes
+
+
+def lines(axes: Axes, colour: str) -> list[np.ndarray]:
+    return [np.asarray(line.get_xydata()) for line in axes.lines if line.get_color() == colour]
+
+
+@pytest.mark.parametrize("name", ["cylinder_on_plane", "bolt_in_plate", "cantilever_flat_surface"])
+def test_fan_is_as_long_as_the_pressure_is_large(name: str):
+    """Along the normals, outside of the body, from the displaced points."""
+    result = solved(name)
+    contact, pressure, state = result.contact, result.solution.pressure, result.boundary
+    rim, feet = lines(drawn(result), VERMILION)
+    tips, stretch = rim[1:-1], [int(np.argmin(np.hypot(*(_displaced(result) - foot).T))) for foot in feet]
+    assert state is not None
+    assert set(np.flatnonzero(result.touching)) <= set(stretch)
+    assert feet == pytest.approx(_displaced(result)[stretch], abs=1e-12 * 100)
+    length = ((feet - tips) * contact.normals[stretch]).sum(axis=1)
+    assert length / length.max() == pytest.approx((pressure * result.touching)[stretch] / pressure.max(), abs=1e-9)
+    assert feet - length[:, None] * contact.normals[stretch] == pytest.approx(tips, abs=1e-9 * length.max())
+
+
+def _displaced(result: analysis.Result) -> np.ndarray:
+    """Contact points (n, 2) after deformation, one by one."""
+    state = result.boundary
+    assert state is not None
+    moved = state.points + state.displacement
+    return np.array([moved[(state.points == point).all(axis=-1)][0] for point in result.contact.points])
+
+
+def test_surface_meets_the_body_where_it_touches():
+    """The rigid plane is 1 cm below the beam: the body is drawn as it is deformed, and the fan begins on the plane."""
+    axes = drawn(solved("cantilever_flat_surface"))
+    (plane,) = lines(axes, GREY)
+    assert plane[:, 1] == pytest.approx(-1)
+    feet = lines(axes, VERMILION)[1]
+    assert feet[1:, 1] == pytest.approx(-1, abs=1e-9)  # the first one is open
+    assert plane[:, 0].min() < feet[:, 0].min()
+    assert plane[:, 0].max() > feet[:, 0].max()
+
+
+def test_tools_are_drawn_where_they_have_come_to():
+    """The raised table is at 0.1, turned by 0.0002 about its left end; the press follows it."""
+    result = solved("gallery/body_between_two_tools", "raised")
+    table, press = lines(drawn(result), GREY)
+    assert table[:, 1] == pytest.approx(0.1 + 0.0002 * (table[:, 0] + 30), abs=1e-6)
+    assert np.diff(press[:, 1]) / np.diff(press[:, 0]) == pytest.approx(0.0002, rel=1e-6)
+
+
+def test_punch_ends_where_the_boundary_beside_it_lies_in_its_face():
+    (face,) = lines(drawn(solved("gallery/eccentric_punch", "in the middle")), GREY)
+    assert np.sort(face[:, 0]) == pytest.approx([-5, 5])
+
+
+@pytest.mark.parametrize(
+    ("name", "zones"), [("gallery/three_zones", 3), ("gallery/shrink_fit", 1), ("gallery/rolling_polygon", 2)]
+)
+def test_peak_of_each_zone_is_written_with_its_unit(name: str, zones: int):
+    result = solved(name)
+    contact, pressure = result.contact, result.solution.pressure
+    texts = [text.get_text().split(",")[0].split() for text in drawn(result).texts]
+    peaks = [pressure[contact.zone == zone].max() for zone in range(zones)]
+    assert [float(value) for value, _ in texts] == pytest.approx(peaks, rel=1e-4)  # five figures
+    assert {unit for _, unit in texts} == {"N/mm²"}
+
+
+def test_fan_of_a_singular_pressure_is_cut_off_and_said_to_be():
+    """At three times the mean pressure of 200 N/mm²; the mean is that of straight lines between points."""
+    axes = drawn(solved("gallery/flat_punch"))
+    assert [text.get_text().split(",\n")[1] for text in axes.texts] == ["fan cut off"]
+    rim, feet = lines(axes, VERMILION)
+    heights = rim[1:-1, 1] - feet[:, 1]
+    middle = solved("gallery/flat_punch").solution.pressure[np.argmin(feet[:, 0])]
+    assert (heights == heights.max()).sum() > 1
+    assert heights[np.argmin(feet[:, 0])] / heights.max() == pytest.approx(middle / (3 * 200), rel=0.05)
+
+
+@pytest.mark.parametrize(("name", "share"), [("gallery/hertz_small", 0.25), ("gallery/flat_punch", 0.25)])
+def test_part_around_a_small_contact_is_shown(name: str, share: float):
+    result = solved(name)
+    assert result.boundary is not None
+    axes = drawn(result)
+    assert np.ptp(axes.get_xlim()) < share * np.ptp(result.boundary.points[..., 0])
+
+
+def test_fan_of_a_hole_leaves_its_middle_free():
+    """The normals of the pin meet at its center; the fan ends before."""
+    rim, _ = lines(drawn(solved("gallery/shrink_fit")), VERMILION)
+    assert np.hypot(*rim.T).min() > 4
+
+
+def test_undeformed_outline_is_drawn_where_the_difference_is_seen():
+    def dashed(name: str) -> int:
+        patches = [patch for patch in drawn(solved(name)).patches if isinstance(patch, PathPatch)]
+        return sum(patch.get_linestyle() in ("--", "dashed") for patch in patches)
+
+    assert dashed("cylinder_on_plane") == 1
+    assert dashed("gallery/hertz_small") == 0
+
+
+def test_body_that_touches_nothing_is_drawn_without_a_fan():
+    problem = spec.load(MODELS / "cantilever_flat_surface.yaml", variant="printed modulus")
+    axes = drawn(analysis.solve(problem))
+    assert lines(axes, VERMILION) == []
+    assert not axes.texts
