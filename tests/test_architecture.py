@@ -10,11 +10,12 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("errors", "arrays", "options", "version", "files")
+FOUNDATION = ("errors", "arrays", "serialization", "options", "version", "files")
 
 ROOMS = {
     "errors": (),
     "arrays": (),
+    "serialization": (),
     "options": (),
     "version": (),
     "files": ("errors",),

@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.adaptivity.mesh_fit import MeshFit
+from bemcontact.arrays import Array
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
 from bemcontact.assessment.residual import Residuals
-from bemcontact.bem.recovery import BoundaryState
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.record import (
@@ -22,6 +23,7 @@ from bemcontact.contact.record import (
     units_record,
 )
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.errors import ProblemError
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
 from bemcontact.serialization import PairTables, Record, json_text
@@ -136,6 +138,30 @@ class Result:
     def equilibrium_slack(self) -> float | None:
         """Imbalance of the discrete equations relative to the loads; None without a boundary."""
         return None if self.boundary is None else self.boundary.equilibrium_slack
+
+    def contact_fields(self) -> tuple[Array, Array]:
+        """Pressure (m, 3) [p] and gap (m, 3) [L] at the nodes of each boundary element, of the zone of its edge.
+
+        Off the contact points the pressure is zero, and the gap is not a number.
+
+        Raises
+        ------
+        ProblemError
+            The result is that of a condensed problem, which has no boundary.
+        """
+        contact, problem, boundary = self.contact, self.problem, self.boundary
+        if problem is None or boundary is None:
+            raise ProblemError("the result of a condensed problem has no boundary; solve the problem itself")
+        gaps = contact.initial_gap + self.solution.displacement
+        pressure, gap = np.zeros(boundary.points.shape[:2]), np.full(boundary.points.shape[:2], np.nan)
+        for number, name in enumerate(contact.zone_names):
+            edges = [boundary.edge_names.index(edge) for edge in problem.contact_zones[name].edges]
+            at = {tuple(contact.points[i]): i for i in np.flatnonzero(contact.zone == number)}
+            for element in np.flatnonzero(np.isin(boundary.edge, edges)):
+                for local, point in enumerate(boundary.points[element]):
+                    if (i := at.get(tuple(point))) is not None:
+                        pressure[element, local], gap[element, local] = self.solution.pressure[i], gaps[i]
+        return pressure, gap
 
     def record(self) -> ResultRecord:
         """Return what JSON holds of it."""

@@ -13,6 +13,7 @@ from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
 
 CONTRADICTION = 1e-9
 """Difference of two displacements prescribed at one corner, relative to the largest prescribed one, that is refused."""
@@ -34,6 +35,26 @@ class BoundaryValues:
     displacement: Array
     traction_unknown: BoolArray
     traction: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BoundaryState:
+    """Displacement and traction on the boundary, element by element; traction may jump between elements."""
+
+    points: Array
+    """Nodes (m, 3, 2) of each element [L]."""
+    displacement: Array
+    """Displacement (m, 3, 2) at these nodes [L]."""
+    traction: Array
+    """Force (m, 3, 2) on the body per undeformed length [p]."""
+    edge: IntArray
+    """Index (m,) into `edge_names`."""
+    edge_names: tuple[str, ...]
+    """Names of the edges."""
+    force_balance: float
+    """Resultant of all forces on the body (and of their moments, over the radius), over the sum of their magnitudes."""
+    equilibrium_slack: float
+    """Imbalance of the discrete equations relative to the loads; it measures the mesh."""
 
 
 def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:

@@ -1,40 +1,13 @@
 """From a contact pressure back to displacement and traction on the whole boundary."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.condense import Condensation
 from bemcontact.bem.rigid_motions import all_rigid_motions
 
 Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class BoundaryState:
-    """Displacement and traction on the boundary, element by element; traction may jump between elements.
-
-    Parameters
-    ----------
-    points : (m, 3, 2) nodes of each element [L]
-    displacement : (m, 3, 2) [L]
-    traction : (m, 3, 2) force on the body per undeformed length [p]
-    edge : (m,) index into `edge_names`
-    edge_names : names of the edges
-    force_balance : resultant of all forces on the body (and of their moments, over the radius), relative to the sum of
-        their magnitudes
-    equilibrium_slack : how far the discrete equations are from equilibrium, relative to the loads; tells of the mesh
-    """
-
-    points: Array
-    displacement: Array
-    traction: Array
-    edge: IntArray
-    edge_names: tuple[str, ...]
-    force_balance: float
-    equilibrium_slack: float
 
 
 def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:

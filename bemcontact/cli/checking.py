@@ -35,15 +35,13 @@ def check(
     with told(spec, overrides, variant, (figure,)), busy("checking"):
         claim(spec, {"--figure": figure})
         from bemcontact import spec as spec_file
-        from bemcontact.bem.condense import body_of, each_case, ensure_held
+        from bemcontact.analysis.check import check as checked
         from bemcontact.report import text
 
-        body = body_of(spec_file.load(spec, overrides or (), variant).refined(refine))
-        for acting in each_case(body):
-            ensure_held(acting)
+        problem = checked(spec_file.load(spec, overrides or (), variant).refined(refine))
         if figure:
             from bemcontact.report import figures
 
-            figures.save(figures.figure_of_problem(body.problem, body.mesh), figure)
+            figures.save(figures.figure_of_problem(problem.problem, problem.mesh), figure)
     with told(spec):
-        show(text.problem_summary(body))
+        show(text.problem_summary(problem))

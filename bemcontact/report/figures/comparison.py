@@ -53,8 +53,8 @@ class Curve:
     def solution(self) -> ContactSolution:
         """Of the first of them."""
         assessment = self.contenders[0].assessment
-        assert judged is not None  # nothing else is made a curve of
-        return judged.solution
+        assert assessment is not None  # nothing else is made a curve of
+        return assessment.solution
 
 
 def draw_pressures(axes: Axes, level: MeshLevel) -> None:
