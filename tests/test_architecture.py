@@ -63,9 +63,9 @@ HOME = {
         "bemcontact.cli.terminal",
         "bemcontact.report.tables",
         "bemcontact.report.text",
-        "bemcontact.report.cases_text",
+        "bemcontact.report.study_text",
         "bemcontact.report.path_text",
-        "bemcontact.report.reproduction_text",
+        "bemcontact.report.reproduction",
     ),
 }
 """Foreign package -> the only rooms that import it."""

@@ -88,7 +88,7 @@ def compare(
         from bemcontact import spec as spec_file
         from bemcontact.analysis import compare as comparing
         from bemcontact.formulations.plan import planned_comparison
-        from bemcontact.report import text
+        from bemcontact.report import study_text
 
         plan = planned_comparison(names(formulations), names(weights), penalties, starts=starts, seed=seed)
         problem = spec_file.load(spec, overrides or (), variant)
@@ -109,5 +109,5 @@ def compare(
             if not study.certified:
                 tell("not certified: ", study.finest.comparison.verdict)
         else:
-            show(text.study_summary(study))
+            show(study_text.study_summary(study))
     raise typer.Exit(0 if study.certified else UNCERTIFIED)

@@ -78,7 +78,7 @@ def path(
         if json_file == STANDARD_OUTPUT:
             write_json(found.to_json())
             if not found.certified:
-                tell("not certified: ", path_text.verdict(found))
+                tell("not certified: ", path_text.path_sentence(found))
         else:
             show(path_text.path_summary(found))
     raise typer.Exit(0 if found.certified else UNCERTIFIED)

@@ -38,8 +38,7 @@ def reproduce(
         parts = several(refine, "--refine", "whole number", int)
         say("reading", "")
         from bemcontact.analysis.reproduction import reproduce as carry_out
-        from bemcontact.report.reproduction_page import verdict
-        from bemcontact.report.reproduction_text import reproduction_summary
+        from bemcontact.report.reproduction import reproduction_sentence, reproduction_summary
 
         reproduction = carry_out(parts, say)
         if out:
@@ -54,7 +53,7 @@ def reproduce(
         if json_file == STANDARD_OUTPUT:
             write_json(reproduction.to_json())
             if not reproduction.reproduced:
-                tell("not reproduced: ", verdict(reproduction.to_dict()))
+                tell("not reproduced: ", reproduction_sentence(reproduction.to_dict()))
         else:
             show(reproduction_summary(reproduction.to_dict()))
     raise typer.Exit(0 if reproduction.reproduced else UNCERTIFIED)

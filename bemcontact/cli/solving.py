@@ -100,7 +100,7 @@ def solve(
         from bemcontact.analysis import solve as analysis
         from bemcontact.formulations import plan as plans
         from bemcontact.formulations import starts as starts_of
-        from bemcontact.report import cases_text, formatting, text
+        from bemcontact.report import text
 
         plan = plans.planned(
             formulation,
@@ -141,7 +141,7 @@ def solve(
         if json_file == STANDARD_OUTPUT:
             write_json(found.to_json(indent=2))
             if not found.certified:
-                tell("not certified: ", cases_text.uncertified(found) if several else formatting.verdict(found))
+                tell("not certified: ", text.uncertified(found))
         else:
-            show(cases_text.cases_summary(found) if several else text.result_summary(found))
+            show(text.cases_summary(found) if several else text.result_summary(found))
     raise typer.Exit(0 if found.certified else UNCERTIFIED)

@@ -150,7 +150,7 @@ def _tool_records(contact: CondensedContact, solution: ContactSolution) -> list[
             rotation=rotation,
             force_of_body=(fx, fy),
             moment_of_body=moment,
-            free=free,
+            free=(free[0], free[1], free[2]),
         )
         for name, point, (x, y, rotation), (fx, fy, moment), free in zip(
             tools.names,

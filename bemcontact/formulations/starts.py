@@ -16,7 +16,7 @@ from bemcontact.errors import OptionError, SpecError
 from bemcontact.files.text import text_of
 from bemcontact.formulations.formulation import Formulation, FormulationOptions, Start, ensure_whole
 from bemcontact.formulations.search import contact_residual
-from bemcontact.options import StartName
+from bemcontact.options import FormulationName, StartName
 
 SPREAD = 2.0
 """Largest random pressure over T, and size of a random displacement over U."""
@@ -196,7 +196,7 @@ def search_from(
         if progress:
             progress(number + 1)
     ordered = tuple(sorted(ends, key=lambda end: (end.solution.status is not Status.SOLVED, end.residual)))
-    return RandomStarts(formulation=name, count=count, seed=seed, ends=ordered)
+    return RandomStarts(formulation=FormulationName(name), count=count, seed=seed, ends=ordered)
 
 
 def _end(contact: CondensedContact, found: ContactSolution, number: int) -> End:

@@ -237,6 +237,14 @@ class LoadPath(Leaf):
         """Intervals, peak and resultant at t; the ends of intervals are not linear in t."""
         return footprint(self.contact(t), self.at(t))
 
+    def _ensure_reached(self, t: float) -> None:
+        """Refuse a t outside of the path."""
+        if not self.begins_at <= t <= self.ends_at:
+            raise ProblemError(
+                f"the path reaches from {self.begins_at:g} to {self.ends_at:g}, there is nothing at {t:g}"
+                + (f": {self.note}" if self.note else "")
+            )
+
 
 def resultants(contact: CondensedContact, pressure: Array) -> Array:
     """Σ w p n over each zone, (..., zones, 2) [p L], of pressures (..., n)."""

@@ -1,54 +1,39 @@
 """The table of a load path for the terminal."""
 
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.report.formatting import number, plural, sentence_case, units_of, vector
+from bemcontact.report.tables import table_of, verdict
 
 MANY = 4
-"""Points that are named where they enter or leave together; of more the number is told."""
-COLUMNS = ("", "enter", "leave", "in contact", "peak", "at")
+"""Number of points up to which those that enter or leave together are named."""
 
 
-def path_summary(found: ParameterPath) -> RenderableType:
-    """Tell where points enter and leave contact, and how the peak pressure goes.
-
-    Parameters
-    ----------
-    found : ParameterPath
-
-    Returns
-    -------
-    RenderableType
-        For `rich`; no wider than 100 columns where the names are not.
-    """
-    units = units_of(found.contact)
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="cyan", pad_edge=False)
-    for name in COLUMNS:
-        numbers = name in ("", "in contact", "peak")
-        title = f"peak, {units.stress}" if name == "peak" and units.stress else name
-        table.add_column(title, justify="right" if numbers else "left", no_wrap=numbers, overflow="fold")
-    for state in found.breakpoints:
-        table.add_row(*map(Text, _cells(found.contact, state)))
-    style = "bold green" if found.certified else "bold red"
-    word = "certified" if found.certified else "NOT certified"
-    where = f"{found.key} from {number(found.start)} to {number(found.end)}"
-    counts = {"breakpoint": len(found.breakpoints), "pivot": found.path.pivots}
+def path_summary(path: ParameterPath) -> RenderableType:
+    """List where points enter and leave contact, and the peak pressure there."""
+    units = units_of(path.contact)
+    peak = f"peak, {units.stress}" if units.stress else "peak"
+    table = table_of("", "enter", "leave", "in contact", peak, "at", right=frozenset({"", "in contact", peak}))
+    for state in path.breakpoints:
+        table.add_row(*map(Text, _cells(path.contact, state)))
+    word = "certified" if path.certified else "NOT certified"
+    where = f"{path.key} from {number(path.start)} to {number(path.end)}"
+    counts = {"breakpoint": len(path.breakpoints), "pivot": path.pivots}
     how = ", ".join(f"{count} {plural(noun, count)}" for noun, count in counts.items())
-    end = Text.assemble((word, style), ". ", verdict(found))
-    return Group(Text(found.contact.name, "bold"), Text(f"{where}; {how}", "dim"), "", table, "", end)
+    end = verdict(word, path.certified, path_sentence(path))
+    return Group(Text(path.contact.name, "bold"), Text(f"{where}; {how}", "dim"), "", table, "", end)
 
 
-def verdict(found: ParameterPath) -> str:
-    """Say in a sentence or two how far the path can be trusted."""
-    first, last = map(number, found.reaches)
-    exact = f"Natural residual {found.path.residual:.0e} at the worst breakpoint."
-    if found.certified:
+def path_sentence(path: ParameterPath) -> str:
+    """Say how far a path can be trusted."""
+    first, last = map(number, path.reaches)
+    exact = f"Natural residual {path.residual:.0e} at the worst breakpoint."
+    if path.certified:
         return f"Every state from {first} to {last} is the contact state, the only one. {exact}"
-    return " ".join((*(f"{sentence_case(note)}." for note in found.notes), exact))
+    return " ".join((*(f"{sentence_case(note)}." for note in path.notes), exact))
 
 
 def _cells(contact: CondensedContact, state: PathState) -> list[str]:
