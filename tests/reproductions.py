@@ -19,5 +19,5 @@ def problem(model: str) -> PaperStudy:
 def with_coarse_mesh_judged() -> Reproduction:
     """The paper's own mesh of the bolt, which misses the references, as if it were the base mesh."""
     bolt = problem("bolt_in_plate")
-    coarse = replace(bolt, study=next(iter(bolt.variants.values())))
+    coarse = replace(bolt, study=next(iter(bolt.variants.values())), variants={})
     return replace(on_base_meshes(), problems=(problem("cylinder_on_plane"), coarse))

@@ -151,6 +151,7 @@ def test_what_a_killed_run_left_long_ago_is_removed(tmp_path: Path):
 KILLED = """
 import os, random, shutil, signal, sys, time
 from pathlib import Path
+from bemcontact.files import output
 
 FILES = [f"{i}.txt" for i in range(4)]
 

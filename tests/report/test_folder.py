@@ -110,6 +110,7 @@ KILLED = """
 import json, os, random, signal, sys, time
 from pathlib import Path
 from studies import on_one_mesh
+from bemcontact.report import folder
 
 place, chance, seen = Path(sys.argv[1]), random.Random(0), set()
 study = on_one_mesh()

@@ -77,8 +77,9 @@ def of_each_kind() -> dict[str, list[Any]]:
     tools = load("models/gallery/body_between_two_tools.yaml")
     contact = random_contact(3, 7, 2)
     loose = CondensedContact.from_compliance(np.eye(2), [1.0, 1.0])
+    roller = load("models/gallery/hertz_small.yaml")
     cases = load("models/gallery/roller_in_v_block.yaml")
-    relief = bemcontact.Relief(lower=0.0, upper=0.001, slope=1e-3, curvature=1e-3)
+    relief = bemcontact.Relief(lower=-0.002, upper=0.0, slope=0.02, curvature=0.05)
     return {
         "result": [
             bemcontact.solve(cylinder, "qp2"),
@@ -93,7 +94,7 @@ def of_each_kind() -> dict[str, list[Any]]:
         "load_path": [bemcontact.load_path(loose, CondensedContact.from_compliance(np.eye(2), [-1.0, 1.0]))],
         "sensitivities": [bemcontact.sensitivities(cylinder, ["conditions.top.pressure"])],
         "starts": [bemcontact.random_starts(contact, "qp1", 2)],
-        "design": [bemcontact.design_gap(bemcontact.condense(load("models/gallery/flat_punch.yaml")), relief)],
+        "design": [bemcontact.design_gap(bemcontact.condense(roller), relief)],
     }
 
 
