@@ -1,6 +1,6 @@
 """Facts of a result in words, from its JSON: the same list in the terminal and on a page."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -109,7 +109,7 @@ def zone_forces(record: Record, units: Units) -> Iterator[str]:
         yield f"{zone}: {vector((x, y), per_thickness(units), scale=scale)}"
 
 
-def scores_in_words(scores: list[Record], references: list[Record], units: Units) -> Iterator[dict[str, str]]:
+def scores_in_words(scores: Sequence[Record], references: Sequence[Record], units: Units) -> Iterator[dict[str, str]]:
     """Write each computed quantity beside what a reference expects."""
     by_name = {item["name"]: item for item in references}
     for score in scores:
