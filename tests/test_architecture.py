@@ -64,7 +64,6 @@ HOME = {
         "bemcontact.report.tables",
         "bemcontact.report.text",
         "bemcontact.report.study_text",
-        "bemcontact.report.path_text",
         "bemcontact.report.reproduction",
     ),
 }

@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 from scipy.linalg import eigvalsh
 
 from bemcontact.arrays import Array
-from bemcontact.assessment.advice import advice
 from bemcontact.assessment.residual import Residuals
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.solution import ContactSolution
+from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.options import FormulationName
 from bemcontact.serialization import Leaf
 
 TOLERANCE = 1e-10
@@ -36,6 +36,9 @@ TOLERANCE = 1e-10
 LARGEST_BOUND = 1e-3
 """Error bound, relative to the peak pressure, above which round-off alone leaves the answer open."""
 NEWTON_STEPS = 20
+LOCAL = (FormulationName.QP1, FormulationName.QP2)
+"""Formulations whose solver starts somewhere and may end in a local minimum."""
+DIRECT = "--formulation complementarity"
 
 
 class CertificateKind(StrEnum):
@@ -98,7 +101,7 @@ def certify(
         error_bound=bound,
         relative_error_bound=relative,
         complaint=complaint,
-        words=_words(kind, complaint, eigenvalue, relative, advice(solution)),
+        words=_certificate_sentence(kind, complaint, eigenvalue, relative, advice(solution)),
     )
 
 
@@ -187,7 +190,7 @@ def _complaint(residuals: Residuals, tolerance: float, size: float) -> str:
     return "" if value <= allowed else f"the residual of {name} is {value:.1e} where {allowed:.1e} is allowed"
 
 
-def _words(
+def _certificate_sentence(
     kind: CertificateKind, complaint: str, eigenvalue: float | None, relative: float | None, way_out: str
 ) -> str:
     """Two or three sentences for an engineer."""
@@ -212,3 +215,27 @@ def _words(
             )
         case CertificateKind.NOT_A_SOLUTION:
             return f"This is not the contact state: {complaint}.{error} {way_out}"
+
+
+def advice(solution: ContactSolution) -> str:
+    """Say in a sentence what to try where a solution is not the contact state, in the words of the command line."""
+    match solution.status:
+        case Status.INFEASIBLE:
+            return "Check that loads and conditions press the body onto its support, or refine the mesh (--refine 2)."
+        case Status.UNBOUNDED:
+            return "Take the tributary weights."
+        case Status.ITERATION_LIMIT:
+            return f"Raise the limit (--max-iterations; {solution.iterations} were done){_or_another(solution)}."
+        case _ if solution.formulation == FormulationName.COMPLEMENTARITY:
+            return "Refine the mesh (--refine 2), and look in it for very short elements."
+        case Status.LOCAL_MINIMUM:
+            return f"Try {DIRECT}, or other starts (--starts 20) with the tributary weights."
+        case Status.NUMERICAL_FAILURE:
+            return f"Try {DIRECT}, and look in the mesh for very short elements."
+        case _:
+            return f"Try {DIRECT}, a finer mesh (--refine 2), or the tributary weights if these are others."
+
+
+def _or_another(solution: ContactSolution) -> str:
+    """Another way out of a search that is too long."""
+    return ", or take another start (--seed 1)" if solution.formulation in LOCAL else ""

@@ -62,7 +62,7 @@ def path(
         claim_folder(spec, "--out", out, json_claim, "path")
         from bemcontact import spec as spec_file
         from bemcontact.analysis import follow as responses
-        from bemcontact.report import path_text
+        from bemcontact.report import text
 
         problem = spec_file.load(spec, overrides or (), variant).refined(refine)
         found = responses.follow(problem, vary, to, start)
@@ -78,7 +78,7 @@ def path(
         if json_file == STANDARD_OUTPUT:
             write_json(found.to_json())
             if not found.certified:
-                tell("not certified: ", path_text.path_sentence(found))
+                tell("not certified: ", text.path_sentence(found))
         else:
-            show(path_text.path_summary(found))
+            show(text.path_summary(found))
     raise typer.Exit(0 if found.certified else UNCERTIFIED)

@@ -10,7 +10,7 @@ from bemcontact.serialization import Leaf
 
 
 class Status(StrEnum):
-    """How a solver ended, which proves nothing; `bemcontact.assessment.advice` says what to do."""
+    """How a solver ended, which proves nothing; `bemcontact.assessment.certificate` says what to do."""
 
     SOLVED = "solved"
     LOCAL_MINIMUM = "local_minimum"

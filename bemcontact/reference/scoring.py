@@ -9,7 +9,7 @@ from bemcontact.arrays import Array
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Table, Values
-from bemcontact.reference.expectation import Expected
+from bemcontact.reference.evaluation import Expected
 from bemcontact.reference.positions import LEVEL, BoolArray, Frame, coordinates, in_zone
 from bemcontact.serialization import Leaf
 

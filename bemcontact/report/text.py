@@ -15,6 +15,7 @@ from bemcontact.analysis.check import CheckedProblem
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.facts import Record, facts, peak_in_words, pressed_by, size_of, span, zone_forces
 from bemcontact.report.formatting import (
@@ -24,10 +25,12 @@ from bemcontact.report.formatting import (
     held_by,
     number,
     per_thickness,
+    plural,
     prescribed,
     reference_in_words,
     search_in_words,
     seconds_in_words,
+    sentence_case,
     surface_in_words,
     tool_in_words,
     units_of,
@@ -35,7 +38,10 @@ from bemcontact.report.formatting import (
     volume_loads,
     with_unit,
 )
-from bemcontact.report.tables import add, add_verdict, list_of_facts, table_of
+from bemcontact.report.tables import add, add_verdict, list_of_facts, table_of, verdict
+
+MANY = 4
+"""Number of points up to which those that enter or leave together are named."""
 
 
 def problem_summary(checked: CheckedProblem) -> RenderableType:
@@ -184,3 +190,47 @@ def _zone_table(checked: CheckedProblem) -> Table:
         edges, surface = ", ".join(zone.edges), surface_in_words(zone.surface)
         table.add_row(*map(Text, (name, edges, f"{len(gap)}", smallest, surface)))
     return table
+
+
+def path_summary(path: ParameterPath) -> RenderableType:
+    """List where points enter and leave contact, and the peak pressure there."""
+    units = units_of(path.contact)
+    peak = f"peak, {units.stress}" if units.stress else "peak"
+    table = table_of("", "enter", "leave", "in contact", peak, "at", right=frozenset({"", "in contact", peak}))
+    for state in path.breakpoints:
+        table.add_row(*map(Text, _cells(path.contact, state)))
+    word = "certified" if path.certified else "NOT certified"
+    where = f"{path.key} from {number(path.start)} to {number(path.end)}"
+    counts = {"breakpoint": len(path.breakpoints), "pivot": path.pivots}
+    how = ", ".join(f"{count} {plural(noun, count)}" for noun, count in counts.items())
+    end = verdict(word, path.certified, path_sentence(path))
+    return Group(Text(path.contact.name, "bold"), Text(f"{where}; {how}", "dim"), "", table, "", end)
+
+
+def path_sentence(path: ParameterPath) -> str:
+    """Say how far a path can be trusted."""
+    first, last = map(number, path.reaches)
+    exact = f"Natural residual {path.residual:.0e} at the worst breakpoint."
+    if path.certified:
+        return f"Every state from {first} to {last} is the contact state, the only one. {exact}"
+    return " ".join((*(f"{sentence_case(note)}." for note in path.notes), exact))
+
+
+def _cells(contact: CondensedContact, state: PathState) -> list[str]:
+    """A row: value, what enters, what leaves, how many touch, the peak and where."""
+    at = "" if state.at is None else _place(contact, state.at)
+    entered, left = (_named(contact, points) for points in (state.entered, state.left))
+    return [number(state.value), entered, left, f"{len(state.touching)}", number(state.peak), at]
+
+
+def _named(contact: CondensedContact, points: tuple[int, ...]) -> str:
+    """Name points by their number and place."""
+    if len(points) > MANY:
+        return f"{len(points)} points"
+    return ", ".join(f"{i} at {_place(contact, i)}" for i in points)
+
+
+def _place(contact: CondensedContact, i: int) -> str:
+    """The place of a point."""
+    x, y = contact.points[i].tolist()
+    return vector((x, y), "", scale=float(abs(contact.points).max()))
