@@ -122,7 +122,7 @@ def scores_in_words(scores: Sequence[Record], references: Sequence[Record], unit
             "found": NOTHING if score["found"] is None else with_unit(number(score["found"]), unit),
             "expected": with_unit(number(score["expected"]), unit),
             "difference": percent(score["difference"]),
-            "tolerance": percent(score["tolerance"]),
+            "tolerance": f"{100 * score['tolerance']:.3g} %",
             "verdict": verdict,
             "colour": QUALITIES[verdict],
         }

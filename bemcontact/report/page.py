@@ -54,7 +54,7 @@ def _contents(report: Record) -> dict[str, Any]:
         "apart": {item["one"]: item for item in compared["differences"] if item["other"] == reference["label"]},
         "answer": reference["answer"],
         "units": {"p": units.stress, "L": units.length, "1": ""},
-        "verdict": _verdict(report, compared),
+        "verdict": _headline(report, compared),
         "description": [" ".join(part.split()) for part in report["description"].split("\n\n") if part.strip()],
         "facts": _facts(level, units),
         "scores": [*scores_in_words(level["scores"], level["references"], units)],
@@ -73,7 +73,7 @@ def _quality(outcome: str) -> str:
     return OUTCOMES[Outcome(outcome)].quality
 
 
-def _verdict(report: Record, compared: Record) -> str:
+def _headline(report: Record, compared: Record) -> str:
     """What the report shows; of many contenders, how many of them."""
     if len(compared["contenders"]) < MANY:
         return report["verdict"]

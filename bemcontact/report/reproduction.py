@@ -11,7 +11,7 @@ from bemcontact.problem import Units
 from bemcontact.report.facts import NOTHING, QUALITIES, Record, score_verdict, scores_in_words, small
 from bemcontact.report.formatting import number, seconds_in_words, sentence_case, with_unit
 from bemcontact.report.markup import picture, statement, template
-from bemcontact.report.tables import table_of, verdict
+from bemcontact.report.tables import table_of, verdict_text
 
 FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
 """In the order of the table of iterations."""
@@ -49,7 +49,7 @@ def reproduction_summary(record: Record) -> RenderableType:
         parts += [title.append(f"{proved}, {held}", "green" if _good(item) else "red"), _statement_table(item), ""]
     word = "reproduced" if record["reproduced"] else "NOT reproduced"
     took = f"All of it took {seconds_in_words(record['seconds'])}."
-    end = verdict(word, record["reproduced"], f"{reproduction_sentence(record)} {took}")
+    end = verdict_text(word, record["reproduced"], f"{reproduction_sentence(record)} {took}")
     return Group(*parts, _iteration_table(record), "", end)
 
 

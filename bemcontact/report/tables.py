@@ -25,10 +25,10 @@ def add(facts: Table, name: str, value: str) -> None:
 
 def add_verdict(facts: Table, word: str, good: bool, words: str) -> None:
     """Add the verdict to a list: in a word, and in sentences."""
-    facts.add_row(Text("Verdict", "bold"), verdict(word, good, words))
+    facts.add_row(Text("Verdict", "bold"), verdict_text(word, good, words))
 
 
-def verdict(word: str, good: bool, words: str) -> Text:
+def verdict_text(word: str, good: bool, words: str) -> Text:
     """Write a verdict: green if it is good, else red."""
     return Text.assemble((word, "bold green" if good else "bold red"), ". ", words)
 

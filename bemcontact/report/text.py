@@ -38,7 +38,7 @@ from bemcontact.report.formatting import (
     volume_loads,
     with_unit,
 )
-from bemcontact.report.tables import add, add_verdict, list_of_facts, table_of, verdict
+from bemcontact.report.tables import add, add_verdict, list_of_facts, table_of, verdict_text
 
 MANY = 4
 """Number of points up to which those that enter or leave together are named."""
@@ -203,7 +203,7 @@ def path_summary(path: ParameterPath) -> RenderableType:
     where = f"{path.key} from {number(path.start)} to {number(path.end)}"
     counts = {"breakpoint": len(path.breakpoints), "pivot": path.pivots}
     how = ", ".join(f"{count} {plural(noun, count)}" for noun, count in counts.items())
-    end = verdict(word, path.certified, path_sentence(path))
+    end = verdict_text(word, path.certified, path_sentence(path))
     return Group(Text(path.contact.name, "bold"), Text(f"{where}; {how}", "dim"), "", table, "", end)
 
 

@@ -74,7 +74,7 @@ def test_lengths_pressures_and_forces_have_their_units():
 def of_each_kind() -> dict[str, list[Any]]:
     """Results of each kind but studies, and reproductions of the paper, which are tested with their page."""
     cylinder = load("models/cylinder_on_plane.yaml")
-    tools = load("models/gallery/body_between_two_tools.yaml")
+    tools = load("models/gallery/body_between_two_tools.yaml").with_case("raised")
     contact = random_contact(3, 7, 2)
     loose = CondensedContact.from_compliance(np.eye(2), [1.0, 1.0])
     roller = load("models/gallery/hertz_small.yaml")
