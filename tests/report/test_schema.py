@@ -93,7 +93,7 @@ def of_each_kind() -> dict[str, list[Any]]:
         "path": [bemcontact.follow(cylinder, "conditions.top.pressure", 20.0, 0.0)],
         "load_path": [bemcontact.load_path(loose, CondensedContact.from_compliance(np.eye(2), [-1.0, 1.0]))],
         "sensitivities": [bemcontact.sensitivities(cylinder, ["conditions.top.pressure"])],
-        "starts": [bemcontact.random_starts(contact, "qp1", 2)],
+        "starts": [bemcontact.random_starts(contact, "qp1", count=2)],
         "design": [bemcontact.design_gap(bemcontact.condense(roller), relief)],
     }
 
