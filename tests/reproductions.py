@@ -3,8 +3,7 @@
 from dataclasses import replace
 from functools import cache
 
-from bemcontact.analysis.reproduced import Reproduced, Reproduction
-from bemcontact.analysis.reproduction import reproduce
+from bemcontact.analysis.reproduction import PaperStudy, Reproduction, reproduce
 
 
 @cache
@@ -12,7 +11,7 @@ def on_base_meshes() -> Reproduction:
     return reproduce((1,))
 
 
-def problem(model: str) -> Reproduced:
+def problem(model: str) -> PaperStudy:
     """One of them, by the name of its file."""
     return next(item for item in on_base_meshes().problems if item.paper.model == model)
 
@@ -20,6 +19,5 @@ def problem(model: str) -> Reproduced:
 def with_coarse_mesh_judged() -> Reproduction:
     """The paper's own mesh of the bolt, which misses the references, as if it were the base mesh."""
     bolt = problem("bolt_in_plate")
-    mesh = replace(bolt.variants[0], variant=None, label="base mesh", description="")
-    coarse = replace(bolt, meshes=(mesh,))
+    coarse = replace(bolt, study=next(iter(bolt.variants.values())), variants={})
     return replace(on_base_meshes(), problems=(problem("cylinder_on_plane"), coarse))

@@ -10,11 +10,12 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("errors", "arrays", "options", "version", "files")
+FOUNDATION = ("errors", "arrays", "serialization", "options", "version", "files")
 
 ROOMS = {
     "errors": (),
     "arrays": (),
+    "serialization": (),
     "options": ("errors",),
     "version": (),
     "files": ("errors",),
@@ -62,9 +63,8 @@ HOME = {
         "bemcontact.cli.terminal",
         "bemcontact.report.tables",
         "bemcontact.report.text",
-        "bemcontact.report.cases_text",
-        "bemcontact.report.path_text",
-        "bemcontact.report.reproduction_text",
+        "bemcontact.report.study_text",
+        "bemcontact.report.reproduction",
     ),
 }
 """Foreign package -> the only rooms that import it."""

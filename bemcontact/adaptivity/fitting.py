@@ -175,7 +175,7 @@ def _trial(body: Body, placed: ElementEnds, stated: Mapping[int, ZoneRun], fitte
     contact = condense(body).contact
     solution = complementarity.solve(contact)
     if solution.status is not Status.SOLVED:
-        note = f"the mesh could not be fitted to a state of contact: {solution.status.value}"
+        note = f"the mesh could not be fitted to a state of contact: {solution.status.words}"
         return _Trial(placed=placed, notes=(note,))
     intervals = footprint(contact, solution).intervals
     by_run: dict[int, tuple[Touched, ...]] = {}

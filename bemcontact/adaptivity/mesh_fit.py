@@ -1,51 +1,33 @@
 """How a mesh was fitted to the ends of contact, pass by pass."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from bemcontact.assessment.footprint import ContactInterval
+from bemcontact.serialization import Internal, Leaf
 
 
 @dataclass(frozen=True, kw_only=True)
-class FitPass:
-    """One mesh on the way.
-
-    Parameters
-    ----------
-    intervals : of contact, as found on this mesh
-    movement : largest distance of an end of contact from where the mesh is graded to, over the shorter element there;
-        None if it is not graded to these ends of contact, as the first one mostly is not
-    """
+class FitPass(Leaf):
+    """One mesh on the way to the fitted one."""
 
     intervals: tuple[ContactInterval, ...]
+    """Contact intervals on this mesh."""
     movement: float | None
+    """Largest distance of an end of contact from where the mesh is graded to, over the shorter element there.
+
+    Null if the mesh is not graded to these ends of contact, as the first one mostly is not.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
-class MeshFit:
-    """How a mesh was fitted.
-
-    Parameters
-    ----------
-    passes : the mesh as it was stated, then each fitted one
-    kept : number of the pass whose mesh was kept; 0 is the mesh as it was stated
-    settled : whether the ends of contact found on it are those that it is fitted to, and no contact is narrower than an
-        element
-    notes : what was done, in words
-    """
+class MeshFit(Leaf):
+    """How a mesh was fitted to the ends of contact."""
 
     passes: tuple[FitPass, ...]
+    """The mesh as it is stated, then each fitted one."""
     kept: int
+    """Number of the pass whose mesh was kept; 0 is the mesh as it is stated."""
     settled: bool
-    notes: tuple[str, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers, lists and texts, ready for JSON."""
-        return {
-            "settled": self.settled,
-            "kept": self.kept,
-            "passes": [
-                {"movement": item.movement, "intervals": [interval.to_dict() for interval in item.intervals]}
-                for item in self.passes
-            ],
-        }
+    """Whether the ends of contact on it are those that it is fitted to, and no contact is narrower than an element."""
+    notes: Internal[tuple[str, ...]]
+    """What was done, in words."""

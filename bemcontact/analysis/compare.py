@@ -8,9 +8,9 @@ from typing import Unpack
 from bemcontact.adaptivity.mesh_fit import MeshFit
 from bemcontact.analysis.solve import assessed, condensation_of, fitted_to_contact
 from bemcontact.analysis.stopwatch import Progress, Stopwatch
-from bemcontact.analysis.study import MeshLevel, Study
+from bemcontact.analysis.study import MeshLevel, Settings, Study
 from bemcontact.assessment.comparison import Comparison, comparison
-from bemcontact.assessment.contender import Found
+from bemcontact.assessment.contender import Attempt
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import KeyPath, NotConvexError, OptionError, SolverError
 from bemcontact.formulations import FORMULATIONS, qp3
@@ -114,7 +114,7 @@ def study(
         watch = Stopwatch(progress=report, seconds={} if levels else fitting.seconds)
         level = _compared(options, finer, watch, fit)
         levels.append(replace(level, refine=parts, outdated=outdated(problem, changes)))
-    return Study(settings={**options.to_dict(), "changes": [*changes]}, levels=tuple(levels))
+    return Study(settings=Settings(**options.to_dict(), changes=tuple(changes)), levels=tuple(levels))
 
 
 def outdated(problem: Problem | CondensedContact, changes: Sequence[str]) -> frozenset[str]:
@@ -153,7 +153,9 @@ def _compared(
     return MeshLevel(refine=1, comparison=compared, answer=answer)
 
 
-def _attempted(attempt: SolveOptions, options: ComparisonOptions, contact: CondensedContact, watch: Stopwatch) -> Found:
+def _attempted(
+    attempt: SolveOptions, options: ComparisonOptions, contact: CondensedContact, watch: Stopwatch
+) -> Attempt:
     """Solve by one formulation, from the null start, and from random ones if that is asked for."""
     label = attempt.label(tells_penalty=options.tells_penalty)
     begin, searches = time.perf_counter(), None
@@ -166,5 +168,5 @@ def _attempted(attempt: SolveOptions, options: ComparisonOptions, contact: Conde
                 several = replace(attempt, starts=options.starts, seed=options.seed)
                 searches = multistart(contact, several, lambda done: say(f"{done} of {options.starts}"))
     except (NotConvexError, OptionError, SolverError) as error:
-        return Found(options=attempt, label=label, solution=None, refusal=str(error))
-    return Found(options=attempt, label=label, solution=solution, seconds=seconds, starts=searches)
+        return Attempt(options=attempt, label=label, solution=None, refusal=str(error))
+    return Attempt(options=attempt, label=label, solution=solution, seconds=seconds, starts=searches)

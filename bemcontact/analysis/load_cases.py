@@ -1,10 +1,9 @@
 """All load cases and combinations of a problem, solved on one condensation and assessed."""
 
-import json
 from dataclasses import dataclass
 from typing import Any, Unpack
 
-from bemcontact.analysis.result import Result
+from bemcontact.analysis.result import Result, ResultRecord
 from bemcontact.analysis.solve import assessed, condensation_of, ensure_kind, solve_with
 from bemcontact.analysis.stopwatch import Progress, Stopwatch
 from bemcontact.errors import ProblemError
@@ -12,7 +11,25 @@ from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.start import with_start_read
 from bemcontact.options import FormulationName, SolveKeywords, SolveOptions, Weights
 from bemcontact.problem.problem import Problem
+from bemcontact.serialization import Record, json_text
 from bemcontact.version import __version__
+
+
+class CasesRecord(Record):
+    """Results of all load cases and combinations of a problem."""
+
+    name: str
+    """Name of the problem."""
+    version: str
+    """Version of bemcontact."""
+    certified: bool
+    """Whether all of them are proved to be the contact state."""
+    worst: str | None
+    """Name of the load case or combination with the largest peak pressure; null if nothing touches in any."""
+    cases: dict[str, ResultRecord]
+    """Result by the name of the load case or combination."""
+    seconds: dict[str, float]
+    """Time of each stage that they share."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -47,20 +64,24 @@ class CaseResults:
         peaks = {name: item.footprint.peak.pressure for name, item in self.results.items() if item.footprint.peak}
         return max(peaks, key=lambda name: peaks[name], default=None)
 
+    def record(self) -> CasesRecord:
+        """Return what JSON holds of it."""
+        return CasesRecord(
+            name=self.name,
+            version=__version__,
+            certified=self.certified,
+            worst=self.worst,
+            cases={name: result.record() for name, result in self.results.items()},
+            seconds=self.seconds,
+        )
+
     def to_dict(self) -> dict[str, Any]:
-        """Give all of it as numbers, lists and texts, ready for JSON; of each case what `Result.to_dict` gives."""
-        return {
-            "name": self.name,
-            "version": __version__,
-            "certified": self.certified,
-            "worst": self.worst,
-            "cases": {name: result.to_dict() for name, result in self.results.items()},
-            "seconds": self.seconds,
-        }
+        """Return all of it as numbers, lists and texts, ready for JSON."""
+        return self.record().to_dict()
 
     def to_json(self, indent: int | None = 2) -> str:
-        """Write `to_dict` as JSON; every number in it is finite."""
-        return json.dumps(self.to_dict(), indent=indent, allow_nan=False, ensure_ascii=False)
+        """Return `to_dict` as JSON; every number in it is finite."""
+        return json_text(self.to_dict(), indent)
 
 
 def solve_cases(

@@ -1,16 +1,256 @@
-"""From the files of the paper's problems to answers on all their meshes."""
+"""The paper's problems solved again: a study of each, and quantities to compare with the paper's statements."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
 
 from bemcontact import spec
 from bemcontact.analysis import compare as comparing
 from bemcontact.analysis import shipped_models as shipped
-from bemcontact.analysis.paper import PROBLEMS, PaperProblem
-from bemcontact.analysis.reproduced import Reproduced, Reproduction, Run
 from bemcontact.analysis.stopwatch import Progress
-from bemcontact.analysis.study import MeshLevel
-from bemcontact.options import ComparisonOptions
-from bemcontact.problem import Problem
+from bemcontact.analysis.study import LevelRecord, MeshLevel, Study, versions
+from bemcontact.arrays import Array
+from bemcontact.contact.record import UnitsRecord
+from bemcontact.options import ComparisonOptions, FormulationName
+from bemcontact.problem import Problem, Table, Units, Values
+from bemcontact.reference.paper import PROBLEMS, PaperProblem, Quantity, Statement
+from bemcontact.reference.positions import coordinates
+from bemcontact.serialization import Record, Vector, json_text
+
+Reading = tuple[float, ...]
+"""A number, the smallest and the largest of several, or nothing where there is none."""
+LEVEL = 1e-9
+"""Part of an extent, or of a scale, below which a difference is round-off."""
+
+
+class StatementRecord(Record):
+    """A statement of the paper on a quantity, and the same quantity as computed here."""
+
+    what: str
+    """The quantity."""
+    said: str
+    """The paper's statement, in words."""
+    unit: str
+    """Label of the unit of what is found."""
+    found: list[Reading]
+    """Computed by each run: a number, the smallest and the largest, or none."""
+
+
+class RunRecord(Record):
+    """A problem of the paper, or a variant of it, on one mesh."""
+
+    label: str
+    """Name of the mesh."""
+    variant: str | None
+    """Name of the variant; null for the problem as stated."""
+    description: str
+    """Description of the variant."""
+    position: Vector
+    """Coordinate of each contact point, in its unit."""
+    contact: Reading
+    """Smallest and largest coordinate of contact, in its unit; empty without contact."""
+    level: LevelRecord
+    """The comparison on this mesh, as in report.json."""
+
+
+class PaperRecord(Record):
+    """A problem of the paper: its statements, and the runs that they are compared with."""
+
+    model: str
+    """Name of the file in models."""
+    name: str
+    """Name of the problem in the file."""
+    figure: str
+    """Figure of the paper."""
+    description: str
+    """Description in the file."""
+    units: UnitsRecord
+    """Labels of the units."""
+    coordinate: str
+    """Symbol of the coordinate of the paper's figure."""
+    coordinate_unit: str
+    """Label of its unit."""
+    certified: bool
+    """Whether all solutions of all runs are proved to be the contact state."""
+    judged: int
+    """Number of quantities that are judged by references, on all meshes of the problem as stated."""
+    held: int
+    """Number of these quantities that are within what the references allow."""
+    statements: list[StatementRecord]
+    """Statements of the paper."""
+    differs: tuple[str, ...]
+    """Where the paper and these results differ, and why."""
+    iterations: dict[FormulationName, int]
+    """Iterations of QPSOL that the paper prints."""
+    runs: list[RunRecord]
+    """Variants, then the meshes of the problem as stated, the coarsest first."""
+
+
+class ReproductionRecord(Record):
+    """The problems of the paper, solved again.
+
+    [L] is the unit of length and [p] that of pressure, force over length squared. A number without either has no unit.
+    """
+
+    reproduced: bool
+    """Whether all is certified and every reference that is in its range is met."""
+    refine: tuple[int, ...]
+    """Number of parts into which each stated element is cut, on each mesh of a problem as stated."""
+    problems: list[PaperRecord]
+    """Problems in the order of the paper."""
+    versions: dict[str, str]
+    """Versions of bemcontact, Python and the packages used, by name."""
+    seconds: float
+    """Time of all runs."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Run:
+    """A problem of the paper on one mesh."""
+
+    label: str
+    """Name of the mesh."""
+    variant: str | None
+    """Name of the variant; None for the problem as stated."""
+    level: MeshLevel
+    """The comparison on this mesh."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PaperStudy:
+    """A problem of the paper: the study of it as stated, and one of each variant."""
+
+    paper: PaperProblem
+    """What the paper says."""
+    study: Study
+    """The problem as its file states it, on all meshes."""
+    variants: Mapping[str, Study]
+    """Variants of the file by name, which are certified but not judged: references are for the problem as stated."""
+
+    @property
+    def problem(self) -> Problem:
+        """The problem on the finest mesh."""
+        assert self.study.problem is not None  # a file states each
+        return self.study.problem
+
+    @property
+    def meshes(self) -> tuple[Run, ...]:
+        """Runs of the problem as stated, the coarsest mesh first."""
+        return tuple(Run(label=_mesh_name(level.refine), variant=None, level=level) for level in self.study.levels)
+
+    @property
+    def variant_runs(self) -> tuple[Run, ...]:
+        """Runs of the variants."""
+        labels = self.paper.variants
+        return tuple(Run(label=labels[name], variant=name, level=it.finest) for name, it in self.variants.items())
+
+    @property
+    def runs(self) -> tuple[Run, ...]:
+        """Runs of the variants, then of the problem as stated."""
+        return (*self.variant_runs, *self.meshes)
+
+    @property
+    def axis(self) -> Values | Table:
+        """The reference that has the coordinate of the paper's figure."""
+        return along(self.problem)
+
+    @property
+    def coordinate_unit(self) -> str:
+        """Label of the unit of the coordinate."""
+        return "°" if self.axis.against == "angle" else self.problem.units.length
+
+    @property
+    def certified(self) -> bool:
+        """Whether all formulations on all meshes are proved to be the contact state."""
+        return all(study.certified for study in (self.study, *self.variants.values()))
+
+    @property
+    def judged(self) -> tuple[bool, ...]:
+        """Whether each quantity of each reference that is in its range holds, mesh by mesh."""
+        return tuple(score.holds for level in self.study.levels for score in level.scores if score.judged)
+
+    @property
+    def reproduced(self) -> bool:
+        """Whether all is certified and every judged reference holds."""
+        return self.certified and all(self.judged)
+
+    def record(self) -> PaperRecord:
+        """Return what JSON holds of it."""
+        problem, paper, axis, runs = self.problem, self.paper, self.axis, self.runs
+        return PaperRecord(
+            model=paper.model,
+            name=problem.name,
+            figure=paper.figure,
+            description=problem.description,
+            units=UnitsRecord(**problem.units.model_dump()),
+            coordinate=paper.symbol,
+            coordinate_unit=self.coordinate_unit,
+            certified=self.certified,
+            judged=len(self.judged),
+            held=sum(self.judged),
+            statements=[
+                StatementRecord(
+                    what=item.what,
+                    said=item.said,
+                    unit=unit_of(item, axis, problem.units),
+                    found=[reading(item, run.level, axis) for run in runs],
+                )
+                for item in paper.statements
+            ],
+            differs=paper.differs,
+            iterations=dict(paper.iterations),
+            runs=[
+                RunRecord(
+                    label=run.label,
+                    variant=run.variant,
+                    description="" if run.variant is None else problem.variants[run.variant].description,
+                    position=positions(run.level, axis),
+                    contact=extent(run.level, axis),
+                    level=run.level.record(),
+                )
+                for run in runs
+            ],
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Reproduction:
+    """The problems of the paper, solved again."""
+
+    problems: tuple[PaperStudy, ...]
+    """In the order of the paper."""
+
+    def __repr__(self) -> str:
+        """One line: how many of them are reproduced."""
+        done = sum(item.reproduced for item in self.problems)
+        return f"<Reproduction of {len(self.problems)} problems: {done} certified, with all references met>"
+
+    @property
+    def reproduced(self) -> bool:
+        """Whether all is certified and every judged reference holds."""
+        return all(item.reproduced for item in self.problems)
+
+    @cached_property
+    def _record(self) -> dict[str, Any]:
+        studies = [study for item in self.problems for study in (item.study, *item.variants.values())]
+        return ReproductionRecord(
+            reproduced=self.reproduced,
+            refine=tuple(level.refine for level in self.problems[0].study.levels),
+            problems=[item.record() for item in self.problems],
+            versions=versions(),
+            seconds=sum(study.seconds for study in studies),
+        ).to_dict()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as numbers, lists and texts, ready for JSON: what stands in numbers.json."""
+        return self._record
+
+    def to_json(self, indent: int | None = 2) -> str:
+        """Return `to_dict` as JSON; every number in it is finite."""
+        return json_text(self.to_dict(), indent)
 
 
 def reproduce(
@@ -35,41 +275,25 @@ def reproduce(
         No mesh, one that is there twice, or a refinement that is not a whole number.
     """
     plan = ComparisonOptions()
-    done = []
+    studies = []
     for order, paper in enumerate(problems, 1):
         name = f"problem {order} of {len(problems)}, {paper.model.replace('_', ' ')}"
-        done.append(_reproduced(plan, paper, refine, _below(progress, name)))
-    return Reproduction(problems=tuple(done), refine=tuple(sorted(map(int, refine))))
+        studies.append(_paper_study(plan, paper, refine, _below(progress, name)))
+    return Reproduction(problems=tuple(studies))
 
 
-def _below(progress: Progress | None, name: str) -> Progress:
-    """Tell each stage of a problem as how far the problem has come."""
-    return lambda stage, now: progress(name, f"{stage}, {now}" if now else stage) if progress else None
-
-
-def _reproduced(plan: ComparisonOptions, paper: PaperProblem, refine: Sequence[int], tell: Progress) -> Reproduced:
+def _paper_study(plan: ComparisonOptions, paper: PaperProblem, refine: Sequence[int], progress: Progress) -> PaperStudy:
     """Solve one problem, as stated on all meshes and with its variants."""
-    problem = _problem(paper, None)
-    meshes = comparing.study(plan, problem, refine, tell).levels
-    return Reproduced(
+    return PaperStudy(
         paper=paper,
-        problem=problem,
-        variants=tuple(
-            Run(
-                label=label,
-                variant=variant,
-                description=problem.variants[variant].description,
-                level=_once(plan, _problem(paper, variant), tell),
-            )
-            for variant, label in paper.variants.items()
-        ),
-        meshes=tuple(Run(label=_fineness(level.refine), variant=None, level=level) for level in meshes),
+        study=comparing.study(plan, _problem(paper, None), refine, progress),
+        variants={name: comparing.study(plan, _problem(paper, name), (1,), progress) for name in paper.variants},
     )
 
 
-def _fineness(parts: int) -> str:
-    """What a mesh of the problem as stated is called."""
-    return "base mesh" if parts == 1 else f"{parts} times finer"
+def _below(progress: Progress | None, name: str) -> Progress:
+    """Report each stage of a problem as progress of the problem."""
+    return lambda stage, now: progress(name, f"{stage}, {now}" if now else stage) if progress else None
 
 
 def _problem(paper: PaperProblem, variant: str | None) -> Problem:
@@ -77,6 +301,100 @@ def _problem(paper: PaperProblem, variant: str | None) -> Problem:
     return spec.loads(shipped.model(paper.model), f"models/{paper.model}.yaml", variant=variant)
 
 
-def _once(plan: ComparisonOptions, problem: Problem, tell: Progress) -> MeshLevel:
-    """Solve a problem on the mesh that it states."""
-    return comparing.study(plan, problem, (1,), tell).finest
+def _mesh_name(parts: int) -> str:
+    """Name a mesh of the problem as stated."""
+    return "base mesh" if parts == 1 else f"{parts} times finer"
+
+
+def along(problem: Problem) -> Values | Table:
+    """Return the first reference of a problem that has a coordinate; `ValueError` if none has."""
+    for reference in problem.reference.values():
+        if isinstance(reference, Values | Table):
+            return reference
+    raise ValueError(f"{problem.name}: no reference is a list of values or a table, so that it has no coordinate")
+
+
+def positions(level: MeshLevel, axis: Values | Table) -> Array:
+    """Coordinate (n,) of the contact points [L], or in degrees."""
+    contact = level.answer.contact
+    return coordinates(axis, contact.points, contact.arc_position)
+
+
+def extent(level: MeshLevel, axis: Values | Table) -> Reading:
+    """Smallest and largest coordinate of the ends of contact [L], or in degrees; empty without contact."""
+    intervals = level.answer.footprint.intervals
+    if not intervals:
+        return ()
+    ends = np.array([end for item in intervals for end in (item.start, item.end)])
+    arcs = np.array([arc for item in intervals for arc in (item.start_arc, item.end_arc)])
+    here = coordinates(axis, ends, arcs)
+    low, high = float(here.min()), float(here.max())
+    return (0.0 if abs(low) <= LEVEL * abs(high) else low, high)
+
+
+def reading(statement: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+    """Read the quantity of a statement off a comparison; empty where there is none, such as the ends of no contact."""
+    return READERS[statement.quantity](statement, level, axis)
+
+
+def unit_of(statement: Statement, axis: Values | Table, units: Units) -> str:
+    """Label of the unit of the quantity of a statement."""
+    match statement.quantity:
+        case Quantity.PRESSURE | Quantity.PEAK:
+            return units.stress
+        case Quantity.FORCE:
+            return f"{units.force}/{units.length}" if units.stress else ""
+        case Quantity.CONTACT if axis.against == "angle":
+            return "°"
+        case Quantity.CONTACT | Quantity.LEAST_GAP:
+            return units.length
+    return ""
+
+
+def _pressure(statement: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+    """The smallest and the largest pressure of a range; one number if they are of one point."""
+    here, pressure = positions(level, axis), level.answer.solution.pressure
+    if statement.between is not None:
+        slack = LEVEL * float(np.ptp(here))
+        low, high = statement.between
+        pressure = pressure[(here >= low - slack) & (here <= high + slack)]
+    ends = (float(pressure.min()), float(pressure.max())) if len(pressure) else ()
+    return ends[: len(pressure)]
+
+
+def _peak(_: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+    peak = level.answer.footprint.peak
+    return () if peak is None else (peak.pressure,)
+
+
+def _open_points(_: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+    return (float(np.count_nonzero(~level.answer.touching)),)
+
+
+def _least_gap(_: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+    """The smallest gap; round-off is zero."""
+    contact = level.answer.contact
+    gap = float((contact.initial_gap + level.answer.solution.displacement).min())
+    return (0.0 if abs(gap) <= LEVEL * contact.scales.displacement else gap,)
+
+
+def _force(statement: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+    return (abs(float(np.dot(level.answer.footprint.resultant.force, statement.direction))),)
+
+
+def _difference(_: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+    compared = level.comparison
+    differences = [item.unpolished for item in compared.differences if item.other == compared.reference.label]
+    return (max(differences),) if differences else ()
+
+
+READERS: dict[Quantity, Callable[[Statement, MeshLevel, Values | Table], Reading]] = {
+    Quantity.PRESSURE: _pressure,
+    Quantity.PEAK: _peak,
+    Quantity.CONTACT: lambda _, level, axis: extent(level, axis),
+    Quantity.OPEN_POINTS: _open_points,
+    Quantity.LEAST_GAP: _least_gap,
+    Quantity.FORCE: _force,
+    Quantity.DIFFERENCE: _difference,
+}
+"""Quantity -> how it is read off."""

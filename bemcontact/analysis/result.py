@@ -1,6 +1,5 @@
-"""A contact solution, judged: all that is known of it, as numbers, lists and texts."""
+"""The result of a contact problem: its solution, and all that is recomputed of it."""
 
-import json
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,59 +7,121 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.adaptivity.mesh_fit import MeshFit
+from bemcontact.arrays import Array
 from bemcontact.assessment.certificate import Certificate
-from bemcontact.assessment.footprint import Footprint
+from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
 from bemcontact.assessment.residual import Residuals
-from bemcontact.bem.condense import BoundaryState
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
-from bemcontact.contact.record import contact_record, solution_record
+from bemcontact.contact.record import (
+    ContactRecord,
+    SolutionRecord,
+    UnitsRecord,
+    contact_record,
+    solution_record,
+    units_record,
+)
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.options import Weights
+from bemcontact.errors import ProblemError
+from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
+from bemcontact.serialization import PairTables, Record, json_text
 from bemcontact.version import __version__
+
+
+class BoundaryRecord(Record):
+    """State of the whole boundary, element by element; values at the three nodes of each."""
+
+    points: PairTables
+    """Undeformed nodes (x, y) [L]."""
+    displacement: PairTables
+    """Displacement (x, y) [L]."""
+    traction: PairTables
+    """Force (x, y) on the body per undeformed length [p]; it may jump between elements."""
+    edge: list[str]
+    """Name of the edge of each element."""
+
+
+class HeadRecord(Record):
+    """What a result begins with."""
+
+    name: str
+    """Name of the problem."""
+    version: str
+    """Version of bemcontact."""
+    formulation: FormulationName
+    """Statement that was solved."""
+    certified: bool
+    """Whether this is proved to be the contact state, and the only one."""
+    units: UnitsRecord
+    """Labels of the units."""
+    dof: int | None
+    """Number of unknowns of the boundary elements, two for each node; null for a condensed problem."""
+    notes: tuple[str, ...]
+    """Remarks on the problem, its mesh and the solver."""
+
+
+class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
+    """Solution of a contact problem and what is recomputed of it; lists go contact point by contact point."""
+
+    mesh_fit: MeshFit | None
+    """How the mesh was fitted to the ends of contact, or null."""
+    weights: Weights
+    """Weights of the objective."""
+    objective: float
+    """Objective pᵀJδ with these weights, recomputed, per thickness [p L²]."""
+    starts: RandomStarts | None
+    """Searches from random starts, if any were asked for."""
+    residuals: Residuals
+    """Residuals of the contact conditions and equations."""
+    equilibrium_slack: float | None
+    """Imbalance of the discrete equations relative to the loads; null for a condensed problem."""
+    certificate: Certificate
+    """What is proved."""
+    boundary: BoundaryRecord | None
+    """State of the whole boundary; null for a condensed problem."""
+    seconds: dict[str, float]
+    """Time of each stage."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Result:
-    """A contact solution, judged.
-
-    Parameters
-    ----------
-    problem : what was asked, with the element ends of a fitted mesh; None if a condensed problem was
-    contact : the condensed problem
-    solution : what the formulation found
-    weights : of the objective
-    objective : pᵀJδ with these weights, recomputed [p L²]
-    residuals, certificate : the judgement, recomputed from the condensed problem
-    footprint : contact intervals, peak, resultant
-    boundary : displacement and traction on the whole boundary, or None if no boundary stands behind `contact`
-    degrees_of_freedom : two for each node of the mesh, or None likewise
-    notes : what a person should know: of the condensation, of the solver, of the mesh
-    seconds : spent on each stage
-    starts : where the searches from random starts ended, if several were asked for
-    mesh_fit : how the mesh was fitted to the ends of contact, if that was asked for
-    """
+    """A solution of a contact problem, and all that is recomputed of it."""
 
     problem: Problem | None
+    """The problem, with the element ends of a fitted mesh; None if a condensed problem was solved."""
     contact: CondensedContact
+    """The condensed problem."""
     solution: ContactSolution
+    """The solution as the formulation reports it."""
     weights: Weights
+    """Weights of the objective."""
     objective: float
+    """Objective pᵀJδ with these weights, recomputed, per thickness [p L²]."""
     residuals: Residuals
+    """Residuals of the contact conditions and equations, recomputed from the condensed problem."""
     certificate: Certificate
+    """What is proved."""
     footprint: Footprint
+    """Contact intervals, peak pressure and resultant."""
     boundary: BoundaryState | None
+    """Displacement and traction of the whole boundary; None for a condensed problem."""
     degrees_of_freedom: int | None
+    """Two for each node of the mesh; None for a condensed problem."""
     notes: tuple[str, ...]
+    """Remarks on the condensation, the mesh and the solver."""
     seconds: dict[str, float]
+    """Time of each stage."""
     starts: RandomStarts | None = None
+    """Searches from random starts, if any were asked for."""
     mesh_fit: MeshFit | None = None
+    """How the mesh was fitted to the ends of contact, if that was asked for."""
 
     def __repr__(self) -> str:
         """One line: name, formulation, verdict, peak."""
         peak = "no contact" if self.footprint.peak is None else f"peak pressure {self.footprint.peak.pressure:.6g}"
-        verdict = "certified" if self.certified else self.certificate.kind.value
+        verdict = "certified" if self.certified else self.certificate.kind
         return f"<Result of {self.contact.name!r} by {self.solution.formulation}: {verdict}, {peak}>"
 
     @property
@@ -75,40 +136,69 @@ class Result:
 
     @property
     def equilibrium_slack(self) -> float | None:
-        """How far the discrete equations are from equilibrium, relative to the loads; None without a boundary."""
+        """Imbalance of the discrete equations relative to the loads; None without a boundary."""
         return None if self.boundary is None else self.boundary.equilibrium_slack
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give all of it as numbers, lists and texts, ready for JSON."""
+    def contact_fields(self) -> tuple[Array, Array]:
+        """Pressure (m, 3) [p] and gap (m, 3) [L] at the nodes of each boundary element, of the zone of its edge.
+
+        Off the contact points the pressure is zero, and the gap is not a number.
+
+        Raises
+        ------
+        ProblemError
+            The result is that of a condensed problem, which has no boundary.
+        """
+        contact, problem, boundary = self.contact, self.problem, self.boundary
+        if problem is None or boundary is None:
+            raise ProblemError("the result of a condensed problem has no boundary; solve the problem itself")
+        gaps = contact.initial_gap + self.solution.displacement
+        pressure, gap = np.zeros(boundary.points.shape[:2]), np.full(boundary.points.shape[:2], np.nan)
+        for number, name in enumerate(contact.zone_names):
+            edges = [boundary.edge_names.index(edge) for edge in problem.contact_zones[name].edges]
+            at = {tuple(contact.points[i]): i for i in np.flatnonzero(contact.zone == number)}
+            for element in np.flatnonzero(np.isin(boundary.edge, edges)):
+                for local, point in enumerate(boundary.points[element]):
+                    if (i := at.get(tuple(point))) is not None:
+                        pressure[element, local], gap[element, local] = self.solution.pressure[i], gaps[i]
+        return pressure, gap
+
+    def record(self) -> ResultRecord:
+        """Return what JSON holds of it."""
         boundary = self.boundary
-        return {
-            "name": self.contact.name,
-            "version": __version__,
-            "formulation": str(self.solution.formulation),
-            "certified": self.certified,
-            "units": dict(self.contact.units),
-            "dof": self.degrees_of_freedom,
-            "notes": list(self.notes),
-            **contact_record(self.contact),
-            **solution_record(self.contact, self.solution),
-            **self.footprint.to_dict(),
-            "mesh_fit": None if self.mesh_fit is None else self.mesh_fit.to_dict(),
-            "weights": self.weights.value,
-            "objective": self.objective,
-            "starts": None if self.starts is None else self.starts.to_dict(),
-            "residuals": {**self.residuals.to_dict(), "equilibrium_slack": self.equilibrium_slack},
-            "certificate": self.certificate.to_dict(),
-            "boundary": None
+        return ResultRecord(
+            name=self.contact.name,
+            version=__version__,
+            formulation=FormulationName(self.solution.formulation),
+            certified=self.certified,
+            units=units_record(self.contact),
+            dof=self.degrees_of_freedom,
+            notes=self.notes,
+            **dict(contact_record(self.contact)),
+            **dict(solution_record(self.contact, self.solution)),
+            **dict(footprint_record(self.footprint)),
+            mesh_fit=self.mesh_fit,
+            weights=self.weights,
+            objective=self.objective,
+            starts=self.starts,
+            residuals=self.residuals,
+            equilibrium_slack=self.equilibrium_slack,
+            certificate=self.certificate,
+            boundary=None
             if boundary is None
-            else {
-                "points": boundary.points.tolist(),
-                "displacement": boundary.displacement.tolist(),
-                "traction": boundary.traction.tolist(),
-                "edge": [boundary.edge_names[i] for i in boundary.edge],
-            },
-            "seconds": self.seconds,
-        }
+            else BoundaryRecord(
+                points=boundary.points,
+                displacement=boundary.displacement,
+                traction=boundary.traction,
+                edge=[boundary.edge_names[i] for i in boundary.edge],
+            ),
+            seconds=self.seconds,
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as numbers, lists and texts, ready for JSON."""
+        return self.record().to_dict()
 
     def to_json(self, indent: int | None = 2) -> str:
-        """Write `to_dict` as JSON; every number in it is finite."""
-        return json.dumps(self.to_dict(), indent=indent, allow_nan=False, ensure_ascii=False)
+        """Return `to_dict` as JSON; every number in it is finite."""
+        return json_text(self.to_dict(), indent)

@@ -12,7 +12,7 @@ from bemcontact.analysis.stopwatch import Stopwatch
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.bem.body import Body, body_of, each_case, ensure_held
+from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.condense import condense as condense_body
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -31,30 +31,6 @@ from bemcontact.options import (
     ensure_whole,
 )
 from bemcontact.problem.problem import Problem
-
-
-def check(problem: Problem) -> Body:
-    """Make the body of a problem and make sure, in each load case, that something holds it; nothing is solved.
-
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    Body
-        The problem with mesh, contact points and boundary conditions.
-
-    Raises
-    ------
-    ProblemError
-        Nothing holds the body, its load pulls it off its support, or conditions contradict each other.
-    """
-    ensure_kind(problem, Problem)
-    body = body_of(problem)
-    for acting in each_case(body):
-        ensure_held(acting)
-    return body
 
 
 def condense(problem: Problem) -> CondensedContact:

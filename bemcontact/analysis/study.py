@@ -1,17 +1,20 @@
-"""A problem compared on one mesh or several: all that a report is written from."""
+"""A problem compared on one mesh or several: what a report is written from."""
 
-import json
 import platform
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
+from bemcontact.adaptivity.mesh_fit import MeshFit
 from bemcontact.analysis.result import Result
-from bemcontact.assessment.comparison import Comparison
+from bemcontact.assessment.comparison import Comparison, ComparisonRecord
 from bemcontact.assessment.convergence import Convergence, convergence
+from bemcontact.contact.record import UnitsRecord, units_record
+from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
 from bemcontact.reference import Expected, Score, expected, score
+from bemcontact.serialization import Record, json_text
 from bemcontact.version import __version__
 
 ALTERED = "the problem was changed (--set), but this reference was not: shown, not judged"
@@ -20,22 +23,88 @@ VERSIONS = ("numpy", "scipy", "cvxpy", "clarabel", "matplotlib", "jinja2")
 """Packages whose versions a report states."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MeshLevel:
-    """A problem on one mesh.
+class Settings(Record):
+    """What is compared."""
 
-    Parameters
-    ----------
-    refine : parts into which each stated element is cut
-    comparison : of the formulations
-    answer : the direct solution, judged, with the boundary behind it
-    outdated : names of references that are of another problem, which was changed without them
-    """
+    formulations: tuple[FormulationName, ...]
+    """Formulations beside the direct solution."""
+    weights: tuple[Weights, ...]
+    """Weights of the objectives."""
+    penalties: tuple[float, ...]
+    """Penalties μ of QP2, free of units."""
+    starts: int | None
+    """Number of random starts of QP1 and QP2, beside the null start."""
+    seed: int
+    """Seed of the random starts."""
+    changes: tuple[str, ...] = ()
+    """Changes made to the problem with --set."""
+
+
+class LevelRecord(Record):
+    """The comparison on one mesh."""
 
     refine: int
+    """Number of parts into which each stated element is cut."""
+    dof: int | None
+    """Number of unknowns of the boundary elements, two for each node; null for a condensed problem."""
+    seconds: dict[str, float]
+    """Time of each stage."""
+    notes: tuple[str, ...]
+    """Remarks on the answer and its mesh."""
+    force_balance: float | None
+    """Resultant of all forces on the body over their sum, from the recovered tractions; null without a boundary."""
+    equilibrium_slack: float | None
+    """Imbalance of the discrete equations relative to the loads; null without a boundary."""
+    mesh_fit: MeshFit | None
+    """How the mesh was fitted to the ends of contact, or null."""
+    comparison: ComparisonRecord
+    """The formulations side by side."""
+    references: tuple[Expected, ...]
+    """What the references of the problem expect at these contact points."""
+    scores: tuple[Score, ...]
+    """Differences between the direct solution and the references."""
+
+
+class StudyRecord(Record):
+    """A problem compared on one mesh or several.
+
+    [L] is the unit of length and [p] that of pressure, force over length squared. A number without either has no unit.
+    """
+
+    name: str
+    """Name of the problem."""
+    description: str
+    """Description as the problem has it."""
+    certified: bool
+    """Whether all solutions on all meshes are proved to be the contact state."""
+    verdict: str
+    """What the comparison on the finest mesh shows, in sentences."""
+    units: UnitsRecord
+    """Labels of the units."""
+    settings: Settings
+    """Formulations, weights, penalties and starts that are compared."""
+    levels: list[LevelRecord]
+    """Comparison on each mesh, the coarsest first."""
+    convergence: Convergence | None
+    """Change of the solution with the mesh; null on a single one."""
+    versions: dict[str, str]
+    """Versions of bemcontact, Python and the packages used, by name."""
+    seconds: float
+    """Time of all stages on all meshes."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeshLevel:
+    """A problem on one mesh."""
+
+    refine: int
+    """Number of parts into which each stated element is cut."""
     comparison: Comparison
+    """The formulations side by side."""
     answer: Result
+    """The direct solution, with the boundary behind it."""
     outdated: frozenset[str] = frozenset()
+    """Names of references that are of another problem, because this one was changed without them."""
 
     @cached_property
     def expected(self) -> tuple[Expected, ...]:
@@ -50,35 +119,31 @@ class MeshLevel:
         answer = self.answer
         return score(self.expected, answer.contact, answer.footprint, answer.solution.pressure)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give all of it as numbers, lists and texts, ready for JSON."""
+    def record(self) -> LevelRecord:
+        """Return what JSON holds of it."""
         answer = self.answer
-        return {
-            "refine": self.refine,
-            "dof": answer.degrees_of_freedom,
-            "seconds": answer.seconds,
-            "notes": list(answer.notes),
-            "force_balance": answer.residuals.force_balance,
-            "equilibrium_slack": answer.equilibrium_slack,
-            "mesh_fit": None if answer.mesh_fit is None else answer.mesh_fit.to_dict(),
-            "comparison": self.comparison.to_dict(),
-            "references": [item.to_dict() for item in self.expected],
-            "scores": [item.to_dict() for item in self.scores],
-        }
+        return LevelRecord(
+            refine=self.refine,
+            dof=answer.degrees_of_freedom,
+            seconds=answer.seconds,
+            notes=answer.notes,
+            force_balance=answer.residuals.force_balance,
+            equilibrium_slack=answer.equilibrium_slack,
+            mesh_fit=answer.mesh_fit,
+            comparison=self.comparison.record(),
+            references=self.expected,
+            scores=self.scores,
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Study:
-    """A problem compared on one mesh or several.
+    """A problem compared on one mesh or several."""
 
-    Parameters
-    ----------
-    settings : what was compared, ready for JSON
-    levels : the coarsest mesh first
-    """
-
-    settings: dict[str, Any]
+    settings: Settings
+    """What is compared."""
     levels: tuple[MeshLevel, ...]
+    """Comparison on each mesh, the coarsest first."""
 
     def __repr__(self) -> str:
         """One line: name, meshes, verdict."""
@@ -120,25 +185,29 @@ class Study:
         """Of all stages on all meshes."""
         return sum(sum(level.answer.seconds.values()) for level in self.levels)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give all of it as numbers, lists and texts, ready for JSON: what stands in report.json."""
+    def record(self) -> StudyRecord:
+        """Return what JSON holds of it, which is report.json."""
         problem = self.problem
-        return {
-            "name": self.name,
-            "description": "" if problem is None else problem.description,
-            "certified": self.certified,
-            "verdict": self.finest.comparison.verdict,
-            "units": {"length": "", "force": "", **self.finest.comparison.contact.units},
-            "settings": self.settings,
-            "levels": [level.to_dict() for level in self.levels],
-            "convergence": None if self.convergence is None else self.convergence.to_dict(),
-            "versions": versions(),
-            "seconds": self.seconds,
-        }
+        return StudyRecord(
+            name=self.name,
+            description="" if problem is None else problem.description,
+            certified=self.certified,
+            verdict=self.finest.comparison.verdict,
+            units=units_record(self.finest.comparison.contact),
+            settings=self.settings,
+            levels=[level.record() for level in self.levels],
+            convergence=self.convergence,
+            versions=versions(),
+            seconds=self.seconds,
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as numbers, lists and texts, ready for JSON."""
+        return self.record().to_dict()
 
     def to_json(self, indent: int | None = 2) -> str:
-        """Write `to_dict` as JSON; every number in it is finite."""
-        return json.dumps(self.to_dict(), indent=indent, allow_nan=False, ensure_ascii=False)
+        """Return `to_dict` as JSON; every number in it is finite."""
+        return json_text(self.to_dict(), indent)
 
 
 def _outdated(expected: Expected) -> Expected:

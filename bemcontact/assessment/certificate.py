@@ -18,28 +18,31 @@ motions: a small pressure on a body lifted off its support has a small min(p, D�
 """
 
 from dataclasses import dataclass
-from enum import Enum
-from typing import Any
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigvalsh
 
 from bemcontact.arrays import Array
-from bemcontact.assessment.advice import advice
 from bemcontact.assessment.residual import Residuals
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.solution import ContactSolution
+from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.options import FormulationName
+from bemcontact.serialization import Leaf
 
 TOLERANCE = 1e-10
 """Residuals allowed: a thousand times above the round-off of the gap, a thousand below what shows in a result."""
 LARGEST_BOUND = 1e-3
 """Error bound, relative to the peak pressure, above which round-off alone leaves the answer open."""
 NEWTON_STEPS = 20
+LOCAL = (FormulationName.QP1, FormulationName.QP2)
+"""Formulations whose solver starts somewhere and may end in a local minimum."""
+DIRECT = "--formulation complementarity"
 
 
-class CertificateKind(Enum):
-    """What has been proved of a solution."""
+class CertificateKind(StrEnum):
+    """What is proved of a solution."""
 
     UNIQUE = "unique"
     LOCAL = "local only"
@@ -48,58 +51,38 @@ class CertificateKind(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Certificate:
-    """What can be said of a solution without believing the solver.
-
-    Parameters
-    ----------
-    kind : CertificateKind
-    smallest_eigenvalue : λ of sym(DM) on the equilibrium space, D = J/max J and M of unit norm; None if n = k, where
-        equilibrium alone fixes the pressure
-    error_bound : no pressure differs from that of the solution by more [p]; None if none can be given
-    relative_error_bound : the same over the peak pressure; None likewise, or where nothing touches
-    complaint : what is wrong if this is no solution, else empty
-    words : two or three sentences for an engineer
-    """
+class Certificate(Leaf):
+    """What is proved of a solution from its pressures and displacements alone, without trust in the solver."""
 
     kind: CertificateKind
+    """What is proved."""
     smallest_eigenvalue: float | None
+    """Smallest eigenvalue λ of sym(DM) on the equilibrium space, with D = J/max J and M of unit norm.
+
+    The pressure is unique if λ > 0. Null if equilibrium alone fixes the pressure.
+    """
     error_bound: float | None
+    """Bound on the difference of each pressure from that of the solution [p]; null if there is none."""
     relative_error_bound: float | None
+    """Error bound over the peak pressure; null if there is none, or where nothing touches."""
     complaint: str
+    """Residual that is too large, if this is not a solution; otherwise empty."""
     words: str
+    """Two or three sentences for an engineer."""
 
     @property
     def certified(self) -> bool:
         """Whether this is the solution, the only one, to the tolerance."""
         return self.kind is CertificateKind.UNIQUE
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers and texts, ready for JSON."""
-        return {
-            "kind": self.kind.value,
-            "smallest_eigenvalue": self.smallest_eigenvalue,
-            "error_bound": self.error_bound,
-            "words": self.words,
-        }
-
 
 def certify(
     contact: CondensedContact, solution: ContactSolution, residuals: Residuals, tolerance: float = TOLERANCE
 ) -> Certificate:
-    """Judge a solution.
+    """Certify a solution from its residuals.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    solution : of any formulation
-    residuals : of that solution
-    tolerance : allowed penetration, tension, complementarity, equilibrium (12) and balance; where the peak pressure is
-        above T, gaps are judged relative to the displacement that goes with it, and never below their round-off
-
-    Returns
-    -------
-    Certificate
+    The tolerance is on penetration, tension, complementarity, equilibrium (12) and balance. Where the peak pressure is
+    above T, gaps are judged relative to the displacement that goes with it, and never below their round-off.
     """
     D, M = _scaled_compliance(contact)
     eigenvalue = _smallest_eigenvalue(D, M, contact.equilibrium_space)
@@ -118,7 +101,7 @@ def certify(
         error_bound=bound,
         relative_error_bound=relative,
         complaint=complaint,
-        words=_words(kind, complaint, eigenvalue, relative, advice(solution)),
+        words=_certificate_sentence(kind, complaint, eigenvalue, relative, advice(solution)),
     )
 
 
@@ -205,7 +188,7 @@ def _complaint(residuals: Residuals, tolerance: float, size: float) -> str:
     return "" if value <= allowed else f"the residual of {name} is {value:.1e} where {allowed:.1e} is allowed"
 
 
-def _words(
+def _certificate_sentence(
     kind: CertificateKind, complaint: str, eigenvalue: float | None, relative: float | None, way_out: str
 ) -> str:
     """Two or three sentences for an engineer."""
@@ -230,3 +213,27 @@ def _words(
             )
         case CertificateKind.NOT_A_SOLUTION:
             return f"This is not the contact state: {complaint}.{error} {way_out}"
+
+
+def advice(solution: ContactSolution) -> str:
+    """Say in a sentence what to try where a solution is not the contact state, in the words of the command line."""
+    match solution.status:
+        case Status.INFEASIBLE:
+            return "Check that loads and conditions press the body onto its support, or refine the mesh (--refine 2)."
+        case Status.UNBOUNDED:
+            return "Take the tributary weights."
+        case Status.ITERATION_LIMIT:
+            return f"Raise the limit (--max-iterations; {solution.iterations} were done){_or_another(solution)}."
+        case _ if solution.formulation == FormulationName.COMPLEMENTARITY:
+            return "Refine the mesh (--refine 2), and look in it for very short elements."
+        case Status.LOCAL_MINIMUM:
+            return f"Try {DIRECT}, or other starts (--starts 20) with the tributary weights."
+        case Status.NUMERICAL_FAILURE:
+            return f"Try {DIRECT}, and look in the mesh for very short elements."
+        case _:
+            return f"Try {DIRECT}, a finer mesh (--refine 2), or the tributary weights if these are others."
+
+
+def _or_another(solution: ContactSolution) -> str:
+    """Another way out of a search that is too long."""
+    return ", or take another start (--seed 1)" if solution.formulation in LOCAL else ""

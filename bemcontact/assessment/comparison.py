@@ -1,83 +1,102 @@
-"""Formulations side by side: what each found, under every objective, how far apart, and which is the solution.
+"""Formulations side by side: their solutions, objectives and differences, and which is the contact state.
 
 The direct solution of the complementarity problem is the reference; it has no objective, and so no weights.
 """
 
-import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from html import escape
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 
-from bemcontact.assessment.contender import Contender, Found, contender, recomputed
+from bemcontact.assessment.contender import Attempt, Contender, ContenderRecord, assess, contender, contender_record
 from bemcontact.assessment.matrices import WeightedCompliance, condition, weighted_compliance
-from bemcontact.assessment.verdict import Outcome
+from bemcontact.assessment.verdict import OUTCOMES, Outcome
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.record import contact_record
+from bemcontact.contact.record import ContactRecord, contact_record
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import Weights
+from bemcontact.serialization import Leaf, Record, json_text
 from bemcontact.version import __version__
 
 SAME = 1e-6
 """Difference of two pressures over the peak from which they are two states and not one."""
 MANY = 4
-"""Contenders above which those that agree are counted and not named."""
-SOLVING = (Outcome.SOLVES, Outcome.SOLVES_PERHAPS_NOT_ALONE)
-"""Outcomes of an answer that is a contact state."""
-MEETING = (*SOLVING, Outcome.LEFT_OPEN)
-"""Outcomes of an answer that meets all conditions."""
-OF_DIRECT = {
-    Outcome.SOLVES: "the direct solution is certified, and there is no other",
-    Outcome.SOLVES_PERHAPS_NOT_ALONE: "the direct solution meets all conditions, but they may have other solutions",
-    Outcome.LEFT_OPEN: "round-off leaves open whether the direct solution is near the contact state",
-}
-"""What the outcome of the direct solution says of the whole."""
+"""Number of contenders above which those that agree are counted and not named."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Difference:
-    """How far the pressures of two contenders are apart.
-
-    Parameters
-    ----------
-    one, other : their labels
-    largest : max |p - p'| over the peak pressure of the reference, or over T where nothing touches
-    mean_square : of p - p' in the weighted mean square over the zones, relative to that of the reference likewise
-    unpolished : as `largest`, of what the solver of the first found itself before the active-set step that follows it
-    """
+class Difference(Leaf):
+    """Difference of the pressures of two contenders."""
 
     one: str
+    """Label of the first."""
     other: str
+    """Label of the second."""
     largest: float
+    """Largest |p - p'| over the peak pressure of the direct solution, or over T where nothing touches."""
     mean_square: float
+    """Weighted root mean square of p - p' over that of the direct solution."""
     unpolished: float
+    """As `largest`, of the first's pressure before the active-set step that follows its solver."""
+
+
+class MatricesRecord(Record):
+    """Numbers of the condensed matrices."""
+
+    condition: float
+    """Condition in the 2-norm of the scaled matrix that is inverted for the stiffness rows."""
+    weighted: tuple[WeightedCompliance, ...]
+    """Numbers of J M for each of the weights that are compared, the tributary ones first."""
+
+
+class ComparisonRecord(Record):
+    """Formulations side by side on one mesh."""
+
+    name: str
+    """Name of the problem."""
+    version: str
+    """Version of bemcontact."""
+    certified: bool
+    """Whether the direct solution and all contenders are proved to be the contact state, the only one."""
+    heading: str
+    """What is certified, in a few words."""
+    verdict: str
+    """What the comparison shows, in sentences."""
+    agreement: float | None
+    """Largest difference from the direct solution of contenders that meet all conditions, over the peak."""
+    contact: ContactRecord
+    """The contact points."""
+    contenders: list[ContenderRecord]
+    """Formulations in the order asked."""
+    reference: ContenderRecord
+    """Direct solution of the complementarity problem."""
+    differences: tuple[Difference, ...]
+    """Differences of all pairs, those with the direct solution first."""
+    matrices: MatricesRecord
+    """Numbers that decide which formulations are convex."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Comparison:
-    """Formulations of one condensed problem side by side.
-
-    Parameters
-    ----------
-    contact : CondensedContact
-    reference : the direct solution
-    contenders : the formulations asked for, in the order asked
-    differences : of all pairs that have a pressure, those with the reference first
-    matrices : of each weights of the comparison, the tributary ones first
-    condition : of the matrix that is inverted for the stiffness rows
-    verdict : of the whole, in words
-    """
+    """Formulations of one condensed problem side by side."""
 
     contact: CondensedContact
+    """The condensed problem."""
     reference: Contender
+    """The direct solution."""
     contenders: tuple[Contender, ...]
+    """The formulations, in the order asked."""
     differences: tuple[Difference, ...]
+    """Differences of all pairs that have a pressure, those with the reference first."""
     matrices: tuple[WeightedCompliance, ...]
+    """Numbers of J M for each of the weights, the tributary ones first."""
     condition: float
+    """Condition of the matrix that is inverted for the stiffness rows."""
     verdict: str
+    """What the comparison shows, in sentences."""
 
     def __repr__(self) -> str:
         """One line: name, contenders, verdict."""
@@ -91,7 +110,7 @@ class Comparison:
             difference = self.difference(item.label)
             objective = "" if item.objective is None else f"{item.objective:.1e}"
             off = "" if difference is None else f"{difference.largest:.1e}"
-            cells = (item.label, item.verdict.outcome.value, objective, off)
+            cells = (item.label, item.verdict.outcome, objective, off)
             rows.append(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>")
         head = "".join(
             f"<th>{name}</th>" for name in ("formulation", "verdict", "objective", "off the direct solution")
@@ -111,8 +130,8 @@ class Comparison:
 
     @property
     def agreement(self) -> float | None:
-        """The largest `Difference.largest` from the reference of contenders that meet all conditions; None of none."""
-        meeting = [item.label for item in self.contenders if item.verdict.outcome in MEETING]
+        """Largest difference from the reference of contenders that meet all conditions; None if there is none."""
+        meeting = [item.label for item in self.contenders if OUTCOMES[item.verdict.outcome].meets_conditions]
         return max((item.largest for name in meeting if (item := self.difference(name))), default=None)
 
     @property
@@ -130,78 +149,83 @@ class Comparison:
         pair = (label, self.reference.label)
         return next((item for item in self.differences if (item.one, item.other) == pair), None)
 
+    def record(self) -> ComparisonRecord:
+        """Return what JSON holds of it."""
+        return ComparisonRecord(
+            name=self.contact.name,
+            version=__version__,
+            certified=self.certified,
+            heading=self.heading,
+            verdict=self.verdict,
+            agreement=self.agreement,
+            contact=contact_record(self.contact),
+            contenders=[contender_record(self.contact, item) for item in self.contenders],
+            reference=contender_record(self.contact, self.reference),
+            differences=self.differences,
+            matrices=MatricesRecord(condition=self.condition, weighted=self.matrices),
+        )
+
     def to_dict(self) -> dict[str, Any]:
-        """Give all of it as numbers, lists and texts, ready for JSON."""
-        return {
-            "name": self.contact.name,
-            "version": __version__,
-            "certified": self.certified,
-            "heading": self.heading,
-            "verdict": self.verdict,
-            "agreement": self.agreement,
-            "contact": contact_record(self.contact),
-            "contenders": [contender.to_dict(self.contact) for contender in self.contenders],
-            "reference": self.reference.to_dict(self.contact),
-            "differences": [asdict(item) for item in self.differences],
-            "matrices": {"condition": self.condition, "weighted": [item.to_dict() for item in self.matrices]},
-        }
+        """Return all of it as numbers, lists and texts, ready for JSON."""
+        return self.record().to_dict()
 
     def to_json(self, indent: int | None = 2) -> str:
-        """Write `to_dict` as JSON; every number in it is finite."""
-        return json.dumps(self.to_dict(), indent=indent, allow_nan=False, ensure_ascii=False)
+        """Return `to_dict` as JSON; every number in it is finite."""
+        return json_text(self.to_dict(), indent)
 
 
-def comparison(contact: CondensedContact, reference: Found, found: Sequence[Found]) -> Comparison:
-    """Judge what formulations found, and put it side by side; nothing is believed from a solver.
+def comparison(contact: CondensedContact, reference: Attempt, attempts: Sequence[Attempt]) -> Comparison:
+    """Assess the solutions of formulations, without trust in a solver, and put them side by side.
 
     Parameters
     ----------
     contact : CondensedContact
     reference : the direct solution
-    found : of the formulations
-
-    Returns
-    -------
-    Comparison
+    attempts : of the formulations
 
     Raises
     ------
     ProblemError
         The problem does not carry the weights asked for.
     """
-    asked = [item.options.weights for item in found if item.options.uses("weights")]
+    asked = [item.options.weights for item in attempts if item.options.uses("weights")]
     weights = [*dict.fromkeys([Weights.TRIBUTARY, *asked])]
-    penalties = tuple(dict.fromkeys(item.options.penalty for item in found if item.options.uses("penalty")))
+    penalties = tuple(dict.fromkeys(item.options.penalty for item in attempts if item.options.uses("penalty")))
     matrices = {item: weighted_compliance(contact, item) for item in weights}
-    judged = [
-        None if item.solution is None else recomputed(contact, item.solution, weights, penalties)
-        for item in (reference, *found)
+    assessments = [
+        None if item.solution is None else assess(contact, item.solution, weights, penalties)
+        for item in (reference, *attempts)
     ]
-    base, *contenders = (
-        contender(item, own, judged[0], matrices) for item, own in zip((reference, *found), judged, strict=True)
+    direct, *contenders = (
+        contender(item, own, assessments[0], matrices)
+        for item, own in zip((reference, *attempts), assessments, strict=True)
     )
-    differences = _differences(contact, base, contenders)
+    differences = _differences(contact, direct, contenders)
     return Comparison(
         contact=contact,
-        reference=base,
+        reference=direct,
         contenders=tuple(contenders),
         differences=differences,
         matrices=tuple(matrices.values()),
         condition=condition(contact),
-        verdict=_whole(base, contenders, differences),
+        verdict=_verdict(direct, contenders, differences),
     )
 
 
-def _differences(contact: CondensedContact, base: Contender, judged: Sequence[Contender]) -> tuple[Difference, ...]:
-    """Of all pairs, those with the reference first."""
-    solved = [base] if base.verdict.outcome in MEETING else []
-    found = {item.label: item.judged.solution for item in [*judged, *solved] if item.judged is not None}
-    of_base = next(reversed(found.values())).pressure if found else np.zeros(contact.size)
-    peak = contact.peak(of_base) or contact.scales.pressure
-    size = float(np.sqrt(contact.weights @ of_base**2)) if contact.peak(of_base) else 0.0
+def _differences(
+    contact: CondensedContact, direct: Contender, contenders: Sequence[Contender]
+) -> tuple[Difference, ...]:
+    """Differences of all pairs, those with the reference first."""
+    solved = [direct] if OUTCOMES[direct.verdict.outcome].meets_conditions else []
+    solutions = {item.label: item.solution for item in [*contenders, *solved] if item.solution is not None}
+    basis = next(reversed(solutions.values())).pressure if solutions else np.zeros(contact.size)
+    peak = contact.peak(basis) or contact.scales.pressure
+    size = float(np.sqrt(contact.weights @ basis**2)) if contact.peak(basis) else 0.0
     size = size or peak * float(np.sqrt(contact.weights.sum()))
-    pairs = sorted(combinations(found, 2), key=lambda pair: pair[1] != base.label)
-    return tuple(_difference(contact, (one, found[one]), (other, found[other]), peak, size) for one, other in pairs)
+    pairs = sorted(combinations(solutions, 2), key=lambda pair: pair[1] != direct.label)
+    return tuple(
+        _difference(contact, (one, solutions[one]), (other, solutions[other]), peak, size) for one, other in pairs
+    )
 
 
 def _difference(
@@ -224,31 +248,31 @@ def _difference(
     )
 
 
-def _whole(base: Contender, judged: Sequence[Contender], differences: Sequence[Difference]) -> str:
-    """What a comparison says as a whole."""
-    solving = [item for item in judged if item.verdict.outcome in SOLVING]
-    labels = {item.label for item in [*solving, base]}
+def _verdict(direct: Contender, contenders: Sequence[Contender], differences: Sequence[Difference]) -> str:
+    """Say what a comparison shows as a whole."""
+    solving = [item for item in contenders if OUTCOMES[item.verdict.outcome].solves]
+    labels = {item.label for item in [*solving, direct]}
     apart = max((item.largest for item in differences if {item.one, item.other} <= labels), default=0.0)
-    sentences = []
-    if base.verdict.outcome is Outcome.NOT_THE_SOLUTION:
-        did = f", but {_listed(solving, len(judged))} did" if solving else ""
-        sentences.append(f"the direct solver found no contact state{did}")
-    elif solving and (apart <= SAME or base.verdict.outcome is not Outcome.SOLVES_PERHAPS_NOT_ALONE):
+    outcome, sentences = direct.verdict.outcome, []
+    if not OUTCOMES[outcome].meets_conditions:
+        did = f", but {_listed(solving, len(contenders))} did" if solving else ""
+        sentences.append(f"{OUTCOMES[outcome].of_direct}{did}")
+    elif solving and (apart <= SAME or outcome is not Outcome.SOLVES_PERHAPS_NOT_ALONE):
         agree = "agrees" if len(solving) == 1 else "agree"
         exactly = "exactly" if apart == 0 else f"to {apart:.1e} of the peak"
-        sentences.append(f"{_listed(solving, len(judged))} {agree} with the direct solution {exactly}")
+        sentences.append(f"{_listed(solving, len(contenders))} {agree} with the direct solution {exactly}")
     elif solving:
-        sentences.append(f"{_listed([*solving, base], 0)} meet all conditions, but differ by {apart:.1e} of the peak")
-    for outcome in (Outcome.NOT_THE_SOLUTION, Outcome.LEFT_OPEN, Outcome.REFUSED):
-        if failing := [item for item in judged if item.verdict.outcome is outcome]:
-            sentences.append(f"{outcome.value}: {_listed(failing, 0)}")
-    if base.verdict.outcome in OF_DIRECT:
-        sentences.append(OF_DIRECT[base.verdict.outcome])
+        sentences.append(f"{_listed([*solving, direct], 0)} meet all conditions, but differ by {apart:.1e} of the peak")
+    for failure in (Outcome.NOT_THE_SOLUTION, Outcome.LEFT_OPEN, Outcome.REFUSED):
+        if failing := [item for item in contenders if item.verdict.outcome is failure]:
+            sentences.append(f"{failure}: {_listed(failing, 0)}")
+    if OUTCOMES[outcome].meets_conditions:
+        sentences.append(OUTCOMES[outcome].of_direct)
     return f"{'; '.join(sentences)}."
 
 
 def _listed(contenders: Sequence[Contender], of: int) -> str:
-    """Labels as one says them, QP1, QP2 and QP3; of a great many only how many."""
+    """Name contenders, as QP1, QP2 and QP3; of many only their number."""
     if of > MANY:
         return f"all {of}" if len(contenders) == of else f"{len(contenders)} of {of}"
     *first, last = (item.label for item in contenders)

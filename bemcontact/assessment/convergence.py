@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
+from typing import Literal
 
 from scipy.optimize import brentq
 
 from bemcontact.assessment.footprint import ContactInterval, Footprint
+from bemcontact.serialization import Leaf
 
 ORDERS = 0.05, 12.0
 """Orders between which one is looked for."""
@@ -16,50 +17,34 @@ ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class Quantity:
-    """A number on one mesh after the other.
-
-    Parameters
-    ----------
-    name : of the number
-    dimension : "p", "L" or "1"
-    values : on each mesh, the coarsest first
-    orders : observed between meshes, one fewer than values where the limit is known to be zero, else two fewer; None
-        where the values show none, because they do not approach a limit steadily, or have come to it within round-off
-    limit : extrapolated with the last order; zero where that is known and the values fall; None without an order
-    """
+class Quantity(Leaf):
+    """A number on one mesh after the other."""
 
     name: str
-    dimension: str
+    """What it is."""
+    dimension: Literal["p", "L", "1"]
+    """Its unit: pressure, length, or none."""
     values: tuple[float, ...]
+    """Value on each mesh, the coarsest first."""
     orders: tuple[float | None, ...]
+    """Observed orders: one fewer than values where the limit is known to be zero, otherwise two fewer.
+
+    Null where the values show none: they do not approach a limit steadily, or they have reached it within round-off.
+    """
     limit: float | None
+    """Limit extrapolated with the last order; null without an order."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Convergence:
-    """What changes with the mesh.
-
-    Parameters
-    ----------
-    refine : parts into which each element is cut, on each mesh
-    quantities : peak, ends of contact and asymmetry of J M
-    remark : what cannot be told, else empty
-    """
+class Convergence(Leaf):
+    """Change of the solution with the mesh."""
 
     refine: tuple[int, ...]
+    """Number of parts into which each stated element is cut, on each mesh."""
     quantities: tuple[Quantity, ...]
+    """Peak pressure, ends of contact, and asymmetry of J M."""
     remark: str
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers, lists and texts, ready for JSON."""
-        return {
-            "refine": list(self.refine),
-            "quantities": [
-                {**asdict(item), "values": list(item.values), "orders": list(item.orders)} for item in self.quantities
-            ],
-            "remark": self.remark,
-        }
+    """Why some quantities cannot be compared, or empty."""
 
 
 def convergence(refine: Sequence[int], footprints: Sequence[Footprint], asymmetries: Sequence[float]) -> Convergence:
@@ -115,7 +100,7 @@ def _towards_zero(name: str, h: Sequence[float], values: Sequence[float]) -> Qua
     return Quantity(name=name, dimension="1", values=tuple(values), orders=orders, limit=0.0 if falls else None)
 
 
-def _towards_a_limit(name: str, dimension: str, h: Sequence[float], values: Sequence[float]) -> Quantity:
+def _towards_a_limit(name: str, dimension: Literal["p", "L"], h: Sequence[float], values: Sequence[float]) -> Quantity:
     """A number with an unknown limit: from three meshes the q with (v - v')/(v' - v'') = (hᑫ - h'ᑫ)/(h'ᑫ - h''ᑫ)."""
     orders = tuple(_order(h[i : i + 3], values[i : i + 3]) for i in range(len(h) - 2))
     limit = None

@@ -1,94 +1,100 @@
 """Where the bodies touch: intervals of contact, the peak pressure, the resultant."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import computed_field
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.serialization import Internal, Leaf, Pair, Record
 
-Point = tuple[float, float]
 OPEN_NODES = 3
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactInterval:
-    """One unbroken stretch of contact along the boundary.
-
-    Parameters
-    ----------
-    zone : name of the contact zone
-    start, end : (x, y) in the order of the boundary [L]
-    start_arc, end_arc : their arc positions on the run [L]; across the seam of a closed run they go on counting
-    run : number of the unbroken piece of boundary that it is on
-    perimeter : of that piece if it closes on itself, else infinity [L]
-    """
+class ContactInterval(Leaf):
+    """One unbroken stretch of contact along the boundary."""
 
     zone: str
-    start: Point
-    end: Point
-    start_arc: float
-    end_arc: float
-    run: int = 0
-    perimeter: float = float("inf")
+    """Name of the contact zone."""
+    start: Pair
+    """First end (x, y) in the order of the boundary [L]."""
+    end: Pair
+    """Last end (x, y) in the order of the boundary [L]."""
+    start_arc: Internal[float]
+    """Arc position of the first end on the run [L]."""
+    end_arc: Internal[float]
+    """Arc position of the last end on the run [L]; it goes on counting across the seam of a closed run."""
+    run: Internal[int] = 0
+    """Number of the unbroken piece of boundary."""
+    perimeter: Internal[float] = float("inf")
+    """Perimeter of that piece if it closes on itself, otherwise infinity [L]."""
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give zone and ends as texts and lists, ready for JSON."""
-        return {
-            "zone": self.zone,
-            "start": list(self.start),
-            "end": list(self.end),
-            "arc": [self.start_arc, self.end_arc],
-        }
+    @computed_field
+    @property
+    def arc(self) -> Pair:
+        """Arc positions of both ends on the piece of boundary [L]; across its seam they go on counting."""
+        return self.start_arc, self.end_arc
 
 
 @dataclass(frozen=True, kw_only=True)
-class Peak:
-    """The largest nodal pressure [p], per undeformed length, and where it acts."""
+class Peak(Leaf):
+    """The largest pressure, and where it acts."""
 
     pressure: float
-    at: Point
+    """Nodal pressure per undeformed length [p]."""
+    at: Pair
+    """Contact point (x, y) [L]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Resultant:
-    """Force of the rigid surface on the body: Σ w p n [p L], its moment about the origin, anticlockwise [p L²].
+    """Force of the rigid surfaces on the body."""
 
-    `line_point` is the point of the line of action that is nearest to the origin; None without a force.
-    """
-
-    force: Point
+    force: Pair
+    """Force (x, y), Σ w p n, per thickness [p L]."""
     moment: float
-    line_point: Point | None
+    """Its moment about the origin, anticlockwise, per thickness [p L²]."""
+    line_point: Pair | None
+    """Point of the line of action that is nearest to the origin [L]; None without a force."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Footprint:
-    """What a contact state looks like to an engineer.
-
-    Parameters
-    ----------
-    intervals : zone by zone, in the order of the boundary; empty without contact
-    peak : None without contact
-    resultant : of the contact pressure
-    """
+    """Where the body touches, and how hard."""
 
     intervals: tuple[ContactInterval, ...]
+    """Contact intervals, zone by zone, in the order of the boundary; empty without contact."""
     peak: Peak | None
+    """Largest pressure; None without contact."""
     resultant: Resultant
+    """Resultant of the contact pressure."""
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers, lists and texts, ready for JSON."""
-        peak = self.peak
-        return {
-            "resultant": list(self.resultant.force),
-            "resultant_moment": self.resultant.moment,
-            "intervals": [interval.to_dict() for interval in self.intervals],
-            "peak": None if peak is None else {"pressure": peak.pressure, "at": list(peak.at)},
-        }
+
+class FootprintRecord(Record):
+    """Where the body touches, and how hard."""
+
+    resultant: Pair
+    """Force (x, y) of the rigid surfaces on the body, per thickness [p L]."""
+    resultant_moment: float
+    """Its moment about the origin, anticlockwise, per thickness [p L²]."""
+    intervals: tuple[ContactInterval, ...]
+    """Contact intervals, zone by zone; empty without contact."""
+    peak: Peak | None
+    """Largest pressure; null without contact."""
+
+
+def footprint_record(footprint: Footprint) -> FootprintRecord:
+    """Describe a footprint."""
+    return FootprintRecord(
+        resultant=footprint.resultant.force,
+        resultant_moment=footprint.resultant.moment,
+        intervals=footprint.intervals,
+        peak=footprint.peak,
+    )
 
 
 def footprint(contact: CondensedContact, solution: ContactSolution) -> Footprint:
@@ -141,7 +147,7 @@ def end_rates(
     return tuple(pair for _, path in _paths(contact, solution) for pair in _rates(path, gap_rate[path.index]))
 
 
-def resting_ends(contact: CondensedContact, solution: ContactSolution) -> tuple[Point, ...]:
+def resting_ends(contact: CondensedContact, solution: ContactSolution) -> tuple[Pair, ...]:
     """Ends of contact that `footprint` keeps at a point, although open points follow: their rates are zero.
 
     There the line through the gaps of the open points would end beyond the two points between which contact ends.
@@ -292,7 +298,7 @@ def _end_rate(path: _Path, rate: Array, last: int, step: int) -> float | None:
     return float((value * slope_rate / slope - value_rate) / slope) if free else 0.0
 
 
-def _at(path: _Path, position: float) -> Point:
+def _at(path: _Path, position: float) -> Pair:
     """The point at an arc position: a held end, or by the parabola through the three nearest points in order."""
     if position in path.held_arc:
         x, y = path.held_points[int(np.flatnonzero(path.held_arc == position)[0])]

@@ -1,37 +1,35 @@
 """What the condensed matrices are like: asymmetry, definiteness, condition; they decide what can be proved."""
 
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
+from pydantic import computed_field
 from scipy.linalg import eigvalsh
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.options import Weights
+from bemcontact.serialization import Leaf
 
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR, or part of the largest eigenvalue, that is round-off; by the scaling the numbers are of size one."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class WeightedCompliance:
-    """J M with J over its largest entry and ‖M‖∞ = 1, and what it is on the equilibrium space {p : ℓᵀp = 0}.
-
-    Parameters
-    ----------
-    weights : which J
-    negative_weights : entries of J below zero; with any of them an objective of zero certifies nothing
-    asymmetry : |JM - MᵀJᵀ| / |JM + MᵀJᵀ| in the Frobenius norm: zero for the continuum, so that it tells of the mesh
-    smallest_eigenvalue, largest_eigenvalue : of sym(JM) on the equilibrium space; None if that is the zero vector
-    saddle : whether pᵀJR a does not vanish there, so that the objective of QP3 is a saddle in (p, a)
-    """
+class WeightedCompliance(Leaf):
+    """Numbers of J M on the equilibrium space {p : ℓᵀp = 0}; J is over its largest entry and ‖M‖∞ = 1."""
 
     weights: Weights
+    """The weights J."""
     negative_weights: int
+    """Number of entries of J below 0; with any of them an objective of 0 certifies nothing."""
     asymmetry: float
+    """|JM - MᵀJᵀ|/|JM + MᵀJᵀ| in the Frobenius norm; 0 for the continuum, so that it measures the mesh."""
     smallest_eigenvalue: float | None
+    """Smallest eigenvalue of sym(JM) on the equilibrium space; null if equilibrium alone fixes the pressure."""
     largest_eigenvalue: float | None
+    """Largest eigenvalue of sym(JM) on the equilibrium space; null if equilibrium alone fixes the pressure."""
     saddle: bool
+    """Whether pᵀJR a is not zero on the equilibrium space, so that the objective of QP3 is a saddle in (p, a)."""
 
     @property
     def definite(self) -> bool:
@@ -40,33 +38,15 @@ class WeightedCompliance:
             return True
         return self.smallest_eigenvalue >= -NEGLIGIBLE * abs(self.largest_eigenvalue)
 
+    @computed_field
     @property
     def convex(self) -> bool:
         """Whether QP3 with these weights is convex, up to round-off."""
         return self.definite and not self.saddle
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers and texts, ready for JSON."""
-        return {**asdict(self), "weights": self.weights.value, "convex": self.convex}
-
 
 def weighted_compliance(contact: CondensedContact, weights: Weights) -> WeightedCompliance:
-    """Look at J M.
-
-    Parameters
-    ----------
-    contact : CondensedContact
-    weights : which J
-
-    Returns
-    -------
-    WeightedCompliance
-
-    Raises
-    ------
-    ProblemError
-        The problem does not carry these weights.
-    """
+    """Compute the numbers of J M; `ProblemError` if the problem does not carry these weights."""
     U, T = contact.scales
     J = contact.weight_matrix(weights)
     J = J / np.abs(J).max()

@@ -1,19 +1,20 @@
-"""What a formulation's answer is worth, in a word and a sentence, and what a whole comparison says."""
+"""What is shown of a formulation's answer, in a word and a sentence."""
 
 from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
 
 from bemcontact.assessment.certificate import Certificate, CertificateKind
 from bemcontact.assessment.matrices import WeightedCompliance
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.options import Weights
+from bemcontact.serialization import Leaf
 
 ZERO = 1e-11
 """Scaled objective that is round-off: a residual of 1e-10, times a displacement or pressure of size one."""
 
 
-class Outcome(Enum):
-    """What has been shown of an answer."""
+class Outcome(StrEnum):
+    """What is shown of an answer; `OUTCOMES` says more of each."""
 
     SOLVES = "solves it"
     SOLVES_PERHAPS_NOT_ALONE = "solves it, perhaps not alone"
@@ -23,28 +24,82 @@ class Outcome(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Verdict:
-    """An outcome, a sentence that says why, and the deeper reason where the weights are to blame, else empty."""
+class OutcomeFacts:
+    """What an outcome means, and how it is said."""
+
+    quality: str
+    """How good it is: good, fair or bad."""
+    solves: bool
+    """Whether the answer is a contact state."""
+    meets_conditions: bool
+    """Whether the answer meets all conditions to their tolerance."""
+    predicate: tuple[str, str]
+    """What is said of one formulation, and of several."""
+    of_direct: str
+    """What is said of the direct solution."""
+
+
+OUTCOMES = {
+    Outcome.SOLVES: OutcomeFacts(
+        quality="good",
+        solves=True,
+        meets_conditions=True,
+        predicate=("finds the contact state", "find the contact state"),
+        of_direct="the direct solution is certified, and there is no other",
+    ),
+    Outcome.SOLVES_PERHAPS_NOT_ALONE: OutcomeFacts(
+        quality="fair",
+        solves=True,
+        meets_conditions=True,
+        predicate=("finds a contact state", "find a contact state"),
+        of_direct="the direct solution meets all conditions, but they may have other solutions",
+    ),
+    Outcome.LEFT_OPEN: OutcomeFacts(
+        quality="fair",
+        solves=False,
+        meets_conditions=True,
+        predicate=("is left open by round-off", "are left open by round-off"),
+        of_direct="round-off leaves open whether the direct solution is near the contact state",
+    ),
+    Outcome.NOT_THE_SOLUTION: OutcomeFacts(
+        quality="bad",
+        solves=False,
+        meets_conditions=False,
+        predicate=("does not find the contact state", "do not find the contact state"),
+        of_direct="the direct solver found no contact state",
+    ),
+    Outcome.REFUSED: OutcomeFacts(
+        quality="bad",
+        solves=False,
+        meets_conditions=False,
+        predicate=("is refused", "are refused"),
+        of_direct="the direct solver was refused",
+    ),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict(Leaf):
+    """What is shown of an answer, and why."""
 
     outcome: Outcome
+    """Outcome in a few words."""
     words: str
+    """Sentence that says why."""
     reason: str = ""
-
-    def to_dict(self) -> dict[str, str]:
-        """Give all as texts, ready for JSON."""
-        return {"outcome": self.outcome.value, "words": self.words, "reason": self.reason}
+    """Reason of a failure that lies in the weights, or empty."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Reached:
-    """The objective of a statement at an answer, and at the contact state if that is known; all free of units."""
+    """Objective of a statement at an answer, and at the contact state if that is known; all free of units."""
 
     here: float
     at_contact_state: float | None
     peak: float
 
     def __str__(self) -> str:
-        """Both in words: objective 0 reached, or what it is instead of what."""
+        """Say that the objective is 0, or how far it is from that of the contact state."""
         round_off = ZERO * max(1.0, self.peak) ** 2
         if self.at_contact_state is None:
             return f"objective {self.here:.2e}"
@@ -66,39 +121,36 @@ def verdict(
     matrices: WeightedCompliance | None,
     tributary: WeightedCompliance,
 ) -> Verdict:
-    """Say what an answer is worth.
+    """Say what is shown of an answer.
 
     Parameters
     ----------
     solution : of any formulation
     certificate : of that solution
-    reached : the objective of its own statement; None where it has none
-    matrices, tributary : of its own weights, None likewise, and of the tributary ones
-
-    Returns
-    -------
-    Verdict
+    reached : objective of its own statement, or None if it has none
+    matrices : of its own weights, or None if it has none
+    tributary : matrices of the tributary weights
     """
-    told = "" if reached is None else f"{reached}, "
+    objective = "" if reached is None else f"{reached}, "
     match certificate.kind:
         case CertificateKind.UNIQUE:
             return Verdict(
                 outcome=Outcome.SOLVES,
-                words=f"solves the contact problem: {told}all conditions hold, and no other state exists, because "
+                words=f"solves the contact problem: {objective}all conditions hold, and no other state exists, because "
                 f"{_why_unique(certificate)}",
             )
         case CertificateKind.LOCAL:
             return Verdict(
                 outcome=Outcome.SOLVES_PERHAPS_NOT_ALONE,
-                words=f"solves the contact problem: {told}all conditions hold; but local only: "
+                words=f"solves the contact problem: {objective}all conditions hold; but local only: "
                 f"the compliance is not positive definite (smallest eigenvalue "
                 f"{certificate.smallest_eigenvalue:.1e}), so that another state may exist",
             )
         case CertificateKind.OPEN:
             return Verdict(
                 outcome=Outcome.LEFT_OPEN,
-                words=f"meets all conditions to their tolerance: {told}but in floating-point numbers its pressure "
-                "cannot be told from others that are far from it",
+                words=f"meets all conditions to their tolerance: {objective}but in floating-point numbers its pressure "
+                "cannot be objective from others that are far from it",
             )
         case CertificateKind.NOT_A_SOLUTION:
             return Verdict(
@@ -125,9 +177,9 @@ def _why_not(solution: ContactSolution, certificate: Certificate, reached: Reach
     ended = {
         Status.SOLVED: "its solver's end is not the contact state",
         Status.LOCAL_MINIMUM: "stationary but not the solution",
-    }.get(solution.status, solution.status.value)
-    told = "" if reached is None else f": {reached}"
-    return f"{ended}{told}; {certificate.complaint}."
+    }.get(solution.status, solution.status.words)
+    objective = "" if reached is None else f": {reached}"
+    return f"{ended}{objective}; {certificate.complaint}."
 
 
 def _of_weights(matrices: WeightedCompliance, tributary: WeightedCompliance) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem.mesh import Mesh
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.conditions import AxisFields, Condition, Field
@@ -31,6 +31,26 @@ class BoundaryValues:
     displacement: Array
     traction_unknown: BoolArray
     traction: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BoundaryState:
+    """Displacement and traction on the boundary, element by element; traction may jump between elements."""
+
+    points: Array
+    """Nodes (m, 3, 2) of each element [L]."""
+    displacement: Array
+    """Displacement (m, 3, 2) at these nodes [L]."""
+    traction: Array
+    """Force (m, 3, 2) on the body per undeformed length [p]."""
+    edge: IntArray
+    """Index (m,) into `edge_names`."""
+    edge_names: tuple[str, ...]
+    """Names of the edges."""
+    force_balance: float
+    """Resultant of all forces on the body (and of their moments, over the radius), over the sum of their magnitudes."""
+    equilibrium_slack: float
+    """Imbalance of the discrete equations relative to the loads; it measures the mesh."""
 
 
 def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, ensure_held
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.rigid_motions import (
     all_rigid_motions,
 )
@@ -132,31 +133,6 @@ def _observe(system: System, response: Array) -> Array:
         free = column >= 0
         result[free] += normal[free, None] * response[column[free]]
     return result
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class BoundaryState:
-    """Displacement and traction on the boundary, element by element; traction may jump between elements.
-
-    Parameters
-    ----------
-    points : (m, 3, 2) nodes of each element [L]
-    displacement : (m, 3, 2) [L]
-    traction : (m, 3, 2) force on the body per undeformed length [p]
-    edge : (m,) index into `edge_names`
-    edge_names : names of the edges
-    force_balance : resultant of all forces on the body (and of their moments, over the radius), relative to the sum of
-        their magnitudes
-    equilibrium_slack : how far the discrete equations are from equilibrium, relative to the loads; tells of the mesh
-    """
-
-    points: Array
-    displacement: Array
-    traction: Array
-    edge: IntArray
-    edge_names: tuple[str, ...]
-    force_balance: float
-    equilibrium_slack: float
 
 
 def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:

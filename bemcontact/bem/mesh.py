@@ -113,6 +113,11 @@ def build(problem: Problem) -> Mesh:
     return connected(np.vstack(starts), np.vstack(middles), np.array(after), edge_of)
 
 
+def element_curves(values: Array, count: int) -> Array:
+    """Values (m, count, 2) at equally spaced points of each element, from those (m, 3, 2) at its nodes."""
+    return reference_element.values(np.linspace(-1, 1, count)) @ values
+
+
 def along_curve(edge: Edge) -> tuple[Array, Array, Array]:
     """Gauss points of an edge itself, not of its elements, many enough for integrals to round-off.
 

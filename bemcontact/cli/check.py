@@ -23,10 +23,10 @@ def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1)
     """
 
     def work(_: Report) -> Outcome:
-        from bemcontact.analysis import solve as analysis
+        from bemcontact.analysis.check import check as checked
         from bemcontact.report import text
 
-        body = analysis.check(source.problem(refine))
+        body = checked(source.problem(refine))
         if figure:
             from bemcontact.report import figures
 
@@ -62,25 +62,34 @@ def condense(
 
 
 def schema(
+    result: Annotated[bool, typer.Option("--result", help="The schema of the JSON that solve writes.")] = False,
+    cases: Annotated[
+        bool, typer.Option("--cases", help="The schema of the JSON that solve writes of all load cases.")
+    ] = False,
+    path: Annotated[bool, typer.Option("--path", help="The schema of the JSON that path writes.")] = False,
     report: Annotated[bool, typer.Option("--report", help="The schema of report.json, which compare writes.")] = False,
     reproduction: Annotated[
         bool, typer.Option("--reproduction", help="The schema of numbers.json, which reproduce writes.")
     ] = False,
 ) -> None:
-    """Print the JSON Schema of a spec, which editors use to check and complete, or that of a report or reproduction.
+    """Print the JSON Schema of a spec, which editors use to check and complete, or that of a result.
 
     [bold]Examples[/bold]
       bemcontact schema > bemcontact.schema.json
+      bemcontact schema --result > result.schema.json
       bemcontact schema --report > report.schema.json
-      bemcontact schema --reproduction > numbers.schema.json
     """
     with reported():
-        if report and reproduction:
-            refuse("--report and --reproduction are two schemas; ask for one")
-        if report:
-            from bemcontact.report.schema import report_schema as make
-        elif reproduction:
-            from bemcontact.report.reproduction_schema import reproduction_schema as make
+        options = {"result": result, "cases": cases, "path": path, "report": report, "reproduction": reproduction}
+        kinds = [kind for kind, wanted in options.items() if wanted]
+        if len(kinds) > 1:
+            refuse(f"{' and '.join(f'--{kind}' for kind in kinds)} are different schemas; choose one")
+        if kinds:
+            from bemcontact.report.schema import schema as schema_of_result
+
+            printed = schema_of_result(kinds[0])
         else:
-            from bemcontact.spec import schema as make
-        write_json(json.dumps(make(), indent=2, ensure_ascii=False))
+            from bemcontact.spec import schema as schema_of_spec
+
+            printed = schema_of_spec()
+        write_json(json.dumps(printed, indent=2, ensure_ascii=False))

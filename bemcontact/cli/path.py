@@ -44,7 +44,7 @@ def path(
 
     def work(report: Report) -> Outcome:
         from bemcontact.analysis.follow import follow
-        from bemcontact.report import path_text
+        from bemcontact.report import text
 
         followed = follow(source.problem(refine), vary, to, start)
         if out:
@@ -53,10 +53,10 @@ def path(
 
             folder.save_path(followed, out)
         return Outcome(
-            summary=lambda: path_text.path_summary(followed),
+            summary=lambda: text.path_summary(followed),
             json=followed.to_json,
             holds=followed.certified,
-            verdict=path_text.verdict(followed),
+            verdict=text.path_sentence(followed),
         )
 
     run("following", work, source=source, folder=out, kind="path", json_file=json_file)

@@ -32,8 +32,7 @@ def reproduce(
 
     def work(report: Report) -> Outcome:
         from bemcontact.analysis import reproduction as analysis
-        from bemcontact.report.reproduction_page import verdict
-        from bemcontact.report.reproduction_text import reproduction_summary
+        from bemcontact.report.reproduction import reproduction_sentence, reproduction_summary
 
         reproduction = analysis.reproduce(several(refine, "--refine", "whole number", int), report)
         if out:
@@ -46,7 +45,7 @@ def reproduce(
             summary=lambda: reproduction_summary(record),
             json=reproduction.to_json,
             holds=reproduction.reproduced,
-            verdict=verdict(record),
+            verdict=reproduction_sentence(record),
             claim="reproduced",
         )
 

@@ -43,7 +43,7 @@ def solve(
     def work(report: Report) -> Outcome:
         from bemcontact.analysis import load_cases
         from bemcontact.analysis import solve as analysis
-        from bemcontact.report import cases_text, formatting, text
+        from bemcontact.report import text
 
         def draw(results: analysis.Result | load_cases.CaseResults) -> None:
             if figure:
@@ -58,10 +58,10 @@ def solve(
             results = load_cases.solve_cases_with(options, problem, lambda case, _: report("solving", case))
             draw(results)
             return Outcome(
-                summary=lambda: cases_text.cases_summary(results),
+                summary=lambda: text.cases_summary(results),
                 json=results.to_json,
                 holds=results.certified,
-                verdict=cases_text.uncertified(results),
+                verdict=text.uncertified(results),
             )
         several = options.starts or 1
         result = analysis.solve_with(
@@ -76,7 +76,7 @@ def solve(
             summary=lambda: text.result_summary(result),
             json=result.to_json,
             holds=result.certified,
-            verdict=formatting.verdict(result),
+            verdict=text.uncertified(result),
         )
 
     run("solving", work, source=source, files={"--figure": figure, "--vtk": vtk_file}, json_file=json_file)

@@ -1,34 +1,51 @@
-"""Where the searches of a local solver from many random starts ended: which ends, and how often each."""
+"""Ends of the searches of a local solver from many random starts (multistart), and how often each was reached."""
 
 from dataclasses import dataclass
-from typing import Any
+
+from pydantic import computed_field
 
 from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.options import FormulationName
+from bemcontact.serialization import Internal, Leaf, Vector
 
 LISTED = 8
 """Ends that are listed for a person."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class End:
-    """Where searches ended.
+class End(Leaf):
+    """One end that searches from random starts reached."""
 
-    Parameters
-    ----------
-    solution : of the first search that ended here, not polished
-    count : how many did
-    first_start : number of the first start that led here, from 0
-    objective : scaled, of the statement itself; zero at the contact state; None if infeasible or unbounded
-    residual : of the contact conditions and equations, relative to the scales; it tells the contact state
-    iterations : least and most of those who did
-    """
-
-    solution: ContactSolution
+    solution: Internal[ContactSolution]
+    """Solution of the first search that ended here, not polished."""
     count: int
+    """Number of searches that ended here."""
     first_start: int
+    """Number of the first start that led here, from 0."""
     objective: float | None
+    """Objective of the statement, scaled; 0 at the contact state, null if infeasible or unbounded."""
     residual: float
+    """Residual of the contact conditions and equations over the scales: about 1e-10 at the contact state."""
     iterations: tuple[int, int]
+    """Least and largest number of iterations of the searches that ended here."""
+
+    @computed_field
+    @property
+    def status(self) -> Status:
+        """How the searches ended."""
+        return self.solution.status
+
+    @computed_field
+    @property
+    def pressure(self) -> Vector:
+        """Pressure (n,) of the first search [p]."""
+        return self.solution.pressure
+
+    @computed_field
+    @property
+    def normal_displacement(self) -> Vector:
+        """Normal displacement (n,) of the first search [L]."""
+        return self.solution.displacement
 
     def __repr__(self) -> str:
         """The line of `str` in brackets."""
@@ -39,40 +56,27 @@ class End:
         least, most = self.iterations
         where = "" if self.objective is None else f"objective {self.objective:.1e}, residual {self.residual:.1e}, "
         iterations = f"{most} iteration{'s' if most != 1 else ''}" if least == most else f"{least} to {most} iterations"
-        return f"{self.count} x {self.solution.status.name.lower().replace('_', ' ')}, {where}{iterations}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers and texts, ready for JSON."""
-        numbers = ("count", "first_start", "objective", "residual")
-        return {
-            "status": self.solution.status.name.lower(),
-            **{name: getattr(self, name) for name in numbers},
-            "iterations": list(self.iterations),
-            "pressure": self.solution.pressure.tolist(),
-            "normal_displacement": self.solution.displacement.tolist(),
-        }
+        return f"{self.count} x {self.status.replace('_', ' ')}, {where}{iterations}"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class RandomStarts:
-    """What was found from random starts.
+class RandomStarts(Leaf):
+    """Searches of a local solver from random starts."""
 
-    Parameters
-    ----------
-    formulation : name of the statement
-    count, seed : of the starts
-    ends : the nearest to the contact state first
-    """
-
-    formulation: str
+    formulation: FormulationName
+    """Statement that was searched."""
     count: int
+    """Number of starts."""
     seed: int
+    """Seed of the random numbers."""
     ends: tuple[End, ...]
+    """Distinct ends, the nearest to the contact state first."""
 
+    @computed_field
     @property
     def solved(self) -> int:
-        """How many searches ended at a contact state."""
-        return sum(end.count for end in self.ends if end.solution.status is Status.SOLVED)
+        """Number of searches that ended at a contact state."""
+        return sum(end.count for end in self.ends if end.status is Status.SOLVED)
 
     def __repr__(self) -> str:
         """One line: formulation, how many ended where they should."""
@@ -87,16 +91,6 @@ class RandomStarts:
 
     @property
     def _head(self) -> str:
-        states = sum(end.solution.status is Status.SOLVED for end in self.ends)
+        states = sum(end.status is Status.SOLVED for end in self.ends)
         where = "the contact state" if states <= 1 else f"a contact state, of which there are {states}"
         return f"{self.solved} of {self.count} random starts (seed {self.seed}) end at {where}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers, lists and texts, ready for JSON."""
-        return {
-            "formulation": str(self.formulation),
-            "count": self.count,
-            "seed": self.seed,
-            "solved": self.solved,
-            "ends": [end.to_dict() for end in self.ends],
-        }

@@ -1,90 +1,168 @@
-"""Contact problems and their solutions as numbers, lists and texts, ready for JSON."""
-
-from dataclasses import asdict
-from typing import Any
+"""What JSON holds of a contact problem and of a solution, point by point."""
 
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.solution import ContactSolution
+from bemcontact.contact.solution import ContactSolution, LocalSearch, Status, Trace
+from bemcontact.serialization import Pair, Pairs, Record, Vector
 
 
-def contact_record(contact: CondensedContact) -> dict[str, Any]:
-    """Give what a reader of results needs of a condensed problem; its matrices are what `CondensedContact.save` writes.
+class UnitsRecord(Record):
+    """Labels of the units that all numbers are in; nothing is converted."""
 
-    Parameters
-    ----------
-    contact : CondensedContact
-
-    Returns
-    -------
-    dict
-    """
-    return {
-        "contact_nodes": contact.size,
-        "free_rigid_motions": contact.free_motions,
-        "motion_names": list(contact.motion_names),
-        "motion_load": contact.motion_load.tolist(),
-        "nodes": contact.points.tolist(),
-        "normals": contact.normals.tolist(),
-        "zone": [contact.zone_names[i] for i in contact.zone],
-        "run": contact.run.tolist(),
-        "arc_position": contact.arc_position.tolist(),
-        "tributary_lengths": contact.weights.tolist(),
-        "initial_gap": contact.initial_gap.tolist(),
-        "load_factors": dict(zip(contact.cases.names, contact.cases.factors.tolist(), strict=True)),
-        "scales": contact.scales._asdict(),
-    }
+    length: str = ""
+    """Label of the unit of length [L], or empty."""
+    force: str = ""
+    """Label of the unit of force, or empty; pressure [p] is force over length squared."""
 
 
-def solution_record(contact: CondensedContact, solution: ContactSolution) -> dict[str, Any]:
-    """Give what a formulation found.
+class ScalesRecord(Record):
+    """Scales by which residuals and objectives are divided."""
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    solution : of it
-
-    Returns
-    -------
-    dict
-    """
-    return {
-        "solver": solution.solver,
-        "status": solution.status.name.lower(),
-        "rigid_amplitudes": solution.rigid_amplitudes.tolist(),
-        "pressure": solution.pressure.tolist(),
-        "gap": (contact.initial_gap + solution.displacement).tolist(),
-        "normal_displacement": solution.displacement.tolist(),
-        "iterations": solution.iterations,
-        "polished": solution.polished,
-        "search": None if solution.search is None else asdict(solution.search),
-        "history": [
-            {"quantity": trace.quantity, "first": trace.first, "values": list(trace.values)}
-            for trace in solution.history
-        ],
-        "convexity": solution.smallest_eigenvalue,
-        "tools": _tools_record(contact, solution),
-    }
+    displacement: float
+    """Typical displacement U [L]."""
+    pressure: float
+    """Typical pressure T [p]."""
 
 
-def _tools_record(contact: CondensedContact, solution: ContactSolution) -> list[dict[str, Any]]:
-    """Give where the tools are in a solution, and what the body presses on them with."""
+class ContactRecord(Record):
+    """Contact points of a condensed problem; lists go point by point. The matrices stand in contact.npz."""
+
+    contact_nodes: int
+    """Number of contact points."""
+    free_rigid_motions: int
+    """Number of rigid motions that contact alone holds."""
+    motion_names: tuple[str, ...]
+    """Name of each free rigid motion."""
+    motion_load: Vector
+    """Work of the loads in each free motion, for a motion of unit displacement, per thickness [p L]."""
+    nodes: Pairs
+    """Undeformed place (x, y) [L]."""
+    normals: Pairs
+    """Unit normal of the rigid surface, into the body."""
+    zone: list[str]
+    """Name of the contact zone."""
+    run: list[int]
+    """Number of the unbroken piece of boundary."""
+    arc_position: Vector
+    """Arc length along that piece [L]."""
+    tributary_lengths: Vector
+    """Length that belongs to the point [L]: Σ length · pressure · normal is the resultant."""
+    initial_gap: Vector
+    """Distance from the rigid surface along its normal before anything deforms; negative if inside [L]."""
+    load_factors: dict[str, float]
+    """Factor of each load case; empty if there are none."""
+    scales: ScalesRecord
+    """Typical displacement and pressure, by which residuals and objectives are divided."""
+
+
+def contact_record(contact: CondensedContact) -> ContactRecord:
+    """Describe the contact points of a condensed problem."""
+    return ContactRecord(
+        contact_nodes=contact.size,
+        free_rigid_motions=contact.free_motions,
+        motion_names=contact.motion_names,
+        motion_load=contact.motion_load,
+        nodes=contact.points,
+        normals=contact.normals,
+        zone=[contact.zone_names[i] for i in contact.zone],
+        run=contact.run.tolist(),
+        arc_position=contact.arc_position,
+        tributary_lengths=contact.weights,
+        initial_gap=contact.initial_gap,
+        load_factors=dict(zip(contact.cases.names, contact.cases.factors.tolist(), strict=True)),
+        scales=ScalesRecord(**contact.scales._asdict()),
+    )
+
+
+class ToolRecord(Record):
+    """State of a tool, a rigid surface that moves: its displacement, and the force of the body on it."""
+
+    name: str
+    """Name in the problem."""
+    point: Pair
+    """Point (x, y) about which the tool turns, and about which moments are [L]."""
+    displacement: Pair
+    """Displacement (x, y) of that point [L]."""
+    rotation: float
+    """Rotation in radians, anticlockwise."""
+    force_of_body: Pair
+    """Force (x, y) of the body on the tool, per thickness [p L]."""
+    moment_of_body: float
+    """Moment of that force about the point, anticlockwise, per thickness [p L²]."""
+    free: tuple[bool, bool, bool]
+    """Whether the tool is free to move along x, along y and to rotate, as it is loaded there."""
+
+
+class SolutionRecord(Record):
+    """Solution as a formulation reports it; lists go contact point by contact point."""
+
+    solver: str
+    """Name of the program that solved it."""
+    status: Status
+    """How the solver ended, which proves nothing of the solution."""
+    rigid_amplitudes: Vector
+    """Displacement along each free rigid motion, those of the body first, then those of tools [L]."""
+    pressure: Vector
+    """Normal traction per undeformed length, positive in compression [p]."""
+    gap: Vector
+    """Initial gap plus normal displacement [L]."""
+    normal_displacement: Vector
+    """Displacement along the rigid normal, away from the surface, where a loaded tool has moved to [L]."""
+    iterations: int
+    """Number of iterations as the solver counts them."""
+    polished: bool
+    """Whether an exact step on the contact set has replaced the solver's own pressures."""
+    search: LocalSearch | None
+    """Search of a local solver, or null."""
+    history: tuple[Trace, ...]
+    """Quantities of the solver, iteration by iteration."""
+    convexity: float | None
+    """Smallest eigenvalue of the scaled Hessian of QP3 on the equilibrium space, or null if it was not computed."""
+    tools: list[ToolRecord]
+    """Rigid surfaces that are displaced or loaded; empty if all are fixed."""
+
+
+def solution_record(contact: CondensedContact, solution: ContactSolution) -> SolutionRecord:
+    """Describe a solution of a condensed problem."""
+    return SolutionRecord(
+        solver=solution.solver,
+        status=solution.status,
+        rigid_amplitudes=solution.rigid_amplitudes,
+        pressure=solution.pressure,
+        gap=contact.initial_gap + solution.displacement,
+        normal_displacement=solution.displacement,
+        iterations=solution.iterations,
+        polished=solution.polished,
+        search=solution.search,
+        history=solution.history,
+        convexity=solution.smallest_eigenvalue,
+        tools=_tool_records(contact, solution),
+    )
+
+
+def _tool_records(contact: CondensedContact, solution: ContactSolution) -> list[ToolRecord]:
+    """Describe where the tools are in a solution, and with what force the body presses on them."""
     tools = contact.tools
     return [
-        {
-            "name": name,
-            "point": point.tolist(),
-            "displacement": displacement[:2].tolist(),
-            "rotation": float(displacement[2]),
-            "force_of_body": force[:2].tolist(),
-            "moment_of_body": float(force[2]),
-            "free": free.tolist(),
-        }
-        for name, point, displacement, force, free in zip(
+        ToolRecord(
+            name=name,
+            point=point,
+            displacement=(x, y),
+            rotation=rotation,
+            force_of_body=(fx, fy),
+            moment_of_body=moment,
+            free=(free[0], free[1], free[2]),
+        )
+        for name, point, (x, y, rotation), (fx, fy, moment), free in zip(
             tools.names,
-            tools.point,
-            tools.displacement(solution.rigid_amplitudes),
-            contact.tool_reactions(solution.pressure),
-            tools.free.reshape(-1, 3),
+            tools.point.tolist(),
+            tools.displacement(solution.rigid_amplitudes).tolist(),
+            contact.tool_reactions(solution.pressure).tolist(),
+            tools.free.reshape(-1, 3).tolist(),
             strict=True,
         )
     ]
+
+
+def units_record(contact: CondensedContact) -> UnitsRecord:
+    """Describe the units of a condensed problem."""
+    return UnitsRecord(length=contact.units.get("length", ""), force=contact.units.get("force", ""))

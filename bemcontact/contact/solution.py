@@ -2,40 +2,61 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
+from typing import Literal
 
 from bemcontact.arrays import Array, freeze_arrays
+from bemcontact.serialization import Leaf
 
 
-class Status(Enum):
-    """How a solver ended, in words; `bemcontact.assessment.advice` says what to do."""
+class Status(StrEnum):
+    """How a solver ended, which proves nothing; `bemcontact.assessment.certificate` says what to do."""
 
     SOLVED = "solved"
-    LOCAL_MINIMUM = "a local minimum that is not the contact state"
-    ITERATION_LIMIT = "stopped at the iteration limit"
-    INFEASIBLE = "no pressure satisfies the constraints, so that there is no contact state"
-    UNBOUNDED = "the objective has no lower bound"
-    NO_SOLUTION_FOUND = "no solution was found, and no proof that there is none"
-    NUMERICAL_FAILURE = "broke down numerically"
+    LOCAL_MINIMUM = "local_minimum"
+    ITERATION_LIMIT = "iteration_limit"
+    INFEASIBLE = "infeasible"
+    UNBOUNDED = "unbounded"
+    NO_SOLUTION_FOUND = "no_solution_found"
+    NUMERICAL_FAILURE = "numerical_failure"
+
+    @property
+    def words(self) -> str:
+        """How the solver ended, as the end of a sentence."""
+        return WORDS[self]
+
+
+WORDS = {
+    Status.SOLVED: "solved",
+    Status.LOCAL_MINIMUM: "a local minimum that is not the contact state",
+    Status.ITERATION_LIMIT: "stopped at the iteration limit",
+    Status.INFEASIBLE: "no pressure satisfies the constraints, so that there is no contact state",
+    Status.UNBOUNDED: "the objective has no lower bound",
+    Status.NO_SOLUTION_FOUND: "no solution was found, and no proof that there is none",
+    Status.NUMERICAL_FAILURE: "broke down numerically",
+}
+
+Inertia = tuple[int, int, int]
+"""Numbers of positive, zero and negative eigenvalues."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Penalty:
-    """The μ of QP2, and up to which one QP2 is convex.
+class Penalty(Leaf):
+    """The penalty μ of QP2, and the largest one for which QP2 is convex.
 
-    Parameters
-    ----------
-    value, raw : μ, free of units, and in the user's units, where (1/μ)|K u_n - B p - r|² is added to pᵀJδ
-    convexity_limit, convexity_limit_raw : the largest for which QP2 is convex where equilibrium is kept, likewise: zero
-        if for none, None if for all
-    dimension : of the raw numbers: "p/L²" with the stiffness rows, "1/p" with the compliance rows
+    QP2 adds (1/μ)|K u_n - B p - r|² to pᵀJδ.
     """
 
     value: float
+    """Penalty μ, free of units."""
     raw: float
+    """Penalty μ in the unit `dimension`."""
     convexity_limit: float | None
+    """Largest μ for which QP2 is convex where equilibrium is kept, free of units; 0 if for none, null if for all."""
     convexity_limit_raw: float | None
-    dimension: str
+    """Largest μ for which QP2 is convex where equilibrium is kept, in the unit `dimension`."""
+    dimension: Literal["p/L²", "1/p"]
+    """Unit of the raw numbers: p/L² with the stiffness rows, 1/p with the compliance rows."""
 
     @property
     def convex(self) -> bool:
@@ -44,48 +65,41 @@ class Penalty:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LocalSearch:
-    """How a local solver came to its end; inertias count positive, zero and negative eigenvalues.
-
-    Parameters
-    ----------
-    start : what it started from
-    phase_one_iterations, phase_two_iterations : to a feasible point, and from there down
-    working_set_changes : constraints that entered or left the working set
-    inertia : of the Hessian
-    reduced_inertia_start, reduced_inertia_end : of the Hessian on what the working set leaves free, in phase two
-    weakly_active : active constraints with a multiplier of about zero
-    objective : scaled, in the end; its best value is zero with weights that are not negative
-    penalty : of QP2, else None
-    """
+class LocalSearch(Leaf):
+    """How a local solver ended; an inertia is the numbers of positive, zero and negative eigenvalues."""
 
     start: str
+    """Name of the point where the search started."""
     phase_one_iterations: int
+    """Number of iterations to a feasible point."""
     phase_two_iterations: int
+    """Number of iterations from the feasible point to the end."""
     working_set_changes: int
-    inertia: tuple[int, int, int]
-    reduced_inertia_start: tuple[int, int, int]
-    reduced_inertia_end: tuple[int, int, int]
+    """Number of constraints that entered or left the working set."""
+    inertia: Inertia
+    """Inertia of the Hessian."""
+    reduced_inertia_start: Inertia
+    """Inertia of the Hessian on the directions that the working set leaves free, at the start of phase two."""
+    reduced_inertia_end: Inertia
+    """Inertia of the Hessian on the directions that the working set leaves free, at the end."""
     weakly_active: int
+    """Number of active constraints with a multiplier of about zero."""
     objective: float
+    """Objective at the end, scaled; 0 at the contact state, and its minimum with weights that are not negative."""
     penalty: Penalty | None = None
+    """Penalty of QP2, or null."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Trace:
-    """One quantity, iteration by iteration.
-
-    Parameters
-    ----------
-    quantity : "objective" of the statement that is solved, "infeasibility" of its constraints, or "residual" of the
-        contact conditions, as told by the `solve` of the formulation
-    first : number of the iteration that ended at the first value; 0 is the start
-    values : one for each iteration, finite and free of units
-    """
+class Trace(Leaf):
+    """One quantity, iteration by iteration, free of units."""
 
     quantity: str
+    """Name: objective of the statement, infeasibility of its constraints, or residual of the contact conditions."""
     first: int
+    """Number of the iteration that ended at the first value; 0 is the start."""
     values: tuple[float, ...]
+    """Value at the end of each iteration, finite."""
 
 
 def traces_in_turn(*parts: tuple[str, Sequence[float]]) -> tuple[Trace, ...]:
@@ -101,7 +115,7 @@ def traces_in_turn(*parts: tuple[str, Sequence[float]]) -> tuple[Trace, ...]:
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ContactSolution:
-    """What a formulation found; nothing in it is believed until `bemcontact.assessment` has recomputed it.
+    """A solution as a formulation reports it; `bemcontact.assessment` recomputes whether it is one.
 
     Parameters
     ----------
@@ -143,4 +157,4 @@ class ContactSolution:
 
     def __repr__(self) -> str:
         """One line: formulation, status, size."""
-        return f"<ContactSolution by {self.formulation}: {self.status.value}, {len(self.pressure)} contact points>"
+        return f"<ContactSolution by {self.formulation}: {self.status.words}, {len(self.pressure)} contact points>"

@@ -173,12 +173,12 @@ def _without_optimum(contact: CondensedContact, status: Status, *, added: bool) 
         case Status.UNBOUNDED:
             return f"The objective has no lower bound: {of_whom} decreases it without limit."
         case _:
-            return f"No optimum was found: the solver {status.value}."
+            return f"No optimum was found: the solver {status.words}."
 
 
 def _words(status: Status, certificate: Certificate, recomputed: Residuals, *, added: bool) -> str:
     """The verdict."""
-    cut = "" if status is Status.SOLVED else f" The solver {status.value}."
+    cut = "" if status is Status.SOLVED else f" The solver {status.words}."
     if certificate.complaint and added:
         return f"This is the {NOT_CONTACT}: {certificate.complaint}.{cut}"
     if added:

@@ -2,17 +2,18 @@
 
 import csv
 import io
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
+from pydantic import computed_field
 
-from bemcontact.assessment.footprint import Footprint, footprint
+from bemcontact.assessment.footprint import ContactInterval, Footprint, footprint
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.parametric.path import LoadPath
+from bemcontact.serialization import Internal, Leaf, Pair, Pairs
 
 BETWEEN = (0.25, 0.5, 0.75)
 """Fractions between two breakpoints at which intervals are evaluated, because their ends are not linear."""
@@ -23,66 +24,52 @@ RESIDUAL = 1e-10
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PathState:
-    """A contact state on the path.
-
-    Parameters
-    ----------
-    value : of the parameter
-    breakpoint : whether a point enters or leaves here, or the path begins or ends
-    entered, left : indices of points, as the parameter goes from start to end
-    peak : largest pressure [p]
-    at : index of the point that bears it, or None without contact
-    resultant : by zone, the force of its rigid surface on the body [p L]
-    touching : indices of the points that bear a pressure
-    footprint : intervals of contact among others
-    """
+class PathState(Leaf):
+    """A contact state on a load path."""
 
     value: float
+    """Value of the parameter."""
     breakpoint: bool
+    """Whether a point enters or leaves contact here, or the path begins or ends."""
     entered: tuple[int, ...]
+    """Indices of the points that enter contact, as the parameter goes from start to end."""
     left: tuple[int, ...]
+    """Indices of the points that leave contact."""
     peak: float
+    """Largest pressure [p]."""
     at: int | None
-    resultant: tuple[tuple[float, float], ...]
+    """Index of the point with the largest pressure; null without contact."""
+    resultant: tuple[Pair, ...]
+    """Force (x, y) of the rigid surface of each zone on the body, per thickness [p L]."""
     touching: tuple[int, ...]
-    footprint: Footprint
+    """Indices of the points that bear a pressure."""
+    footprint: Internal[Footprint]
+    """Where the body touches, and how hard."""
+
+    @computed_field
+    @property
+    def intervals(self) -> tuple[ContactInterval, ...]:
+        """Contact intervals, zone by zone; empty without contact."""
+        return self.footprint.intervals
 
     def ends(self, zone: str) -> tuple[list[float], list[float]]:
         """Arc positions of the starts and ends of the intervals of a zone [L]."""
-        intervals = [item for item in self.footprint.intervals if item.zone == zone]
+        intervals = [item for item in self.intervals if item.zone == zone]
         return [item.start_arc for item in intervals], [item.end_arc for item in intervals]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers and lists, ready for JSON."""
-        return {
-            "value": self.value,
-            "breakpoint": self.breakpoint,
-            "entered": list(self.entered),
-            "left": list(self.left),
-            "peak": self.peak,
-            "at": self.at,
-            "resultant": [list(force) for force in self.resultant],
-            "touching": list(self.touching),
-            "intervals": [interval.to_dict() for interval in self.footprint.intervals],
-        }
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class ParameterPath:
-    """A load path between two values of a parameter.
-
-    Parameters
-    ----------
-    key : of the parameter
-    start, end : its values at the ends of the path
-    path : LoadPath
-    """
+class ParameterPath(Leaf):
+    """A load path between two values of a parameter."""
 
     key: str
+    """Key of the parameter."""
     start: float
+    """Value of the parameter at the start."""
     end: float
-    path: LoadPath
+    """Value of the parameter at the end."""
+    path: Internal[LoadPath]
+    """The path for t from 0 to 1."""
 
     def __repr__(self) -> str:
         """One line: key, values, the path."""
@@ -95,6 +82,13 @@ class ParameterPath:
         """The contact problem at the start; points, zones and units are those of all."""
         return self.path.start
 
+    @computed_field
+    @property
+    def name(self) -> str:
+        """Name of the problem."""
+        return self.contact.name
+
+    @computed_field
     @property
     def certified(self) -> bool:
         """Whether the path reaches its end, and each state on it is proved to be the contact state, the only one."""
@@ -105,17 +99,56 @@ class ParameterPath:
         value = (1 - t) * self.start + t * self.end
         return value if abs(value) > ROUND_OFF * max(abs(self.start), abs(self.end)) else 0.0
 
+    @computed_field
     @property
-    def reaches(self) -> tuple[float, float]:
-        """The values of the parameter between which there is a path."""
+    def reaches(self) -> Pair:
+        """Values of the parameter between which there is a path."""
         return self.value(self.path.begins_at), self.value(self.path.ends_at)
 
+    @computed_field
+    @property
+    def unique(self) -> bool:
+        """Whether each state is proved to be the only one."""
+        return self.path.unique
+
+    @computed_field
+    @property
+    def residual(self) -> float:
+        """Natural residual at the worst breakpoint, over the scales."""
+        return self.path.residual
+
+    @computed_field
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes on the path, one sentence each."""
         begin, end = self.reaches
         return self.path.notes_between(f"{begin:.6g}", f"{end:.6g}")
 
+    @computed_field
+    @property
+    def pivots(self) -> int:
+        """Number of times that a point enters or leaves contact."""
+        return self.path.pivots
+
+    @computed_field
+    @property
+    def units(self) -> UnitsRecord:
+        """Labels of the units."""
+        return units_record(self.contact)
+
+    @computed_field
+    @property
+    def zones(self) -> tuple[str, ...]:
+        """Names of the contact zones."""
+        return self.contact.zone_names
+
+    @computed_field
+    @property
+    def points(self) -> Pairs:
+        """Undeformed place (x, y) of each contact point [L]."""
+        return self.contact.points
+
+    @computed_field
     @cached_property
     def states(self) -> tuple[PathState, ...]:
         """The breakpoints, and three states between each two of them."""
@@ -148,30 +181,6 @@ class ParameterPath:
             touching=tuple(np.flatnonzero(p > 0).tolist()),
             footprint=footprint(contact, solution),
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers, lists and texts, ready for JSON."""
-        path, contact = self.path, self.contact
-        return {
-            "name": contact.name,
-            "key": self.key,
-            "start": self.start,
-            "end": self.end,
-            "certified": self.certified,
-            "reaches": list(self.reaches),
-            "unique": path.unique,
-            "residual": path.residual,
-            "notes": list(self.notes),
-            "pivots": path.pivots,
-            "units": dict(contact.units),
-            "zones": list(contact.zone_names),
-            "points": contact.points.tolist(),
-            "states": [state.to_dict() for state in self.states],
-        }
-
-    def to_json(self) -> str:
-        """Write `to_dict` as JSON; every number in it is finite."""
-        return json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
 
     def to_csv(self) -> str:
         """Write a line for each state; points and arc positions in a cell have blanks between them."""

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
+from pydantic import computed_field
 
 from bemcontact.arrays import Array, BoolArray, freeze_arrays
 from bemcontact.assessment.footprint import Footprint, footprint
@@ -16,6 +16,7 @@ from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
 from bemcontact.options import FormulationName
 from bemcontact.parametric.pivoting import Line, Trail, follow
+from bemcontact.serialization import Internal, Leaf, Matrix, PairTables, Vector
 
 COMMON = {
     "compliance": "compliance",
@@ -35,32 +36,30 @@ NOT_PROVED = "the compliance does not rule out other contact states beside those
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class LoadPath:
+class LoadPath(Leaf):
     """The contact states between two ends, t = 0 and t = 1, linear in t between b breakpoints.
 
     Where the body tips over at a constant load, two breakpoints have the same t.
-
-    Parameters
-    ----------
-    start, end : the problems at t = 0 and t = 1
-    parameter : (b,) t of the breakpoints, ascending, those at which the path begins and ends included
-    pressure : (b, n) p [p]
-    gap : (b, n) δ [L], zero on contact
-    rigid_amplitudes : (b, k) a
-    touching : (b - 1, n) which points are in contact between two breakpoints
-    unique : whether each state is proved to be the only one
-    note : why the path does not reach from 0 to 1, or empty
     """
 
-    start: CondensedContact
-    end: CondensedContact
-    parameter: Array
-    pressure: Array
-    gap: Array
-    rigid_amplitudes: Array
-    touching: BoolArray
+    start: Internal[CondensedContact]
+    """Problem at t = 0."""
+    end: Internal[CondensedContact]
+    """Problem at t = 1."""
+    parameter: Vector
+    """Parameter t (b,) of the breakpoints, ascending, those at which the path begins and ends included."""
+    pressure: Matrix
+    """Pressure p (b, n) at the breakpoints [p]."""
+    gap: Matrix
+    """Gap δ (b, n) at the breakpoints, zero on contact [L]."""
+    rigid_amplitudes: Matrix
+    """Amplitudes a (b, k) at the breakpoints."""
+    touching: Internal[BoolArray]
+    """Whether each point is in contact (b - 1, n) between two breakpoints."""
     unique: bool
-    note: str
+    """Whether each state is proved to be the only one."""
+    note: Internal[str]
+    """Why the path does not reach from 0 to 1, or empty."""
 
     def __post_init__(self) -> None:
         """Make arrays read-only."""
@@ -74,21 +73,37 @@ class LoadPath:
             f"{self.ends_at:g}, {self.pivots} pivots{wrong}>"
         )
 
+    @computed_field
+    @property
+    def name(self) -> str:
+        """Name of the problem."""
+        return self.start.name
+
+    @computed_field
+    @property
+    def zones(self) -> tuple[str, ...]:
+        """Names of the contact zones."""
+        return self.start.zone_names
+
+    @computed_field
     @property
     def begins_at(self) -> float:
-        """The least t to which the path reaches."""
+        """Least t to which the path reaches."""
         return float(self.parameter[0])
 
+    @computed_field
     @property
     def ends_at(self) -> float:
-        """The largest t to which the path reaches."""
+        """Largest t to which the path reaches."""
         return float(self.parameter[-1])
 
+    @computed_field
     @property
     def complete(self) -> bool:
         """Whether the path reaches from 0 to 1."""
         return self.begins_at == 0.0 and self.ends_at == 1.0
 
+    @computed_field
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes on the path, one sentence each."""
@@ -100,14 +115,16 @@ class LoadPath:
         early = f"the path exists {where}; beyond that, {self.note}" if self.note else ""
         return tuple(text for text in (early, "" if self.unique else NOT_PROVED) if text)
 
+    @computed_field
     @cached_property
     def entered(self) -> tuple[tuple[int, ...], ...]:
-        """For each breakpoint, the points that enter contact there, as t rises."""
+        """Indices of the points that enter contact at each breakpoint, as t rises."""
         return self._changed(self.touching[1:] & ~self.touching[:-1])
 
+    @computed_field
     @cached_property
     def left(self) -> tuple[tuple[int, ...], ...]:
-        """For each breakpoint, the points that leave contact there, as t rises."""
+        """Indices of the points that leave contact at each breakpoint, as t rises."""
         return self._changed(self.touching[:-1] & ~self.touching[1:])
 
     def _changed(self, masks: BoolArray) -> tuple[tuple[int, ...], ...]:
@@ -115,19 +132,22 @@ class LoadPath:
         changed = (tuple(np.flatnonzero(mask).tolist()) for mask in masks)
         return ((), *changed, ())[: len(self.parameter)]
 
+    @computed_field
     @property
     def pivots(self) -> int:
-        """How often a point enters or leaves."""
+        """Number of times that a point enters or leaves contact."""
         return int((self.touching[1:] ^ self.touching[:-1]).sum())
 
+    @computed_field
     @property
-    def peak(self) -> Array:
-        """(b,) largest pressure at the breakpoints [p]; convex in t between two of them."""
+    def peak(self) -> Vector:
+        """Largest pressure (b,) at the breakpoints [p]; convex in t between two of them."""
         return self.pressure.max(axis=1, initial=0.0)
 
+    @computed_field
     @property
-    def resultant(self) -> Array:
-        """(b, zones, 2) force Σ w p n of each rigid surface on the body at the breakpoints [p L]."""
+    def resultant(self) -> PairTables:
+        """Force (x, y) of each rigid surface on the body (b, zones, 2) at the breakpoints, per thickness [p L]."""
         return self.start.resultants(self.pressure)
 
     @cached_property
@@ -216,27 +236,6 @@ class LoadPath:
         """Intervals, peak and resultant at t; the ends of intervals are not linear in t."""
         return footprint(self.contact(t), self.at(t))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers, lists and texts, ready for JSON."""
-        return {
-            "name": self.start.name,
-            "begins_at": self.begins_at,
-            "ends_at": self.ends_at,
-            "complete": self.complete,
-            "unique": self.unique,
-            "notes": list(self.notes),
-            "pivots": self.pivots,
-            "zones": list(self.start.zone_names),
-            "parameter": self.parameter.tolist(),
-            "entered": [list(points) for points in self.entered],
-            "left": [list(points) for points in self.left],
-            "peak": self.peak.tolist(),
-            "resultant": self.resultant.tolist(),
-            "pressure": self.pressure.tolist(),
-            "gap": self.gap.tolist(),
-            "rigid_amplitudes": self.rigid_amplitudes.tolist(),
-        }
-
     def _ensure_reached(self, t: float) -> None:
         """Refuse a t outside of the path."""
         if not self.begins_at <= t <= self.ends_at:
@@ -298,7 +297,7 @@ def _followed(first: CondensedContact, last: CondensedContact) -> tuple[Trail | 
     """Solve the first problem and follow its state to the last; with the reason if it does not get there."""
     solution = complementarity.solve(first)
     if solution.status is not Status.SOLVED:
-        return None, "; ".join(solution.notes) or solution.status.value
+        return None, "; ".join(solution.notes) or solution.status.words
     unit = measure(first, last)
     point = scaled_point(unit, solution.pressure, solution.rigid_amplitudes)
     trail = follow(scaled(unit), line_between(unit, first, last), *point)

@@ -1,12 +1,11 @@
 """Sensitivities: exact derivatives of a contact state, from the points in contact and one factorization for all."""
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import computed_field
 
 from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint, resting_ends
@@ -18,6 +17,7 @@ from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
 from bemcontact.parametric.derivative import WEAK, Tangent, is_monotone
 from bemcontact.parametric.path import NOT_PROVED
+from bemcontact.serialization import Internal, Leaf, Pairs, Vector
 
 EXACT = 1e-9
 """Residual up to which a solution has a meaningful derivative."""
@@ -29,59 +29,43 @@ NAMED = 4
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Rates:
-    """Derivatives of a contact state per unit of what changes.
+class Rates(Leaf):
+    """Derivatives of a contact state per unit of what changes."""
 
-    Parameters
-    ----------
-    pressure : (n,) [p]
-    gap : (n,) [L]
-    rigid_amplitudes : (k,)
-    resultant : (zones, 2) of the force of each rigid surface on the body [p L]
-    peak : of the largest pressure [p]
-    interval_ends : for each interval of the footprint, of `start_arc` and `end_arc` [L], as it reads them: zero where
-        an end is kept at a point, None beside a point that is about to enter or leave contact. On its way from point to
-        point the reading moves unevenly; it is right on the average over a node spacing
-    """
-
-    pressure: Array
-    gap: Array
-    rigid_amplitudes: Array
-    resultant: Array
+    pressure: Vector
+    """Derivative of the pressure (n,) [p]."""
+    gap: Vector
+    """Derivative of the gap (n,) [L]."""
+    rigid_amplitudes: Vector
+    """Derivative of the amplitudes (k,)."""
+    resultant: Pairs
+    """Derivative of the force of the rigid surface of each zone on the body (zones, 2), per thickness [p L]."""
     peak: float
+    """Derivative of the largest pressure [p]."""
     interval_ends: tuple[tuple[float | None, float | None], ...]
+    """Derivatives of the arc positions of both ends of each contact interval [L].
+
+    Zero where an end is kept at a point; null beside a point that is about to enter or leave contact. The ends move
+    unevenly from point to point: the derivative is right on the average over a node spacing.
+    """
 
     def __post_init__(self) -> None:
         """Make arrays read-only."""
         freeze_arrays(self)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give them as numbers and lists, ready for JSON."""
-        return {
-            "pressure": self.pressure.tolist(),
-            "gap": self.gap.tolist(),
-            "rigid_amplitudes": self.rigid_amplitudes.tolist(),
-            "resultant": self.resultant.tolist(),
-            "peak": self.peak,
-            "interval_ends": [list(pair) for pair in self.interval_ends],
-        }
-
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Sensitivity:
-    """How a contact state changes with one parameter.
-
-    Parameters
-    ----------
-    key : of the parameter
-    rising, falling : derivatives to the right and to the left, both per unit by which the parameter rises; one and the
-        same object where the state is smooth
-    """
+class Sensitivity(Leaf):
+    """Derivatives of a contact state with respect to one parameter."""
 
     key: str
+    """Key of the parameter."""
     rising: Rates
+    """Derivatives to the right, per unit by which the parameter rises."""
     falling: Rates
+    """Derivatives to the left, per unit by which the parameter rises; the same where the state is smooth."""
 
+    @computed_field
     @property
     def one_sided(self) -> bool:
         """Whether the two sides differ."""
@@ -92,34 +76,21 @@ class Sensitivity:
         peaks = f"{self.rising.peak:.6g}" + (f" rising, {self.falling.peak:.6g} falling" if self.one_sided else "")
         return f"<Sensitivity to {self.key}: peak {peaks} per unit>"
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers, lists and texts, ready for JSON."""
-        return {
-            "key": self.key,
-            "one_sided": self.one_sided,
-            "rising": self.rising.to_dict(),
-            "falling": self.falling.to_dict(),
-        }
-
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Sensitivities:
-    """How a contact state changes with its parameters; a sensitivity is found by its key.
+class Sensitivities(Leaf):
+    """Derivatives of a contact state with respect to its parameters; a sensitivity is found by its key."""
 
-    Parameters
-    ----------
-    solution : the state
-    intervals : of its footprint, whose ends move
-    each : by key
-    weak : indices of the points that are about to enter or leave contact: no pressure and no gap
-    notes : what a person should know
-    """
-
-    solution: ContactSolution
+    solution: Internal[ContactSolution]
+    """The contact state."""
     intervals: tuple[ContactInterval, ...]
-    each: Mapping[str, Sensitivity]
+    """Contact intervals, whose ends move."""
+    each: Internal[Mapping[str, Sensitivity]]
+    """Sensitivities by key."""
     weak: tuple[int, ...]
+    """Indices of the points that are about to enter or leave contact: no pressure and no gap."""
     notes: tuple[str, ...]
+    """Remarks on the contact state."""
 
     def __getitem__(self, key: str) -> Sensitivity:
         """Return the sensitivity to a parameter; `ProblemError` if there is none of that key."""
@@ -140,18 +111,11 @@ class Sensitivities:
         notes = "".join(f"; {note}" for note in self.notes)
         return f"<Sensitivities to {', '.join(self.each) or 'nothing'}{notes}>"
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give all of them as numbers, lists and texts, ready for JSON."""
-        return {
-            "intervals": [interval.to_dict() for interval in self.intervals],
-            "weak": list(self.weak),
-            "notes": list(self.notes),
-            "sensitivities": [item.to_dict() for item in self.each.values()],
-        }
-
-    def to_json(self) -> str:
-        """Write `to_dict` as JSON; every number in it is finite."""
-        return json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+    @computed_field
+    @property
+    def sensitivities(self) -> tuple[Sensitivity, ...]:
+        """Derivatives with respect to each parameter."""
+        return tuple(self.each.values())
 
 
 def sensitivities(
@@ -183,7 +147,7 @@ def sensitivities(
     wanted = contact.changes if changes is None else {key: _fitting(contact, key, *changes[key]) for key in changes}
     state = complementarity.solve(contact) if solution is None else solution
     if state.status is not Status.SOLVED:
-        why = "; ".join(state.notes) or state.status.value
+        why = "; ".join(state.notes) or state.status.words
         raise ProblemError(f"there is no contact state to differentiate: {why}")
     problem = scaled(contact)
     p, a = scaled_point(contact, state.pressure, state.rigid_amplitudes)

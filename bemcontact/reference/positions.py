@@ -7,8 +7,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Problem, Table, Values
-
-Point = tuple[float, float]
+from bemcontact.serialization import Pair
 
 LEVEL = 1e-9
 """Part of the size of the contact below which two places are the same."""
@@ -29,7 +28,7 @@ class Frame(NamedTuple):
     inward: Array
 
     @classmethod
-    def at(cls, contact: CondensedContact, zone: str | None, center: Point | None) -> Self:
+    def at(cls, contact: CondensedContact, zone: str | None, center: Pair | None) -> Self:
         """Put the frame at a centre, or where the initial gap is smallest."""
         index = np.flatnonzero(in_zone(contact, zone))
         middle = np.array(foot(contact, zone) if center is None else center)
@@ -47,7 +46,7 @@ class Frame(NamedTuple):
         return (points - self.center) @ self.inward
 
 
-def foot(contact: CondensedContact, zone: str | None) -> Point:
+def foot(contact: CondensedContact, zone: str | None) -> Pair:
     """Where the initial gap of a zone is smallest: the vertex of the parabola around its lowest point.
 
     The lowest point itself, if it is the end of a run; the middle, if several are equally low.

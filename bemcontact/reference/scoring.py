@@ -1,8 +1,7 @@
-"""How far an answer is from what is known of it."""
+"""Differences between an answer and its references."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,40 +9,32 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Table, Values
-from bemcontact.reference.expectation import Expected
+from bemcontact.reference.evaluation import Expected
 from bemcontact.reference.positions import LEVEL, Frame, coordinates, in_zone
+from bemcontact.serialization import Leaf
 
 
 @dataclass(frozen=True, kw_only=True)
-class Score:
-    """One quantity, as found and as expected.
-
-    Parameters
-    ----------
-    reference : name of the reference in the spec
-    quantity : "peak", "half-width", "contact length", "start of contact", "end of contact", "resultant", "pressure
-        (largest difference)" or "pressure (mean square)"
-    found, expected : both [p], [L], [p L], or degrees; of a difference of pressures `expected` is 0 and `found` the
-        difference itself. `found` is None where nothing touches, so that there are no ends
-    difference : relative, found - expected over what is natural: the quantity expected; the extent of contact for its
-        ends; the largest or mean-square pressure expected for differences of pressure
-    tolerance : of the reference
-    judged : whether it can be held against the answer; False where the reference is out of its range
-    holds : whether the difference is within the tolerance
-    """
+class Score(Leaf):
+    """One quantity as computed and as a reference expects it."""
 
     reference: str
+    """Name of the reference in the problem."""
     quantity: str
+    """Name of the quantity, such as peak, half-width, start of contact or pressure (largest difference)."""
     found: float | None
+    """Computed value, [p], [L], [p L] or degrees; null where nothing touches, so that there are no ends."""
     expected: float
+    """Expected value in the same unit; 0 where the quantity is itself a difference of pressures."""
     difference: float | None
+    """Relative difference: over the expected value, over the extent of contact for its ends, and over the largest or
+    mean-square expected pressure for differences of pressure."""
     tolerance: float
+    """Relative difference that the reference allows."""
     judged: bool
+    """Whether the answer is judged by it; false where the reference is out of its range."""
     holds: bool
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give all of it as numbers and texts, ready for JSON."""
-        return asdict(self)
+    """Whether the difference is within the tolerance."""
 
 
 def score(

@@ -7,11 +7,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from bemcontact.analysis.reproduced import Reproduction
+from bemcontact.analysis.reproduction import Reproduction
 from bemcontact.analysis.study import Study
 from bemcontact.files import output
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.report import page, reproduction_page
+from bemcontact.report import page
+from bemcontact.report import reproduction as paper_page
 from bemcontact.report.figures import figure_of_path, figures_of, figures_of_reproduction, vector_graphic
 
 PICTURES = "figures"
@@ -135,7 +136,7 @@ def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
     """
     ensure_folder_writable(folder, REPRODUCTION)
     pictures = {name: vector_graphic(figure) for name, figure in figures_of_reproduction(reproduction).items()}
-    text = reproduction_page.render(reproduction.to_dict(), pictures)
+    text = paper_page.render(reproduction.to_dict(), pictures)
     with _written(folder, REPRODUCTION, text, reproduction.to_json(), pictures):
         pass
 

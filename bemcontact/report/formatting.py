@@ -1,15 +1,14 @@
-"""Numbers to words, for people: in tables, on pictures and pages."""
+"""Numbers, units and parts of a problem in words, for tables, pictures and pages."""
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
+from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.contender import Contender
-from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.solution import LocalSearch, Penalty, Status
+from bemcontact.contact.solution import ContactSolution, LocalSearch, Penalty, Status
 from bemcontact.problem import (
     Circle,
     Condition,
@@ -170,10 +169,10 @@ def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
     return "; ".join([*told, *_volume_loads(surface.loads, problem)])
 
 
-def verdict(result: Result) -> str:
-    """Say in words whether the answer is proved, and what to do where it is not."""
-    ending = "" if result.solution.status is Status.SOLVED else f"The solver: {result.solution.status.value}. "
-    return ending + result.certificate.words
+def certificate_sentence(solution: ContactSolution, certificate: Certificate) -> str:
+    """Say whether a solution is proved, and what to do if it is not."""
+    ending = "" if solution.status is Status.SOLVED else f"The solver: {solution.status.words}. "
+    return ending + certificate.words
 
 
 def plural(noun: str, count: int) -> str:
@@ -205,10 +204,7 @@ def _inertia(inertia: tuple[int, int, int]) -> str:
 
 def _penalty(penalty: Penalty, contact: CondensedContact) -> str:
     """Write the penalty, and up to which one QP2 is convex, which equilibrium helps it to be."""
-    units = units_of(contact)
-    pressures = penalty.dimension == "p/L²"
-    unit = f"{units.force}/{units.length}⁴" if pressures else f"{units.length}²/{units.force}"
-    unit = unit if units.force and units.length else "in the units of the problem"
+    unit = penalty_unit(penalty.dimension, units_of(contact)) or "in the units of the problem"
     told = f"penalty {number(penalty.value)} ({number(penalty.raw)} {unit})"
     kept = " where equilibrium is kept" if contact.free_motions else ""
     if penalty.convexity_limit is None or penalty.convexity_limit_raw is None:
@@ -220,39 +216,18 @@ def _penalty(penalty: Penalty, contact: CondensedContact) -> str:
     )
 
 
-def size_of(contact: CondensedContact) -> float:
-    """The largest coordinate of a contact point, beside which round-off is written as zero."""
-    return float(np.abs(contact.points).max(initial=0.0))
+def penalty_unit(dimension: str, units: Units) -> str:
+    """Label of the unit of a penalty of QP2; empty if a label is missing."""
+    if not (units.force and units.length):
+        return ""
+    return f"{units.force}/{units.length}⁴" if dimension == "p/L²" else f"{units.length}²/{units.force}"
 
 
-def span(contact: CondensedContact, interval: ContactInterval) -> str:
-    """Say from where to where there is contact: at one point, along a stretch, or all round a closed zone."""
-    unit, scale = units_of(contact).length, size_of(contact)
-    start, end = vector(interval.start, scale=scale), vector(interval.end, unit, scale=scale)
-    length = interval.end_arc - interval.start_arc
-    if length == 0:
-        return f"at the point {end} alone"
-    along = with_unit(number(length), unit)
-    all_round = (np.isfinite(contact.run_length) & np.isclose(contact.run_length, length)).any()
-    return f"all round, {along}" if all_round else f"{start} to {end}, {along} long"
-
-
-def zone_forces(result: Result) -> list[str]:
-    """Say with which force each rigid surface presses on the body, where there are several: ``foot: (0, 3) N/mm``."""
-    contact, unit = result.contact, per_thickness(units_of(result.contact))
-    if len(contact.zone_names) == 1:
-        return []
-    pressure = result.solution.pressure
-    scale = float(np.abs(contact.forces(pressure)).sum())
-    named = zip(contact.zone_names, contact.resultants(pressure), strict=True)
-    return [f"{zone}: {vector((float(x), float(y)), unit, scale=scale)}" for zone, (x, y) in named]
-
-
-def held_by(condensed: CondensedContact) -> str:
+def held_by(contact: CondensedContact) -> str:
     """Say which rigid motions contact alone holds."""
-    if not condensed.free_motions:
+    if not contact.free_motions:
         return "all held by conditions"
-    return f"held by contact alone: {', '.join(condensed.motion_names)}"
+    return f"held by contact alone: {', '.join(contact.motion_names)}"
 
 
 def seconds_in_words(seconds: float) -> str:
@@ -267,14 +242,14 @@ def sentence_case(text: str) -> str:
 
 def convexity_in_words(contender: Contender) -> str:
     """Say whether a program is convex on what equations and equilibrium leave free, and up to which penalty it is."""
-    search = None if contender.judged is None else contender.judged.solution.search
-    told = "yes" if contender.convex else "no"
+    search = None if contender.solution is None else contender.solution.search
+    convex = "yes" if contender.convex else "no"
     if search is None or search.penalty is None:
-        return told
+        return convex
     limit = search.penalty.convexity_limit
     if limit is None:
-        return f"{told}, for every μ"
-    return f"{told}, for no μ" if limit == 0 else f"{told}, up to μ = {limit:.3g}"
+        return f"{convex}, for every μ"
+    return f"{convex}, for no μ" if limit == 0 else f"{convex}, up to μ = {limit:.3g}"
 
 
 def reference_in_words(reference: Reference) -> str:

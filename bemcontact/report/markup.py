@@ -2,20 +2,15 @@
 
 import re
 from base64 import b64encode
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
-from bemcontact.report.formatting import NEGLIGIBLE, number, plural, seconds_in_words, sentence_case, vector, with_unit
+from bemcontact.report.facts import NOTHING, percent, small
+from bemcontact.report.formatting import number, plural, seconds_in_words, sentence_case, vector, with_unit
 
-Record = Mapping[str, Any]
-"""A part of a report: what stands between braces in its JSON."""
-NOTHING = "–"
-"""Stands where there is no number."""
-PLAIN = 0.01, 1000.0
-"""Sizes of numbers that are read more easily without a power of ten."""
 FORMULATIONS = {"qp1": "QP1", "qp2": "QP2", "qp3": "QP3"}
 WIDE = 500.0
 """Points from which on a picture is wide."""
@@ -23,34 +18,20 @@ WIDE = 500.0
 
 @dataclass(frozen=True, kw_only=True)
 class Picture:
-    """A picture in the page.
-
-    Parameters
-    ----------
-    source : the picture itself, as a data address
-    alternative : what it shows, for those who do not see it
-    caption : above it
-    wide : whether it needs the whole width of the page
-    """
+    """A picture in the page."""
 
     source: str
+    """The picture itself, as a data address."""
     alternative: str
+    """What it shows, for those who do not see it."""
     caption: str
+    """The line above it."""
     wide: bool
+    """Whether it needs the whole width of the page."""
 
 
 def template(name: str, **more: Callable[..., Any]) -> Template:
-    """Find a page without its contents; what it is given is text, never markup.
-
-    Parameters
-    ----------
-    name : of the file in ``templates``
-    more : filters that this page alone has
-
-    Returns
-    -------
-    Template
-    """
+    """Return the template of a page, a file in ``templates``, with more filters; what it is given is text."""
     environment = Environment(
         loader=PackageLoader("bemcontact.report"),
         autoescape=True,
@@ -78,20 +59,6 @@ def picture(svg: bytes, caption: str, alternative: str) -> Picture:
 def _number(value: float | None) -> str:
     """Five figures."""
     return NOTHING if value is None else number(value)
-
-
-def small(value: float | None) -> str:
-    """Two figures of a number whose size is all that matters."""
-    if not value:
-        return NOTHING if value is None else "0"
-    return f"{value:.2g}" if PLAIN[0] <= abs(value) < PLAIN[1] else f"{value:.1e}"
-
-
-def percent(value: float | None) -> str:
-    """Relative to one, with three figures; round-off is zero."""
-    if value is None:
-        return NOTHING
-    return f"{100 * value:.3g} %" if abs(value) > NEGLIGIBLE else "0 %"
 
 
 def _plain(text: str) -> str:

@@ -1,37 +1,14 @@
 """The page that a study is read on: one self-contained HTML file, from `Study.to_dict` and pictures alone."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
+from bemcontact.assessment.verdict import OUTCOMES, Outcome
 from bemcontact.problem import Units
-from bemcontact.report.formatting import number, per_thickness, settled, vector, with_unit
-from bemcontact.report.markup import NOTHING, Picture, Record, percent, picture, small, statement, template
-
-OUTCOMES = {
-    "solves it": "good",
-    "solves it, perhaps not alone": "fair",
-    "left open by round-off": "fair",
-    "not the solution": "bad",
-    "refused": "bad",
-}
-"""Outcome of a verdict -> how it is coloured."""
-
-VERBS = {
-    "solves it": ("{} finds the contact state", "{} find the contact state"),
-    "solves it, perhaps not alone": ("{} finds a contact state", "{} find a contact state"),
-    "left open by round-off": ("{} is left open", "{} are left open"),
-    "not the solution": ("{} ends elsewhere", "{} end elsewhere"),
-    "refused": ("{} is refused", "{} are refused"),
-}
-"""Outcome -> what is said of one, and of several."""
-DIRECT = {
-    "solves it": "is certified, and there is no other",
-    "solves it, perhaps not alone": "meets all conditions, but they may have other solutions",
-    "left open by round-off": "is left open by round-off",
-    "not the solution": "is none",
-}
-"""Outcome of the direct solution -> what is said of it."""
+from bemcontact.report.facts import NOTHING, Record, facts, scores_in_words, small
+from bemcontact.report.formatting import number, penalty_unit, sentence_case, with_unit
+from bemcontact.report.markup import Picture, picture, statement, template
 
 MANY = 5
 """Contenders from which on they are counted and no longer listed at the head of the page."""
@@ -55,7 +32,7 @@ def render(report: Record, pictures: Mapping[str, bytes], spec: str | None) -> s
         HTML that needs no other file.
     """
     contents = _contents(report)
-    return template("report.html", outcome=OUTCOMES.get).render(
+    return template("report.html", quality=_quality).render(
         **contents,
         pictures={name: _picture(name, svg, contents["level"]) for name, svg in pictures.items()},
         courses=[name for name in pictures if name.startswith(HISTORY)],
@@ -68,7 +45,7 @@ def _contents(report: Record) -> dict[str, Any]:
     level = report["levels"][-1]
     compared = level["comparison"]
     contenders, reference = compared["contenders"], compared["reference"]
-    units = Units(length=report["units"].get("length", ""), force=report["units"].get("force", ""))
+    units = Units(**report["units"])
     return {
         "report": report,
         "level": level,
@@ -76,11 +53,11 @@ def _contents(report: Record) -> dict[str, Any]:
         "everyone": [*contenders, reference],
         "apart": {item["one"]: item for item in compared["differences"] if item["other"] == reference["label"]},
         "answer": reference["answer"],
-        "units": {"p": units.stress, "L": units.length, "1": "", "force": per_thickness(units)},
-        "verdict": _verdict(report, compared),
+        "units": {"p": units.stress, "L": units.length, "1": ""},
+        "verdict": _headline(report, compared),
         "description": [" ".join(part.split()) for part in report["description"].split("\n\n") if part.strip()],
-        "facts": [*_facts(level, units)],
-        "scores": [*_scores(level, units)],
+        "facts": _facts(level, units),
+        "scores": [*scores_in_words(level["scores"], level["references"], units)],
         "certificate": _certificate(reference["answer"], units),
         "penalties": {item["label"]: _penalty(item, units) for item in contenders},
         "acting": " + ".join(
@@ -91,83 +68,29 @@ def _contents(report: Record) -> dict[str, Any]:
     }
 
 
-def _verdict(report: Record, compared: Record) -> str:
-    """What the report says; of many contenders, how many of them."""
+def _quality(outcome: str) -> str:
+    """How good an outcome is: good, fair or bad."""
+    return OUTCOMES[Outcome(outcome)].quality
+
+
+def _headline(report: Record, compared: Record) -> str:
+    """What the report shows; of many contenders, how many of them."""
     if len(compared["contenders"]) < MANY:
         return report["verdict"]
     outcomes = Counter(item["verdict"]["outcome"] for item in compared["contenders"])
-    direct = compared["reference"]["verdict"]["outcome"]
-    told = ", ".join(f"{VERBS[outcome][count > 1].format(count)}" for outcome, count in outcomes.items())
-    return f"Of {len(compared['contenders'])} settings {told}. The direct solution {DIRECT[direct]}."
+    counted = (f"{count} {OUTCOMES[Outcome(name)].predicate[count > 1]}" for name, count in outcomes.items())
+    direct = OUTCOMES[Outcome(compared["reference"]["verdict"]["outcome"])].of_direct
+    return f"Of {len(compared['contenders'])} settings {', '.join(counted)}. {sentence_case(direct)}."
 
 
-def _facts(level: Record, units: Units) -> Iterator[tuple[str, str]]:
-    """What the direct solution says, as what and how much."""
+def _facts(level: Record, units: Units) -> list[tuple[str, str]]:
+    """Facts of the direct solution."""
     compared = level["comparison"]
-    contact, answer = compared["contact"], compared["reference"]["answer"]
+    answer = compared["reference"]["answer"]
     if answer is None:
-        return
-    size = max((abs(x) for point in contact["nodes"] for x in point), default=0.0)
-    pressed = sum(w * abs(p) for w, p in zip(contact["tributary_lengths"], answer["pressure"], strict=True))
-    peak = answer["peak"]
-    if peak is None:
-        yield "Contact", "nowhere"
-    else:
-        at = vector(peak["at"], units.length, scale=size)
-        yield "Peak pressure", f"{with_unit(number(peak['pressure']), units.stress)} at {at}, per undeformed length"
-    for item in answer["intervals"]:
-        start, end = vector(item["start"], scale=size), vector(item["end"], units.length, scale=size)
-        where = f"at the point {end} alone" if item["start"] == item["end"] else f"from {start} to {end}"
-        yield f"Contact in {item['zone']}", where
-    force = vector(answer["resultant"], per_thickness(units), scale=pressed)
-    yield "Resultant", f"{force}, of the rigid surfaces on the body"
-    moment = settled(answer["resultant_moment"], pressed * size)
-    yield "Its moment about (0, 0)", with_unit(number(moment), units.force)
-    for name, amplitude in zip(contact["motion_names"], answer["rigid_amplitudes"], strict=True):
-        yield f"Free {name}", with_unit(number(amplitude), units.length if name.startswith("translation") else "")
-    for tool in answer["tools"]:
-        moved = vector(tool["displacement"], units.length, scale=contact["scales"]["displacement"])
-        force = vector(tool["force_of_body"], per_thickness(units), scale=pressed)
-        moment = with_unit(number(settled(tool["moment_of_body"], pressed * size)), units.force)
-        turned = number(settled(tool["rotation"] * size, contact["scales"]["displacement"]) / (size or 1.0))
-        about = vector(tool["point"], scale=size)
-        yield (
-            f"Tool {tool['name']}",
-            f"moves by {moved}, turns by {turned}; the body presses on it with {force}, moment {moment} about {about}",
-        )
-    if level["force_balance"] is not None:
-        yield "Force balance of the whole body", f"{small(level['force_balance'])} of the forces on it"
-
-
-def _scores(level: Record, units: Units) -> Iterator[dict[str, str]]:
-    """The answer beside the references, each number with its unit."""
-    told = {item["name"]: item for item in level["references"]}
-    for item in level["scores"]:
-        quantity, reference = item["quantity"], told[item["reference"]]
-        unit = unit_of_score(quantity, reference, units)
-        verdict, colour = ("holds", "good") if item["holds"] else ("does not hold", "bad")
-        if not item["judged"]:
-            verdict, colour = "not judged", "fair"
-        yield {
-            "reference": item["reference"],
-            "quantity": quantity,
-            "found": NOTHING if item["found"] is None else with_unit(number(item["found"]), unit),
-            "expected": with_unit(number(item["expected"]), unit),
-            "difference": percent(item["difference"]),
-            "tolerance": percent(item["tolerance"]),
-            "verdict": verdict,
-            "colour": colour,
-        }
-
-
-def unit_of_score(quantity: str, reference: Record, units: Units) -> str:
-    """Label of the unit of a quantity, as of `Score`, of which a reference speaks."""
-    if quantity == "resultant":
-        return per_thickness(units)
-    if quantity == "peak" or quantity.startswith("pressure"):
-        return units.stress
-    angle = reference["against"] == "angle" and quantity.endswith("of contact")
-    return "°" if angle else units.length
+        return []
+    residuals = {**answer["residuals"], "force_balance": level["force_balance"]}
+    return [*facts({**compared["contact"], **answer, "residuals": residuals}, units)]
 
 
 def _certificate(answer: Record | None, units: Units) -> str:
@@ -213,16 +136,15 @@ def _bound(bound: float | None, peak: Record | None, units: Units) -> str:
 def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
     """The penalty of QP2, free of units and in the user's, up to where QP2 is convex, and whether it is there."""
     search = (contender["answer"] or {}).get("search")
-    told = search and search["penalty"]
-    if not told:
+    penalty = search and search["penalty"]
+    if not penalty:
         return None
-    unit = f"{units.force}/{units.length}⁴" if told["dimension"] == "p/L²" else f"{units.length}²/{units.force}"
-    unit = unit if units.force and units.length else ""
-    limit, value = told["convexity_limit"], told["value"]
-    written = NOTHING if limit is None else f"{number(limit)} ({with_unit(number(told['convexity_limit_raw']), unit)})"
+    unit = penalty_unit(penalty["dimension"], units)
+    limit, value = penalty["convexity_limit"], penalty["value"]
+    raw = NOTHING if limit is None else with_unit(number(penalty["convexity_limit_raw"]), unit)
     return {
-        "value": f"{number(value)} ({with_unit(number(told['raw']), unit)})",
-        "limit": "any penalty" if limit is None else "no penalty" if limit == 0 else written,
+        "value": f"{number(value)} ({with_unit(number(penalty['raw']), unit)})",
+        "limit": "any penalty" if limit is None else "no penalty" if limit == 0 else f"{number(limit)} ({raw})",
     }
 
 

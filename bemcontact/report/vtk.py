@@ -10,10 +10,7 @@ import numpy as np
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.bem.condense import BoundaryState
-from bemcontact.errors import ProblemError
 from bemcontact.files import output
-from bemcontact.problem.problem import Problem
 
 FORMATS = {".vtu": "vtu", ".vtk": "vtk"}
 """Ending of a file that can be written -> the name of its format."""
@@ -59,12 +56,11 @@ def save(result: Result, path: Path) -> None:
         As from `ensure_possible`.
     """
     ensure_possible(path)
-    problem, boundary = result.problem, result.boundary
-    if problem is None or boundary is None:
-        raise ProblemError("the result of a condensed problem has no boundary to write; solve the problem itself")
+    pressure, gap = result.contact_fields()
+    boundary = result.boundary
+    assert boundary is not None  # or there are no fields on it
     import meshio
 
-    pressure, gap = _contact_fields(result, problem, boundary)
     lines = np.arange(boundary.points[..., 0].size).reshape(-1, 3)[:, [0, 2, 1]]  # the middle node comes last
     mesh = meshio.Mesh(
         _in_space(boundary.points),
@@ -85,18 +81,3 @@ def _in_space(vectors: Array) -> Array:
     """Vectors (m, 3, 2) as (3m, 3), with a third component of zero."""
     flat = vectors.reshape(-1, 2)
     return np.column_stack([flat, np.zeros(len(flat))])
-
-
-def _contact_fields(result: Result, problem: Problem, boundary: BoundaryState) -> tuple[Array, Array]:
-    """Pressure and gap (m, 3) at the nodes of each element; an element shows those of the zone that its edge is in."""
-    contact = result.contact
-    gaps = contact.initial_gap + result.solution.displacement
-    pressure, gap = np.zeros(boundary.points.shape[:2]), np.full(boundary.points.shape[:2], np.nan)
-    for number, name in enumerate(contact.zone_names):
-        edges = [boundary.edge_names.index(edge) for edge in problem.contact_zones[name].edges]
-        at = {tuple(contact.points[i]): i for i in np.flatnonzero(contact.zone == number)}
-        for element in np.flatnonzero(np.isin(boundary.edge, edges)):
-            for local, point in enumerate(boundary.points[element]):
-                if (i := at.get(tuple(point))) is not None:
-                    pressure[element, local], gap[element, local] = result.solution.pressure[i], gaps[i]
-    return pressure, gap

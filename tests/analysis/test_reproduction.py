@@ -3,23 +3,20 @@
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 from reproductions import on_base_meshes, problem, with_coarse_mesh_judged
 
 import bemcontact
 from bemcontact import spec
 from bemcontact.analysis import shipped_models as shipped
-from bemcontact.analysis.findings import along, found
-from bemcontact.analysis.paper import BOLT, CRACK, PROBLEMS, Quantity
-from bemcontact.analysis.reproduced import Reproduced
-from bemcontact.analysis.reproduction import reproduce
+from bemcontact.analysis.reproduction import PaperStudy, along, positions, reading, reproduce
+from bemcontact.reference.paper import BOLT, CRACK, PROBLEMS, Quantity
 
 
-def findings(item: Reproduced, quantity: Quantity, order: int = 0) -> dict[str, tuple[float, ...]]:
+def findings(item: PaperStudy, quantity: Quantity, order: int = 0) -> dict[str, tuple[float, ...]]:
     """What was found of a quantity (the so-manieth statement on it), by the label of the run."""
     statement = [told for told in item.paper.statements if told.quantity is quantity][order]
-    return {run.label: found(statement, run.level, item.axis) for run in item.runs}
+    return {run.label: reading(statement, run.level, item.axis) for run in item.runs}
 
 
 @pytest.mark.parametrize("paper", PROBLEMS, ids=lambda paper: paper.model)
@@ -29,11 +26,12 @@ def test_numbers_are_those_of_a_run_of_its_own(paper):
     for run in item.runs:
         stated = spec.loads(shipped.model(paper.model), variant=run.variant)
         answer = bemcontact.solve(stated, "qp3")
-        record = run.to_dict(item.axis)
-        assert record["pressure"] == pytest.approx(answer.solution.pressure, rel=1e-6, abs=1e-6)
-        assert record["resultant"] == pytest.approx(answer.footprint.resultant.force, rel=1e-8, abs=1e-8)
-        assert record["contact_nodes"] == answer.contact.size == len(record["position"])
-        assert record["dof"] == answer.degrees_of_freedom == 4 * record["elements"]
+        direct = run.level.answer
+        assert direct.solution.pressure == pytest.approx(answer.solution.pressure, rel=1e-6, abs=1e-6)
+        force = answer.footprint.resultant.force
+        assert direct.footprint.resultant.force == pytest.approx(force, rel=1e-8, abs=1e-8)
+        assert direct.contact.size == answer.contact.size == len(positions(run.level, item.axis))
+        assert direct.degrees_of_freedom == answer.degrees_of_freedom
 
 
 def test_all_is_certified_and_every_reference_is_met():
@@ -57,7 +55,7 @@ def test_the_coordinate_is_that_of_the_references():
     bolt = problem("bolt_in_plate")
     assert bolt.axis.against == "angle"
     (mesh,) = bolt.meshes
-    angles = np.array(mesh.to_dict(bolt.axis)["position"])
+    angles = positions(mesh.level, bolt.axis)
     assert (angles.min(), angles.max()) == pytest.approx((0, 90), abs=1e-9)  # from the top of the hole to the left
     with pytest.raises(ValueError, match="no reference"):
         along(bolt.problem.with_value("reference", {}))
@@ -73,7 +71,7 @@ def test_curved_surface():
     assert low < 20
     assert high == pytest.approx(50.85, rel=1e-3)
     assert dict(curved.paper.iterations) == {"qp1": 63, "qp2": 47, "qp3": 70}
-    assert all(apart < 1e-5 for (apart,) in findings(curved, Quantity.APART).values())
+    assert all(apart < 1e-5 for (apart,) in findings(curved, Quantity.DIFFERENCE).values())
 
 
 def test_the_iterations_on_the_page_of_the_paper_are_measured():
@@ -83,7 +81,7 @@ def test_the_iterations_on_the_page_of_the_paper_are_measured():
     for run in curved.runs:
         (row,) = re.findall(rf"^\| {run.label} \| ([\d |]+) \|$", page, flags=re.MULTILINE)
         points, *counts = map(int, row.split(" | "))
-        own = [solver["iterations"] for solver in run.to_dict(curved.axis)["solvers"]]
+        own = [item.solution.iterations for item in run.level.comparison.everyone if item.solution]
         assert points == run.level.answer.contact.size
         assert counts == pytest.approx(own[:3], rel=0.1)
 

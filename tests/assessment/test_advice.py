@@ -8,7 +8,7 @@ import pytest
 import typer.main
 
 from bemcontact import cli
-from bemcontact.assessment.advice import advice
+from bemcontact.assessment.certificate import advice
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.options import FormulationName
 

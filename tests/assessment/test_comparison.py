@@ -9,7 +9,7 @@ from contact_problems import random_contact
 
 from bemcontact.analysis import compare as comparing
 from bemcontact.assessment.comparison import Comparison, comparison
-from bemcontact.assessment.contender import Found
+from bemcontact.assessment.contender import Attempt
 from bemcontact.assessment.verdict import Outcome
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
@@ -17,18 +17,18 @@ from bemcontact.formulations import complementarity, qp1
 from bemcontact.options import FormulationName, SolveOptions
 
 
-def compared(contact: CondensedContact, *found: Found) -> Comparison:
-    direct = Found(
+def compared(contact: CondensedContact, *attempts: Attempt) -> Comparison:
+    direct = Attempt(
         options=SolveOptions(formulation=FormulationName.COMPLEMENTARITY),
         label="direct",
         solution=complementarity.solve(contact),
     )
-    return comparison(contact, direct, found)
+    return comparison(contact, direct, attempts)
 
 
-def of_qp1(contact: CondensedContact) -> Found:
+def of_qp1(contact: CondensedContact) -> Attempt:
     options = SolveOptions(formulation=FormulationName.QP1)
-    return Found(options=options, label=options.label(), solution=qp1.solve(contact))
+    return Attempt(options=options, label=options.label(), solution=qp1.solve(contact))
 
 
 def test_those_that_agree_are_certified_together():
@@ -52,9 +52,9 @@ def test_a_spurious_local_minimum_is_not_the_solution():
     """
     found = comparing.compare(CondensedContact.from_compliance([[1.0, 2.0], [1.0, 1.0]], [-1.0, -2.0]), ["qp1"])
     (spurious,) = found.contenders
-    assert spurious.judged is not None
-    assert spurious.judged.solution.pressure == pytest.approx([2.0, 0.0])
-    assert spurious.judged.solution.status is Status.LOCAL_MINIMUM
+    assert spurious.assessment is not None
+    assert spurious.assessment.solution.pressure == pytest.approx([2.0, 0.0])
+    assert spurious.assessment.solution.status is Status.LOCAL_MINIMUM
     assert spurious.objective == pytest.approx(2 / (2 * 2 / 3))
     assert spurious.verdict.outcome is Outcome.NOT_THE_SOLUTION
     assert (
@@ -62,8 +62,8 @@ def test_a_spurious_local_minimum_is_not_the_solution():
         in spurious.verdict.words
     )
     assert found.reference.verdict.outcome is Outcome.SOLVES_PERHAPS_NOT_ALONE
-    assert found.reference.judged is not None
-    assert found.reference.judged.solution.pressure == pytest.approx([0.0, 2.0])
+    assert found.reference.assessment is not None
+    assert found.reference.assessment.solution.pressure == pytest.approx([0.0, 2.0])
     assert not found.certified
     assert "not the solution: QP1" in found.verdict
 
@@ -77,8 +77,8 @@ def test_two_contact_states_are_told():
     options = SolveOptions(formulation=FormulationName.QP1)
     found = comparison(
         contact,
-        Found(options=SolveOptions(formulation=FormulationName.COMPLEMENTARITY), label="direct", solution=mirrored),
-        [Found(options=options, label=options.label(), solution=other)],
+        Attempt(options=SolveOptions(formulation=FormulationName.COMPLEMENTARITY), label="direct", solution=mirrored),
+        [Attempt(options=options, label=options.label(), solution=other)],
     )
     assert "QP1 and direct meet all conditions, but differ by 1.0e+00 of the peak" in found.verdict
     assert found.contenders[0].verdict.outcome is Outcome.SOLVES_PERHAPS_NOT_ALONE
@@ -104,7 +104,7 @@ def test_a_formulation_that_refuses_is_told_with_its_reason():
     """sym(M) has the eigenvalue -1: QP3 is not convex and says so; the weights are not to blame."""
     found = comparing.compare(CondensedContact.from_compliance([[1.0, 2.0], [2.0, 1.0]], [-1.0, -1.0]), ["qp3"])
     (refused,) = found.contenders
-    assert refused.judged is None
+    assert refused.assessment is None
     assert refused.verdict.outcome is Outcome.REFUSED
     assert "not convex" in refused.verdict.words
     assert refused.verdict.reason == ""
@@ -116,16 +116,16 @@ def test_a_formulation_that_refuses_is_told_with_its_reason():
 def test_random_starts_are_counted():
     found = comparing.compare(random_contact(2, 6, 1), ["qp1", "qp3"], starts=7, seed=3)
     first, last = found.contenders
-    assert first.found.starts is not None
-    assert (first.found.starts.count, first.found.starts.seed, first.found.starts.solved) == (7, 3, 7)
-    assert last.found.starts is None
+    assert first.attempt.starts is not None
+    assert (first.attempt.starts.count, first.attempt.starts.seed, first.attempt.starts.solved) == (7, 3, 7)
+    assert last.attempt.starts is None
 
 
 def test_json_is_finite_and_holds_the_answers():
     found = comparing.compare(random_contact(2, 6, 1), penalties=[1e-3, 1e3])
     data = json.loads(found.to_json())
     assert [item["label"] for item in data["contenders"]] == ["QP1", "QP2 (μ = 0.001)", "QP2 (μ = 1000)", "QP3"]
-    assert data["contenders"][0]["answer"]["pressure"] == found.contenders[0].judged.solution.pressure.tolist()  # pyright: ignore
+    assert data["contenders"][0]["answer"]["pressure"] == found.contenders[0].assessment.solution.pressure.tolist()  # pyright: ignore
     assert data["matrices"]["condition"] > 1
     assert [item["penalty"] for item in data["contenders"][0]["answer"]["objectives"][0]["qp2"]] == [1e-3, 1e3]
 
@@ -150,7 +150,7 @@ def test_a_direct_solver_that_fails_is_no_contact_state_to_compare_with():
     M, q = [[0.0, 0.0, 3.0], [-2.0, -1.0, 3.0], [-2.0, 3.0, -2.0]], [-2.0, 0.0, -2.0]
     found = comparing.compare(CondensedContact.from_compliance(M, q), ["qp1"])
     assert found.reference.verdict.outcome is Outcome.NOT_THE_SOLUTION
-    assert found.contenders[0].judged.solution.pressure == pytest.approx([1 / 3, 4 / 3, 2 / 3])  # pyright: ignore
+    assert found.contenders[0].assessment.solution.pressure == pytest.approx([1 / 3, 4 / 3, 2 / 3])  # pyright: ignore
     assert found.verdict.startswith("the direct solver found no contact state, but QP1 did")
     assert "contact state" not in found.contenders[0].verdict.words
     assert found.difference("QP1") is None

@@ -30,8 +30,8 @@ def test_all_vanish_at_the_contact_state():
     found = objectives(contact, complementarity.solve(contact), Weights.TRIBUTARY, (1e-3, 1.0))
     assert abs(found.qp1) < 1e-13
     assert abs(found.qp3) < 1e-13
-    assert [penalty for penalty, _ in found.qp2] == [1e-3, 1.0]
-    assert all(abs(value) < 1e-13 for _, value in found.qp2)
+    assert [item.penalty for item in found.qp2] == [1e-3, 1.0]
+    assert all(abs(item.value) < 1e-13 for item in found.qp2)
 
 
 def test_the_three_at_a_point_off_the_equations():
@@ -45,8 +45,9 @@ def test_the_three_at_a_point_off_the_equations():
     U, T = contact.scales
     assert (U, T) == (1.0, 0.5)
     assert found.qp1 == pytest.approx(0.5 * (-1 + 3) / (U * T))
-    strange = (3.0 / 2.0 - 0.5) / T  # K u - p with K = 1/2
-    assert found.qp2 == ((0.25, pytest.approx(found.qp1 + strange**2 / 0.25)),)
+    residual = (3.0 / 2.0 - 0.5) / T  # K u - p with K = 1/2
+    (qp2,) = found.qp2
+    assert (qp2.penalty, qp2.value) == (0.25, pytest.approx(found.qp1 + residual**2 / 0.25))
     assert found.qp3 == pytest.approx(0.5 * (-1 + 2 * 0.5) / (U * T))
 
 
@@ -61,7 +62,7 @@ def test_a_change_of_units_changes_nothing():
     one = objectives(contact, at(contact, p, u), Weights.TRIBUTARY, (1.0,))
     two = objectives(other, at(other, p * stress, u * length), Weights.TRIBUTARY, (1.0,))
     assert two.qp1 == pytest.approx(one.qp1, rel=1e-12)
-    assert two.qp2[0][1] == pytest.approx(one.qp2[0][1], rel=1e-9)
+    assert two.qp2[0].value == pytest.approx(one.qp2[0].value, rel=1e-9)
     assert two.qp3 == pytest.approx(one.qp3, rel=1e-12)
 
 

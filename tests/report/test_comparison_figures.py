@@ -47,8 +47,8 @@ def test_each_pressure_is_drawn_and_none_hides_another():
     figures.draw_pressures(axes, level)
     found = curves(axes)
     for contender in level.comparison.everyone:
-        assert contender.judged is not None
-        assert drawn(found[contender.label]) == pytest.approx(contender.judged.solution.pressure)
+        assert contender.assessment is not None
+        assert drawn(found[contender.label]) == pytest.approx(contender.assessment.solution.pressure)
     widths = [found[label].get_linewidth() for label in ("direct", "QP1", "QP2", "QP3")]
     assert np.diff(widths).max() < -1
     assert len({found[label].get_color() for label in ("direct", "QP1", "QP2", "QP3")}) == 4
@@ -72,9 +72,9 @@ def test_contenders_that_cannot_be_told_apart_are_one_curve_and_what_is_far_off_
     labels = [*curves(axes)]
     assert "QP1 and 1 more" in labels
     largest = {
-        item.label: item.judged.solution.pressure.max()
+        item.label: item.assessment.solution.pressure.max()
         for item in level.comparison.contenders
-        if item.judged is not None
+        if item.assessment is not None
     }
     wild = max(largest, key=lambda label: largest[label])
     assert largest[wild] > 2 * level.answer.solution.pressure.max()
@@ -126,9 +126,9 @@ def test_two_zones_stand_side_by_side_each_with_its_own_distances():
 
 
 def with_history(contender: Contender, *history: Trace) -> Contender:
-    assert contender.judged is not None
-    solution = dataclasses.replace(contender.judged.solution, history=history)
-    return dataclasses.replace(contender, judged=dataclasses.replace(contender.judged, solution=solution))
+    assert contender.assessment is not None
+    solution = dataclasses.replace(contender.assessment.solution, history=history)
+    return dataclasses.replace(contender, assessment=dataclasses.replace(contender.assessment, solution=solution))
 
 
 def test_history_shows_sizes_and_marks_what_is_below_zero():

@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 
-from bemcontact import analysis, spec
+from bemcontact import spec
+from bemcontact.analysis import solve as analysis
 from bemcontact.report import figures
 from bemcontact.report.figures.page import GREY, VERMILION
 

@@ -95,14 +95,14 @@ def test_a_coarser_mesh_that_is_not_certified_is_named():
 
 def test_sections_go_without_what_there_is_not():
     alone = read(render(report_of(without_a_body()), {"pressure": SVG}, None)).text
-    assert "From mesh to mesh" not in alone
-    assert "Beside what is known" not in alone
-    assert "How each solver got there" not in alone
-    assert "The spec as run" not in alone
+    assert "Mesh convergence" not in alone
+    assert "Reference values" not in alone
+    assert "Course of each solver" not in alone
+    assert "The problem as run" not in alone
     whole = read(render(report_of(on_three_meshes()), PICTURES, "name: x")).text
-    assert "From mesh to mesh" in whole
-    assert "How each solver got there" in whole
-    assert "The spec as run" in whole
+    assert "Mesh convergence" in whole
+    assert "Course of each solver" in whole
+    assert "The problem as run" in whole
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ def test_sections_go_without_what_there_is_not():
 )
 def test_the_certificate_is_two_sentences(study: Callable[[], Study], says: str):
     text = read(render(report_of(study()), {}, None)).text
-    certificate = text.split("Why one should believe it ")[1].split(" The certificate is about")[0]
+    certificate = text.split("What is proved ")[1].split(" The certificate is about")[0]
     assert certificate.count(". ") + certificate.endswith(".") == 2
     assert says in certificate
 

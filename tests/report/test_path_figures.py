@@ -7,7 +7,7 @@ import pytest
 
 import bemcontact
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.report import figures, folder, path_text
+from bemcontact.report import figures, folder, text
 
 MODELS = Path(__file__).parents[2] / "models"
 
@@ -47,4 +47,4 @@ def test_written_twice_it_is_the_same(link: ParameterPath, tmp_path: Path):
 
 
 def test_verdict_is_a_sentence(link: ParameterPath):
-    assert path_text.verdict(link).startswith("Every state from 0 to 20 is the contact state, the only one. Natural")
+    assert text.path_sentence(link).startswith("Every state from 0 to 20 is the contact state, the only one.")

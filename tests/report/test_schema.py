@@ -1,4 +1,4 @@
-"""The schema of report.json is what a report holds: neither more nor less."""
+"""The schemas of results are what their JSON holds: neither more nor less."""
 
 import json
 from typing import Any
@@ -8,11 +8,11 @@ import pytest
 from contact_problems import random_contact
 from jsonschema import Draft202012Validator, ValidationError, validate
 
+import bemcontact
 from bemcontact.analysis import compare as comparing
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.options import ComparisonOptions
-from bemcontact.report.reproduction_schema import reproduction_schema
-from bemcontact.report.schema import Report, report_schema
+from bemcontact.report.schema import RESULTS, schema
 from bemcontact.spec import load
 
 SPURIOUS = CondensedContact.from_compliance([[1.0, 2.0], [1.0, 1.0]], [-1.0, -2.0])
@@ -43,42 +43,76 @@ def written(request: pytest.FixtureRequest) -> dict[str, dict]:
         return reports()
 
 
-def test_it_is_a_schema():
-    Draft202012Validator.check_schema(report_schema())
-
-
-@pytest.mark.parametrize("stated", [report_schema(), reproduction_schema()])
-def test_it_tells_of_each_field_what_it_means(stated: dict[str, Any]):
+@pytest.mark.parametrize("kind", RESULTS)
+def test_it_is_a_schema_and_says_of_each_field_what_it_means(kind: str):
     """Every object and every key has a description, which is a sentence."""
-    objects = {"the whole": stated, **{name: item for name, item in stated["$defs"].items() if "properties" in item}}
-    assert len(objects) > 10
+    stated = schema(kind)
+    Draft202012Validator.check_schema(stated)
+    objects = {"the whole": stated, **{name: it for name, it in stated.get("$defs", {}).items() if "properties" in it}}
     for name, part in objects.items():
         for key, item in ({"itself": part} | part["properties"]).items():
             assert item.get("description", "").endswith("."), f"{name}: {key}"
+            assert "default" not in item, f"{name}: {key}"
 
 
 def test_lengths_pressures_and_forces_have_their_units():
-    """Of what report.json has in units: each of them named [L], [p], [p L] or [p L²]."""
+    """What report.json has in units names them: [L], [p], [p L] or [p L²]."""
     units = {
-        ("Answer", "pressure"): "[p]", ("Answer", "gap"): "[L]", ("Answer", "normal_displacement"): "[L]",
-        ("Answer", "resultant"): "[p L]", ("Answer", "resultant_moment"): "[p L²]", ("Peak", "pressure"): "[p]",
-        ("Interval", "arc"): "[L]", ("Contact", "initial_gap"): "[L]", ("Contact", "tributary_lengths"): "[L]",
-        ("Contact", "motion_load"): "[p L]", ("Scales", "pressure"): "[p]", ("Certificate", "error_bound"): "[p]",
-        ("Expected", "peak"): "[p]", ("Expected", "resultant"): "[p L]", ("Expected", "contact_length"): "[L]",
+        ("AnswerRecord", "pressure"): "[p]", ("AnswerRecord", "gap"): "[L]",
+        ("AnswerRecord", "normal_displacement"): "[L]", ("AnswerRecord", "resultant"): "[p L]",
+        ("AnswerRecord", "resultant_moment"): "[p L²]", ("Peak", "pressure"): "[p]",
+        ("ContactInterval", "arc"): "[L]", ("ContactRecord", "initial_gap"): "[L]",
+        ("ContactRecord", "tributary_lengths"): "[L]", ("ContactRecord", "motion_load"): "[p L]",
+        ("ScalesRecord", "pressure"): "[p]", ("Certificate", "error_bound"): "[p]", ("Expected", "peak"): "[p]",
+        ("Expected", "resultant"): "[p L]", ("Expected", "contact_length"): "[L]",
     }  # fmt: skip
-    stated = report_schema()["$defs"]
+    stated = schema("report")["$defs"]
     for (name, key), unit in units.items():
         assert unit in stated[name]["properties"][key]["description"], f"{name}: {key}"
 
 
+def of_each_kind() -> dict[str, list[Any]]:
+    """Results of each kind but studies, and reproductions of the paper, which are tested with their page."""
+    cylinder = load("models/cylinder_on_plane.yaml")
+    tools = load("models/gallery/body_between_two_tools.yaml").with_case("raised")
+    contact = random_contact(3, 7, 2)
+    loose = CondensedContact.from_compliance(np.eye(2), [1.0, 1.0])
+    roller = load("models/gallery/hertz_small.yaml")
+    cases = load("models/gallery/roller_in_v_block.yaml")
+    relief = bemcontact.Relief(lower=-0.002, upper=0.0, slope=0.02, curvature=0.05)
+    return {
+        "result": [
+            bemcontact.solve(cylinder, "qp2"),
+            bemcontact.solve(cylinder.with_value("mesh.fit_contact_edges", True)),
+            bemcontact.solve(tools),
+            bemcontact.solve(loose),
+            bemcontact.solve(contact, "qp1", starts=2),
+        ],
+        "cases": [bemcontact.solve_cases(cases)],
+        "comparison": [bemcontact.compare(contact, starts=2)],
+        "path": [bemcontact.follow(cylinder, "conditions.top.pressure", 20.0, 0.0)],
+        "load_path": [bemcontact.load_path(loose, CondensedContact.from_compliance(np.eye(2), [-1.0, 1.0]))],
+        "sensitivities": [bemcontact.sensitivities(cylinder, ["conditions.top.pressure"])],
+        "starts": [bemcontact.random_starts(contact, "qp1", count=2)],
+        "design": [bemcontact.design_gap(bemcontact.condense(roller), relief)],
+    }
+
+
+def test_results_of_each_kind_are_what_their_schema_says():
+    results = of_each_kind()
+    assert {*results, "report", "reproduction"} == {*RESULTS}
+    for kind, several in results.items():
+        for result in several:
+            validate(json.loads(json.dumps(result.to_dict(), allow_nan=False)), schema(kind), Draft202012Validator)
+
+
 def test_reports_of_all_kinds_are_valid_and_nothing_is_left_out(written: dict[str, dict]):
     for report in written.values():
-        validate(report, report_schema(), Draft202012Validator)
-        assert json.loads(Report.model_validate(report).model_dump_json()) == report
+        validate(report, schema("report"), Draft202012Validator)
 
 
 def test_a_report_with_a_key_too_many_or_too_few_is_not(written: dict[str, dict]):
     report = written["free"]
     for wrong in ({**report, "extra": 1}, {key: value for key, value in report.items() if key != "levels"}):
         with pytest.raises(ValidationError):
-            validate(wrong, report_schema(), Draft202012Validator)
+            validate(wrong, schema("report"), Draft202012Validator)

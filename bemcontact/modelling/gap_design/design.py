@@ -143,7 +143,7 @@ def _solved(contact: CondensedContact, profile: Array) -> LoadState:
     there = relieved(contact, profile)
     solution = complementarity.solve(there)
     if solution.status is not Status.SOLVED:
-        raise ProblemError(f"a load state has no contact state: {' '.join((solution.status.value, *solution.notes))}")
+        raise ProblemError(f"a load state has no contact state: {' '.join((solution.status.words, *solution.notes))}")
     recomputed = residuals(there, solution)
     return LoadState(
         contact=there,

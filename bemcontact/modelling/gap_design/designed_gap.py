@@ -1,27 +1,27 @@
 """A designed gap: the profile, the contact states without and with it, and what is proved of it."""
 
-import json
 from dataclasses import dataclass, replace
-from enum import Enum
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.assessment.certificate import Certificate
-from bemcontact.assessment.footprint import Footprint
+from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
 from bemcontact.assessment.residual import Residuals
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
 from bemcontact.problem.rigid_surface import Polyline, Spline
+from bemcontact.serialization import Pairs, Record, Vector, json_text
 
 AGREED = 1e-6
 """Difference of the designed pressure from that of the contact state, over the peak, up to which they agree."""
 SURFACES = {"spline": Spline, "polyline": Polyline}
 
 
-class Goal(Enum):
+class Goal(StrEnum):
     """Quantity that a design minimizes, in the worst of all load states."""
 
     PEAK = "peak"
@@ -29,6 +29,52 @@ class Goal(Enum):
 
 
 MEASURED = {Goal.PEAK: "The largest pressure", Goal.UNIFORM: "The root mean square deviation from a uniform pressure"}
+
+
+class LoadStateRecord(FootprintRecord):
+    """Contact state of a load state."""
+
+    pressure: Vector
+    """Pressure at each contact point per undeformed length [p]."""
+    residuals: Residuals
+    """Residuals of the contact conditions and equations."""
+    certificate: Certificate
+    """What is proved."""
+
+
+class GapDesignRecord(Record):
+    """A designed profile, with the contact states of all load states without and with it."""
+
+    goal: Goal
+    """What is made small."""
+    zone: str
+    """Name of the contact zone."""
+    points: Pairs
+    """Contact points (x, y) on the interval of the profile [L]."""
+    arc_position: Vector
+    """Arc position of these points [L]."""
+    profile: Vector
+    """Profile at these points, which is added to the initial gap [L]."""
+    coefficients: Vector | None
+    """Coefficients of the shapes, if the profile is made of some."""
+    before: list[LoadStateRecord]
+    """Contact states without the profile."""
+    after: list[LoadStateRecord]
+    """Contact states with the profile."""
+    value_before: float
+    """Value of the goal without the profile [p]."""
+    value: float
+    """Value of the goal with the profile [p]."""
+    lower_bound: float
+    """Lower bound of the goal within the bounds on the profile, by convex relaxation [p]."""
+    proved_optimal: bool
+    """Whether the value is at the bound, to a millionth."""
+    difference: float
+    """Largest difference of the designed pressure from that of the contact state, over the peak."""
+    verified: bool
+    """Whether all load states with the profile are certified and have the designed pressure, to a millionth."""
+    words: str
+    """What is reached and what is proved of it, in a few sentences."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,14 +103,14 @@ class LoadState:
         """The largest pressure [p]."""
         return self.contact.peak(self.pressure)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers, lists and texts, ready for JSON."""
-        return {
-            "pressure": self.pressure.tolist(),
-            **self.footprint.to_dict(),
-            "residuals": self.residuals.to_dict(),
-            "certificate": self.certificate.to_dict(),
-        }
+    def record(self) -> LoadStateRecord:
+        """Return what JSON holds of it."""
+        return LoadStateRecord(
+            pressure=self.pressure,
+            **dict(footprint_record(self.footprint)),
+            residuals=self.residuals,
+            certificate=self.certificate,
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -210,29 +256,34 @@ class GapDesign:
         points = "".join(f"    - [{_number(x)}, {_number(y)}]\n" for x, y in self.surface(kind).points)
         return f"surface:\n  kind: {kind}\n  points:\n{points}"
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give all of it as numbers, lists and texts, ready for JSON."""
-        return {
-            "goal": self.goal.value,
-            "zone": self.zone,
-            "points": self.before[0].contact.points[self.points].tolist(),
-            "arc_position": self.before[0].contact.arc_position[self.points].tolist(),
-            "profile": self.profile[self.points].tolist(),
-            "coefficients": None if self.coefficients is None else self.coefficients.tolist(),
-            "before": [state.to_dict() for state in self.before],
-            "after": [state.to_dict() for state in self.after],
-            "value_before": self.value_before,
-            "value": self.value,
-            "lower_bound": self.lower_bound,
-            "proved_optimal": self.proved_optimal,
-            "difference": self.difference,
-            "verified": self.verified,
-            "words": self.words,
-        }
+    def record(self) -> GapDesignRecord:
+        """Return what JSON holds of it."""
+        contact = self.before[0].contact
+        return GapDesignRecord(
+            goal=self.goal,
+            zone=self.zone,
+            points=contact.points[self.points],
+            arc_position=contact.arc_position[self.points],
+            profile=self.profile[self.points],
+            coefficients=self.coefficients,
+            before=[state.record() for state in self.before],
+            after=[state.record() for state in self.after],
+            value_before=self.value_before,
+            value=self.value,
+            lower_bound=self.lower_bound,
+            proved_optimal=self.proved_optimal,
+            difference=self.difference,
+            verified=self.verified,
+            words=self.words,
+        )
 
-    def to_json(self) -> str:
-        """Write `to_dict` as JSON; every number in it is finite."""
-        return json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as numbers, lists and texts, ready for JSON."""
+        return self.record().to_dict()
+
+    def to_json(self, indent: int | None = 2) -> str:
+        """Return `to_dict` as JSON; every number in it is finite."""
+        return json_text(self.to_dict(), indent)
 
 
 def relieved(contact: CondensedContact, profile: Array) -> CondensedContact:

@@ -41,7 +41,7 @@ class Curve:
     @property
     def colour(self) -> str:
         """Its formulation's."""
-        return COLOURS[self.contenders[0].found.options.formulation]
+        return COLOURS[self.contenders[0].attempt.options.formulation]
 
     @property
     def label(self) -> str:
@@ -52,9 +52,9 @@ class Curve:
     @property
     def solution(self) -> ContactSolution:
         """Of the first of them."""
-        judged = self.contenders[0].judged
-        assert judged is not None  # nothing else is made a curve of
-        return judged.solution
+        assessment = self.contenders[0].assessment
+        assert assessment is not None  # nothing else is made a curve of
+        return assessment.solution
 
 
 def draw_pressures(axes: Axes, level: MeshLevel) -> None:
@@ -188,7 +188,7 @@ def _curves(level: MeshLevel, *, merged: bool = True) -> list[Curve]:
     Those of one formulation that cannot be told apart are merged to one curve.
     """
     compared = level.comparison
-    everyone = [item for item in (compared.reference, *compared.contenders) if item.judged is not None]
+    everyone = [item for item in (compared.reference, *compared.contenders) if item.assessment is not None]
     groups = list[list[Contender]]()
     for item in everyone:
         alike = next((group for group in groups if merged and _alike(group[0], item, level)), None)
@@ -199,7 +199,7 @@ def _curves(level: MeshLevel, *, merged: bool = True) -> list[Curve]:
     widths = [WIDEST, *np.linspace(5.0, THINNEST, max(len(groups) - 1, 1))]
     curves, seen = list[Curve](), dict[FormulationName, int]()
     for group, width in zip(groups, widths, strict=False):
-        name = group[0].found.options.formulation
+        name = group[0].attempt.options.formulation
         order = seen.get(name, 0)
         seen[name] = order + 1
         curves.append(Curve(contenders=tuple(group), width=float(width), dashes=DASHES[order % len(DASHES)]))
@@ -208,11 +208,11 @@ def _curves(level: MeshLevel, *, merged: bool = True) -> list[Curve]:
 
 def _alike(one: Contender, other: Contender, level: MeshLevel) -> bool:
     """Whether two contenders of the same formulation have the same pressure, as far as can be seen."""
-    if one.judged is None or other.judged is None:
+    if one.assessment is None or other.assessment is None:
         return False
-    apart = float(np.abs(one.judged.solution.pressure - other.judged.solution.pressure).max())
+    apart = float(np.abs(one.assessment.solution.pressure - other.assessment.solution.pressure).max())
     peak = float(level.answer.solution.pressure.max(initial=0.0)) or level.answer.contact.scales.pressure
-    return one.found.options.formulation is other.found.options.formulation and apart <= SAME * peak
+    return one.attempt.options.formulation is other.attempt.options.formulation and apart <= SAME * peak
 
 
 def _cut_off(axes: Axes, found: dict[str, float], top: float, unit: str) -> None:

@@ -38,12 +38,12 @@ def draw_history(axes: Axes, contenders: Sequence[Contender]) -> None:
     axes : to draw into
     contenders : of one formulation; those without a history are left out
     """
-    told = [item for item in contenders if item.judged is not None and item.judged.solution.history]
+    told = [item for item in contenders if item.assessment is not None and item.assessment.solution.history]
     below_zero = False
     for order, contender in enumerate(told):
-        alone = COLOURS[contender.found.options.formulation] if len(told) == 1 else None
+        alone = COLOURS[contender.attempt.options.formulation] if len(told) == 1 else None
         colour = alone or CYCLE[order % len(CYCLE)]
-        for trace in contender.judged.solution.history if contender.judged else ():
+        for trace in contender.assessment.solution.history if contender.assessment else ():
             label = trace.quantity if alone else plain(f"{contender.label}: {trace.quantity}")
             below_zero |= _draw_trace(axes, trace, colour, label)
     if below_zero:

@@ -11,11 +11,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
+from bemcontact.analysis.check import contours
 from bemcontact.arrays import Array
-from bemcontact.bem import reference_element
-from bemcontact.bem.body import deflections
 from bemcontact.bem.boundary_values import applied_traction
-from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.mesh import Mesh, element_curves
 from bemcontact.problem import (
     AxisFields,
     Circle,
@@ -144,7 +143,7 @@ def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     """Draw elements in the colour of their edge's role, with large dots at their ends and small ones between."""
     corners = mesh.nodes[mesh.elements]
     colours = [ROLES[role(problem, mesh.edge_names[edge])] for edge in mesh.edge]
-    curves = reference_element.values(np.linspace(-1, 1, 9)) @ corners
+    curves = element_curves(corners, 9)
     axes.add_collection(LineCollection(list(curves), colors=colours, linewidths=2.2, zorder=3))
     for nodes, diameter in ((corners[:, 0], 4.5), (corners[:, 1], 2.5)):
         axes.scatter(*nodes.T, s=diameter**2, c="white", edgecolors=colours, linewidths=0.9, zorder=4)
@@ -230,12 +229,8 @@ def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
 def _draw_contours(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     """Draw each edge that a deflected contour faces once more, as far away from its place as the gap is."""
     size = problem.boundary.size
-    for name, displacement in deflections(problem, mesh).items():
-        zone = problem.contact_zones[name]
-        assert isinstance(zone.surface, DeflectedContour)
-        gap, normals = zone.surface.behind(displacement)
-        feet = mesh.nodes - gap[:, None] * normals
-        for edge in zone.edges:
+    for name, (feet, normals) in contours(problem, mesh).items():
+        for edge in problem.contact_zones[name].edges:
             elements = mesh.elements[mesh.edge == mesh.edge_names.index(edge)]
             nodes = np.append(elements[:, :2], elements[-1, 2])
             yield draw_ground(axes, feet[nodes], normals[nodes], 0.03 * size, GREY)

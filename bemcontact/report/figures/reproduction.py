@@ -4,8 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bemcontact.analysis.findings import positions
-from bemcontact.analysis.reproduced import Reproduced, Reproduction, Run
+from bemcontact.analysis.reproduction import PaperStudy, Reproduction, Run, positions
 from bemcontact.problem import Table
 from bemcontact.reference import Expected
 from bemcontact.report.figures.course import legend_below
@@ -45,7 +44,7 @@ def figures_of_reproduction(reproduction: Reproduction) -> dict[str, Figure]:
     return figures
 
 
-def _figure_of(item: Reproduced) -> Figure:
+def _figure_of(item: PaperStudy) -> Figure:
     """The pressure, and below it the same in the frame that the paper has, if that is a narrow one."""
     window = WINDOW_HEIGHT if item.paper.frame else 0.0
     figure = new_page(WIDTH + 0.6, 3.9 + window)
@@ -67,7 +66,7 @@ def _figure_of(item: Reproduced) -> Figure:
     return figure
 
 
-def draw_against(axes: Axes, item: Reproduced) -> None:
+def draw_against(axes: Axes, item: PaperStudy) -> None:
     """Draw pressure over the coordinate of the paper: variants as marks, meshes as lines, references in purple or grey.
 
     Parameters
@@ -75,7 +74,7 @@ def draw_against(axes: Axes, item: Reproduced) -> None:
     axes : to draw into
     item : a problem of the paper; answers without contact are left out
     """
-    for order, run in enumerate(run for run in item.variants if run.level.answer.footprint.intervals):
+    for order, run in enumerate(run for run in item.variant_runs if run.level.answer.footprint.intervals):
         axes.plot(
             *_curve(run, item), linestyle="none", marker=MARKS[order % len(MARKS)], markersize=5.5,
             markerfacecolor="none", markeredgecolor=(GREEN, ORANGE)[order % 2], label=run.label, zorder=3,
@@ -90,20 +89,20 @@ def draw_against(axes: Axes, item: Reproduced) -> None:
     for known in item.meshes[-1].level.expected:
         singles = _draw_reference(axes, known, item, singles)
     units = item.problem.units
-    axes.set_xlabel(labelled(item.paper.symbol, "°" if item.axis.against == "angle" else units.length))
+    axes.set_xlabel(labelled(item.paper.symbol, item.coordinate_unit))
     axes.set_ylabel(labelled("pressure", units.stress) + "\nper undeformed length")
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
     axes.set_ylim(bottom=0, top=ABOVE * max(float(np.nanmax(line.get_ydata())) for line in axes.lines))  # pyright: ignore
 
 
-def _curve(run: Run, item: Reproduced) -> tuple[np.ndarray, np.ndarray]:
+def _curve(run: Run, item: PaperStudy) -> tuple[np.ndarray, np.ndarray]:
     """Coordinate (n,) and pressure (n,) of the direct solution, in order."""
     here = positions(run.level, item.axis)
     order = np.argsort(here, kind="stable")
     return here[order], run.level.answer.solution.pressure[order]
 
 
-def _draw_reference(axes: Axes, known: Expected, item: Reproduced, singles: int) -> int:
+def _draw_reference(axes: Axes, known: Expected, item: PaperStudy, singles: int) -> int:
     """Draw what a reference says: a curve, points of a table, lines at single values; return how many lines so far."""
     colour, beyond = (PURPLE, "") if known.in_range else (GREY, ", out of its range")
     stated = item.problem.reference[known.name]

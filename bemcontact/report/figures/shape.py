@@ -10,8 +10,8 @@ from matplotlib.path import Path
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.bem import reference_element
-from bemcontact.bem.condense import BoundaryState
+from bemcontact.bem.boundary_values import BoundaryState
+from bemcontact.bem.mesh import element_curves
 from bemcontact.report.figures.marks import draw_ground
 from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
 from bemcontact.report.figures.pieces import pieces_of
@@ -44,9 +44,8 @@ def draw_deformed(axes: Axes, result: Result) -> None:
     if state is None:
         raise ValueError("the result of a condensed problem has no boundary to draw")
     factor = _magnification(state)
-    curves = reference_element.values(np.linspace(-1, 1, 9))
-    before = curves @ state.points
-    after = curves @ (state.points + factor * state.displacement)
+    before = element_curves(state.points, 9)
+    after = element_curves(state.points + factor * state.displacement, 9)
     axes.add_collection(LineCollection(list(before), colors=GREY, linewidths=0.9, linestyles="dashed", zorder=2))
     axes.add_collection(LineCollection(list(after), colors=BLACK, linewidths=1.8, zorder=3))
     axes.add_patch(PathPatch(outline_of(state, after), facecolor=BODY, edgecolor="none", zorder=0))

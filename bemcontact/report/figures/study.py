@@ -62,8 +62,8 @@ def _recorded(level: MeshLevel) -> dict[str, list[Contender]]:
     """The contenders whose solvers recorded how they got there, by formulation and weights."""
     groups = dict[str, list[Contender]]()
     for item in level.comparison.everyone:
-        options = item.found.options
-        if item.judged is not None and item.judged.solution.history:
+        options = item.attempt.options
+        if item.assessment is not None and item.assessment.solution.history:
             weights = "" if options.weights is Weights.TRIBUTARY else f"-{options.weights.replace('_', '-')}"
             name = options.formulation.value if options.uses("weights") else "direct"
             groups.setdefault(f"{name}{weights}", []).append(item)

@@ -1,4 +1,4 @@
-"""What [SS92] says of its five problems, as data; what can be stated as a reference stands in the problems' files.
+"""Statements of [SS92] on its five problems; what can be a reference stands in the files of the problems.
 
 Pressures are in kN/cm², lengths in cm, as in the paper.
 """
@@ -12,7 +12,7 @@ from bemcontact.options import FormulationName
 
 
 class Quantity(Enum):
-    """What is read off an answer to stand beside a statement."""
+    """A quantity of an answer that stands beside a statement of the paper."""
 
     PRESSURE = auto()
     """Smallest and largest pressure, within a range of the coordinate if one is given."""
@@ -26,54 +26,46 @@ class Quantity(Enum):
     """The smallest gap."""
     FORCE = auto()
     """Size of the force that contact carries, in a direction."""
-    APART = auto()
+    DIFFERENCE = auto()
     """Largest difference of a pressure from the direct solution over its peak, as the solvers left it by themselves."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Statement:
-    """One thing that the paper says.
-
-    Parameters
-    ----------
-    what : quantity, in words
-    said : of it, as the paper has it
-    quantity : what is read off our answers
-    between : range of the coordinate in which it is, of a pressure
-    direction : in which it acts, of a force
-    """
+    """A statement of the paper."""
 
     what: str
+    """The quantity, in words."""
     said: str
+    """What the paper says of it."""
     quantity: Quantity
+    """What is read off our answers."""
     between: tuple[float, float] | None = None
+    """Range of the coordinate, of a pressure."""
     direction: tuple[float, float] = (0.0, 1.0)
+    """Direction of a force."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PaperProblem:
-    """A problem of the paper.
-
-    Parameters
-    ----------
-    model : name of its file in ``models``
-    figure : where the paper has it
-    symbol : of the coordinate over which its figure has the pressure; which that is, the references of the file say
-    variants : of the file, that are run beside it: name -> what a column of them is called
-    frame : least and largest pressure on the axis of the figure, where it is a narrow one
-    statements : of the paper
-    iterations : of QPSOL, which the paper prints
-    differs : where the paper and we differ, and why
-    """
+    """A problem of the paper."""
 
     model: str
+    """Name of its file in ``models``."""
     figure: str
+    """Figure of the paper."""
     symbol: str = "x"
+    """Symbol of the coordinate of the figure, which is that of the references in the file."""
     variants: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    """Variants of the file that are run beside it, with their labels."""
     frame: tuple[float, float] | None = None
+    """Least and largest pressure on the axis of the figure, where it is a narrow one."""
     statements: tuple[Statement, ...]
+    """Statements of the paper."""
     iterations: Mapping[FormulationName, int] = field(default_factory=lambda: MappingProxyType({}))
+    """Iterations of QPSOL that the paper prints."""
     differs: tuple[str, ...]
+    """Where the paper and we differ, and why."""
 
 
 CURVED = PaperProblem(
@@ -86,7 +78,9 @@ CURVED = PaperProblem(
             what="pressure from x = 40 to 95", said="50 ± 0.01", quantity=Quantity.PRESSURE, between=(40.0, 95.0)
         ),
         Statement(what="pressure, all along", said="uniform, 50", quantity=Quantity.PRESSURE),
-        Statement(what="the three formulations apart, over the peak", said="nearly identical", quantity=Quantity.APART),
+        Statement(
+            what="the three formulations apart, over the peak", said="nearly identical", quantity=Quantity.DIFFERENCE
+        ),
     ),
     iterations=MappingProxyType({FormulationName.QP1: 63, FormulationName.QP2: 47, FormulationName.QP3: 70}),
     differs=(

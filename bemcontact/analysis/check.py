@@ -1,0 +1,65 @@
+"""What a problem is before it is solved: its mesh, its loads, and what holds the body."""
+
+from dataclasses import dataclass
+
+from bemcontact.arrays import Array
+from bemcontact.bem.body import body_of, deflections, each_case, ensure_held
+from bemcontact.bem.mesh import Mesh
+from bemcontact.problem import DeflectedContour, Problem
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CheckedProblem:
+    """A problem on its mesh, whose loads leave the body in place in each load case."""
+
+    problem: Problem
+    """The problem."""
+    mesh: Mesh
+    """Its boundary elements."""
+    gaps: dict[str, Array]
+    """Initial gap of the contact points of each contact zone [L]."""
+    free_motions: int
+    """Number of rigid motions of the body that the conditions leave free."""
+    held_by_contact: tuple[str, ...]
+    """Descriptions of the free motions of body and tools that contact holds."""
+    total_load: tuple[float, float]
+    """Resultant (x, y) of all that acts on the body, without reactions, per thickness [p L]."""
+    load_magnitude: float
+    """Sum of the magnitudes of all that acts [p L]."""
+    notes: tuple[str, ...]
+    """Remarks on the problem and its mesh."""
+
+
+def check(problem: Problem) -> CheckedProblem:
+    """Mesh a problem and find what holds the body; `ProblemError` if its load pulls it off its supports in any case."""
+    body = body_of(problem)
+    for acting in each_case(body):
+        ensure_held(acting)
+    x, y = body.acting.resultant(body.mesh)
+    return CheckedProblem(
+        problem=body.problem,
+        mesh=body.mesh,
+        gaps={name: body.points.gap[body.points.zone == i] for i, name in enumerate(body.problem.contact_zones)},
+        free_motions=len(body.motions),
+        held_by_contact=tuple(body.seen.describe()),
+        total_load=(float(x), float(y)),
+        load_magnitude=float(body.pinned.total(body.factors, body.forces)),
+        notes=tuple(body.notes),
+    )
+
+
+def contours(problem: Problem, mesh: Mesh) -> dict[str, tuple[Array, Array]]:
+    """Find the rigid surfaces that are deflected contours of the body.
+
+    Returns
+    -------
+    dict
+        Contact zone -> points (N, 2) [L] of the rigid surface opposite to all nodes, and its unit normals (N, 2).
+    """
+    surfaces = {}
+    for name, displacement in deflections(problem, mesh).items():
+        surface = problem.contact_zones[name].surface
+        assert isinstance(surface, DeflectedContour)
+        gap, normals = surface.behind(displacement)
+        surfaces[name] = mesh.nodes - gap[:, None] * normals, normals
+    return surfaces

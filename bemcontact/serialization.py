@@ -1,0 +1,100 @@
+"""JSON of results and the JSON Schema of it, both from the fields of the results and the docstrings below these.
+
+In all of them [L] is the unit of length and [p] that of pressure, force over length squared, in the user's units; a
+number without either has no unit.
+"""
+
+import json
+from functools import cache
+from typing import Annotated, Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, TypeAdapter
+from pydantic.json_schema import GenerateJsonSchema
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+CONFIG = ConfigDict(
+    extra="forbid",
+    frozen=True,
+    arbitrary_types_allowed=True,
+    use_attribute_docstrings=True,
+    json_schema_serialization_defaults_required=True,
+    ser_json_inf_nan="constants",
+)
+
+Item = TypeVar("Item")
+Internal = Annotated[Item, Field(exclude=True)]
+"""Marks a field of a result that JSON leaves out."""
+Pair = tuple[float, float]
+"""A point or a vector (x, y), or two numbers from where to where."""
+
+
+_ListOfTwo = Annotated[list[float], Field(min_length=2, max_length=2)]
+
+
+def _listed(array: NDArray[Any]) -> list[Any]:
+    return array.tolist()
+
+
+Vector = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list[float])]
+"""An array (n,) that is a list of numbers in JSON."""
+Pairs = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list[_ListOfTwo])]
+"""An array (n, 2) that is a list of pairs in JSON."""
+Matrix = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list[list[float]])]
+"""An array (m, n) that is a list of lists of numbers in JSON."""
+PairTables = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list[list[_ListOfTwo]])]
+"""An array (m, n, 2) that is a list of lists of pairs in JSON."""
+Integers = Annotated[NDArray[np.int64], PlainSerializer(_listed, return_type=list[int])]
+"""An array (n,) that is a list of whole numbers in JSON."""
+Flags = Annotated[NDArray[np.bool_], PlainSerializer(_listed, return_type=list[bool])]
+"""An array (n,) that is a list of true and false in JSON."""
+
+
+class Leaf:
+    """Base of a dataclass that JSON has with the same fields; a docstring below each field says what it is."""
+
+    __pydantic_config__ = CONFIG
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all fields as numbers, lists and texts, ready for JSON."""
+        return _adapter(type(self)).dump_python(self, mode="json")
+
+    def to_json(self, indent: int | None = 2) -> str:
+        """Return `to_dict` as JSON; every number in it is finite."""
+        return json_text(self.to_dict(), indent)
+
+
+class Record(BaseModel):
+    """Base of what JSON has in another form than the object it is made from; all keys are always there."""
+
+    model_config = CONFIG
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all fields as numbers, lists and texts, ready for JSON."""
+        return self.model_dump(mode="json")
+
+
+def json_text(record: dict[str, Any], indent: int | None = 2) -> str:
+    """Write numbers, lists and texts as JSON; `ValueError` for a number that is not finite."""
+    return json.dumps(record, indent=indent, allow_nan=False, ensure_ascii=False)
+
+
+class _Schema(GenerateJsonSchema):
+    """Describes what is written; a default is of no use to a reader."""
+
+    def default_schema(self, schema: Any) -> dict[str, Any]:
+        """Describe a field without its default."""
+        return self.generate_inner(schema["schema"])
+
+
+def schema_of(result: type[Leaf] | type[Record]) -> dict[str, Any]:
+    """Return the JSON Schema (draft 2020-12) of the JSON of a result."""
+    stated = _adapter(result).json_schema(mode="serialization", schema_generator=_Schema)
+    return {"$schema": DIALECT, **stated}
+
+
+@cache
+def _adapter(kind: type[Any]) -> TypeAdapter[Any]:
+    """Read the fields of a class once."""
+    return TypeAdapter(kind)
