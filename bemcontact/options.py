@@ -1,10 +1,24 @@
-"""What a person chooses among in stating and solving a problem.
+"""The options of solving and comparing, each declared once: name, default, range, meaning, and who has a use for it.
 
-There are no numerics here, so that ``bemcontact --help`` lists the choices at once.
+There are no numerics here, so that ``bemcontact --help`` answers at once.
 """
 
-from dataclasses import dataclass
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
+from itertools import product
+from numbers import Integral, Real
+from textwrap import fill
+from typing import Any, Protocol, TypedDict, TypeVar, Unpack, cast, runtime_checkable
+
+from bemcontact.errors import OptionError
+
+Name = TypeVar("Name", bound=StrEnum)
+Options = TypeVar("Options")
+
+LEAST_PENALTY, LARGEST_PENALTY = 1e-8, 1e8
+"""Beyond, the smaller of QP2's two terms is lost in the round-off of the other: doubles carry 16 digits."""
 
 
 class FormulationName(StrEnum):
@@ -14,6 +28,18 @@ class FormulationName(StrEnum):
     QP2 = "qp2"
     QP3 = "qp3"
     COMPLEMENTARITY = "complementarity"
+
+
+COMPARED = (FormulationName.QP1, FormulationName.QP2, FormulationName.QP3)
+"""What is compared with the direct solution."""
+
+USES: Mapping[FormulationName, tuple[str, ...]] = {
+    FormulationName.QP1: ("weights", "rows", "start", "polish"),
+    FormulationName.QP2: ("weights", "penalty", "rows", "equilibrium", "start", "polish"),
+    FormulationName.QP3: ("weights", "polish"),
+    FormulationName.COMPLEMENTARITY: (),
+}
+"""Options that a formulation has a use for, besides those that all take."""
 
 
 class Weights(StrEnum):
@@ -42,7 +68,7 @@ class Equilibrium(StrEnum):
     CONSTRAINT = "constraint"
     """ℓᵀp = -load holds exactly. The default."""
     PENALTY = "penalty"
-    """Only penalised, with all the rest of (12), as in [SS92]: a body lifted off its support is a stationary point."""
+    """Only penalized, with all the rest of (12), as in [SS92]: a body lifted off its support is a stationary point."""
 
 
 class StartName(StrEnum):
@@ -54,31 +80,389 @@ class StartName(StrEnum):
     """Points drawn from a seed."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Setting:
-    """A statement with its weights and, for QP2, its penalty: one column of a comparison.
+@runtime_checkable
+class GivenStart(Protocol):
+    """A start given by numbers: `bemcontact.Start`, which needs NumPy and so stands elsewhere."""
 
-    Parameters
-    ----------
-    formulation : its name
-    weights : of its objective, or None if it has none
-    penalty : μ of QP2, free of units, else None
-    tells_penalty : whether the label tells the penalty even if it is the default, beside others
-    """
+    @property
+    def pressure(self) -> Any:
+        """Pressure (n,) [p]."""
+        ...
 
-    formulation: FormulationName
-    weights: Weights | None = None
-    penalty: float | None = None
-    tells_penalty: bool = False
+    @property
+    def displacement(self) -> Any:
+        """Normal displacement (n,) [L]."""
+        ...
 
     @property
     def label(self) -> str:
-        """What it is called: QP2 (consistent, μ = 0.001); what is the default is left out."""
-        if self.weights is None:
+        """What reports call it."""
+        ...
+
+
+def _about(
+    meaning: str,
+    *,
+    noun: str = "",
+    metavar: str | None = None,
+    least: int | None = None,
+    shown: str | bool = True,
+) -> dict[str, Any]:
+    """What else is declared of an option.
+
+    Parameters
+    ----------
+    meaning : a text for help and documentation
+    noun : what errors call it, if not by its name
+    metavar : what stands for its value in the help of the command line
+    least : least value of a whole number
+    shown : the default in words, or whether the help shows it
+    """
+    return {"meaning": meaning, "noun": noun, "metavar": metavar, "least": least, "shown": shown}
+
+
+def _documented(options: type[Options]) -> type[Options]:
+    """Write the meanings of options into the docstring of their class, where `help` and documentation look for them."""
+    head, rule, rest = (options.__doc__ or "").partition("\n\n    Raises\n")
+    about = (f"{item.name} : {item.metadata['meaning']}" for item in fields(cast(Any, options)))
+    lines = "\n".join(fill(text, 100, initial_indent="    ", subsequent_indent=" " * 8) for text in about)
+    options.__doc__ = f"{head}\n\n    Parameters\n    ----------\n{lines}{rule}{rest}"
+    return options
+
+
+class StatementKeywords(TypedDict, total=False):
+    """Keywords that state a formulation, besides formulation and weights; `SolveOptions` says what they mean."""
+
+    penalty: float
+    rows: Rows | str
+    equilibrium: Equilibrium | str
+    max_iterations: int | None
+
+
+class SolveKeywords(StatementKeywords, total=False):
+    """Keywords of `bemcontact.solve` besides formulation and weights; `SolveOptions` says what they mean."""
+
+    start: GivenStart | os.PathLike[str] | StartName | str | None
+    seed: int | None
+    starts: int | None
+    polish: bool
+
+
+@_documented
+@dataclass(frozen=True, kw_only=True)
+class SolveOptions:
+    """How a contact problem is solved.
+
+    The options check themselves; a name may be given as its text.
+
+    Raises
+    ------
+    OptionError
+        A `ProblemError`: a name is unknown, a number out of range, or the formulation has no use for an option.
+    """
+
+    formulation: FormulationName = field(
+        default=FormulationName.QP3,
+        metadata=_about(
+            "Statement of the contact problem: qp3 (convex program), complementarity (direct solver), or qp1 and qp2 "
+            "(local solver over pressures and displacements).",
+            noun="formulation",
+        ),
+    )
+    weights: Weights = field(
+        default=Weights.TRIBUTARY,
+        metadata=_about("Weights of the objective; complementarity has none.", noun="weights"),
+    )
+    penalty: float = field(
+        default=1.0,
+        metadata=_about(
+            f"qp2: an error of the equations costs its square over μ, a number without unit from {LEAST_PENALTY:g} to "
+            f"{LARGEST_PENALTY:g}; a smaller μ enforces them harder.",
+            metavar="μ",
+        ),
+    )
+    rows: Rows = field(
+        default=Rows.STIFFNESS,
+        metadata=_about("qp1, qp2: equations in terms of pressure (stiffness) or of displacement.", noun="rows"),
+    )
+    equilibrium: Equilibrium = field(
+        default=Equilibrium.CONSTRAINT,
+        metadata=_about(
+            "qp2, bodies with free rigid motions: exact (constraint), or penalized as in the paper.",
+            noun="ways of equilibrium",
+        ),
+    )
+    start: GivenStart | os.PathLike[str] | StartName | None = field(
+        default=None,
+        metadata=_about(
+            "qp1, qp2: first point of the solver; a FILE is one that --json wrote. With a seed or a number of starts "
+            "the first point is random.",
+            metavar="null|random|FILE",
+            shown="null",
+        ),
+    )
+    seed: int | None = field(
+        default=None,
+        metadata=_about(
+            "qp1, qp2: seed of random starts; the same seed gives the same starts.",
+            metavar="S",
+            least=0,
+            shown="0",
+        ),
+    )
+    starts: int | None = field(
+        default=None,
+        metadata=_about(
+            "qp1, qp2: search from N random starts; the result is the best of them.",
+            noun="number of starts",
+            metavar="N",
+            least=1,
+            shown=False,
+        ),
+    )
+    max_iterations: int | None = field(
+        default=None,
+        metadata=_about(
+            "Stop the solver after N iterations (complementarity: after N pivots of Lemke's method).",
+            noun="limit of iterations",
+            metavar="N",
+            least=1,
+            shown="its own",
+        ),
+    )
+    polish: bool = field(
+        default=True,
+        metadata=_about("qp1, qp2, qp3: make the result of the solver exact by a few steps of an active-set method."),
+    )
+
+    def __post_init__(self) -> None:
+        """Read names that were given as texts; refuse what is unknown, out of range, or of no use."""
+        for item in fields(self):
+            if isinstance(item.default, StrEnum):
+                name = named(type(item.default), getattr(self, item.name), item.metadata["noun"])
+                object.__setattr__(self, item.name, name)
+        if isinstance(self.start, str) and self.start in [*StartName]:
+            object.__setattr__(self, "start", StartName(self.start))
+        is_number = isinstance(self.penalty, Real) and not isinstance(self.penalty, bool)
+        if not (is_number and LEAST_PENALTY <= self.penalty <= LARGEST_PENALTY):
+            raise OptionError(
+                f"the penalty must be a number from {LEAST_PENALTY:g} to {LARGEST_PENALTY:g}; found {self.penalty!r}: "
+                "beyond, the work or the equations are lost in the round-off of the other; 1 is the default"
+            )
+        ensure_whole_fields(self)
+        if not (self.start is None or isinstance(self.start, StartName | os.PathLike | GivenStart)):
+            found = f"'{self.start}'" if isinstance(self.start, str) else f"of type {type(self.start).__name__}"
+            raise OptionError(f"there is no start {found}; take {', '.join(StartName)}, or a Start of your own")
+        if not self.is_random and not (self.seed is None and self.starts is None):
+            raise OptionError("a seed or a number of starts goes with random starts; leave out the other start")
+        self._ensure_used()
+
+    @classmethod
+    def of(
+        cls,
+        formulation: FormulationName | str = FormulationName.QP3,
+        weights: Weights | str = Weights.TRIBUTARY,
+        **options: Unpack[SolveKeywords],
+    ) -> "SolveOptions":
+        """Make options; unlike the constructor, it is typed for names as texts."""
+        return cls(**cast(dict[str, Any], {"formulation": formulation, "weights": weights, **options}))
+
+    @property
+    def is_random(self) -> bool:
+        """Whether the starts are random: by their name, by a seed or by their number."""
+        if self.start is None:
+            return not (self.seed is None and self.starts is None)
+        return self.start == StartName.RANDOM
+
+    def uses(self, option: str) -> bool:
+        """Whether the formulation has a use for an option."""
+        return option in USES[self.formulation]
+
+    def label(self, *, tells_penalty: bool = False) -> str:
+        """What a comparison calls it, such as QP2 (consistent, μ = 0.001); defaults are left out.
+
+        Parameters
+        ----------
+        tells_penalty : whether to tell the penalty even if it is the default
+        """
+        if not self.uses("weights"):
             return "direct"
         other = []
         if self.weights is not Weights.TRIBUTARY:
             other.append(self.weights.value.replace("_", " "))
-        if self.penalty is not None and (self.tells_penalty or self.penalty != 1.0):
+        if self.uses("penalty") and (tells_penalty or self.penalty != 1.0):
             other.append(f"μ = {self.penalty:.15g}")
         return f"{self.formulation.upper()} ({', '.join(other)})" if other else self.formulation.upper()
+
+    def _ensure_used(self) -> None:
+        """Refuse an option that was set and that the formulation has no use for."""
+        used = USES[self.formulation]
+        takes = f"it takes {', '.join(used)}; " if used else ""
+        for option in sorted({name for names in USES.values() for name in names} - {*used}):
+            default = next(item.default for item in fields(self) if item.name == option)
+            value = getattr(self, option)
+            is_set = self.is_random or value not in (None, StartName.NULL) if option == "start" else value != default
+            if is_set:
+                raise OptionError(f"{self.formulation} has no use for the option '{option}'; {takes}leave it out")
+
+
+class ComparisonKeywords(TypedDict, total=False):
+    """Keywords of `bemcontact.compare`; `ComparisonOptions` says what they mean."""
+
+    starts: int | None
+    seed: int | None
+
+
+@_documented
+@dataclass(frozen=True, kw_only=True)
+class ComparisonOptions:
+    """What is compared with the direct solution: each formulation with all weights, QP2 with all penalties.
+
+    Raises
+    ------
+    OptionError
+        Something is there twice or not at all, out of range, or of no use.
+    """
+
+    formulations: tuple[FormulationName, ...] = field(
+        default=COMPARED,
+        metadata=_about(f"What to compare with the direct solution: {', '.join(COMPARED)}.", metavar="NAME,…"),
+    )
+    weights: tuple[Weights, ...] = field(
+        default=(Weights.TRIBUTARY,),
+        metadata=_about(f"Weights of the objectives: {', '.join(Weights)}.", metavar="NAME,…"),
+    )
+    penalties: tuple[float, ...] | None = field(
+        default=None, metadata=_about("qp2: penalties, such as 1e-6,1e-3,1,1e3.", metavar="μ,…", shown="1")
+    )
+    starts: int | None = field(
+        default=None,
+        metadata=_about(
+            "qp1, qp2: count how many of N random starts end at the solution.",
+            noun="number of starts",
+            metavar="N",
+            least=1,
+            shown=False,
+        ),
+    )
+    seed: int | None = field(
+        default=None,
+        metadata=_about(
+            "qp1, qp2: seed of the random starts; the same seed gives the same starts.",
+            metavar="S",
+            least=0,
+            shown="0",
+        ),
+    )
+
+    def __post_init__(self) -> None:
+        """Read names and numbers, one alone as a list of it; refuse what is out of range, there twice, or of no use."""
+        formulations = tuple(_compared(name) for name in _listed(self.formulations))
+        weights = tuple(named(Weights, name, "weights") for name in _listed(self.weights))
+        penalties = None if self.penalties is None else tuple(_as_float(value) for value in _listed(self.penalties))
+        for name, value in (("formulations", formulations), ("weights", weights), ("penalties", penalties)):
+            object.__setattr__(self, name, value)
+        for what in ("formulations", "weights", "penalties"):
+            _ensure_different(getattr(self, what), what)
+        if FormulationName.COMPLEMENTARITY in self.formulations:
+            raise OptionError("complementarity is the reference of every comparison; leave it out of the formulations")
+        if FormulationName.QP2 not in self.formulations and self.penalties is not None:
+            raise OptionError("a penalty is an option of qp2, which is not among the formulations; add it")
+        if self.starts is None and self.seed is not None:
+            raise OptionError("a seed goes with random starts; say how many (starts)")
+        ensure_whole_fields(self)
+        if self.starts is not None and self.formulations == (FormulationName.QP3,):
+            raise OptionError("random starts are for qp1 and qp2, which are not among the formulations; add one")
+        _ = self.attempts  # which check the penalties
+
+    @classmethod
+    def of(
+        cls,
+        formulations: Sequence[FormulationName | str] | str = COMPARED,
+        weights: Sequence[Weights | str] | str = (Weights.TRIBUTARY,),
+        penalties: Sequence[float] | float | None = None,
+        **options: Unpack[ComparisonKeywords],
+    ) -> "ComparisonOptions":
+        """Make options; unlike the constructor, it is typed for names as texts and for single items."""
+        given = {"formulations": formulations, "weights": weights, "penalties": penalties, **options}
+        return cls(**cast(dict[str, Any], given))
+
+    @property
+    def attempts(self) -> tuple[SolveOptions, ...]:
+        """What is compared with the direct solution, each from the null start."""
+        return tuple(
+            SolveOptions(formulation=name, weights=weights, penalty=penalty)
+            for name, weights in product(self.formulations, self.weights)
+            for penalty in ((self.penalties or (1.0,)) if name is FormulationName.QP2 else (1.0,))
+        )
+
+    @property
+    def tells_penalty(self) -> bool:
+        """Whether labels tell each penalty, as there are several."""
+        return len(self.penalties or ()) > 1
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as numbers, lists and texts, ready for JSON."""
+        return {
+            "formulations": [name.value for name in self.formulations],
+            "weights": [name.value for name in self.weights],
+            "penalties": [*(self.penalties or (1.0,))] if FormulationName.QP2 in self.formulations else [],
+            "starts": self.starts,
+            "seed": self.seed or 0,
+        }
+
+
+def options_of(formulation: FormulationName, options: SolveOptions | None) -> SolveOptions:
+    """Options for a formulation: its defaults if none are given; those of another are refused."""
+    if options is None:
+        return SolveOptions(formulation=formulation)
+    if options.formulation is not formulation:
+        raise OptionError(f"these are options of {options.formulation}, not of {formulation}")
+    return options
+
+
+def named(kind: type[Name], name: object, what: str) -> Name:
+    """Read a name of a kind; `what` says in the error of which."""
+    try:
+        return kind(name)
+    except ValueError:
+        raise OptionError(f"no {what} '{name}'; take one of {', '.join(item.value for item in kind)}") from None
+
+
+def ensure_whole(value: object, what: str, least: int) -> None:
+    """Refuse what is no whole number of at least `least`; `what` names it in the error."""
+    if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
+        raise OptionError(f"the {what} must be a whole number of at least {least}; found {value!r}")
+
+
+def ensure_whole_fields(options: SolveOptions | ComparisonOptions) -> None:
+    """Make each field that is to be a whole number an int, if it is given; refuse what is none."""
+    for item in fields(options):
+        value, least = getattr(options, item.name), item.metadata["least"]
+        if least is not None and value is not None:
+            ensure_whole(value, item.metadata["noun"] or item.name, least)
+            object.__setattr__(options, item.name, int(value))
+
+
+def _compared(name: object) -> FormulationName:
+    """Read the name of a formulation that can be compared with the direct solution."""
+    if name not in [*FormulationName]:
+        raise OptionError(f"no formulation '{name}' to compare; take one of {', '.join(COMPARED)}")
+    return FormulationName(name)
+
+
+def _listed(items: Any) -> Iterable[Any]:
+    """A list, also of one item that stands alone."""
+    return [items] if isinstance(items, str | Real) else items
+
+
+def _as_float(value: object) -> Any:
+    """A number of any kind as a float; `SolveOptions` refuses what is none."""
+    return float(value) if isinstance(value, Real) else value
+
+
+def _ensure_different(items: Sequence[object] | None, what: str) -> None:
+    """Refuse a list in which something is twice, or nothing at all."""
+    if items is not None and (not items or len({*items}) < len(items)):
+        listed = ", ".join(map(str, items)) or "none"
+        raise OptionError(f"the {what} must be different from each other, and at least one; found {listed}")

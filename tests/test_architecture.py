@@ -15,7 +15,7 @@ FOUNDATION = ("errors", "arrays", "options", "version", "files")
 ROOMS = {
     "errors": (),
     "arrays": (),
-    "options": (),
+    "options": ("errors",),
     "version": (),
     "files": ("errors",),
     "problem": ("errors", "arrays", "options"),

@@ -7,46 +7,30 @@ from math import ceil
 
 import numpy as np
 
-from bemcontact.adaptivity.zone_runs import SAME, ZoneRun
+from bemcontact.adaptivity.zone_runs import SAME, Touched, ZoneRun
 from bemcontact.arrays import Array
 from bemcontact.problem.element_ends import cubic_ends, moved_onto
 
 CONTACT_SHARE = 2.0
-"""Elements on the side of a contact edge that is in contact, to those on the open side, where this is no longer."""
+"""Ratio of the elements on the contact side of a contact edge to those on the open side, if this is no longer."""
 SHORTEST = 5e-4
 """Least element, over the shortest side in contact: shorter ones gain little, and cost digits of the certificate."""
 SHORTEST_OF_RUN = 1e-6
 """Least element over the length of the run: element ends that are nearer to each other are refused."""
 LEAST_TOUCHED, LEAST_OPEN = 4, 3
-"""Elements on each side of a contact edge, stated or not: with three in contact its place swings from pass to pass."""
+"""Least elements on each side of a contact edge: with three in contact its place alternates from pass to pass."""
 CLOSE = 1e-2
 """Distance from the end of a run, or from a joint, that is not resolved by elements, over the mean length of these, or
 over the contact that ends there if it is shorter."""
 GENTLE = 2.0
 """Length of the element beside a run over that of the one at its end, up to which it is left."""
 GROWTH = 1.5
-"""Length of an element over that of its neighbour nearer to an end of contact that counts as grading towards it."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Touched:
-    """A stretch of contact on a run.
-
-    Parameters
-    ----------
-    start, end : positions [L]; on a closed run the end may lie beyond its length
-    start_free, end_free : whether contact ends there by itself, and not at the end of the run or at a corner
-    """
-
-    start: float
-    end: float
-    start_free: bool
-    end_free: bool
+"""Length of an element over that of its neighbor nearer to an end of contact that counts as grading towards it."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Part:
-    """What lies between two marks: ends of contact, of the run, corners; free ones are graded to."""
+    """A part between two marks (ends of contact, ends of the run, corners); elements are graded towards free ones."""
 
     low: float
     high: float
@@ -72,7 +56,7 @@ class _Part:
 
 
 def resolved(run: ZoneRun, touched: Sequence[Touched]) -> tuple[Touched, ...]:
-    """Move contact edges that are all but at a joint, or at an end of the run, onto it."""
+    """Move contact edges that are very near to a joint, or to an end of the run, onto it."""
 
     def settle(position: float, free: bool, width: float) -> tuple[float, bool]:
         close = CLOSE * min(run.length / (len(run.ends) - 1), width)
@@ -169,13 +153,13 @@ def movement(run: ZoneRun, touched: Sequence[Touched], fitted_to: Sequence[Touch
     return largest
 
 
-def halved(ends: Array, neighbour: float, at: int) -> Array:
-    """Halve the element at one end of an edge until it is at most `GENTLE` times as long as its neighbour beyond.
+def halved(ends: Array, neighbor: float, at: int) -> Array:
+    """Halve the element at one end of an edge until it is at most `GENTLE` times as long as its neighbor beyond.
 
     Parameters
     ----------
     ends : (m + 1,) element ends, ascending
-    neighbour : length of the element beyond, in the same unit
+    neighbor : length of the element beyond, in the same unit
     at : 0 for the first element, -1 for the last
 
     Returns
@@ -183,13 +167,13 @@ def halved(ends: Array, neighbour: float, at: int) -> Array:
     (m + k + 1,)
     """
     ends = ends if at == 0 else ends[::-1]
-    while abs(ends[1] - ends[0]) > GENTLE * neighbour * (1 + 1e-9):
+    while abs(ends[1] - ends[0]) > GENTLE * neighbor * (1 + 1e-9):
         ends = np.insert(ends, 1, (ends[0] + ends[1]) / 2)
     return ends if at == 0 else ends[::-1]
 
 
 def half_way(run: ZoneRun, one: Sequence[Touched], other: Sequence[Touched]) -> tuple[Touched, ...]:
-    """Stretches between two lots of them; the second lot if they are not as many, or end in other ways."""
+    """Mean of two lists of stretches; the second list if they differ in number or in the kind of their ends."""
     kinds = [[(item.start_free, item.end_free) for item in lot] for lot in (one, other)]
     if kinds[0] != kinds[1]:
         return tuple(other)
@@ -206,7 +190,7 @@ def _free_ends(touched: Sequence[Touched]) -> list[float]:
 
 
 def _along(run: ZoneRun, start: float, end: Array | float) -> Array:
-    """How far one has to go from one position to others, the shorter way round if the run is closed."""
+    """Distance from one position to others, the shorter way round if the run is closed."""
     way = np.asarray(end) - start
     return way - run.length * np.round(way / run.length) if run.closed else way
 
@@ -288,8 +272,8 @@ def _counted(run: ZoneRun, block: Sequence[_Part]) -> list[_Part]:
     left = max(max(stated, fair) - sum(counts), 0)
     rivals = list(range(len(block)))
     while left:
-        claim = [block[i].share / (counts[i] + 0.5) * (1 + 1e-6 * block[i].width / run.length) for i in rivals]
-        first = [i for i, own in zip(rivals, claim, strict=True) if own >= max(claim) * (1 - 1e-12)]
+        need = [block[i].share / (counts[i] + 0.5) * (1 + 1e-6 * block[i].width / run.length) for i in rivals]
+        first = [i for i, own in zip(rivals, need, strict=True) if own >= max(need) * (1 - 1e-12)]
         if len(first) > left and len(rivals) > len(first):
             rivals = [i for i in rivals if i not in first]
             continue

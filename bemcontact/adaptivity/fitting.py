@@ -1,4 +1,4 @@
-"""Meshes that find the ends of contact: solve, locate them, grade the contact zones towards them, and again."""
+"""Mesh fitting: solve, locate the ends of contact, grade the contact zones towards them, and repeat."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -6,14 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from bemcontact.adaptivity.fitted_ends import Touched, fitted_ends, half_way, halved, movement, resolved
+from bemcontact.adaptivity.fitted_ends import fitted_ends, half_way, halved, movement, resolved
 from bemcontact.adaptivity.mesh_fit import FitPass, MeshFit
-from bemcontact.adaptivity.oscillation import sawing
-from bemcontact.adaptivity.stretches import stretches
-from bemcontact.adaptivity.zone_runs import ZoneRun, zone_runs
+from bemcontact.adaptivity.oscillation import oscillation
+from bemcontact.adaptivity.zone_runs import Touched, ZoneRun, stretches, zone_runs
 from bemcontact.arrays import Array
 from bemcontact.assessment.footprint import ContactInterval, footprint
-from bemcontact.bem.condense import Body, body_of, condense
+from bemcontact.bem.body import Body, body_of
+from bemcontact.bem.condense import condense
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
@@ -23,15 +23,15 @@ from bemcontact.problem.problem import Problem
 MOST_PASSES = 8
 """Meshes tried after the one that was stated."""
 SETTLED = 0.2
-"""Distance of an end of contact from where the mesh is graded to, over the shorter element there, that is none."""
+"""Movement of an end of contact, over the shorter element there, up to which a mesh is settled."""
 SWING = 5.0
-"""The same distance beyond which an end of contact does not swing to and fro, but is on its way."""
-SAWING = 0.01
-"""Amplitude over the peak above which a pressure that saws more than on the mesh as stated condemns a fitted mesh."""
-SAWING_UNTOLD = 0.05
-"""The same where the mesh as stated has too few points to tell: twice the amplitude beside an infinite pressure."""
+"""Movement above which an end of contact does not alternate between two places, but still travels."""
+OSCILLATION = 0.01
+"""Oscillation of the pressure above which a fitted mesh is rejected, if it is larger than on the mesh as stated."""
+OSCILLATION_UNKNOWN = 0.05
+"""The limit if the mesh as stated has too few points to measure: twice the amplitude beside an infinite pressure."""
 CHANGE = 0.01
-"""Change of the peak pressure, or of the force on a zone, with the fitted mesh above which it is told."""
+"""Relative change of the peak pressure, or of the force on a zone, from which a note reports it."""
 
 ElementEnds = Mapping[str, tuple[float, ...]]
 """By the name of an edge, where its elements end, as `Problem.with_element_ends` takes them."""
@@ -47,11 +47,11 @@ class _Trial:
     elements: int = 0
     intervals: tuple[ContactInterval, ...] = ()
     fitted_to: Stretches = field(default_factory=dict)
-    found: Stretches = field(default_factory=dict)
+    touched: Stretches = field(default_factory=dict)
     movement: float | None = None
     narrow: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    sawing: float | None = None
+    oscillation: float | None = None
     peak: float = 0.0
     forces: Mapping[str, float] = field(default_factory=dict)
 
@@ -63,18 +63,18 @@ class _Trial:
 def fitted(problem: Problem, progress: Callable[[str], object] | None = None) -> tuple[Problem, MeshFit | None]:
     """Fit the mesh to the ends of contact, if the problem asks for it.
 
-    The complementarity problem is solved on the mesh as stated, the elements of each contact zone are placed anew by
-    `fitted_ends`, and so on until no end of contact moves by more than a fifth of the shorter element beside it, eight
-    times at most. Elements beside a zone are halved until they are at most twice as long as the one at its end. A mesh
-    on which the pressure saws, as it did not on the one stated, is not kept. All this is done without `mesh.refine`,
-    which then cuts the fitted elements: so finer meshes contain each other, an observed order means something, and
-    fitting costs little. But the ends of contact are then those of the mesh that was cut: where they matter to many
-    digits, state more elements instead.
+    The complementarity problem is solved on the mesh as stated. `fitted_ends` then places the elements of each contact
+    zone anew. Both steps are repeated, eight times at most, until no end of contact moves by more than a fifth of the
+    shorter element beside it. Elements beside a zone are halved until they are at most twice as long as the element at
+    its end. A mesh is not kept if the pressure oscillates on it and did not on the mesh as stated.
+
+    All this is done without `mesh.refine`, which cuts the fitted elements afterwards. Finer meshes then contain each
+    other, observed orders are meaningful, and fitting costs little. But the ends of contact are those of the mesh that
+    was cut. If they matter to many digits, state more elements instead.
 
     Parameters
     ----------
-    problem : Problem
-    progress : told which pass begins
+    progress : called with the name of each pass
 
     Returns
     -------
@@ -93,26 +93,34 @@ def fitted(problem: Problem, progress: Callable[[str], object] | None = None) ->
     refine = problem.mesh.refine
     stated = problem if refine == 1 else problem.with_value("mesh.refine", 1)
     trials, failed = _trials(stated, progress or (lambda _: None))
-    kept = min((i for i, trial in enumerate(trials) if not _saws(trial, trials[0])), key=lambda i: _unrest(trials[i]))
+    kept = min(
+        (i for i, trial in enumerate(trials) if not _oscillates(trial, trials[0])), key=lambda i: _unrest(trials[i])
+    )
     fit = MeshFit(
         passes=tuple(FitPass(intervals=trial.intervals, movement=trial.movement) for trial in trials),
         kept=kept,
         settled=trials[kept].settled and not trials[kept].notes,
-        notes=(*_told(trials, kept, refine), *failed, *dict.fromkeys(note for trial in trials for note in trial.notes)),
+        notes=(
+            *_notes(trials, kept, refine),
+            *failed,
+            *dict.fromkeys(note for trial in trials for note in trial.notes),
+        ),
     )
     return problem.with_element_ends(trials[kept].placed), fit
 
 
 def _unrest(trial: _Trial) -> float:
-    """How far a mesh is from the one that it asks for."""
+    """Distance of a mesh from the one that its solution asks for; infinite if unknown."""
     return np.inf if trial.movement is None else trial.movement
 
 
-def _saws(trial: _Trial, first: _Trial) -> bool:
-    """Tell whether the pressure saws on a mesh, and more than on the first one, or much if that has too few points."""
-    if trial.sawing is None:
+def _oscillates(trial: _Trial, first: _Trial) -> bool:
+    """Whether the pressure oscillates on a mesh, and more than on the first one, or much if that has too few points."""
+    if trial.oscillation is None:
         return False
-    return trial.sawing > (SAWING_UNTOLD if first.sawing is None else max(SAWING, first.sawing))
+    return trial.oscillation > (
+        OSCILLATION_UNKNOWN if first.oscillation is None else max(OSCILLATION, first.oscillation)
+    )
 
 
 def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_Trial], list[str]]:
@@ -121,7 +129,7 @@ def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_T
     body = body_of(stated)
     runs = {run.number: run for run in zone_runs(body)}
     trials = [_trial(body, {}, runs, None)]
-    while len(trials) <= MOST_PASSES and trials[-1].found and not trials[-1].settled:
+    while len(trials) <= MOST_PASSES and trials[-1].touched and not trials[-1].settled:
         progress(f"pass {len(trials)}")
         try:
             aim = _aim(runs, trials)
@@ -133,12 +141,13 @@ def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_T
 
 
 def _aim(stated: Mapping[int, ZoneRun], trials: Sequence[_Trial]) -> Stretches:
-    """Stretches of contact to fit to next: half-way to those found where the ends of contact only swing to and fro."""
+    """Stretches of contact for the next mesh; half-way to the computed ones if the ends of contact only alternate."""
     last = trials[-1]
     if len(trials) < 3 or last.narrow or not _unrest(trials[-2]) / 2 <= _unrest(last) <= SWING:
-        return last.found
+        return last.touched
     return {
-        number: half_way(stated[number], last.fitted_to.get(number, ()), found) for number, found in last.found.items()
+        number: half_way(stated[number], last.fitted_to.get(number, ()), touched)
+        for number, touched in last.touched.items()
     }
 
 
@@ -169,7 +178,7 @@ def _trial(body: Body, placed: ElementEnds, stated: Mapping[int, ZoneRun], fitte
         note = f"the mesh could not be fitted to a state of contact: {solution.status.value}"
         return _Trial(placed=placed, notes=(note,))
     intervals = footprint(contact, solution).intervals
-    found: dict[int, tuple[Touched, ...]] = {}
+    by_run: dict[int, tuple[Touched, ...]] = {}
     movements: list[float | None] = [0.0]
     narrow: list[str] = []
     for run in zone_runs(body):
@@ -177,7 +186,7 @@ def _trial(body: Body, placed: ElementEnds, stated: Mapping[int, ZoneRun], fitte
         narrow += [run.zone for one in here if one.narrow]
         touched = resolved(stated[run.number], [one.touched for one in here])
         if any(item.start_free or item.end_free for item in touched):
-            found[run.number] = touched
+            by_run[run.number] = touched
         movements.append(movement(run, touched, None if fitted_to is None else fitted_to.get(run.number, ())))
     forces = np.bincount(contact.zone, contact.weights * solution.pressure, len(contact.zone_names))
     return _Trial(
@@ -185,18 +194,18 @@ def _trial(body: Body, placed: ElementEnds, stated: Mapping[int, ZoneRun], fitte
         elements=len(body.mesh.elements),
         intervals=intervals,
         fitted_to=fitted_to or {},
-        found=found,
+        touched=by_run,
         movement=None if None in movements else max(filter(None, movements), default=0.0),
         narrow=tuple(dict.fromkeys(narrow)),
-        sawing=sawing(contact, solution.pressure),
+        oscillation=oscillation(contact, solution.pressure),
         peak=contact.peak(solution.pressure),
         forces=dict(zip(contact.zone_names, forces.tolist(), strict=True)),
     )
 
 
-def _told(trials: Sequence[_Trial], kept: int, refine: int) -> Iterator[str]:
-    """Say how many meshes it took, what moved, and what did not settle."""
-    yield from _told_of_fit(trials[0], trials[kept], kept, refine) if kept else _told_of_none(trials)
+def _notes(trials: Sequence[_Trial], kept: int, refine: int) -> Iterator[str]:
+    """Notes on the number of meshes, on what moved, and on what did not settle."""
+    yield from _fit_notes(trials[0], trials[kept], kept, refine) if kept else _no_fit_notes(trials)
     for zone in trials[kept].narrow:
         yield f"contact in {zone} is narrower than an element: its pressure and its width are those of the mesh"
     for number, (before, after) in enumerate(pairwise(trials), 1):
@@ -205,8 +214,8 @@ def _told(trials: Sequence[_Trial], kept: int, refine: int) -> Iterator[str]:
             yield f"the number of contact intervals changed {counts} with the mesh of pass {number}"
 
 
-def _told_of_fit(first: _Trial, last: _Trial, passes: int, refine: int) -> Iterator[str]:
-    """Say what a fitted mesh is like."""
+def _fit_notes(first: _Trial, last: _Trial, passes: int, refine: int) -> Iterator[str]:
+    """Notes on a fitted mesh."""
     cut = f", before each was cut into {refine}" if refine > 1 else ""
     elements = f"it has {last.elements} elements where {first.elements} were stated{cut}"
     done = f"mesh fitted to the ends of contact in {passes} pass{'es' * (passes > 1)}"
@@ -217,41 +226,42 @@ def _told_of_fit(first: _Trial, last: _Trial, passes: int, refine: int) -> Itera
         yield f"{still}; state more elements in the zone{', not a finer cut' * (refine > 1)}"
 
 
-def _told_of_none(trials: Sequence[_Trial]) -> Iterator[str]:
-    """Say why the mesh is as stated."""
-    first, sawing = trials[0], max(trial.sawing or 0.0 for trial in trials)
-    if first.settled and first.found:
+def _no_fit_notes(trials: Sequence[_Trial]) -> Iterator[str]:
+    """Notes on why the mesh is as stated."""
+    first, largest = trials[0], max(trial.oscillation or 0.0 for trial in trials)
+    if first.settled and first.touched:
         yield "the mesh fits the ends of contact already"
-    elif first.found and any(_saws(trial, first) for trial in trials):
+    elif first.touched and any(_oscillates(trial, first) for trial in trials):
         yield (
-            f"the mesh was left as stated: on fitted ones pressures go up and down from point to point by {sawing:.2g} "
-            "of the peak, as where contact ends near a tip; grade elements towards that, and state more of them"
+            "the mesh was left as stated: on fitted meshes the pressure oscillates from point to point by "
+            f"{largest:.2g} of the peak, as where contact ends near a tip; grade the elements towards the tip, and "
+            "state more of them"
         )
-    elif first.found:
-        yield "the mesh was left as stated, for no fitted one came to rest"
+    elif first.touched:
+        yield "the mesh was left as stated, because the ends of contact did not settle on any fitted mesh"
     elif not first.notes and not first.intervals:
-        yield "the mesh is as stated, for nothing touches"
+        yield "the mesh is as stated, because nothing touches"
     elif not first.notes:
         yield (
-            "the mesh is as stated: contact ends at no place inside a zone that an element could be graded towards, as "
-            "where it reaches the ends of its zone"
+            "the mesh is as stated: contact ends at no place inside a zone towards which elements could be graded, for "
+            "example because it reaches the ends of its zone"
         )
 
 
 def _changed(first: _Trial, last: _Trial) -> Iterator[str]:
-    """Say if the peak pressure, or the force on a zone, is another one on the fitted mesh."""
+    """Notes on a peak pressure, or a force on a zone, that differs on the fitted mesh."""
     pairs = {"peak pressure": (first.peak, last.peak)}
     pairs |= {f"force on {zone}": (force, last.forces[zone]) for zone, force in first.forces.items()}
     for name, (before, after) in pairs.items():
         if abs(after - before) > CHANGE * before:
             yield (
-                f"the {name} went from {before:.5g} to {after:.5g} as the mesh was fitted: one of them is settled by "
-                "neither mesh; compare with finer ones"
+                f"the {name} changed from {before:.5g} to {after:.5g} when the mesh was fitted: at least one mesh is "
+                "too coarse for it; compare with finer meshes"
             )
 
 
 def _moved(before: Sequence[ContactInterval], after: Sequence[ContactInterval]) -> Iterator[str]:
-    """Say from where to where each end of contact moved, where the intervals are still the same."""
+    """Notes on how far each end of contact moved, if the intervals are still the same."""
     if [item.zone for item in before] != [item.zone for item in after]:
         return
     for old, new in zip(before, after, strict=True):

@@ -1,4 +1,4 @@
-"""Pressures that go up and down from point to point, as no contact does."""
+"""Oscillation: a pressure that goes up and down from point to point, which no contact does."""
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -7,22 +7,21 @@ from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 
 
-def sawing(contact: CondensedContact, pressure: Array) -> float | None:
-    """Largest amplitude of a pressure that saws, over the peak pressure.
+def oscillation(contact: CondensedContact, pressure: Array) -> float | None:
+    """Largest amplitude of a pressure that oscillates from point to point, over the peak pressure.
 
-    Five points in a row under pressure have one alternating part ±a, by which they are off a cubic, that of the fourth
-    divided difference. Where four such parts in a row alternate, the pressure saws by the least of them. A smooth
-    pressure has nearly none, however it bends.
+    Five points in a row under pressure have one alternating part ±a, the distance from a cubic, which the fourth
+    divided difference measures. If four such parts in a row alternate, the pressure oscillates by the least of them. A
+    smooth pressure has nearly none, however it bends.
 
     Parameters
     ----------
-    contact : CondensedContact
     pressure : (n,) at the contact points [p]
 
     Returns
     -------
     float or None
-        None where no eight points in a row are under pressure, which is what it takes to tell.
+        None if no eight points in a row are under pressure: fewer points cannot tell.
     """
     amplitudes: list[float] = []
     for run in np.unique(contact.run):
@@ -30,8 +29,8 @@ def sawing(contact: CondensedContact, pressure: Array) -> float | None:
         if len(own) >= 8:
             parts = sliding_window_view(_alternating(contact.arc_position[own], pressure[own]), 4)
             pressed = sliding_window_view(pressure[own] > 0, 8).all(axis=1)
-            saws = (parts[:, 1:] * parts[:, :-1] < 0).all(axis=1)
-            amplitudes += (np.abs(parts).min(axis=1) * saws)[pressed].tolist()
+            alternates = (parts[:, 1:] * parts[:, :-1] < 0).all(axis=1)
+            amplitudes += (np.abs(parts).min(axis=1) * alternates)[pressed].tolist()
     return max(amplitudes) / peak if amplitudes and (peak := contact.peak(pressure)) > 0 else None
 
 

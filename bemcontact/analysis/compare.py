@@ -3,25 +3,32 @@
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Unpack
 
 from bemcontact.adaptivity.mesh_fit import MeshFit
-from bemcontact.analysis.solve import condensed, fitted_to_contact, judged
+from bemcontact.analysis.solve import assessed, condensation_of, fitted_to_contact
 from bemcontact.analysis.stopwatch import Progress, Stopwatch
 from bemcontact.analysis.study import MeshLevel, Study
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Found
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import KeyPath, NotConvexError, OptionError, SolverError
-from bemcontact.formulations import FORMULATIONS, OPTIONS, qp3
-from bemcontact.formulations.formulation import ensure_whole
-from bemcontact.formulations.plan import COMPARED, ComparisonPlan, Plan, planned_comparison
-from bemcontact.formulations.starts import search_from
-from bemcontact.options import FormulationName, Setting, Weights
+from bemcontact.formulations import FORMULATIONS, qp3
+from bemcontact.formulations.multistart import multistart
+from bemcontact.options import (
+    COMPARED,
+    ComparisonKeywords,
+    ComparisonOptions,
+    FormulationName,
+    SolveOptions,
+    Weights,
+    ensure_whole,
+)
 from bemcontact.problem.key_path import parsed_path
 from bemcontact.problem.problem import Problem
 
 HARMLESS = ("name", "description", "mesh", "reference", "case")
-"""Keys of a spec that may change without changing the answers that are known; a reference says of which case it is."""
+"""Keys of a spec that do not change its reference values; a reference says which load case it is of."""
 MESHING = ("elements", "grading", "ratio", "towards")
 """Keys of an edge of which that is true."""
 COMMENTS = (("tolerance",), ("reason",), ("source",))
@@ -30,25 +37,24 @@ COMMENTS = (("tolerance",), ("reason",), ("source",))
 
 def compare(
     problem: Problem | CondensedContact,
-    formulations: Sequence[str] = COMPARED,
-    weights: Sequence[Weights | str] = (Weights.TRIBUTARY,),
-    penalties: Sequence[float] | None = None,
+    formulations: Sequence[FormulationName | str] | str = COMPARED,
+    weights: Sequence[Weights | str] | str = (Weights.TRIBUTARY,),
+    penalties: Sequence[float] | float | None = None,
     *,
-    starts: int | None = None,
-    seed: int | None = None,
     progress: Progress | None = None,
+    **options: Unpack[ComparisonKeywords],
 ) -> Comparison:
-    """Solve a contact problem by several formulations and put them side by side; the direct solution is the reference.
+    """Solve a contact problem by several formulations and compare each with the direct solution.
 
     Parameters
     ----------
     problem : Problem or CondensedContact
     formulations : of "qp1", "qp2", "qp3"
     weights : of the objectives, each of them with every formulation; `Weights` or their names
-    penalties : μ of QP2, free of units, from 1e-8 to 1e8; 1 if not given
-    starts : how many random starts of QP1 and QP2 to make beside the null start, to count how many end at the solution
-    seed : of these, 0 if not given
-    progress : called with two texts, the name of a stage and how far it has come, which is empty as it begins
+    penalties : μ of QP2, one or several
+    progress : called with two texts, the name of a stage and how far it has come, which is empty when it begins
+    options : starts and seed of random starts of QP1 and QP2, made besides the null start to count how many end at the
+        solution
 
     Returns
     -------
@@ -58,34 +64,34 @@ def compare(
     Raises
     ------
     OptionError
-        A name is unknown, a number out of range, or nothing is left to compare.
+        A name is unknown, a number out of range, or there is nothing to compare.
     ProblemError
         The problem has no answer, or does not carry the weights asked for.
     """
-    plan = planned_comparison(formulations, weights, penalties, starts=starts, seed=seed)
+    read = ComparisonOptions.of(formulations, weights, penalties, **options)
     watch = Stopwatch(progress=progress)
     problem, fit = fitted_to_contact(problem, watch)
-    return _side_by_side(plan, problem, watch, fit).comparison
+    return _compared(read, problem, watch, fit).comparison
 
 
 def study(
-    plan: ComparisonPlan,
+    options: ComparisonOptions,
     problem: Problem | CondensedContact,
     refine: Sequence[int] = (1,),
     progress: Progress | None = None,
     changes: Sequence[str] = (),
 ) -> Study:
-    """Compare as planned on one mesh or several, each with all elements cut into so many parts; else as `compare`.
+    """Compare formulations, as `compare` does, on one mesh or several.
 
-    A mesh that is to be fitted to the ends of contact is fitted once, and then cut.
+    A mesh that is to be fitted to the ends of contact is fitted once, and then refined.
 
     Parameters
     ----------
-    plan : what to compare
+    options : what to compare
     problem : Problem or CondensedContact
-    refine : parts into which the elements are cut, for each mesh
-    progress : called with the name of each stage as it begins, and how far it has come
-    changes : made to the problem since it was written down, such as ``material.young_modulus=2e6``
+    refine : number of parts of each element, for each mesh
+    progress : as of `compare`
+    changes : made to the problem after it was read, such as ``material.young_modulus=2e6``
 
     Raises
     ------
@@ -93,8 +99,8 @@ def study(
         No mesh, one that is there twice, or a refinement of a condensed problem, which has no mesh.
     """
     if not refine or len({*refine}) < len(refine):
-        told = ", ".join(map(str, refine)) or "none"
-        raise OptionError(f"the refinements must be different from each other, and at least one; found {told}")
+        listed = ", ".join(map(str, refine)) or "none"
+        raise OptionError(f"the refinements must be different from each other, and at least one; found {listed}")
     if isinstance(problem, CondensedContact) and [*refine] != [1]:
         raise OptionError("a condensed problem has no mesh to refine; refine the problem that it came from")
     for parts in refine:
@@ -103,26 +109,16 @@ def study(
     problem, fit = fitted_to_contact(problem, fitting)
     levels = []
     for parts in sorted(map(int, refine)):
-        tell = progress if len(refine) == 1 or progress is None else _prefixed(progress, f"refine {parts}: ")
+        report = progress if len(refine) == 1 or progress is None else _prefixed(progress, f"refine {parts}: ")
         finer = problem.refined(parts) if isinstance(problem, Problem) and parts > 1 else problem
-        watch = Stopwatch(progress=tell, seconds={} if levels else fitting.seconds)
-        level = _side_by_side(plan, finer, watch, fit)
+        watch = Stopwatch(progress=report, seconds={} if levels else fitting.seconds)
+        level = _compared(options, finer, watch, fit)
         levels.append(replace(level, refine=parts, outdated=outdated(problem, changes)))
-    return Study(settings={**plan.to_dict(), "changes": [*changes]}, levels=tuple(levels))
+    return Study(settings={**options.to_dict(), "changes": [*changes]}, levels=tuple(levels))
 
 
 def outdated(problem: Problem | CondensedContact, changes: Sequence[str]) -> frozenset[str]:
-    """Name the references of a problem that were left as they are by changes which alter the answer.
-
-    Parameters
-    ----------
-    problem : with its references
-    changes : such as ``material.young_modulus=2e6``
-
-    Returns
-    -------
-    frozenset of str
-    """
+    """Names of the references of a problem that stay although changes, such as ``case=wind``, alter its answer."""
     paths = [parsed_path(change.partition("=")[0].strip()) for change in changes]
     if isinstance(problem, CondensedContact) or not any(map(_alters, paths)):
         return frozenset()
@@ -131,50 +127,44 @@ def outdated(problem: Problem | CondensedContact, changes: Sequence[str]) -> fro
 
 
 def _alters(path: KeyPath) -> bool:
-    """Whether a change of the value at a path of keys changes the answer that is sought."""
+    """Whether a change of the value at a path of keys changes the answer."""
     return path[0] not in HARMLESS and not (path[0] == "boundary" and path[-1] in MESHING)
 
 
 def _prefixed(progress: Progress, prefix: str) -> Progress:
-    """Tell what is going on with the mesh before it."""
+    """Report stages with the mesh before their names."""
     return lambda stage, now: progress(prefix + stage, now)
 
 
-def _side_by_side(
-    plan: ComparisonPlan, problem: Problem | CondensedContact, watch: Stopwatch, fit: MeshFit | None
+def _compared(
+    options: ComparisonOptions, problem: Problem | CondensedContact, watch: Stopwatch, fit: MeshFit | None
 ) -> MeshLevel:
-    """Compare on one mesh, and judge the direct solution with the boundary behind it."""
-    contact, condensation = condensed(problem, watch)
-    reference = _found(Setting(formulation=FormulationName.COMPLEMENTARITY), plan.reference, plan, contact, watch)
+    """Compare on one mesh, and assess the direct solution with the boundary behind it."""
+    contact, condensation = condensation_of(problem, watch)
+    reference = _attempted(SolveOptions(formulation=FormulationName.COMPLEMENTARITY), options, contact, watch)
     assert reference.solution is not None  # the direct solver ends with a status, never refuses
-    if any(setting.formulation == FormulationName.QP3 for setting, _ in plan.contenders):
+    if FormulationName.QP3 in options.formulations:
         with watch.stage("loading cvxpy"):
             qp3.load()
-    found = [_found(setting, item, plan, contact, watch) for setting, item in plan.contenders]
+    attempts = [_attempted(attempt, options, contact, watch) for attempt in options.attempts]
     with watch.stage("comparison"):
-        compared = comparison(contact, reference, found)
-    answer = judged(problem, condensation, contact, reference.solution, Weights.TRIBUTARY, watch, fit=fit)
+        compared = comparison(contact, reference, attempts)
+    answer = assessed(problem, condensation, contact, reference.solution, Weights.TRIBUTARY, watch, fit=fit)
     return MeshLevel(refine=1, comparison=compared, answer=answer)
 
 
-def _found(setting: Setting, plan: Plan, whole: ComparisonPlan, contact: CondensedContact, watch: Stopwatch) -> Found:
-    """Solve by one formulation, from the null start and from random ones if they are asked for."""
-    statement, label = FORMULATIONS[plan.formulation], setting.label
-    begin, ends = time.perf_counter(), None
+def _attempted(attempt: SolveOptions, options: ComparisonOptions, contact: CondensedContact, watch: Stopwatch) -> Found:
+    """Solve by one formulation, from the null start, and from random ones if that is asked for."""
+    label = attempt.label(tells_penalty=options.tells_penalty)
+    begin, searches = time.perf_counter(), None
     try:
         with watch.stage(label):
-            solution = statement(contact, plan.options)
+            solution = FORMULATIONS[attempt.formulation](contact, attempt)
         seconds = time.perf_counter() - begin
-        if whole.starts is not None and "start" in OPTIONS[plan.formulation]:
+        if options.starts is not None and attempt.uses("start"):
             with watch.stage(f"{label}, random starts") as say:
-                ends = search_from(
-                    contact,
-                    statement,
-                    plan.options,
-                    whole.starts,
-                    whole.seed,
-                    lambda done: say(f"{done} of {whole.starts}"),
-                )
+                several = replace(attempt, starts=options.starts, seed=options.seed)
+                searches = multistart(contact, several, lambda done: say(f"{done} of {options.starts}"))
     except (NotConvexError, OptionError, SolverError) as error:
-        return Found(setting=setting, solution=None, refusal=str(error))
-    return Found(setting=setting, solution=solution, seconds=seconds, starts=ends)
+        return Found(options=attempt, label=label, solution=None, refusal=str(error))
+    return Found(options=attempt, label=label, solution=solution, seconds=seconds, starts=searches)

@@ -1,4 +1,4 @@
-"""What a person should know of a result that the certificate does not say: remarks on the mesh and on the load."""
+"""Notes on the mesh and the load of a result that the certificate does not give."""
 
 from collections.abc import Iterator
 
@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from bemcontact.adaptivity.zone_runs import SAME
 from bemcontact.assessment.footprint import Footprint
-from bemcontact.bem.condense import Body
+from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import element_lengths
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
 
 FEW_POINTS = 5
 """Points under pressure below which a contact is not resolved: three make a parabola, two more its ends."""
@@ -17,14 +18,26 @@ SMOOTH = 0.2
 """Angle in radians by which the boundary may turn at the end of a zone and still go on smoothly."""
 UNBOUNDED = "the pressure there is infinite in theory, and its values at the last nodes depend on the mesh"
 """What holds at an end of contact where the stresses are singular."""
-LONG_NEIGHBOUR = 4.0
+LONG_NEIGHBOR = 4.0
 """Length of the element beyond the end of a zone over that inside, above which pressure at that end suffers."""
 LARGE_PRESSURE = 0.5
-"""Peak pressure over Young's modulus beyond which nothing is left of small displacements."""
+"""Peak pressure over Young's modulus beyond which displacements are not small."""
 
 
-def of_few_points(contact: CondensedContact, touching: NDArray[np.bool_], where: Footprint) -> Iterator[str]:
-    """Say of each interval of contact if too few points carry pressure to show its course."""
+def diagnostics(
+    contact: CondensedContact, solution: ContactSolution, where: Footprint, body: Body | None
+) -> Iterator[str]:
+    """Notes on a solution; without a body, there are none on its mesh and its size."""
+    touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
+    yield from few_points(contact, touching, where)
+    if body is not None:
+        yield from reached_zone_ends(body, touching)
+        yield from long_neighbors(body, touching)
+        yield from large_pressure(body, where)
+
+
+def few_points(contact: CondensedContact, touching: NDArray[np.bool_], where: Footprint) -> Iterator[str]:
+    """Note each interval of contact where too few points carry pressure to show its course."""
     for interval in where.intervals:
         same = SAME * interval.end_arc
         beyond = (
@@ -40,10 +53,10 @@ def of_few_points(contact: CondensedContact, touching: NDArray[np.bool_], where:
             )
 
 
-def of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Say where contact reaches the end of a zone: it should go on, or the pressure has no bound there.
+def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Note where contact reaches the end of a zone: the zone should be longer, or the pressure has no bound there.
 
-    On a smooth boundary either may be so. At a corner that is free beyond the zone the pressure is bounded up to a
+    On a smooth boundary both are possible. At a corner that is free beyond the zone the pressure is bounded up to a
     right angle: with its mirror image in the rigid surface the body is a wedge, and then no notch (Williams 1952).
     """
     mesh, points, angles = body.mesh, body.points, body.mesh.inner_angles
@@ -64,14 +77,14 @@ def of_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
             yield f"{reached}, a corner of the body of {np.degrees(angles[node]):.0f} degrees; {UNBOUNDED}"
 
 
-def of_long_neighbours(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Say where contact goes up to the end of a zone beyond which elements are much longer."""
+def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Note where contact reaches the end of a zone and the elements beyond it are much longer."""
     mesh, points = body.mesh, body.points
     lengths, in_zone = element_lengths(mesh), np.isin(np.arange(len(mesh.elements)), points.element)
     for i in np.flatnonzero(touching & (points.node < len(mesh.elements))):
         after, before = points.node[i], mesh.before[points.node[i]]
         outside, inside = (before, after) if in_zone[after] else (after, before)
-        if not in_zone[outside] and lengths[outside] > LONG_NEIGHBOUR * lengths[inside]:
+        if not in_zone[outside] and lengths[outside] > LONG_NEIGHBOR * lengths[inside]:
             (x, y), times = mesh.nodes[points.node[i]], lengths[outside] / lengths[inside]
             yield (
                 f"pressure acts at ({x:.5g}, {y:.5g}), the end of the zone '{_zone(body, i)}', beyond which an element "
@@ -80,8 +93,8 @@ def of_long_neighbours(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]
             )
 
 
-def of_size(body: Body, where: Footprint) -> Iterator[str]:
-    """Say if the pressure is too large for small displacements."""
+def large_pressure(body: Body, where: Footprint) -> Iterator[str]:
+    """Note a pressure that is too large for small displacements."""
     modulus = body.problem.material.young_modulus
     if where.peak is not None and where.peak.pressure > LARGE_PRESSURE * modulus:
         yield (

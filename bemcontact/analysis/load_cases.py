@@ -1,30 +1,29 @@
-"""All load cases and combinations of a problem, solved on one condensation and judged."""
+"""All load cases and combinations of a problem, solved on one condensation and assessed."""
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Unpack
 
 from bemcontact.analysis.result import Result
-from bemcontact.analysis.solve import carry_out, condensed, ensure_kind, judged
-from bemcontact.analysis.stopwatch import Stopwatch
+from bemcontact.analysis.solve import assessed, condensation_of, ensure_kind, solve_with
+from bemcontact.analysis.stopwatch import Progress, Stopwatch
 from bemcontact.errors import ProblemError
-from bemcontact.formulations import FORMULATIONS
-from bemcontact.formulations.plan import Plan, planned
-from bemcontact.options import FormulationName, Weights
+from bemcontact.formulations.multistart import solve_contact
+from bemcontact.formulations.start import with_start_read
+from bemcontact.options import FormulationName, SolveKeywords, SolveOptions, Weights
 from bemcontact.problem.problem import Problem
 from bemcontact.version import __version__
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class CaseResults:
-    """The answers to all load cases and combinations of a problem.
+    """The results of all load cases and combinations of a problem.
 
     Parameters
     ----------
     name : of the problem
     results : by the name of the load case or combination
-    seconds : spent on what they share
+    seconds : spent on each stage that they share
     """
 
     name: str
@@ -66,17 +65,16 @@ class CaseResults:
 
 def solve_cases(
     problem: Problem,
-    formulation: str = FormulationName.QP3,
+    formulation: FormulationName | str = FormulationName.QP3,
     weights: Weights | str = Weights.TRIBUTARY,
-    *,
-    max_iterations: int | None = None,
+    **options: Unpack[SolveKeywords],
 ) -> CaseResults:
     """Solve all load cases and combinations of a problem by one formulation; the body is condensed once.
 
     Parameters
     ----------
     problem : with load cases
-    formulation, weights, max_iterations : as of `bemcontact.solve`
+    formulation, weights, options : as of `bemcontact.solve`
 
     Returns
     -------
@@ -85,17 +83,18 @@ def solve_cases(
     Raises
     ------
     ProblemError
-        If the problem states no load case, or one of them has no answer; as of `bemcontact.solve` else.
+        If the problem states no load case, or one of them has no answer; otherwise as of `bemcontact.solve`.
     """
-    return carry_out_cases(planned(formulation, weights, max_iterations=max_iterations), problem)
+    return solve_cases_with(SolveOptions.of(formulation, weights, **options), problem)
 
 
-def carry_out_cases(plan: Plan, problem: Problem, progress: Callable[[str, str], object] | None = None) -> CaseResults:
-    """Solve all load cases and combinations as planned; all else is as of `solve_cases`.
+def solve_cases_with(options: SolveOptions, problem: Problem, progress: Progress | None = None) -> CaseResults:
+    """Solve all load cases and combinations with options, as `solve_cases` does.
 
-    Where the mesh is to be fitted to the ends of contact, each of them gets a mesh of its own.
+    If the mesh is to be fitted to the ends of contact, each of them gets its own mesh.
     """
     ensure_kind(problem, Problem)
+    options = with_start_read(options)
     if not problem.load_cases:
         raise ProblemError("the problem states no load cases; bemcontact.solve solves it as it is")
     if problem.mesh.fit_contact_edges:
@@ -103,16 +102,17 @@ def carry_out_cases(plan: Plan, problem: Problem, progress: Callable[[str, str],
         for name in problem.case_names:
             if progress:
                 progress(name, "")
-            results[name] = carry_out(plan, problem.with_case(name))
+            results[name] = solve_with(options, problem.with_case(name))
         return CaseResults(name=problem.name, results=results, seconds={})
     shared = Stopwatch(progress=progress)
-    _, whole = condensed(problem.model_copy(update={"case": None}), shared)
+    _, whole = condensation_of(problem.model_copy(update={"case": None}), shared)
     assert whole is not None
     cases = {name: whole.acting(name) for name in problem.case_names}
     results = {}
     for name, case in cases.items():
         watch = Stopwatch(progress=progress)
         with watch.stage(name):
-            solution, ends = plan.start.search(case.contact, FORMULATIONS[plan.formulation], plan.options)
-            results[name] = judged(case.body.problem, case, case.contact, solution, plan.options.weights, watch, ends)
+            solution, searches = solve_contact(case.contact, options)
+            given = case.body.problem
+            results[name] = assessed(given, case, case.contact, solution, options.weights, watch, searches)
     return CaseResults(name=problem.name, results=results, seconds=shared.seconds)

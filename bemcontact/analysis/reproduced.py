@@ -47,7 +47,7 @@ class Run:
             "solvers": [
                 {
                     "label": item.label,
-                    "formulation": item.found.setting.formulation.value,
+                    "formulation": item.found.options.formulation.value,
                     "certified": item.certified,
                     "iterations": None if item.judged is None else item.judged.solution.iterations,
                 }

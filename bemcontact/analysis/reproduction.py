@@ -9,7 +9,7 @@ from bemcontact.analysis.paper import PROBLEMS, PaperProblem
 from bemcontact.analysis.reproduced import Reproduced, Reproduction, Run
 from bemcontact.analysis.stopwatch import Progress
 from bemcontact.analysis.study import MeshLevel
-from bemcontact.formulations.plan import ComparisonPlan, planned_comparison
+from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
 
 
@@ -34,7 +34,7 @@ def reproduce(
     OptionError
         No mesh, one that is there twice, or a refinement that is not a whole number.
     """
-    plan = planned_comparison()
+    plan = ComparisonOptions()
     done = []
     for order, paper in enumerate(problems, 1):
         name = f"problem {order} of {len(problems)}, {paper.model.replace('_', ' ')}"
@@ -47,7 +47,7 @@ def _below(progress: Progress | None, name: str) -> Progress:
     return lambda stage, now: progress(name, f"{stage}, {now}" if now else stage) if progress else None
 
 
-def _reproduced(plan: ComparisonPlan, paper: PaperProblem, refine: Sequence[int], tell: Progress) -> Reproduced:
+def _reproduced(plan: ComparisonOptions, paper: PaperProblem, refine: Sequence[int], tell: Progress) -> Reproduced:
     """Solve one problem, as stated on all meshes and with its variants."""
     problem = _problem(paper, None)
     meshes = comparing.study(plan, problem, refine, tell).levels
@@ -77,6 +77,6 @@ def _problem(paper: PaperProblem, variant: str | None) -> Problem:
     return spec.loads(shipped.model(paper.model), f"models/{paper.model}.yaml", variant=variant)
 
 
-def _once(plan: ComparisonPlan, problem: Problem, tell: Progress) -> MeshLevel:
+def _once(plan: ComparisonOptions, problem: Problem, tell: Progress) -> MeshLevel:
     """Solve a problem on the mesh that it states."""
     return comparing.study(plan, problem, (1,), tell).finest

@@ -11,7 +11,7 @@ from bemcontact.adaptivity.mesh_fit import MeshFit
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint
 from bemcontact.assessment.residual import Residuals
-from bemcontact.bem.recovery import BoundaryState
+from bemcontact.bem.condense import BoundaryState
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.record import contact_record, solution_record

@@ -1,29 +1,60 @@
-"""From a problem to a judged result: condense, solve, assess, recover; here both halves of the house work."""
+"""From a problem to an assessed result: condense, solve, assess, recover."""
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Unpack
 
 from bemcontact.adaptivity.fitting import fitted
 from bemcontact.adaptivity.mesh_fit import MeshFit
-from bemcontact.analysis import diagnostics as remarks
+from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.stopwatch import Stopwatch
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.bem.condense import Condensation, body_of
+from bemcontact.bem.body import Body, body_of, each_case, ensure_held
+from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.condense import condense as condense_body
-from bemcontact.bem.recovery import boundary_state
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import Issue, ProblemError
-from bemcontact.formulations import FORMULATIONS, Start
-from bemcontact.formulations.formulation import ensure_whole
-from bemcontact.formulations.plan import Plan, planned
-from bemcontact.formulations.starts import search_from
-from bemcontact.options import Equilibrium, FormulationName, Rows, StartName, Weights
+from bemcontact.formulations.multistart import multistart, solve_contact
+from bemcontact.formulations.start import with_start_read
+from bemcontact.options import (
+    FormulationName,
+    SolveKeywords,
+    SolveOptions,
+    StartName,
+    StatementKeywords,
+    Weights,
+    ensure_whole,
+)
 from bemcontact.problem.problem import Problem
+
+
+def check(problem: Problem) -> Body:
+    """Make the body of a problem and make sure, in each load case, that something holds it; nothing is solved.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    Body
+        The problem with mesh, contact points and boundary conditions.
+
+    Raises
+    ------
+    ProblemError
+        Nothing holds the body, its load pulls it off its support, or conditions contradict each other.
+    """
+    ensure_kind(problem, Problem)
+    body = body_of(problem)
+    for acting in each_case(body):
+        ensure_held(acting)
+    return body
 
 
 def condense(problem: Problem) -> CondensedContact:
@@ -36,8 +67,8 @@ def condense(problem: Problem) -> CondensedContact:
     Returns
     -------
     CondensedContact
-        On the fitted mesh if the problem asks for one; its notes tell. Of a problem with load cases of which none acts,
-        what is permanent, with the load cases at factor zero.
+        On the fitted mesh if the problem asks for one; its notes say so. If the problem has load cases and none of them
+        acts, the permanent loads act, and each load case has the factor zero.
 
     Raises
     ------
@@ -72,36 +103,22 @@ def ensure_acting(problem: Problem | CondensedContact) -> None:
 
 def solve(
     problem: Problem | CondensedContact,
-    formulation: str = FormulationName.QP3,
+    formulation: FormulationName | str = FormulationName.QP3,
     weights: Weights | str = Weights.TRIBUTARY,
     *,
-    penalty: float = 1.0,
-    rows: Rows | str = Rows.STIFFNESS,
-    equilibrium: Equilibrium | str = Equilibrium.CONSTRAINT,
-    start: Start | str | None = None,
-    seed: int | None = None,
-    starts: int | None = None,
-    max_iterations: int | None = None,
     progress: Callable[[int], object] | None = None,
+    **options: Unpack[SolveKeywords],
 ) -> Result:
-    """Solve a contact problem by one formulation, and judge the answer.
+    """Solve a contact problem by one formulation, and assess the result.
 
     Parameters
     ----------
     problem : Problem or CondensedContact
-    formulation : "qp3" (a convex program, then polished), "complementarity" (the direct solver), or "qp1" and "qp2" (a
-        local solver over pressures and displacements, then polished)
-    weights : the J of the objective, a `Weights` or its name: "tributary", "consistent" or "element_length"
-    penalty : μ of QP2, free of units, from 1e-8 to 1e8
-    rows : how QP1 and QP2 write the equations, a `Rows` or its name: "stiffness" or "compliance"
-    equilibrium : of QP2, for bodies with free rigid motions: "constraint", or "penalty" as in [SS92]
-    start : of QP1 and QP2: "null", "random", or a `Start` with a pressure (n,) [p] and a displacement (n,) [L]; if not
-        given, random with `seed` or `starts`, else null
-    seed : of random starts, 0 if not given
-    starts : how many random starts; the answer is that of the best end, `Result.starts` has all of them
-    max_iterations : limit of the iterations of the local solver, of Clarabel (QP3), or of the pivots of Lemke's method
-        (complementarity); None for the solver's own
+    formulation : "qp3", "complementarity", "qp1" or "qp2"
+    weights : of the objective, a `Weights` or its name
     progress : called after the search from each of several random starts with the number of those done
+    options : penalty, rows, equilibrium, start, seed, starts, max_iterations, polish; `bemcontact.SolveOptions` says
+        what each means, and its default
 
     Returns
     -------
@@ -117,30 +134,19 @@ def solve(
     NotConvexError
         If the formulation needs a convex program and this is none.
     """
-    plan = planned(
-        formulation,
-        weights,
-        penalty=penalty,
-        rows=rows,
-        equilibrium=equilibrium,
-        start=start,
-        seed=seed,
-        starts=starts,
-        max_iterations=max_iterations,
-    )
-    return carry_out(plan, problem, progress)
+    return solve_with(SolveOptions.of(formulation, weights, **options), problem, progress)
 
 
-def carry_out(
-    plan: Plan, problem: Problem | CondensedContact, progress: Callable[[int], object] | None = None
+def solve_with(
+    options: SolveOptions, problem: Problem | CondensedContact, progress: Callable[[int], object] | None = None
 ) -> Result:
-    """Solve a contact problem as planned, and judge the answer; all else is as of `solve`."""
-    watch = Stopwatch()
+    """Solve a contact problem with options, and assess the result, as `solve` does."""
+    options, watch = with_start_read(options), Stopwatch()
     problem, fit = fitted_to_contact(problem, watch)
-    contact, condensation = condensed(problem, watch)
+    contact, condensation = condensation_of(problem, watch)
     with watch.stage("solution"):
-        solution, ends = plan.start.search(contact, FORMULATIONS[plan.formulation], plan.options, progress)
-    return judged(problem, condensation, contact, solution, plan.options.weights, watch, ends, fit)
+        solution, searches = solve_contact(contact, options, progress)
+    return assessed(problem, condensation, contact, solution, options.weights, watch, searches, fit)
 
 
 def fitted_to_contact(
@@ -157,15 +163,10 @@ def fitted_to_contact(
         return fitted(problem, say)
 
 
-def condensed(problem: Problem | CondensedContact, watch: Stopwatch) -> tuple[CondensedContact, Condensation | None]:
-    """Condense a problem that is not condensed yet; all else is as of `condense`.
-
-    Returns
-    -------
-    CondensedContact
-    Condensation or None
-        What it came from, with the body; None if it was condensed already.
-    """
+def condensation_of(
+    problem: Problem | CondensedContact, watch: Stopwatch
+) -> tuple[CondensedContact, Condensation | None]:
+    """Condense a problem; one that is condensed already has no condensation."""
     ensure_kind(problem)
     if isinstance(problem, CondensedContact):
         return problem, None
@@ -176,50 +177,41 @@ def condensed(problem: Problem | CondensedContact, watch: Stopwatch) -> tuple[Co
     return condensation.contact, condensation
 
 
-def judged(
+def assessed(
     problem: Problem | CondensedContact,
     condensation: Condensation | None,
     contact: CondensedContact,
     solution: ContactSolution,
     weights: Weights,
     watch: Stopwatch,
-    ends: RandomStarts | None = None,
+    searches: RandomStarts | None = None,
     fit: MeshFit | None = None,
 ) -> Result:
-    """Recover the boundary behind a solution, and judge both.
+    """Recover the boundary behind a solution, and assess both.
 
     Parameters
     ----------
-    problem, condensation, contact : the problem as it was given, and as `condensed` has it
-    solution : of it
+    problem, condensation, contact : the problem as it was given, and as `condensation_of` returns it
+    solution : of the problem
     weights : of the objective
     watch : with the stages so far
-    ends : of random starts, if several were made
-    fit : how the mesh was fitted, if it was
-
-    Returns
-    -------
-    Result
+    searches : from random starts, if there were several
+    fit : of the mesh, if it was fitted
     """
     boundary = None
     if condensation is not None:
         with watch.stage("recovery"):
             boundary = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
     with watch.stage("assessment"):
-        judged = residuals(contact, solution, None if boundary is None else boundary.force_balance)
-        certificate = certify(contact, solution, judged)
+        recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
+        certificate = certify(contact, solution, recomputed)
         where = footprint(contact, solution)
-        touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
         notes = (
             *(() if fit is None else fit.notes),
             *contact.notes,
             *solution.notes,
-            *remarks.of_few_points(contact, touching, where),
+            *diagnostics(contact, solution, where, None if condensation is None else condensation.body),
         )
-        if condensation is not None:
-            body = condensation.body
-            notes += (*remarks.of_zone_ends(body, touching), *remarks.of_long_neighbours(body, touching))
-            notes += (*remarks.of_size(body, where),)
     gap = contact.initial_gap + solution.displacement
     return Result(
         problem=problem if isinstance(problem, Problem) else None,
@@ -227,40 +219,38 @@ def judged(
         solution=solution,
         weights=weights,
         objective=float(solution.pressure @ contact.weight_matrix(weights) @ gap),
-        residuals=judged,
+        residuals=recomputed,
         certificate=certificate,
         footprint=where,
         boundary=boundary,
         degrees_of_freedom=None if condensation is None else condensation.body.mesh.degrees_of_freedom,
         notes=notes,
         seconds=watch.seconds,
-        starts=ends,
+        starts=searches,
         mesh_fit=fit,
     )
 
 
 def random_starts(
     problem: Problem | CondensedContact,
-    formulation: str = FormulationName.QP1,
+    formulation: FormulationName | str = FormulationName.QP1,
     weights: Weights | str = Weights.TRIBUTARY,
     *,
     count: int = 100,
     seed: int = 0,
-    penalty: float = 1.0,
-    rows: Rows | str = Rows.STIFFNESS,
-    equilibrium: Equilibrium | str = Equilibrium.CONSTRAINT,
-    max_iterations: int | None = None,
     progress: Callable[[int], object] | None = None,
+    **options: Unpack[StatementKeywords],
 ) -> RandomStarts:
-    """Solve QP1 or QP2 from random starts and tell which minima were found, and how often; nothing is polished.
+    """Solve QP1 or QP2 from random starts, and count how often each minimum is found; nothing is polished.
 
     Parameters
     ----------
     problem : Problem or CondensedContact
     formulation : "qp1" or "qp2"
-    weights, penalty, rows, equilibrium, max_iterations : as of `solve`
+    weights : of the objective, a `Weights` or its name
     count, seed : of the starts; the same seed gives the same starts
     progress : called after each search with the number of those done
+    options : penalty, rows, equilibrium, max_iterations; `bemcontact.SolveOptions` says what each means
 
     Returns
     -------
@@ -273,15 +263,7 @@ def random_starts(
     """
     ensure_whole(count, "number of starts", 1)
     ensure_whole(seed, "seed", 0)
-    plan = planned(
-        formulation,
-        weights,
-        penalty=penalty,
-        rows=rows,
-        equilibrium=equilibrium,
-        start=StartName.RANDOM,
-        max_iterations=max_iterations,
-    )
+    read = SolveOptions.of(formulation, weights, start=StartName.RANDOM, starts=count, seed=seed, **options)
     ensure_kind(problem)
     contact = problem if isinstance(problem, CondensedContact) else condense(problem)
-    return search_from(contact, FORMULATIONS[plan.formulation], plan.options, count, seed, progress)
+    return multistart(contact, read, progress)

@@ -169,9 +169,9 @@ def comparison(contact: CondensedContact, reference: Found, found: Sequence[Foun
     ProblemError
         The problem does not carry the weights asked for.
     """
-    asked = [item.setting.weights for item in found if item.setting.weights is not None]
+    asked = [item.options.weights for item in found if item.options.uses("weights")]
     weights = [*dict.fromkeys([Weights.TRIBUTARY, *asked])]
-    penalties = tuple(dict.fromkeys(item.setting.penalty for item in found if item.setting.penalty is not None))
+    penalties = tuple(dict.fromkeys(item.options.penalty for item in found if item.options.uses("penalty")))
     matrices = {item: weighted_compliance(contact, item) for item in weights}
     judged = [
         None if item.solution is None else recomputed(contact, item.solution, weights, penalties)

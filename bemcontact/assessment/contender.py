@@ -14,23 +14,25 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.record import solution_record
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.options import FormulationName, Setting, Weights
+from bemcontact.options import FormulationName, SolveOptions, Weights
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Found:
-    """What came of a setting before it is judged.
+    """What came of options before it is judged.
 
     Parameters
     ----------
-    setting : Setting
+    options : how it was solved
+    label : what it is called
     solution : or None if the formulation could not be asked
     refusal : why not, else empty
     seconds : the solver took
     starts : where searches from random starts ended, if there were any
     """
 
-    setting: Setting
+    options: SolveOptions
+    label: str
     solution: ContactSolution | None
     refusal: str = ""
     seconds: float = 0.0
@@ -90,7 +92,7 @@ class Contender:
     @property
     def label(self) -> str:
         """What it is called."""
-        return self.found.setting.label
+        return self.found.label
 
     @property
     def certified(self) -> bool:
@@ -99,12 +101,12 @@ class Contender:
 
     def to_dict(self, contact: CondensedContact) -> dict[str, Any]:
         """Give all of it as numbers, lists and texts, ready for JSON."""
-        setting, starts = self.found.setting, self.found.starts
+        options, starts = self.found.options, self.found.starts
         return {
             "label": self.label,
-            "formulation": setting.formulation.value,
-            "weights": None if setting.weights is None else setting.weights.value,
-            "penalty": setting.penalty,
+            "formulation": options.formulation.value,
+            "weights": options.weights.value if options.uses("weights") else None,
+            "penalty": options.penalty if options.uses("penalty") else None,
             "certified": self.certified,
             "verdict": self.verdict.to_dict(),
             "objective": self.objective,
@@ -161,15 +163,15 @@ def contender(
     -------
     Contender
     """
-    setting, tributary = found.setting, Weights.TRIBUTARY
-    own = None if setting.weights is None else matrices[setting.weights]
+    options, tributary = found.options, Weights.TRIBUTARY
+    own = matrices[options.weights] if options.uses("weights") else None
     if judged is None:
-        told = refused(found.refusal, matrices[setting.weights or tributary], matrices[tributary])
+        told = refused(found.refusal, matrices[options.weights], matrices[tributary])
         return Contender(found=found, judged=None, objective=None, verdict=told, convex=own.convex if own else None)
-    objective, reached = _own_objective(setting, judged), None
+    objective, reached = _own_objective(options, judged), None
     if objective is not None:
         known = direct is not None and direct.certificate.kind is not CertificateKind.NOT_A_SOLUTION
-        at_contact_state = _own_objective(setting, direct) if known and direct is not None else None
+        at_contact_state = _own_objective(options, direct) if known and direct is not None else None
         reached = Reached(here=objective, at_contact_state=at_contact_state, peak=judged.peak)
     told = verdict(judged.solution, judged.certificate, reached, own, matrices[tributary])
     search = judged.solution.search
@@ -177,11 +179,11 @@ def contender(
     return Contender(found=found, judged=judged, objective=objective, verdict=told, convex=convex)
 
 
-def _own_objective(setting: Setting, judged: Judged) -> float | None:
+def _own_objective(options: SolveOptions, judged: Judged) -> float | None:
     """The objective of a statement, with its own weights and penalty, at a solution of any."""
-    own = next((item for item in judged.objectives if item.weights is setting.weights), None)
-    if own is None:
+    own = next((item for item in judged.objectives if item.weights is options.weights), None)
+    if own is None or not options.uses("weights"):
         return None
     of_penalty = dict(own.qp2)
     values = {FormulationName.QP1: own.qp1, FormulationName.QP3: own.qp3}
-    return of_penalty[setting.penalty] if setting.penalty in of_penalty else values.get(setting.formulation)
+    return of_penalty[options.penalty] if options.uses("penalty") else values.get(options.formulation)

@@ -60,7 +60,8 @@ def residuals(contact: CondensedContact, solution: ContactSolution, force_balanc
     gap = contact.initial_gap + u_n
     K, B, r = contact.stiffness_rows
     apart = u_n - contact.free_displacement - contact.compliance @ p
-    apart = apart - contact.rigid_motions @ contact.amplitudes_of(apart)
+    R, root = contact.rigid_motions, np.sqrt(contact.weights)  # on purpose not `amplitudes_of`, which solvers use
+    apart = apart - R @ np.linalg.lstsq(root[:, None] * R, root * apart, rcond=None)[0]
     return Residuals(
         penetration=_largest(-gap / U),
         tension=_largest(-p / T),

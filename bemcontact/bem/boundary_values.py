@@ -12,12 +12,12 @@ from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.problem import Problem
 
 CONTRADICTION = 1e-9
-"""Difference of two displacements prescribed at one corner, relative to the largest prescribed one, that is refused."""
+"""Difference of two prescribed displacements at one corner, relative to the largest one, from which they contradict."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BoundaryValues:
-    """What is known on the boundary before solving; zero where nothing is known.
+    """Prescribed displacements and tractions on the boundary; zero where nothing is prescribed.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, ComplexArray, IntArray
 from bemcontact.bem.kernels import Factors
-from bemcontact.bem.shape_functions import INTEGRALS
+from bemcontact.bem.reference_element import INTEGRALS
 
 FarSums = Callable[[Array, Array, ComplexArray, IntArray, int, ComplexArray, ComplexArray, Array, Factors], None]
 """A function with the parameters of `add_far`."""
@@ -24,10 +24,6 @@ def far_sums() -> FarSums | None:
     """`add_far` as machine code, or None without numba.
 
     Its first call compiles it, which takes a few seconds once; the machine code is kept for later processes.
-
-    Returns
-    -------
-    callable or None
     """
     try:
         import numba
@@ -56,7 +52,6 @@ def add_far(
     slot : place of the first one in G, or a negative number if G is not wanted
     zeta, tangent : (n, r) ζ and ζ' at the Gauss points
     weighted : (3, n) shape functions times weights
-    factor : Factors
     """
     n, R, kinds = len(zeta), len(z), 4 if slot < 0 else 7
     x0, y0 = z.real.copy(), z.imag.copy()

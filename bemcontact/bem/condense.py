@@ -4,219 +4,25 @@ Generalised to bodies that contact alone holds: the singular system is bordered 
 equilibrium itself is taken exactly, ℓ = J R, load = work of the applied loads in the free motions.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
-from scipy.optimize import linprog, nnls
 
-from bemcontact.arrays import Array
-from bemcontact.bem.contact_points import ContactPoints, contact_points
-from bemcontact.bem.deflection import deflections
-from bemcontact.bem.factorisation import solve
-from bemcontact.bem.free_motions import BODY, UNSEEN, FreeMotions, PlacedTools, free_motions, placed_tools
-from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
-from bemcontact.bem.mesh import Mesh, build
-from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
-from bemcontact.bem.system import System
+from bemcontact.arrays import Array, IntArray
+from bemcontact.bem.body import Body, ensure_held
+from bemcontact.bem.rigid_motions import (
+    all_rigid_motions,
+)
+from bemcontact.bem.system import System, solve
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
 from bemcontact.contact.load_cases import LoadCases
-from bemcontact.contact.tools import BALANCED, Pinned, Tools
-from bemcontact.errors import Issue, ProblemError
-from bemcontact.problem.problem import Problem
-
-IDLE = 1e-7
-"""Normal displacement in a motion that opens gaps, over that of the motion, from which it is one."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Body:
-    """A problem on its mesh, before it is condensed: what is known, where contact may be, what may move rigidly.
-
-    Parameters
-    ----------
-    problem, mesh, points : the stages up to here
-    loadings : 1 + c, what is permanent and what each load case adds
-    tools : rigid surfaces that move
-    motions : all rigid motions of the body that the conditions leave free
-    seen : those of them, and those of tools, or combinations, that move contact points along the rigid normals
-    unseen : the others, that no contact point sees
-    """
-
-    problem: Problem
-    mesh: Mesh
-    points: ContactPoints
-    loadings: tuple[Loading, ...]
-    tools: PlacedTools
-    motions: RigidMotions
-    seen: FreeMotions
-    unseen: FreeMotions
-
-    @cached_property
-    def factors(self) -> Array:
-        """By how much each loading (1 + c,) acts."""
-        named = self.problem.factors()
-        return np.array([1.0, *(named.get(case, 0.0) for case in self.problem.load_cases)])
-
-    @cached_property
-    def acting(self) -> Loading:
-        """What acts on the body."""
-        return combined(self.loadings, self.factors.tolist())
-
-    def motion_load(self, motions: FreeMotions) -> Array:
-        """Work (k, 1 + c) of each loading, forces on tools included, in free motions [p L]."""
-        on_body = np.column_stack([loading.work(self.mesh, motions.body) for loading in self.loadings])
-        return on_body + motions.tools.T @ self.tools.force
-
-    @cached_property
-    def pinned(self) -> Pinned:
-        """The motions that no contact point sees, with true loads: whether they balance is no matter of the mesh."""
-        motions = self.unseen.in_user_units()
-        return Pinned(
-            motions=tuple(f"{motions.who(j)} against the {motions.way(j)}" for j in range(len(motions))),
-            turns=np.array([motions.turns(j) for j in range(len(motions))], bool),
-            load=np.column_stack([item.true_work(self.mesh, motions.body) for item in self.loadings]),
-            tools=motions.tools,
-            magnitude=np.array([item.magnitude(self.mesh) for item in self.loadings]),
-            length=self.motions.radius,
-        )
-
-    @cached_property
-    def forces(self) -> Array:
-        """What the tools (3 t,) are loaded by."""
-        return self.tools.force @ self.factors
-
-    def normal_motion(self, motions: FreeMotions) -> Array:
-        """R (n, k): what free motions add to the gaps."""
-        return self.points.along_normals(motions.body) + self.tools.motions @ motions.tools
-
-    @cached_property
-    def relative_load(self) -> tuple[Array, Array]:
-        """R (n, k) without round-off, and the load (k,) that acts in the seen motions, relative to the largest."""
-        R, load = self.normal_motion(self.seen), self.motion_load(self.seen) @ self.factors
-        largest = abs(load).max(initial=0.0)
-        none = largest <= BALANCED * self.pinned.total(self.factors, self.forces)
-        return np.where(abs(R) > UNSEEN, R, 0.0), np.zeros_like(load) if none else load / largest
-
-    @cached_property
-    def idle_motion(self) -> str | None:
-        """A motion that opens gaps and closes none, and in which the loads do no work; None if there is none.
-
-        Contact leaves open how far the body or a tool goes in it: a linear program.
-        """
-        R, load = self.relative_load
-        if not load.size:
-            return None
-        found = linprog(
-            -R.sum(axis=0), A_ub=-R, b_ub=np.zeros(len(R)), A_eq=load[None, :], b_eq=[0.0], bounds=(-1.0, 1.0),
-            options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
-        )  # fmt: skip
-        idle = found.success and (R @ found.x).max() > IDLE
-        return self.seen.combined(found.x[:, None]).describe()[0] if idle else None
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What was decided and should be known."""
-        pinned = tuple(
-            f"the {motion} is seen by no contact point and loaded by nothing: {_pinned(self.unseen.who(j))} against it"
-            for j, motion in enumerate(self.unseen.describe())
-        )
-        idle = self.idle_motion if self.relative_load[1].any() else None
-        left_open = f"the loads do no work in the {idle}, which only opens gaps: contact leaves open how far it goes"
-        return pinned if idle is None else (*pinned, left_open)
-
-
-def _pinned(who: str) -> str:
-    """Tell who is pinned."""
-    return "they are pinned" if who.endswith(" together") else f"{who} is pinned"
-
-
-def body_of(problem: Problem) -> Body:
-    """Mesh a problem, spread its conditions, and find out whether contact can hold it.
-
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    Body
-
-    Raises
-    ------
-    ProblemError
-        If the loads pull the body off its support, move it in a way that no contact resists, or do not press it on;
-        or if the conditions of a deflected contour do not hold the body. Of a problem with load cases of which none
-        acts, it is not asked whether contact can hold the body.
-    """
-    mesh = build(problem)
-    permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
-    added = [loading.values for loading in cases]
-    points = contact_points(problem, mesh, permanent.values, deflections(problem, mesh), added)
-    tools = placed_tools(problem, points)
-    motions = free_rigid_motions(mesh, permanent.values.displacement_given)
-    seen, unseen = free_motions(points, motions, tools)
-    body = Body(
-        problem=problem, mesh=mesh, points=points, loadings=(permanent, *cases), tools=tools,
-        motions=motions, seen=seen, unseen=unseen,
-    )  # fmt: skip
-    if problem.case is not None or not problem.load_cases:
-        ensure_held(body)
-    return body
-
-
-def each_case(body: Body) -> Iterator[Body]:
-    """The body under each load case and combination where none of them acts yet; else nothing."""
-    if body.problem.case is None:
-        yield from (replace(body, problem=body.problem.with_case(name)) for name in body.problem.case_names)
-
-
-def ensure_held(body: Body) -> None:
-    """Refuse what acts on a body if contact cannot hold it; `ProblemError` as of `body_of`."""
-    try:
-        if complaint := body.pinned.complaint(body.factors, body.forces):
-            raise ProblemError(complaint)
-        _check_support(body)
-    except ProblemError as error:
-        case = body.problem.case
-        if case is None:
-            raise
-        path = ("load_cases" if case in body.problem.load_cases else "combinations", case)
-        raise ProblemError(Issue(path=path, message=str(error))) from None
-
-
-def _check_support(body: Body) -> None:
-    """Refuse loads that no pressure p >= 0 can balance, and what nothing presses on."""
-    R, load = body.relative_load
-    forces, residual = nnls(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
-    if residual > BALANCED:
-        pull = body.seen.combined((R.T @ forces + load)[:, None])
-        who, off = pull.who(0), "its support" if pull.who(0) == BODY else "what it touches"
-        raise ProblemError(
-            f"the load pulls {who} off {off}: it drives the {pull.way(0)}, which no contact resists; "
-            "turn the load around, or move it to where contact can hold it, or prescribe a displacement that holds "
-            f"{who if off == 'its support' else 'it'}"
-        )
-    if not load.any() and body.idle_motion is not None:
-        raise ProblemError(
-            f"only contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
-            "is not determined; apply a load, or prescribe a displacement"
-        )
-
-
-def _against(motions: FreeMotions) -> str:
-    """What is free to move, and how: the body against one motion and another, and a tool against a third."""
-    ways: dict[str, list[str]] = {}
-    for j in range(len(motions)):
-        ways.setdefault(motions.who(j), []).append(f"the {motions.way(j)}")
-    return ", and ".join(f"{who} against {' and '.join(way)}" for who, way in ways.items())
+from bemcontact.contact.tools import Tools
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Condensation:
-    """A condensed body, and what it takes to find the whole boundary again from a pressure.
+    """A condensed body, with the response from which the whole boundary follows for a pressure.
 
     Parameters
     ----------
@@ -234,7 +40,7 @@ class Condensation:
     gauge: Gauge
 
     def acting(self, case: str | None = None) -> "Condensation":
-        """The same body with the load case or combination that acts, or another; `ProblemError` as of `body_of`."""
+        """The body under the load case or combination that acts, or another one; `ProblemError` as of `body_of`."""
         problem = self.body.problem if case is None else self.body.problem.with_case(case)
         if problem.case is None:
             return self
@@ -246,20 +52,12 @@ class Condensation:
 
     @property
     def factors(self) -> Array:
-        """By how much each loading (1 + c,) acts."""
+        """Factors of the loadings (1 + c,)."""
         return np.append(1.0, self.contact.cases.factors)
 
 
 def condense(body: Body) -> Condensation:
     """Eliminate everything but the contact points.
-
-    Parameters
-    ----------
-    body : Body
-
-    Returns
-    -------
-    Condensation
 
     Raises
     ------
@@ -334,3 +132,78 @@ def _observe(system: System, response: Array) -> Array:
         free = column >= 0
         result[free] += normal[free, None] * response[column[free]]
     return result
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BoundaryState:
+    """Displacement and traction on the boundary, element by element; traction may jump between elements.
+
+    Parameters
+    ----------
+    points : (m, 3, 2) nodes of each element [L]
+    displacement : (m, 3, 2) [L]
+    traction : (m, 3, 2) force on the body per undeformed length [p]
+    edge : (m,) index into `edge_names`
+    edge_names : names of the edges
+    force_balance : resultant of all forces on the body (and of their moments, over the radius), relative to the sum of
+        their magnitudes
+    equilibrium_slack : how far the discrete equations are from equilibrium, relative to the loads; tells of the mesh
+    """
+
+    points: Array
+    displacement: Array
+    traction: Array
+    edge: IntArray
+    edge_names: tuple[str, ...]
+    force_balance: float
+    equilibrium_slack: float
+
+
+def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:
+    """Recover the boundary from pressure and rigid amplitudes of a contact solution.
+
+    Parameters
+    ----------
+    pressure : (n,) p [p]
+    rigid_amplitudes : (k,) a [L], in the fixed gauge of the condensed problem
+    """
+    body, system = condensation.body, condensation.system
+    mesh, gauge = body.mesh, condensation.gauge
+    scaled = np.append(condensation.factors, pressure / system.stress)
+    z = condensation.response @ scaled
+    amplitudes = rigid_amplitudes.copy()
+    amplitudes[: len(gauge.shift_load)] -= gauge.shift_load @ condensation.factors + gauge.shift_pressure @ pressure
+
+    displacement, traction = system.fields(z, body.acting)
+    displacement += body.seen.body.displacement(mesh.nodes) @ amplitudes
+    points = body.points
+    traction[points.element, points.local] += pressure[points.point, None] * points.normals[points.point]
+    return BoundaryState(
+        points=mesh.nodes[mesh.elements],
+        displacement=displacement[mesh.elements],
+        traction=traction,
+        edge=mesh.edge,
+        edge_names=mesh.edge_names,
+        force_balance=_force_balance(condensation, traction),
+        equilibrium_slack=_slack(condensation, scaled),
+    )
+
+
+def _force_balance(condensation: Condensation, traction: Array) -> float:
+    """Resultant force and moment of everything that acts on the body, over the sum of the magnitudes."""
+    body = condensation.body
+    mesh, every = body.mesh, all_rigid_motions(body.mesh)
+    forces = mesh.tributary[..., None] * traction
+    volume = body.acting.particular
+    resultant = every.work(mesh.nodes[mesh.elements], forces) + every.work_of(volume.force, volume.moment)
+    magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + volume.magnitude
+    return float(abs(resultant).max() / magnitude) if magnitude > 0 else 0.0
+
+
+def _slack(condensation: Condensation, scaled: Array) -> float:
+    """Border unknowns of the solution, over the sum of the magnitudes that each load and pressure contributes."""
+    slack = condensation.response[condensation.system.unknowns.size :]
+    if len(slack) == 0:
+        return 0.0
+    total = abs(slack) @ abs(scaled)
+    return float(abs(slack @ scaled).max() / total.max()) if total.max() > 0 else 0.0

@@ -9,10 +9,9 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
-from bemcontact.bem import quadrature, shape_functions
+from bemcontact.bem import reference_element
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.mesh import Mesh
-from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Closest, DeflectedContour, RigidSurface
 
@@ -66,7 +65,7 @@ class ContactPoints:
 
     @classmethod
     def none(cls, mesh: Mesh) -> Self:
-        """No points: a body that touches nothing."""
+        """No points, for a body that touches nothing."""
         none, numbers = np.zeros(0), np.zeros(0, int)
         return cls(
             mesh=mesh, node=numbers, zone=numbers, run=numbers, arc_position=none, run_length=none,
@@ -78,10 +77,6 @@ class ContactPoints:
         """Return the number of points."""
         return len(self.node)
 
-    def along_normals(self, motions: RigidMotions) -> Array:
-        """R (n, k): rigid motions seen along the rigid normals."""
-        return np.einsum("nx,nxk->nk", self.normals, motions.displacement(self.mesh.nodes[self.node]))
-
     @cached_property
     def tributary(self) -> Array:
         """(n,) [L]: Σ over elements of (1/3, 4/3, 1/3) |dx/dξ|."""
@@ -89,15 +84,15 @@ class ContactPoints:
 
     @cached_property
     def element_length(self) -> Array:
-        """(n,) [L]: length of the element, the mean of the two where a node has two; [SS92] (26) read word for word."""
+        """(n,) [L]: length of the element, the mean of the two where a node has two; [SS92] (26) taken literally."""
         lengths = element_lengths(self.mesh)[self.element]
         return np.bincount(self.point, lengths, len(self)) / np.bincount(self.point, minlength=len(self))
 
     @cached_property
     def consistent(self) -> Array:
         """(n, n) [L]: Σ over elements of ∫ h hᵀ |dx/dξ| dξ, [SS92] (24)-(25)."""
-        xi, weights = quadrature.gauss_legendre(ARC_ORDER)
-        N, tangents = shape_functions.values(xi), self.mesh.tangents_at(xi)
+        xi, weights = reference_element.gauss_legendre(ARC_ORDER)
+        N, tangents = reference_element.values(xi), self.mesh.tangents_at(xi)
         jacobian = np.hypot(tangents[..., 0], tangents[..., 1])
         local = np.einsum("gk,gl,mg,g->mkl", N, N, jacobian, weights)
         J = np.zeros((len(self), len(self)))
@@ -115,7 +110,7 @@ def element_lengths(mesh: Mesh) -> Array:
 
 def _half_lengths(mesh: Mesh) -> Array:
     """Arc length (m, 2) [L] of the first and the second half of each element."""
-    xi, weights = quadrature.gauss_legendre(ARC_ORDER)
+    xi, weights = reference_element.gauss_legendre(ARC_ORDER)
     halves = []
     for shift in (-0.5, 0.5):
         tangents = mesh.tangents_at(xi / 2 + shift)
@@ -137,10 +132,6 @@ def contact_points(
     problem, mesh, values : the stages up to here
     deflections : by zone, for those on a deflected contour: displacement (N, 2) [L] of the nodes that shapes it
     cases : what load cases prescribe in addition
-
-    Returns
-    -------
-    ContactPoints
     """
     halves = _half_lengths(mesh)
     tool_of = {zone: tool for tool, stated in problem.tools.items() for zone in stated.zones}
@@ -207,7 +198,7 @@ class _Piece(NamedTuple):
 
 
 def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
-    """String all runs together and find the (element, local node) pairs of every point."""
+    """Join all runs, and find the (element, local node) pairs of every point."""
     sizes = [len(piece.nodes) for piece in pieces]
     node, normals, gap = (
         np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("nodes", "normals", "gap")

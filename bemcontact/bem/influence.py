@@ -1,6 +1,6 @@
 """Influence of displacement and traction on the boundary upon collocation points: rows of F and G in F u = G t, (7).
 
-Rows are computed in blocks of neighbouring points. What far elements do to a block follows from what they do, by one
+Rows are computed in blocks of neighboring points. What far elements do to a block follows from what they do, by one
 Gauss rule each, to a few of its points (`skeleton`); pairs near to each other get the rule, or the closed form, that
 the root of their own element map asks for.
 
@@ -21,7 +21,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
-from bemcontact.bem import compiled, kernels, quadrature
+from bemcontact.bem import compiled, kernels, reference_element
 from bemcontact.bem.kernels import Components, GaussRule
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
@@ -79,7 +79,7 @@ class Block:
     F : (4, N, R) by components in the order of `kernels.T_ORDER`; multiplies displacement at the nodes
     G : (3, 3, e, R) by components in the order of `kernels.U_ORDER`; multiplies traction times Jacobian at the three
         local nodes of the elements that `Influence` was asked for
-    known : (s, 2, R) what each of the tractions does that `Influence` was told, along x and y
+    known : (s, 2, R) displacement along x and y due to each of the known tractions of `Influence`
     """
 
     rows: slice
@@ -89,7 +89,7 @@ class Block:
 
 
 class _Space(NamedTuple):
-    """Room for F and G of a block, used again for the next: fresh memory costs as much as filling it."""
+    """Memory for F and G of a block, reused for the next one, because new memory costs as much as filling it."""
 
     F: Array
     G: Array
@@ -127,7 +127,7 @@ class Influence:
 
     @cached_property
     def _known(self) -> Array:
-        """The same (s, 2, 3, m)."""
+        """`known` as (s, 2, 3, m)."""
         return self.known.transpose(0, 3, 2, 1) if len(self.known) else np.zeros((0, 2, 3, len(self.mesh.elements)))
 
     @cached_property
@@ -154,7 +154,7 @@ class Influence:
     @cached_property
     def _rules(self) -> list[tuple[GaussRule, ComplexArray]]:
         """For each tier: the rule, and dζ/dξ (n, m) at its Gauss points."""
-        rules = [kernels.gauss_rule(int(order), self._factors) for order in quadrature.ORDERS]
+        rules = [kernels.gauss_rule(int(order), self._factors) for order in reference_element.ORDERS]
         from_middle = self.element_nodes - self.element_nodes[:, 1:2]
         return [(rule, rule.derivatives.T @ from_middle.T) for rule in rules]
 
@@ -165,7 +165,6 @@ class Influence:
 
         Parameters
         ----------
-        collocation : Collocation
         use : called once for each block, from other threads and in any order; must not keep the block
         """
         step = max(8, min(ROWS_PER_BLOCK, LARGEST_BLOCK // len(self.mesh.elements)))
@@ -189,12 +188,7 @@ class Influence:
 
         Parameters
         ----------
-        collocation : Collocation
-        rows : neighbouring points
-
-        Returns
-        -------
-        Block
+        rows : neighboring points
         """
         return self._block(collocation, rows, self._space(rows.stop - rows.start))
 
@@ -202,7 +196,7 @@ class Influence:
         return _Space(np.empty(4 * len(self.nodes) * size), np.empty(9 * len(self.traction_elements) * size))
 
     def _block(self, collocation: Collocation, rows: slice, space: _Space) -> Block:
-        """The same in a given space, which the result keeps."""
+        """Rows of F and G in given memory, which the result keeps."""
         origin = collocation.base[rows.start]  # the digits of short elements are in differences to nodes of their own
         z = (collocation.base[rows] - origin) + collocation.offset[rows]
         nodes = self.element_nodes - origin
@@ -230,12 +224,14 @@ class Influence:
         distance = np.maximum(abs(c0 - middle) - radius, 0)
         r = 2 * distance / (c1 + np.sqrt(c1**2 + 4 * c2 * distance))
         rho = np.where(r > 1, r + np.sqrt(np.maximum(r * r - 1, 0)), 1.0)
-        tiers = np.where(self._slot >= 0, quadrature.tier(rho), quadrature.tier(rho, quadrature.RHO_OF_T))
+        tiers = np.where(
+            self._slot >= 0, reference_element.tier(rho), reference_element.tier(rho, reference_element.RHO_OF_T)
+        )
         return tiers, (rho > SHARED_RULE_RHO) & (radius <= RATIO * (abs(c0 - middle) - c1 - c2))
 
     @cached_property
     def _far_sums(self) -> compiled.FarSums | None:
-        """The machine code, if there is any and it is wanted."""
+        """The compiled function, if there is one and it is wanted."""
         large = self.mesh.degrees_of_freedom >= WORTH_COMPILING
         return compiled.far_sums() if (large if self.by_numba is None else self.by_numba) else None
 
@@ -272,7 +268,7 @@ class Influence:
         )  # fmt: skip
 
     def _far_by_products(self, block: Block, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice) -> None:
-        """The same by products of matrices, a cacheful at a time."""
+        """Every point with every element of a run by products of matrices, in parts that fit into the cache."""
         rule, tangent = self._rules[tier]
         middle, _ = disc(z)
         zeta = rule.shapes.T @ (nodes - middle).T
@@ -294,14 +290,14 @@ class Influence:
         base, offset = collocation.base[block.rows], collocation.offset[block.rows]
         tau = ((self.element_nodes[element, None] - base[:, None]) - offset[:, None]).reshape(-1, 3)
         root = kernels.nearest_root(tau)
-        tiers = quadrature.tier(quadrature.bernstein_parameter(root.r))
+        tiers = reference_element.tier(reference_element.bernstein_parameter(root.r))
         on_element, on = self._on_elements(block, collocation, element)
         tiers[on_element] = -1
         T, U = np.empty((4, 3, len(tau))), np.empty((3, 3, len(tau)))
         T[..., on_element], U[..., on_element] = on
         for tier in np.unique(tiers[tiers >= 0]):
             at = np.flatnonzero(tiers == tier)
-            if tier < len(quadrature.ORDERS):
+            if tier < len(reference_element.ORDERS):
                 result = self._regular(tau[at], int(tier))
             else:
                 part = kernels.Root(root.r[at], root.minus[at], root.plus[at])
@@ -346,7 +342,7 @@ class Influence:
 
 
 def _places(of: IntArray, count: int) -> IntArray:
-    """Where each of so many things stands in a list of some, -1 if nowhere."""
+    """Place of each of `count` items in a list of some of them, -1 if it is not there."""
     places = np.full(count, -1)
     places[of] = np.arange(len(of))
     return places

@@ -21,21 +21,22 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, ComplexArray
-from bemcontact.bem.quadrature import bernstein_parameter, gauss_legendre
-from bemcontact.bem.shape_functions import (
+from bemcontact.bem.reference_element import (
     DERIVATIVE_MONOMIALS,
     INTEGRALS,
     MONOMIALS,
     NODES,
+    bernstein_parameter,
     derivatives,
+    gauss_legendre,
     values,
 )
 
 SMOOTH_ORDER = 24
-"""Gauss points for what is left when the near root has been split off."""
+"""Gauss points for the smooth remainder after the near root has been split off."""
 
 SMOOTH_RHO = 2.0
-"""Bernstein parameter that the second root must have for that: 2^-48 < 1e-14."""
+"""Bernstein parameter that the second root needs for the remainder: 2^-48 < 1e-14."""
 
 
 class Integrals(NamedTuple):
@@ -60,11 +61,11 @@ class Components(NamedTuple):
 T_ORDER = ((0, 0), (1, 1), (0, 1), (1, 0))
 """Equation and displacement component of each entry of T."""
 U_ORDER = ((0, 0), (1, 1), (0, 1))
-"""The same of U, which is symmetric."""
+"""Equation and traction component of each entry of U, which is symmetric."""
 
 
 class Factors(NamedTuple):
-    """What multiplies the integrals, with κ = 3 - 4ν, c = 1/(8π(1-ν)), stresses over the shear modulus.
+    """Factors of the integrals, with κ = 3 - 4ν, c = 1/(8π(1-ν)), stresses over the shear modulus.
 
     T_xx, T_yy = normal Im A ∓ skew Re S, T_xy, T_yx = ∓tangential Re A - skew Im S with B = 2i S;
     U_xx, U_yy = -log L + turn (w ± Re M), U_xy = turn Im M.
@@ -136,7 +137,7 @@ def numerators(tau: ComplexArray, tangent: ComplexArray) -> Array:
 
 
 def numerator_polynomials(zeta: ComplexArray, tangent: ComplexArray) -> Array:
-    """The same as polynomials in the point z: coefficients (6, 5, n, e) at Gauss points ζ, ζ' (n, e) of e elements.
+    """`numerators` as polynomials in the point z: coefficients (6, 5, n, e) at Gauss points ζ, ζ' (n, e) of e elements.
 
     Their product with `point_powers` is every pair of an element and a point. With ζ and z counted from the middle of
     the points, elements farther away from all points than half their radius lose one digit.
@@ -156,18 +157,13 @@ def point_powers(z: ComplexArray) -> Array:
 
 
 def regular(integrands: Array, rule: GaussRule, factor: Factors, *, with_U: bool) -> Components:
-    """Gauss's rule, for pairs whose root is far enough away.
+    """Gauss's rule, for pairs with a root that is far enough away.
 
     Parameters
     ----------
     integrands : (5, n, …) as from `numerators`, or `numerator_polynomials` at points; overwritten
     rule : with n points
-    factor : Factors
     with_U : whether the integrals of U are wanted
-
-    Returns
-    -------
-    Components
     """
     _, n, *pairs = integrands.shape
     square, cos, normal, sin, _ = (np.asarray(part) for part in integrands)
@@ -209,10 +205,6 @@ def nearest_root(tau: ComplexArray) -> Root:
     Parameters
     ----------
     tau : (p, 3) ζ - z at the element nodes
-
-    Returns
-    -------
-    Root
     """
     _, c1, c2 = element_coefficients(tau)
     nearest = abs(tau).argmin(axis=1)
@@ -232,10 +224,6 @@ def near_singular(tau: ComplexArray, root: Root) -> Integrals:
     ----------
     tau : (p, 3) ζ - z at the element nodes
     root : as from `nearest_root`
-
-    Returns
-    -------
-    Integrals
     """
     log_ratio = np.log(root.minus / root.plus)
     ends = tau[:, [0, 2]]
@@ -245,17 +233,13 @@ def near_singular(tau: ComplexArray, root: Root) -> Integrals:
 def singular(nodes: ComplexArray, local: Array) -> Integrals:
     """Pairs whose point lies on the element, at local coordinate ξ0; one-sided limits from outside the body.
 
-    At an end of the element A_k of the node there diverges like ln|τ|; that part cancels against the neighbour's and
-    is left out here: with the neighbour's share goes -i times the interior angle.
+    At an end of the element A_k of the node there diverges like ln|τ|; that part cancels against the neighbor's and
+    is left out here: with the neighbor's share goes -i times the interior angle.
 
     Parameters
     ----------
     nodes : (p, 3) element nodes
     local : (p,) ξ0 of the collocation point
-
-    Returns
-    -------
-    Integrals
     """
     _, c1, c2 = element_coefficients(nodes)
     r = local.astype(complex)

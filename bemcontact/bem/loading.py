@@ -1,4 +1,9 @@
-"""What acts on a body, on its mesh: prescribed values, volume loads, and the resultant of all; it may be combined."""
+"""Loads on a body and its mesh: prescribed values, volume loads and the resultant of all. Loadings can be combined.
+
+Volume loads enter by particular solutions of the loaded equations, the f = F u_p - G t_p of (7), without a domain
+integral. Each is a polynomial that satisfies the equations of elasticity with its load; in plane stress ν is the
+effective one.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -6,14 +11,152 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.bem import reference_element
 from bemcontact.bem.boundary_values import BoundaryValues, applied_traction, boundary_values
 from bemcontact.bem.mesh import Mesh, along_curve
 from bemcontact.bem.rigid_motions import RigidMotions
-from bemcontact.bem.volume_loads import ParticularSolution, particular_solution, true_resultant
 from bemcontact.errors import ProblemError
-from bemcontact.problem.conditions import AxisFields, Condition, Field, Loads
+from bemcontact.problem.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
 from bemcontact.problem.load_case import LoadCase
+from bemcontact.problem.material import Material
 from bemcontact.problem.problem import Problem
+
+EXACT_ORDER = 6
+"""Gauss points that integrate x² y dx exactly along a quadratic element."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ParticularSolution:
+    """A field in equilibrium with the volume loads, on a mesh, and the resultant of these loads.
+
+    Parameters
+    ----------
+    displacement : (N, 2) u_p [L]
+    traction : (m, 3, 2) t_p [p]
+    force : (2,) resultant of the body force [p L]
+    moment : moment of the body force about the origin [p L²]
+    magnitude : sum of the magnitudes of the body forces, or a bound of it [p L]
+    """
+
+    displacement: Array
+    traction: Array
+    force: Array = field(default_factory=lambda: np.zeros(2))
+    moment: float = 0.0
+    magnitude: float = 0.0
+
+
+def particular_solution(loads: Loads, material: Material, mesh: Mesh) -> ParticularSolution:
+    """Sum the particular solutions of all volume loads."""
+    parts = []
+    if loads.gravity:
+        parts.append(_gravity(loads.gravity, material, mesh))
+    if loads.centrifugal:
+        parts.append(_centrifugal(loads.centrifugal, material, mesh))
+    if loads.temperature:
+        parts.append(_thermal(loads.temperature, material, mesh))
+    return ParticularSolution(
+        displacement=sum((part.displacement for part in parts), np.zeros_like(mesh.nodes)),
+        traction=sum((part.traction for part in parts), np.zeros((*mesh.elements.shape, 2))),
+        force=sum((part.force for part in parts), np.zeros(2)),
+        moment=sum(part.moment for part in parts),
+        magnitude=sum(part.magnitude for part in parts),
+    )
+
+
+def true_resultant(problem: Problem) -> tuple[Array, float]:
+    """Resultant (2,) [p L] of the body forces and its moment about the origin [p L²], on the curves themselves."""
+    area, moments = 0.0, np.zeros(2)
+    for edge in problem.boundary.edges:
+        points, normals, lengths = along_curve(edge)
+        flux = lengths * np.sum(points * normals, axis=1)
+        area += float(flux.sum()) / 2
+        moments += flux @ points / 3
+    force, moment = np.zeros(2), 0.0
+    for load in (problem.loads.gravity, problem.loads.centrifugal):
+        if load:
+            its_force, its_moment = _resultant(load, area, moments)
+            force, moment = force + its_force, moment + its_moment
+    return force, moment
+
+
+def _resultant(load: Gravity | Centrifugal, area: float, moments: Array) -> tuple[Array, float]:
+    """Resultant (2,) and moment about the origin on a body of that area with the first moments ∫ x dA, ∫ y dA (2,)."""
+    if isinstance(load, Gravity):
+        b = load.density * np.array(load.acceleration)
+        return area * b, float(moments[0] * b[1] - moments[1] * b[0])
+    density, axis = load.density * load.angular_velocity**2, np.array(load.center)
+    return density * (moments - area * axis), float(density * (axis[0] * moments[1] - axis[1] * moments[0]))
+
+
+def _gravity(gravity: Gravity, material: Material, mesh: Mesh) -> ParticularSolution:
+    """u_p = α r² b with G α (4 + 2/(1-2ν)) = -1, for the constant body force b; r from the middle of the body."""
+    b = gravity.density * np.array(gravity.acceleration)
+    nu = material.effective_poisson_ratio
+    alpha = -(1 - 2 * nu) / (2 * material.shear_modulus * (3 - 4 * nu))
+    x = mesh.nodes - mesh.center
+    gradient = 2 * alpha * np.einsum("i,mkj->mkij", b, x[mesh.elements])
+    area, moments = _moments_of_area(mesh)
+    force, moment = _resultant(gravity, area, moments)
+    return ParticularSolution(
+        displacement=alpha * np.sum(x * x, axis=1)[:, None] * b,
+        traction=_traction(gradient, material, mesh),
+        force=force,
+        moment=moment,
+        magnitude=area * float(np.hypot(*b)),
+    )
+
+
+def _centrifugal(centrifugal: Centrifugal, material: Material, mesh: Mesh) -> ParticularSolution:
+    """u_p = γ r² x with 16 G γ (1-ν)/(1-2ν) = -ρω², x and r from the axis of rotation."""
+    density = centrifugal.density * centrifugal.angular_velocity**2
+    nu = material.effective_poisson_ratio
+    gamma = -density * (1 - 2 * nu) / (16 * material.shear_modulus * (1 - nu))
+    axis = np.array(centrifugal.center)
+    x = mesh.nodes - axis
+    r2 = np.sum(x * x, axis=1)
+    at = x[mesh.elements]
+    gradient = gamma * (r2[mesh.elements][..., None, None] * np.eye(2) + 2 * np.einsum("mki,mkj->mkij", at, at))
+    area, moments = _moments_of_area(mesh)
+    force, moment = _resultant(centrifugal, area, moments)
+    return ParticularSolution(
+        displacement=gamma * r2[:, None] * x,
+        traction=_traction(gradient, material, mesh),
+        force=force,
+        moment=moment,
+        magnitude=density * area * float(np.sqrt(r2.max())),
+    )
+
+
+def _thermal(temperature: Temperature, material: Material, mesh: Mesh) -> ParticularSolution:
+    """u_p + i v_p = α' (T0 z + (a - ib) z²/2), free of stress, for T = T0 + a x + b y; α' = (1+ν) α in plane strain."""
+    change, nu = temperature.change, material.poisson_ratio
+    expansion = temperature.expansion * (1 + nu if material.state == "plane_strain" else 1)
+    x = mesh.nodes - mesh.center
+    z = x[:, 0] + 1j * x[:, 1]
+    at_center = change.at(mesh.center[None, :])[0]
+    w = expansion * (at_center * z + (change.x - 1j * change.y) * z * z / 2)
+    return ParticularSolution(
+        displacement=np.column_stack([w.real, w.imag]), traction=np.zeros((*mesh.elements.shape, 2))
+    )
+
+
+def _traction(gradient: Array, material: Material, mesh: Mesh) -> Array:
+    """Hooke's law, σ = G (∇u + ∇uᵀ) + λ div u, and t = σ n, from ∇u (m, 3, 2, 2)."""
+    G, nu = material.shear_modulus, material.effective_poisson_ratio
+    strain = gradient + np.swapaxes(gradient, -1, -2)
+    spherical = 2 * G * nu / (1 - 2 * nu) * np.trace(gradient, axis1=-2, axis2=-1)[..., None, None] * np.eye(2)
+    return np.einsum("mkij,mkj->mki", G * strain + spherical, mesh.normals)
+
+
+def _moments_of_area(mesh: Mesh) -> tuple[float, Array]:
+    """Area [L²] and its first moments ∫ x dA, ∫ y dA (2,) [L³], by Green's theorem on the elements, exactly."""
+    xi, weights = reference_element.gauss_legendre(EXACT_ORDER)
+    points = np.einsum("gk,mkx->mgx", reference_element.values(xi), mesh.nodes[mesh.elements] - mesh.center)
+    tangents = mesh.tangents_at(xi)
+    flux = points[..., 0] * tangents[..., 1] - points[..., 1] * tangents[..., 0]
+    area = float(np.einsum("mg,g->", flux, weights)) / 2
+    moments = np.einsum("mgx,mg,g->x", points, flux, weights) / 3
+    return area, moments + area * mesh.center
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -34,7 +177,7 @@ class Loading:
     true_moment: float = 0.0
 
     def forces(self, mesh: Mesh) -> Array:
-        """What the prescribed tractions do at each (element, local node), (m, 3, 2) [p L]."""
+        """Forces of the prescribed tractions at each (element, local node), (m, 3, 2) [p L]."""
         return mesh.tributary[..., None] * self.values.traction
 
     def resultant(self, mesh: Mesh) -> Array:
@@ -47,7 +190,7 @@ class Loading:
         return work + motions.work_of(self.particular.force, self.particular.moment)
 
     def true_work(self, mesh: Mesh, motions: RigidMotions) -> Array:
-        """The same (k,) on the curves themselves, to round-off: whether loads balance is no matter of the mesh."""
+        """Work (k,) on the curves themselves, to round-off: the balance of loads does not depend on the mesh."""
         return motions.work_of(self.true_force, self.true_moment, about=mesh.center)
 
     def magnitude(self, mesh: Mesh) -> float:
@@ -57,12 +200,12 @@ class Loading:
 
 
 def permanent_loading(problem: Problem, mesh: Mesh) -> Loading:
-    """What the problem's own conditions and loads do; `ProblemError` if they contradict each other at a corner."""
+    """The loading by the problem's own conditions and loads; `ProblemError` if these contradict at a corner."""
     return _loading(problem, mesh, problem.conditions, problem.loads)
 
 
 def case_loadings(problem: Problem, mesh: Mesh) -> list[Loading]:
-    """What each load case does by itself; `ProblemError` likewise."""
+    """The loading by each load case alone; `ProblemError` if it contradicts itself at a corner."""
     return [_case_loading(problem, mesh, name, case) for name, case in problem.load_cases.items()]
 
 
@@ -114,7 +257,7 @@ def _loading(problem: Problem, mesh: Mesh, conditions: Mapping[str, Condition], 
 
 
 def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase) -> Loading:
-    """What a load case does: displacements that it does not give are zero where the problem prescribes some."""
+    """The loading by a load case; where the problem prescribes displacements that it does not give, they are zero."""
     conditions: dict[str, Condition] = {}
     for edge in {**problem.conditions, **case.conditions}:
         held = problem.conditions[edge].displacement.given if edge in problem.conditions else ()

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.bem import quadrature, shape_functions
+from bemcontact.bem import reference_element
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.problem import Problem
 
@@ -65,7 +65,7 @@ class Mesh:
     @cached_property
     def tangents(self) -> Array:
         """dx/dξ (m, 3, 2) [L] at each (element, local node)."""
-        return self.tangents_at(shape_functions.NODES)
+        return self.tangents_at(reference_element.NODES)
 
     @cached_property
     def jacobians(self) -> Array:
@@ -92,24 +92,15 @@ class Mesh:
     @cached_property
     def tributary(self) -> Array:
         """Length (m, 3) [L] that belongs to each (element, local node): (1/3, 4/3, 1/3) |dx/dξ|."""
-        return shape_functions.INTEGRALS * self.jacobians
+        return reference_element.INTEGRALS * self.jacobians
 
     def tangents_at(self, xi: Array) -> Array:
         """dx/dξ (m, q, 2) [L] at the local coordinates ξ (q,) of each element."""
-        return np.einsum("gk,mkx->mgx", shape_functions.derivatives(xi), self.nodes[self.elements])
+        return np.einsum("gk,mkx->mgx", reference_element.derivatives(xi), self.nodes[self.elements])
 
 
 def build(problem: Problem) -> Mesh:
-    """Divide every edge into its elements; middle nodes halve the arc length of an element.
-
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    Mesh
-    """
+    """Divide every edge into its elements; middle nodes halve the arc length of an element."""
     starts, middles, after, edge_of = [], [], [], []
     for loop in problem.boundary.loops:
         first = len(edge_of)
@@ -132,7 +123,7 @@ def along_curve(edge: Edge) -> tuple[Array, Array, Array]:
     lengths : (q,) arc length that belongs to each point [L]
     """
     ends = edge.breakpoints(1)
-    xi, weights = quadrature.gauss_legendre(CURVE_ORDER)
+    xi, weights = reference_element.gauss_legendre(CURVE_ORDER)
     fractions = ((ends[:-1, None] + ends[1:, None]) / 2 + np.diff(ends)[:, None] / 2 * xi).ravel()
     lengths = (np.diff(ends)[:, None] / 2 * weights).ravel() * edge.length
     return edge.points(fractions), edge.normals(fractions), lengths
@@ -146,10 +137,6 @@ def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[
     starts, middles : (m, 2) start and middle node of each element [L]
     after : (m,) the element that begins where each element ends
     edge_of : m names of edges
-
-    Returns
-    -------
-    Mesh
     """
     m = len(starts)
     names = tuple(dict.fromkeys(edge_of))

@@ -1,15 +1,20 @@
-"""Rigid motions of the body: which of them the conditions leave free, and how to say them in words."""
+"""Rigid motions of the body and of tools: which ones no condition prevents, which of them contact sees, their names."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.linalg import block_diag
 
 from bemcontact.arrays import Array, BoolArray
+from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
+from bemcontact.problem.contact_zone import RigidTool, ToolAction
+from bemcontact.problem.problem import Problem
 
 HELD = 1e-9
-"""Singular value, relative to one, below which a prescribed displacement does not hold a motion."""
+"""Singular value, relative to one, below which the prescribed displacements do not hold a motion."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,6 +42,10 @@ class RigidMotions:
         a, b, c = self.coefficients.T
         return np.stack([a - c * x[..., 1:], b + c * x[..., :1]], axis=-2)
 
+    def along_normals(self, points: ContactPoints) -> Array:
+        """R (n, k): the motions of contact points along the rigid normals."""
+        return np.einsum("nx,nxk->nk", points.normals, self.displacement(points.mesh.nodes[points.node]))
+
     def work(self, points: Array, forces: Array) -> Array:
         """Work (k,) of forces (..., 2) at points (..., 2) in each motion."""
         return np.tensordot(forces, self.displacement(points), axes=forces.ndim)
@@ -48,11 +57,11 @@ class RigidMotions:
         return self.coefficients @ np.append(force, about_center / self.radius)
 
     def describe(self) -> tuple[str, ...]:
-        """Say each motion in words: its direction, or the point about which it turns."""
+        """Describe each motion: its direction, or the point about which it turns."""
         return tuple(map(self.described, self.coefficients))
 
     def described(self, coefficients: Array) -> str:
-        """Say the motion with such coefficients (3,), which are not all zero, in words."""
+        """Describe the motion with these coefficients (3,), which are not all zero."""
         a, b, c = np.where(abs(coefficients) > 1e-9 * abs(coefficients).max(), coefficients, 0.0)
         if c == 0:
             length = np.hypot(a, b)
@@ -73,7 +82,6 @@ def free_rigid_motions(mesh: Mesh, prescribed: BoolArray) -> RigidMotions:
 
     Parameters
     ----------
-    mesh : Mesh
     prescribed : (N, 2) whether the displacement of a node along an axis is prescribed
 
     Returns
@@ -104,3 +112,207 @@ def echelon(basis: Array) -> Array:
         rows[others] -= np.outer(rows[others, column], rows[row])
         row += 1
     return rows / np.linalg.norm(rows, axis=1, keepdims=True)
+
+
+UNSEEN = 1e-9
+"""Largest normal displacement at contact points, relative to the motion's own, that counts as zero."""
+BODY = "the body"
+"""Name of the body in sentences."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlacedTools:
+    """t tools beside the contact points of a body; components are x, y and rotation, tool by tool.
+
+    Parameters
+    ----------
+    names : of the tools
+    point : (t, 2) about which each turns [L]
+    motions : (n, 3 t) what a unit displacement along x and y [1] and a unit rotation [L] add to the gaps, -n·w
+    free : (3 t,) whether the tool is free to move so
+    position : (3 t, 1 + c) x, y [L] and rotation [rad] that are given: permanent, then by load case
+    force : (3 t, 1 + c) x, y [p L] and moment [p L²] likewise
+    """
+
+    names: tuple[str, ...]
+    point: Array
+    motions: Array
+    free: BoolArray
+    position: Array
+    force: Array
+
+    def poles(self, points: ContactPoints) -> Array:
+        """Poles (t, 2) of rotation [L]: the middle of a tool's contact points, in directions in which the tool is free.
+
+        A rotation about a point far away can hardly be distinguished from a translation.
+        """
+        poles = self.point.copy()
+        for tool, (x, y, turns) in enumerate(self.free.reshape(-1, 3)):
+            moved = np.any(self.motions[:, 3 * tool : 3 * tool + 3], axis=1)
+            if turns and moved.any():
+                middle = np.average(points.mesh.nodes[points.node[moved]], axis=0, weights=points.tributary[moved])
+                poles[tool] = np.where([y, x], middle, poles[tool])
+        return poles
+
+
+def placed_tools(problem: Problem, points: ContactPoints) -> PlacedTools:
+    """Find how the tools of a problem move its contact points."""
+    tools, cases = problem.tools, problem.load_cases
+    names = tuple(problem.contact_zones)
+    columns, places = [np.zeros((len(points), 0))], []
+    for tool in tools.values():
+        place = np.array(tool.point or (0.0, 0.0))
+        moved = np.isin(points.zone, [names.index(zone) for zone in tool.zones])
+        turn = RigidMotions(coefficients=np.eye(3), center=place, radius=1.0)
+        columns.append(np.where(moved[:, None], -turn.along_normals(points), 0.0))
+        places.append(place)
+    actions: list[Mapping[str, ToolAction]] = [tools, *(case.tools for case in cases.values())]
+    return PlacedTools(
+        names=tuple(tools),
+        point=np.array(places).reshape(-1, 2),
+        motions=np.hstack(columns),
+        free=np.array([tool.free for tool in tools.values()], bool).ravel(),
+        position=np.column_stack([_components(tools, action, "position") for action in actions]),
+        force=np.column_stack([_components(tools, action, "load") for action in actions]),
+    )
+
+
+def _components(tools: Mapping[str, RigidTool], actions: Mapping[str, ToolAction], key: str) -> Array:
+    """One component (3 t,) of an action on each tool, zero where there is none."""
+    rows = [getattr(actions[name], key) if name in actions else (0.0, 0.0, 0.0) for name in tools]
+    return np.array(rows, float).ravel()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FreeMotions:
+    """k motions in each of which the body and the tools move rigidly, all at once.
+
+    Parameters
+    ----------
+    coefficients : (k, 3 + 3 t) x, y and rotation times radius of the body about its center, then of each tool about its
+        pole
+    names : of the tools
+    centers : (1 + t, 2) center and poles [L]
+    to_points : (3 t, 3 t) motion of the tools, x, y and rotation [rad/L] about their own points, from that about poles
+    radius : [L]
+    """
+
+    coefficients: Array
+    names: tuple[str, ...]
+    centers: Array
+    to_points: Array
+    radius: float
+
+    def __len__(self) -> int:
+        """Return the number of motions."""
+        return len(self.coefficients)
+
+    @property
+    def body(self) -> RigidMotions:
+        """Motions of the body in each of them."""
+        return self._part(0)
+
+    @property
+    def tools(self) -> Array:
+        """Motions of the tools (3 t, k): x, y and rotation [rad/L] about their points, tool by tool."""
+        return self.to_points @ self.coefficients[:, 3:].T
+
+    def combined(self, factors: Array) -> "FreeMotions":
+        """Combinations of these motions by the columns of factors (k, j)."""
+        return replace(self, coefficients=factors.T @ self.coefficients)
+
+    def describe(self) -> tuple[str, ...]:
+        """Describe each motion, and whose it is unless it is that of the body alone."""
+        return tuple(f"{self.way(j)}{'' if self.who(j) == BODY else f' of {self.who(j)}'}" for j in range(len(self)))
+
+    def who(self, motion: int) -> str:
+        """Say what moves: the body, tools, or some of them together."""
+        *others, last = (("the tool '" + self.names[part - 1] + "'") if part else BODY for part in self._moving(motion))
+        return f"{', '.join(others)} and {last} together" if others else last
+
+    def way(self, motion: int) -> str:
+        """Say how it moves."""
+        ways = [self._part(part).described(self._of(motion, part)) for part in self._moving(motion)]
+        return " and ".join(dict.fromkeys(ways))
+
+    def in_user_units(self) -> "FreeMotions":
+        """These motions scaled so that work in them is a force [p L] for a translation, else a moment [p L²]."""
+        scales = []
+        for motion in range(len(self)):
+            x, y, turn = abs(self.coefficients[motion]).reshape(-1, 3).T
+            scales.append(self.radius / turn.max() if self.turns(motion) else 1 / np.hypot(x, y).max())
+        return self.combined(np.diag(scales))
+
+    def turns(self, motion: int) -> bool:
+        """Whether something turns in a motion."""
+        size = abs(self.coefficients[motion]).max()
+        return bool(abs(self.coefficients[motion, 2::3]).max() > UNSEEN * size)
+
+    def _part(self, number: int) -> RigidMotions:
+        """Motions of the body (0) or of a tool in each of them."""
+        its = self.coefficients[:, 3 * number : 3 * number + 3]
+        return RigidMotions(coefficients=its, center=self.centers[number], radius=self.radius)
+
+    def _of(self, motion: int, part: int) -> Array:
+        """Coefficients (3,) of the body (0) or a tool in one of them."""
+        return self.coefficients[motion, 3 * part : 3 * part + 3]
+
+    def _moving(self, motion: int) -> list[int]:
+        """The body (0) and tools that move in one of them."""
+        size = abs(self.coefficients[motion]).max()
+        return [part for part in range(1 + len(self.names)) if abs(self._of(motion, part)).max() > UNSEEN * size]
+
+
+def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTools) -> tuple[FreeMotions, FreeMotions]:
+    """Separate the free motions of the body and of tools that contact sees from those that no contact point sees.
+
+    Parameters
+    ----------
+    points : of contact
+    of_body : that the conditions leave free
+    tools : of the problem
+
+    Returns
+    -------
+    seen : those of the body first, then those of tools, each with independent columns of R
+    unseen : those in which nothing changes its gap, or body and tools go together
+    """
+    t = len(tools.names)
+    poles = tools.poles(points)
+    to_points = _to_points(tools.point - poles, of_body.radius)
+    basis = np.hstack([replace(of_body, coefficients=np.eye(3)).along_normals(points), tools.motions @ to_points])
+    every = FreeMotions(
+        coefficients=np.zeros((0, 3 + 3 * t)),
+        names=tools.names,
+        centers=np.vstack([of_body.center, poles]),
+        to_points=to_points,
+        radius=of_body.radius,
+    )
+    held = np.pad(of_body.coefficients, ((0, 0), (0, 3 * t)))
+    guided = np.eye(3 + 3 * t)[3:][tools.free]
+    (body, lost), (loaded, idle) = _split(basis, held), _split(basis, guided)
+    both = np.vstack([body, loaded])
+    together = _null_vectors(basis @ both.T)
+    apart = _null_vectors(together[: len(body)].T)
+    seen, unseen = np.vstack([echelon(apart.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
+    return replace(every, coefficients=seen), replace(every, coefficients=unseen)
+
+
+def _to_points(levers: Array, radius: float) -> Array:
+    """Motion (3 t, 3 t) of tools about their points from that about their poles, at levers (t, 2) from these."""
+    blocks = [[[1.0, 0.0, -y / radius], [0.0, 1.0, x / radius], [0.0, 0.0, 1 / radius]] for x, y in levers]
+    return np.asarray(block_diag(np.zeros((0, 0)), *blocks), float)
+
+
+def _split(basis: Array, motions: Array) -> tuple[Array, Array]:
+    """Separate motions (k, components) that move contact points from those that move none."""
+    _, values, vectors = np.linalg.svd(np.vstack([basis @ motions.T, np.zeros((len(motions), len(motions)))]))
+    unseen = values <= UNSEEN * np.sqrt(len(basis))
+    return echelon(vectors[~unseen] @ motions), echelon(vectors[unseen] @ motions)
+
+
+def _null_vectors(matrix: Array) -> Array:
+    """Orthonormal null vectors (k, j) of a matrix (n, k)."""
+    k = matrix.shape[1]
+    _, values, vectors = np.linalg.svd(np.vstack([matrix, np.zeros((k, k))]))
+    return vectors[values <= UNSEEN * np.sqrt(max(len(matrix), 1))].T

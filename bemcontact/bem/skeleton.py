@@ -1,4 +1,4 @@
-"""Few points of a block that stand for all of them: what far elements do to these, they do to the others by proportion.
+"""Few points of a block that represent all of them: the influence of far elements on the others is a combination.
 
 With z = c + r w, c the middle and r the radius of the block, and q = r/(ζ - c), the kernels at z are sums over p of
 q^p w^p and (p + 1) q^p conj(w) w^p times what does not depend on z (Taylor's series of 1/τ, 1/τ² and ln τ). So
@@ -14,14 +14,14 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from bemcontact.arrays import Array, ComplexArray, IntArray
-from bemcontact.bem.quadrature import TOLERANCE
+from bemcontact.bem.reference_element import TOLERANCE
 
 RATIO = 0.5
 """Radius of a block over the distance from its middle up to which an element is far."""
 
 
 def _number_of_terms() -> int:
-    """How many powers it takes until (p + 1) RATIO^p is below TOLERANCE."""
+    """Number of powers until (p + 1) RATIO^p is below TOLERANCE."""
     p = np.arange(200)
     return int(np.argmax((p + 1) * RATIO**p < TOLERANCE))
 
@@ -54,12 +54,7 @@ def disc(z: ComplexArray) -> tuple[complex, float]:
 
 
 def skeleton(z: ComplexArray) -> Skeleton:
-    """Choose points among z (R,) that stand for all of them.
-
-    Returns
-    -------
-    Skeleton
-    """
+    """Choose points among z (R,) that stand for all of them."""
     geqp3, trtrs = get_lapack_funcs(("geqp3", "trtrs"), dtype=float)
     values = _far_functions(z)
     triangle, pivots, *_ = geqp3(values)

@@ -9,20 +9,22 @@ Within this module lengths are over L0 and stresses over the shear modulus (see 
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
-from bemcontact.bem import kernels, shape_functions
+from bemcontact.bem import kernels, reference_element
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.influence import Block, Collocation, Influence
 from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
+from bemcontact.contact.lu import LU
+from bemcontact.errors import SingularSystemError
 from bemcontact.problem.material import Material
 
 OFFSET = 2 / 3
@@ -96,13 +98,7 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Equa
 
     Parameters
     ----------
-    mesh : Mesh
-    unknowns : Unknowns
     nodes : (N,) as x + iy, in the lengths of the system
-
-    Returns
-    -------
-    Equations
     """
     m, before = len(mesh.elements), mesh.before
     element = np.arange(m)
@@ -116,7 +112,7 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Equa
     split = np.flatnonzero(double.any(axis=1))
     on_split = np.column_stack([before[split], split]).ravel()
     local_split = np.tile([OFFSET, -OFFSET], len(split))
-    shapes = shape_functions.values(local_split)
+    shapes = reference_element.values(local_split)
     base = np.repeat(nodes[split], 2)
     offset = np.sum(shapes * (nodes[mesh.elements[on_split]] - base[:, None]), axis=1)
 
@@ -178,7 +174,7 @@ class System:
 
     @property
     def values(self) -> BoundaryValues:
-        """What is prescribed on the boundary."""
+        """Prescribed values on the boundary."""
         return self.loadings[0].values
 
     @cached_property
@@ -221,12 +217,12 @@ class System:
 
     @cached_property
     def _known_traction(self) -> Array:
-        """What G multiplies on the right (s, m, 3, 2): prescribed traction less that of the particular solution."""
+        """Factor of G on the right (s, m, 3, 2): prescribed traction less that of the particular solution."""
         return np.stack([item.values.traction - item.particular.traction for item in self.loadings]) / self.stress
 
     @cached_property
     def _known_displacement(self) -> Array:
-        """What F multiplies on the right (s, N, 2), with the sign it has on the left."""
+        """Factor of F on the right (s, N, 2), with the sign that it has on the left."""
         given = [item.values.displacement - item.particular.displacement for item in self.loadings]
         return np.stack(given) / self.length
 
@@ -257,12 +253,7 @@ class System:
         return _Carried(at, sparse.csr_array((values, (column, np.arange(len(at)))), shape=(len(factors), len(at))))
 
     def rows(self, block: Block) -> Iterator[Rows]:
-        """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations.
-
-        Yields
-        ------
-        Rows
-        """
+        """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations."""
         F = dict(zip(kernels.T_ORDER, block.F, strict=True))
         G = dict(zip(kernels.U_ORDER, block.G.reshape(3, -1, block.G.shape[-1]), strict=True))
         for axis in range(2):
@@ -322,3 +313,76 @@ class System:
         sought = self.unknowns.traction >= 0
         traction[sought] = z[self.unknowns.traction[sought]] * self.stress
         return displacement, traction
+
+
+SINGULAR = 1e-15
+"""Reciprocal condition number below which the system counts as singular."""
+
+
+def assemble(system: System) -> tuple[Array, Array]:
+    """Set up the bordered matrix (in Fortran order, to be factorized in place) and the right sides.
+
+    Returns
+    -------
+    matrix : (size, size)
+    right : (size, s + n)
+    """
+    unknowns = system.unknowns.size
+    matrix = np.zeros((system.size, system.size), order="F")
+    transposed = matrix.T
+    right = np.zeros((system.size, len(system.loadings) + len(system.points)), order="F")
+
+    def place(block: Block) -> None:
+        for rows in system.rows(block):
+            first = 0
+            for part in rows.left:
+                transposed[first : first + len(part), rows.at] = part
+                first += len(part)
+            right[rows.at] = rows.right.T
+
+    system.influence.each_block(system.equations.collocation, place)
+    matrix[:unknowns, unknowns:] = system.border
+    matrix[unknowns:, :unknowns] = system.null_vectors.T
+    return matrix, right
+
+
+def solve(system: System) -> Array:
+    """Solve for the loads and for unit pressures: LU in place, then one step of refinement on rows computed anew.
+
+    Returns
+    -------
+    (size, s + n)
+
+    Raises
+    ------
+    SingularSystemError
+    """
+    matrix, right = assemble(system)
+    lu = LU.of(matrix, overwrite=True)
+    if lu.reciprocal_condition < SINGULAR:
+        raise SingularSystemError(
+            "the equations of the body have no unique solution (reciprocal condition number "
+            f"{lu.reciprocal_condition:.1e}); look for coincident edges, or for neighboring elements of very different "
+            "length"
+        )
+    return lu.solve(right, partial(residual, system))
+
+
+def residual(system: System, response: Array) -> Array:
+    """Right sides less matrix times response, (size, s + n), from rows computed anew: no second matrix is kept."""
+    unknowns = system.unknowns.size
+    z, s = response[:unknowns], response[unknowns:]
+    result = np.zeros_like(response, order="F")
+
+    def place(block: Block) -> None:
+        for rows in system.rows(block):
+            first = 0
+            for part in rows.left:
+                rows.right[:] -= z[first : first + len(part)].T @ part
+                first += len(part)
+            result[rows.at] = rows.right.T
+
+    system.influence.each_block(system.equations.collocation, place)
+    result[:unknowns] -= system.border @ s
+    result[unknowns:] = -system.null_vectors.T @ z
+    return result

@@ -10,13 +10,8 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.checking import check
-from bemcontact.cli.comparing import compare
-from bemcontact.cli.condensing import condense
-from bemcontact.cli.following import path
-from bemcontact.cli.reproducing import reproduce
-from bemcontact.cli.schemas import schema
-from bemcontact.cli.solving import solve
+from bemcontact.cli import check, compare, path, reproduce, solve
+from bemcontact.cli.command import flattened
 
 app = typer.Typer(
     add_completion=False,
@@ -30,7 +25,7 @@ app = typer.Typer(
 def main() -> None:
     """Run the command line; the entry point of the ``bemcontact`` program."""
     if isinstance(sys.stdout, TextIOWrapper):
-        sys.stdout.reconfigure(errors="replace")  # a terminal that lacks a letter shows a question mark
+        sys.stdout.reconfigure(errors="replace")  # a letter that the terminal lacks becomes a question mark
     app()
 
 
@@ -61,5 +56,13 @@ def bemcontact(
     """
 
 
-for command in (check, solve, compare, path, reproduce, condense, schema):
-    app.command()(command)
+for function in (
+    check.check,
+    solve.solve,
+    compare.compare,
+    path.path,
+    reproduce.reproduce,
+    check.condense,
+    check.schema,
+):
+    app.command()(flattened(function))

@@ -1,4 +1,4 @@
-"""What a person sees on a terminal: renderables, one-line messages, and what is going on."""
+"""Output on a terminal: renderables, one-line messages, and progress."""
 
 import re
 import threading
@@ -10,11 +10,14 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 PATIENCE = 1.0
-"""Seconds of work after which a person is told what is going on."""
+"""Seconds of work before progress is shown."""
+
+Report = Callable[[str, str], None]
+"""Takes the name of a stage, which ends the stage before it, and how far it has come."""
 
 
 def show(renderable: RenderableType) -> None:
-    """Print for a person on standard output; into a file or a pipe, without blanks at the ends of lines."""
+    """Print on standard output; into a file or a pipe, without blanks at the ends of lines."""
     console = Console(highlight=False, markup=False, emoji=False)
     if console.is_terminal:
         console.print(renderable)
@@ -25,7 +28,7 @@ def show(renderable: RenderableType) -> None:
 
 
 def tell(head: str, message: str, style: str = "bold red") -> None:
-    """Say one thing on standard error: never markup, never folded, so that paths stay whole."""
+    """Print a message on standard error, without markup and without folding, so that paths stay whole."""
     printable = "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in message)
     Console(stderr=True, highlight=False, markup=False, emoji=False).print(
         Text.assemble((head, style), printable), soft_wrap=True
@@ -33,36 +36,12 @@ def tell(head: str, message: str, style: str = "bold red") -> None:
 
 
 @contextmanager
-def busy(what: str) -> Iterator[Callable[[str], None]]:
-    """Show what is going on and for how long, on a terminal and only once it lasts.
-
-    Parameters
-    ----------
-    what : in a word or two
-
-    Yields
-    ------
-    callable
-        Takes what is going on now.
-    """
-    with _patient_progress() as progress:
-        task = progress.add_task(what, total=None)
-        yield lambda now: progress.update(task, description=now)
-
-
-@contextmanager
-def stages() -> Iterator[Callable[[str, str], None]]:
-    """Show a line for each stage with the time it took, on a terminal and only once it lasts.
-
-    Yields
-    ------
-    callable
-        Takes the name of a stage, which ends the one before, and how far it has come.
-    """
+def stages() -> Iterator[Report]:
+    """Show a line for each stage with the time it took, on a terminal and only once it lasts."""
     with _patient_progress() as progress:
         names: list[str] = []
 
-        def tell(stage: str, now: str) -> None:
+        def report(stage: str, now: str) -> None:
             if names[-1:] != [stage]:
                 for task in progress.task_ids[-1:]:
                     progress.update(task, total=1, completed=1)
@@ -70,12 +49,12 @@ def stages() -> Iterator[Callable[[str, str], None]]:
                 names.append(stage)
             progress.update(progress.task_ids[-1], description=f"{stage}, {now}" if now else stage)
 
-        yield tell
+        yield report
 
 
 @contextmanager
 def _patient_progress() -> Iterator[Progress]:
-    """Show progress only after a while, and only on a terminal; it leaves nothing behind."""
+    """Progress that is shown only after a while, only on a terminal, and erased at the end."""
     console = Console(stderr=True)
     columns = (SpinnerColumn(finished_text="✓"), TextColumn("{task.description}", markup=False), TimeElapsedColumn())
     progress = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)

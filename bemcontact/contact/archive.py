@@ -1,4 +1,4 @@
-"""Frozen dataclasses of arrays as one ``.npz`` file: a name of an array is the way to its field, with dots."""
+"""Frozen dataclasses of arrays as one ``.npz`` file. The name of an array is the path to its field, with dots."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
@@ -17,7 +17,7 @@ FILE_FORMAT = "bemcontact.condensed.3"
 
 
 def write(path: Path, stored: Any) -> None:
-    """Write a dataclass, whole or not at all; `OSError` where that cannot be."""
+    """Write a dataclass, whole or not at all; `OSError` if it cannot be written."""
     arrays: dict[str, Any] = {"format": np.array(FILE_FORMAT), **dict(_arrays(stored, ""))}
     with output.whole_file(path) as temporary, open(temporary, "xb") as stream:
         np.savez_compressed(stream, **arrays)
@@ -38,7 +38,7 @@ def read(path: Path, kind: type[Kind]) -> Kind:
 
 
 def _arrays(stored: Any, prefix: str) -> Iterator[tuple[str, Any]]:
-    """Names and arrays of all that a dataclass holds."""
+    """Names and arrays of all fields of a dataclass."""
     for item in fields(stored):
         value = getattr(stored, item.name)
         if is_dataclass(value):
@@ -48,12 +48,12 @@ def _arrays(stored: Any, prefix: str) -> Iterator[tuple[str, Any]]:
 
 
 def _made(kind: type[Kind], arrays: Mapping[str, Any], prefix: str) -> Kind:
-    """Make a dataclass of what stands under a prefix; an array that is not there was None."""
+    """Make a dataclass from the arrays under a prefix; a missing array was None."""
     return kind(**{name: _field(hint, arrays, prefix + name) for name, hint in get_type_hints(kind).items()})
 
 
 def _field(hint: Any, arrays: Mapping[str, Any], key: str) -> Any:
-    """One field in the form that its type asks for."""
+    """One field, converted to its type."""
     if is_dataclass(hint):
         return _made(hint, arrays, f"{key}.")  # pyright: ignore[reportArgumentType]
     array = arrays.get(key)

@@ -27,7 +27,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.options import Weights
 
 PEAK = 1e-12
-"""Part of T below which the largest pressure is round-off, and nothing touches."""
+"""Fraction of T below which the largest pressure is round-off, so that nothing touches."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -57,11 +57,11 @@ class CondensedContact(MotionAlgebra):
     held_arc : (number of runs, 2) arc position of a run's ends that a condition holds on the rigid surface, up to which
         there is contact although there is no contact point; not a number for other ends; None if there are none [L]
     held_points : (number of runs, 2, 2) these ends [L], or None likewise
-    motion_names : k descriptions of the free motions, for people: those of the body, then those of tools
-    tools : rigid surfaces that move; where they are displaced to is part of ε, and what they are loaded by of the load
+    motion_names : k descriptions of the free motions in words: those of the body, then those of tools
+    tools : rigid surfaces that move; their displacements are part of ε, and their forces part of the load
     cases : load cases; those in effect are part of Δ1, the load and ε
-    pinned : motions that no contact point sees, in which what acts must balance
-    notes : what was decided on the way and should be known
+    pinned : motions that move no contact point, in which all loads must balance
+    notes : decisions that a user should know
     name, zone_names, units : labels
     """
 
@@ -109,7 +109,7 @@ class CondensedContact(MotionAlgebra):
         self._ensure_actions_fit()
 
     def _ensure_actions_fit(self) -> None:
-        """Give no tools and no load cases their shapes, and refuse those of another body."""
+        """Give empty tools and load cases their shapes, and refuse those of another body."""
         n, k = self.rigid_motions.shape
         if not len(self.tools):
             object.__setattr__(self, "tools", Tools.none(n, k))
@@ -125,8 +125,8 @@ class CondensedContact(MotionAlgebra):
             "pinned.tools": (t, j), "pinned.turns": (j,), "pinned.magnitude": (1 + c,),
         }  # fmt: skip
         for key, shape in shapes.items():
-            if (found := attrgetter(key)(self).shape) != shape:
-                raise ProblemError(f"{key} has shape {found} where {shape} is needed; n = {n}, k = {k}")
+            if (stated := attrgetter(key)(self).shape) != shape:
+                raise ProblemError(f"{key} has shape {stated} where {shape} is needed; n = {n}, k = {k}")
 
     @classmethod
     def from_compliance(
@@ -214,15 +214,15 @@ class CondensedContact(MotionAlgebra):
 
     @cached_property
     def scales(self) -> ContactScales:
-        """Scales with U = ‖M‖∞ T, the larger of what the load and what interference asks for.
+        """Scales with U = ‖M‖∞ T: the larger of those of the load and of the interference.
 
-        A load that presses a free body needs the balancing pressure; interference is what penetrates without pressure
-        however the body is placed. Wide gaps far from contact do not count; if there is neither, U = max|q|.
+        A load that presses a free body needs the balancing pressure. Interference is the penetration without pressure
+        at the best position of the body. Wide gaps far from contact do not count. If there is neither, U = max|q|.
         """
         return typical_scales(self.compliance, self.offset, self.rigid_motions, self.balancing_pressure)
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
-        """Let load cases act, each by its factor, and those that are not named not at all; nothing is condensed anew.
+        """Apply load cases, each by its factor, and no other ones; nothing is condensed anew.
 
         Parameters
         ----------
@@ -244,12 +244,12 @@ class CondensedContact(MotionAlgebra):
             raise ProblemError(f"there is no load case '{unknown[0]}'; there are: {known}")
         if wrong := [name for name, factor in factors.items() if not isinstance(factor, Real) or not isfinite(factor)]:
             raise ProblemError(f"the factor of '{wrong[0]}' must be a finite number, found {factors[wrong[0]]!r}")
-        found = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
-        step = found - self.cases.factors
+        given = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
+        step = given - self.cases.factors
         return self.stepped(step, self.cases.position @ step, self.cases.force @ step).balanced()
 
     def with_tools(self, position: ArrayLike | None = None, force: ArrayLike | None = None) -> Self:
-        """Displace and load the tools otherwise; nothing is condensed anew.
+        """Change the displacements and forces of the tools; nothing is condensed anew.
 
         Parameters
         ----------
@@ -282,7 +282,7 @@ class CondensedContact(MotionAlgebra):
         return self.stepped(np.zeros(len(self.cases)), *steps).balanced()
 
     def balanced(self) -> Self:
-        """Refuse what acts along a motion that nothing resists, with a `ProblemError`."""
+        """Refuse loads along a motion that nothing resists, with a `ProblemError`."""
         if complaint := self.pinned.complaint(np.append(1.0, self.cases.factors), self.tools.force):
             raise ProblemError(complaint)
         return self
@@ -301,15 +301,15 @@ class CondensedContact(MotionAlgebra):
 
     @property
     def changes(self) -> dict[str, Change]:
-        """What may change without condensing anew, by key path, each per unit: factors of load cases, tools.
+        """Changes that need no new condensation, by key path, each per unit: factors of load cases, tools.
 
-        Left out is what changes nothing, and what by itself would drive a motion that nothing resists.
+        Changes without effect are left out, and those that alone would drive a motion that nothing resists.
         """
         cases, tools, pinned = self.cases, self.tools, self.pinned
         unit, units = np.eye(1 + len(cases))[1:], np.eye(3 * len(tools))
         offsets = cases.displacement + tools.motions @ cases.position
         loads = cases.motion_load + tools.amplitudes.T @ cases.force
-        found = {
+        of_cases = {
             f"load_cases.{name}": Change(offset, load)
             for name, offset, load, alone, force in zip(
                 cases.names, offsets.T, loads.T, unit, cases.force.T, strict=True
@@ -317,7 +317,7 @@ class CondensedContact(MotionAlgebra):
             if pinned.complaint(alone, force) is None
         }
         moves = zip(tools.keys, np.where(tools.free, 0.0, tools.motions).T, tools.amplitudes, units, strict=True)
-        return found | {
+        return of_cases | {
             key: Change(offset, load)
             for key, offset, load, alone in moves
             if (offset.any() or load.any()) and pinned.complaint(np.zeros(1 + len(cases)), alone) is None
@@ -342,7 +342,7 @@ class CondensedContact(MotionAlgebra):
         return np.stack(each, axis=-2)
 
     def forces(self, pressure: Array) -> Array:
-        """W p n (..., n, 2) [p L] at each contact point, from p (..., n) [p]."""
+        """Forces w p n (..., n, 2) [p L] at the contact points, from p (..., n) [p]."""
         return (self.weights * pressure)[..., None] * self.normals
 
     def tool_reactions(self, pressure: Array) -> Array:
@@ -362,17 +362,17 @@ class CondensedContact(MotionAlgebra):
         return self.stepped(-self.cases.factors, -self.tools.position, -self.tools.force)
 
     def touching(self, pressure: Array, displacement: Array) -> BoolArray:
-        """Which points (n,) are in contact, p/T > δ/U, from p (n,) [p] and u_n (n,) [L]: unmoved by a solver's dust."""
+        """Which points (n,) are in contact, p/T > δ/U, from p (n,) [p] and u_n (n,) [L]; robust to tolerances."""
         U, T = self.scales
         return pressure / T > (self.initial_gap + displacement) / U
 
     def peak(self, pressure: Array) -> float:
-        """The largest of the pressures p (n,), [p]; zero if that is round-off beside T."""
+        """Largest of the pressures p (n,), [p]; zero if it is round-off beside T."""
         peak = float(pressure.max(initial=0.0))
         return peak if peak > PEAK * self.scales.pressure else 0.0
 
     def weight_matrix(self, weights: Weights) -> Array:
-        """The J (n, n) [L] of the objective; `ProblemError` where the problem does not carry these weights."""
+        """The J (n, n) [L] of the objective; `ProblemError` if the problem does not have these weights."""
         match weights:
             case Weights.TRIBUTARY:
                 return np.diag(self.weights)
@@ -385,7 +385,7 @@ class CondensedContact(MotionAlgebra):
         return J
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write all of it as one ``.npz`` file, whole or not at all; `OSError` where that cannot be."""
+        """Write the problem as one ``.npz`` file, whole or not at all; `OSError` if it cannot be written."""
         archive.write(Path(path), self)
 
     @classmethod

@@ -89,10 +89,6 @@ def fix_gauge(motions: MotionAlgebra, compliance: Array, free_displacement: Arra
     motions : R, J and the load
     compliance : (n, n) M [L/p]
     free_displacement : (n,) Δ1 [L], or (n, s) for s loadings
-
-    Returns
-    -------
-    Gauge
     """
     M, (n, k) = compliance, motions.rigid_motions.shape
     project = motions.projector if n > k else np.zeros((n, n))
@@ -123,10 +119,6 @@ def stiffness_rows(
     compliance : (n, n) M [L/p]
     free_displacement : (n,) Δ1 [L]
     scales : of the problem
-
-    Returns
-    -------
-    StiffnessRows
 
     Raises
     ------

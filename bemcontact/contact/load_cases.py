@@ -27,9 +27,9 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LoadCases:
-    """c load cases, each as it acts by itself, and by how much each of them acts.
+    """c load cases, each as it acts alone, and their factors.
 
-    What is permanent acts besides: a state is the permanent one and the sum of factor times case.
+    A state is the permanent one plus the sum of factor times case.
 
     Parameters
     ----------

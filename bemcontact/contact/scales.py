@@ -8,9 +8,9 @@ from scipy.optimize import linprog
 from bemcontact.arrays import Array
 
 INTERFERENCE = 1e-6
-"""Part of the widest gap that counts as interference; a linear program knows no less."""
+"""Fraction of the widest gap from which there is interference: the accuracy of a linear program."""
 ROUND_OFF = 64 * float(np.finfo(float).eps)
-"""The same for a body that is held: less is a gap that has just closed."""
+"""This fraction for a body that is held: less is a gap that has just closed."""
 
 
 class ContactScales(NamedTuple):
@@ -21,7 +21,7 @@ class ContactScales(NamedTuple):
 
 
 def typical_scales(compliance: Array, offset: Array, rigid_motions: Array, balancing_pressure: Array) -> ContactScales:
-    """Scales with U = ‖M‖∞ T, the larger of what the load and what interference asks for.
+    """Scales with U = ‖M‖∞ T: the larger of those of the load and of the interference.
 
     Parameters
     ----------
@@ -29,10 +29,6 @@ def typical_scales(compliance: Array, offset: Array, rigid_motions: Array, balan
     offset : (n,) q, the gap without contact [L]
     rigid_motions : (n, k) R
     balancing_pressure : (n,) the least pressure in equilibrium with the load [p]
-
-    Returns
-    -------
-    ContactScales
     """
     norm = float(np.abs(compliance).sum(axis=1).max(initial=0.0))
     pressure = float(np.abs(balancing_pressure).max(initial=0.0))
@@ -42,12 +38,12 @@ def typical_scales(compliance: Array, offset: Array, rigid_motions: Array, balan
 
 
 def _interference(offset: Array, rigid_motions: Array, widest: float) -> float:
-    """Least s >= 0 [L] with q + R a >= -s for some a: a linear program; below 1e-6 of the widest gap it is none."""
+    """Least s >= 0 [L] with q + R a >= -s for some a, by a linear program; zero below 1e-6 of the widest gap."""
     n, k = rigid_motions.shape
     if k == 0 or widest == 0:
         deepest = float(np.maximum(-offset, 0.0).max(initial=0.0))
         return deepest if deepest > ROUND_OFF * widest else 0.0
     columns = np.column_stack([rigid_motions, np.ones(n)])
     cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
-    found = linprog(cost, A_ub=-columns, b_ub=offset / widest, bounds=bounds)
-    return widest * found.fun if found.success and found.fun > INTERFERENCE else 0.0
+    optimum = linprog(cost, A_ub=-columns, b_ub=offset / widest, bounds=bounds)
+    return widest * optimum.fun if optimum.success and optimum.fun > INTERFERENCE else 0.0

@@ -8,12 +8,12 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, freeze_arrays
 
 BALANCED = 1e-9
-"""Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as none."""
+"""Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as zero."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Tools:
-    """t tools: rigid surfaces that are displaced, or loaded so that contact must find where they go.
+    """t tools: rigid surfaces with given displacements, or with given forces and unknown displacements.
 
     A tool moves by (x, y) and turns by a small angle about its point; the gap at a contact point of its surfaces then
     changes by -n·w. Where a component is free, its amplitude is one of the free motions of the contact problem and its
@@ -55,7 +55,7 @@ class Tools:
         return len(self.names)
 
     def displacement(self, rigid_amplitudes: Array) -> Array:
-        """Where the tools are (t, 3): x, y [L] and rotation [rad], for amplitudes a (k,)."""
+        """Displacements (t, 3) of the tools: x, y [L] and rotation [rad], for amplitudes a (k,)."""
         return (self.position + self.amplitudes @ rigid_amplitudes).reshape(-1, 3)
 
     @property
@@ -71,7 +71,7 @@ class Tools:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pinned:
-    """j rigid motions of the body and of tools that no contact point sees: what acts must balance in them.
+    """j rigid motions of the body and of tools that move no contact point: all loads must balance in them.
 
     Parameters
     ----------
@@ -103,12 +103,12 @@ class Pinned:
         )  # fmt: skip
 
     def total(self, factors: Array, force: Array) -> float:
-        """Sum of the magnitudes of all that acts [p L], for factors (1 + c,) and forces on tools (3 t,)."""
+        """Sum of the magnitudes of all loads [p L], for factors (1 + c,) and forces on tools (3 t,)."""
         x, y, moment = force.reshape(-1, 3).T
         return float(self.magnitude @ abs(factors) + (np.hypot(x, y) + abs(moment) / self.length).sum())
 
     def complaint(self, factors: Array, force: Array) -> str | None:
-        """Say what the loads drive along a motion in which nothing resists them; None if they balance."""
+        """Describe a motion that the loads drive and nothing resists; None if the loads balance."""
         work, total = self.load @ factors + self.tools.T @ force, self.total(factors, force)
         for motion, turns, done in zip(self.motions, self.turns, work, strict=True):
             if abs(done) > BALANCED * total * (self.length if turns else 1.0):

@@ -133,7 +133,6 @@ def primal_dual(contact: ScaledContact, active: BoolArray, limit: int = STEP_LIM
 
     Parameters
     ----------
-    contact : ScaledContact
     active : (n,) the points assumed to be in contact
     limit : most steps to make
 
@@ -162,7 +161,6 @@ def solve_active_set(contact: ScaledContact, active: BoolArray) -> tuple[Array, 
 
     Parameters
     ----------
-    contact : ScaledContact
     active : (n,) True on A
 
     Returns

@@ -7,7 +7,7 @@ RAL-TR-2001-034), cone by cone, unless the problem is dimensionless already.
 
 import warnings
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from clarabel import DefaultSettings, DefaultSolver  # pyright: ignore (has no stubs)
@@ -17,9 +17,6 @@ from scipy.sparse import csc_array, diags_array, triu
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.solution import Status
 from bemcontact.errors import SolverError
-
-if TYPE_CHECKING:
-    import cvxpy as cp
 
 TOLERANCES = 1e-11, 1e-8
 """Asked of Clarabel one after the other: the second if the first cannot be reached."""
@@ -48,14 +45,12 @@ class _Scaling(NamedTuple):
     s: float = 1.0
 
 
-def minimize(
-    problem: "cp.Problem", max_iterations: int | None = None, *, equilibrate: bool = True, size: float = 1.0
-) -> Array:
+def minimize(problem: Any, max_iterations: int | None = None, *, equilibrate: bool = True, size: float = 1.0) -> Array:
     """Solve a cvxpy problem; its status and values are set as by its own `solve`, which has coarser tolerances.
 
     Parameters
     ----------
-    problem : convex, with cones that Clarabel knows
+    problem : cvxpy problem, convex, with cones that Clarabel knows
     max_iterations : of Clarabel, 200 if None
     equilibrate : whether to scale rows and columns; False for a dimensionless problem
     size : number by which all variables and right sides of a dimensionless problem are divided
@@ -78,15 +73,13 @@ def minimize(
     except cp.SolverError as error:
         raise SolverError(f"Clarabel cannot solve this model: {error}; state it without integers") from error
     scaled, scaling = _equilibrated(data) if equilibrate else _divided(data, size)
-    for tolerance in TOLERANCES:
-        solution, progress = _solve(scaled, tolerance, max_iterations or ITERATIONS)
-        if str(solution.status) not in FAILED:
-            break
-    else:
+    ends = (_solve(scaled, tolerance, max_iterations or ITERATIONS) for tolerance in TOLERANCES)
+    end = next((end for end in ends if str(end[0].status) not in FAILED), None)
+    if end is None:
         raise SolverError(
-            f"Clarabel found no solution ({solution.status}); look for terms of very different size, or loosen "
-            "what was added"
+            "Clarabel found no solution of this model; look for terms of very different size, or loosen what was added"
         )
+    solution, progress = end
     with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status says the same
         problem.unpack_results(_unscaled(solution, *scaling), chain, inverse)
     return progress / np.array([scaling.s, 1.0])

@@ -37,7 +37,7 @@ class LemkeEnd:
 
     @property
     def pivots(self) -> int:
-        """How many were made."""
+        """Number of pivots."""
         return len(self.covers)
 
 
@@ -101,7 +101,7 @@ class _Basis:
         return float(self.values[self.basic == self.cover].sum())
 
     def column(self, variable: int) -> Array:
-        """By how much each basic variable falls when this one rises, (n,)."""
+        """Decrease of each basic variable per increase of this one, (n,)."""
         return self.inverse @ self.vectors[variable]
 
     def leaving_row(self, column: Array) -> int | None:

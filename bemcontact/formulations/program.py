@@ -12,9 +12,9 @@ from scipy.linalg import block_diag
 
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.formulations.formulation import Start
 from bemcontact.formulations.local_solver import QPOptions, QPResult, inertia, minimize_qp
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point
+from bemcontact.formulations.start import Start
 from bemcontact.options import Rows
 
 
@@ -32,12 +32,12 @@ class Equations:
     right: Array
 
     def and_also(self, other: "Equations") -> "Equations":
-        """Both, one below the other."""
+        """These equations and others below them."""
         return Equations(matrix=np.vstack([self.matrix, other.matrix]), right=np.concatenate([self.right, other.right]))
 
     @property
     def of_unit_size(self) -> "Equations":
-        """The same with the largest entry of each row 1."""
+        """These equations with the largest entry of each row 1."""
         size = np.abs(self.matrix).max(axis=1, initial=0.0)
         size = np.where(size > 0, size, 1.0)
         return Equations(matrix=self.matrix / size[:, None], right=self.right / size)
@@ -45,19 +45,19 @@ class Equations:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Program:
-    """Minimise pᵀJ(ε + u_n) + (1/μ)|E x - e|² subject to equations and ε + u_n >= 0, p >= 0.
+    """Minimize pᵀJ(ε + u_n) + (1/μ)|E x - e|² subject to equations and ε + u_n >= 0, p >= 0.
 
     Parameters
     ----------
     weights : (n, n) scaled J
-    penalised : E x = e; none of them, (0, N), in QP1
+    penalized : E x = e; none of them, (0, N), in QP1
     penalty : μ
     equations : that hold exactly
     lower : (N,) bounds of x, -ε, 0 and for amplitudes -inf
     """
 
     weights: Array
-    penalised: Equations
+    penalized: Equations
     penalty: float
     equations: Equations
     lower: Array
@@ -65,7 +65,7 @@ class Program:
     @cached_property
     def hessian(self) -> Array:
         """H (N, N) of ½ xᵀH x + cᵀx + d."""
-        n, J, E = len(self.weights), self.weights, self.penalised.matrix
+        n, J, E = len(self.weights), self.weights, self.penalized.matrix
         hessian = (2 / self.penalty) * (E.T @ E)
         hessian[:n, n : 2 * n] += J.T
         hessian[n : 2 * n, :n] += J
@@ -73,9 +73,9 @@ class Program:
 
     @cached_property
     def linear(self) -> Array:
-        """The c (N,) likewise."""
+        """C (N,) of ½ xᵀH x + cᵀx + d."""
         n = len(self.weights)
-        linear = -(2 / self.penalty) * (self.penalised.matrix.T @ self.penalised.right)
+        linear = -(2 / self.penalty) * (self.penalized.matrix.T @ self.penalized.right)
         linear[n : 2 * n] -= self.weights @ self.lower[:n]
         return linear
 
@@ -85,18 +85,18 @@ class Program:
 
         From [[Q, Eᵀ], [E, -μ/2]], whose inertia is that and m negative ones (Haynsworth 1968): it is free of 1/μ.
         """
-        n, (m, N) = len(self.weights), self.penalised.matrix.shape
+        n, (m, N) = len(self.weights), self.penalized.matrix.shape
         bordered = np.zeros((N + m, N + m))
         bordered[:n, n : 2 * n], bordered[n : 2 * n, :n] = self.weights.T, self.weights
-        bordered[N:, :N], bordered[:N, N:] = self.penalised.matrix, self.penalised.matrix.T
+        bordered[N:, :N], bordered[:N, N:] = self.penalized.matrix, self.penalized.matrix.T
         bordered[N:, N:] = -0.5 * self.penalty * np.eye(m)
         positive, zero, negative = inertia(bordered)
         return positive, zero, negative - m
 
     def value(self, x: Array) -> float:
-        """The objective at x (N, more may follow), not as it is multiplied out, which would cancel to round-off."""
+        """Objective at x (N, more may follow); multiplied out, it would cancel to round-off."""
         n, x = len(self.weights), x[: len(self.lower)]
-        residual = self.penalised.matrix @ x - self.penalised.right
+        residual = self.penalized.matrix @ x - self.penalized.right
         work = x[n : 2 * n] @ self.weights @ (x[:n] - self.lower[:n])
         return float(work + residual @ residual / self.penalty)
 
@@ -104,14 +104,7 @@ class Program:
 def contact_equations(contact: CondensedContact, rows: Rows) -> Equations:
     """K u_n - B p = r, (12), in scaled numbers, so that a residual is a part of the scale T or U.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    rows : the stiffness rows over (u_n, p), or the compliance rows over (u_n, p, a)
-
-    Returns
-    -------
-    Equations
+    The stiffness rows are over (u_n, p), the compliance rows over (u_n, p, a).
     """
     U, T = contact.scales
     if rows is Rows.STIFFNESS:
@@ -131,34 +124,23 @@ def equilibrium(problem: ScaledContact, size: int) -> Equations:
 
 
 def no_equations(size: int) -> Equations:
-    """None at all over x of `size` entries."""
+    """No equations, over x of `size` entries."""
     return Equations(matrix=np.zeros((0, size)), right=np.zeros(0))
 
 
 def lower_bounds(contact: CondensedContact, size: int) -> Array:
-    """-ε, 0, and -inf for amplitudes, of x of `size` entries."""
+    """Lower bounds of x of `size` entries: -ε, 0, and -inf for amplitudes."""
     n = contact.size
     gap = contact.initial_gap / contact.scales.displacement
     return np.concatenate([-gap, np.zeros(n), np.full(size - 2 * n, -np.inf)])
 
 
-def minimise(program: Program, start: Array, max_iterations: int | None) -> QPResult:
-    """Hand a program to the local solver.
+def minimize(program: Program, start: Array, max_iterations: int | None) -> QPResult:
+    """Minimize a program by the local solver from a start (N,); the result is over x with s after it.
 
-    Penalised equations go there as √μ s = E x - e with |s|² in the objective: the same, without the condition of EᵀE.
-
-    Parameters
-    ----------
-    program : Program
-    start : (N,)
-    max_iterations : or None for the solver's own limit
-
-    Returns
-    -------
-    QPResult
-        Of x with s after it.
+    Penalized equations become √μ s = E x - e with |s|² in the objective, which avoids the condition of EᵀE.
     """
-    E, e = program.penalised.matrix, program.penalised.right
+    E, e = program.penalized.matrix, program.penalized.right
     A, b = program.equations.matrix, program.equations.right
     n, (m, N), root = len(program.weights), E.shape, np.sqrt(program.penalty)
     J, zero = program.weights, np.zeros((n, n))
@@ -180,11 +162,10 @@ def minimise(program: Program, start: Array, max_iterations: int | None) -> QPRe
 
 
 def start_vector(contact: CondensedContact, start: Start | None, size: int) -> Array:
-    """Write a start as x of `size` entries: u_n/U, p/T, and the amplitudes that go with them best."""
+    """A start as x of `size` entries: u_n/U, p/T, and the amplitudes that fit them best; None is the null vector."""
     x = np.zeros(size)
     if start is None:
         return x
-    start.ensure_fits(contact.size)
     n = contact.size
     p, a = scaled_point(contact, start.pressure, amplitudes(contact, start.pressure, start.displacement))
     x[:n], x[n : 2 * n] = start.displacement / contact.scales.displacement, p

@@ -1,6 +1,6 @@
 """QP1, (27)-(29): the work of the pressure in the gap over displacements and pressures, from a local solver.
 
-    minimise   pᵀJ(ε + u_n)    over u_n, p
+    minimize   pᵀJ(ε + u_n)    over u_n, p
     subject to K u_n = B p + r,  ε + u_n >= 0,  p >= 0
 
 Its Hessian [[0, Jᵀ], [J, 0]] is indefinite. On the equations it is that of QP3, so that QP1 is convex on what they
@@ -12,7 +12,6 @@ from dataclasses import replace
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.program import (
     Program,
     contact_equations,
@@ -23,29 +22,13 @@ from bemcontact.formulations.program import (
 from bemcontact.formulations.qp3 import NEGLIGIBLE, smallest_eigenvalue
 from bemcontact.formulations.scaling import scaled, scaled_weights
 from bemcontact.formulations.search import polished, searched
-from bemcontact.options import FormulationName, Rows
-
-OPTIONS = ("weights", "rows", "start")
-"""Those of `FormulationOptions` that have a meaning here."""
+from bemcontact.options import FormulationName, Rows, SolveOptions, options_of
 
 
-def statement(contact: CondensedContact, options: FormulationOptions) -> Program:
-    """Write (27)-(29) on the scaled problem.
+def statement(contact: CondensedContact, options: SolveOptions) -> Program:
+    """(27)-(29) on the scaled problem, over (u_n, p), or (u_n, p, a) with the compliance rows.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    options : weights and rows
-
-    Returns
-    -------
-    Program
-        Over (u_n, p), or (u_n, p, a) with the compliance rows, which need ℓᵀp = -load beside them.
-
-    Raises
-    ------
-    ProblemError
-        The problem does not carry the weights asked for.
+    The compliance rows need ℓᵀp = -load beside them. `ProblemError` if the problem does not carry the weights.
     """
     equations = contact_equations(contact, options.rows)
     size = equations.matrix.shape[1]
@@ -53,14 +36,14 @@ def statement(contact: CondensedContact, options: FormulationOptions) -> Program
         equations = equations.and_also(equilibrium(scaled(contact), size))
     return Program(
         weights=scaled_weights(contact, options.weights),
-        penalised=no_equations(size),
+        penalized=no_equations(size),
         penalty=1.0,
         equations=equations.of_unit_size,
         lower=lower_bounds(contact, size),
     )
 
 
-def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:
     """Find a local minimum of QP1, then polish it unless it is certain not to be the contact state.
 
     Parameters
@@ -80,10 +63,9 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
     ProblemError
         The problem does not carry the weights asked for, or an option has no meaning for QP1.
     """
-    options = options or FormulationOptions()
-    options.ensure_used(FormulationName.QP1, *OPTIONS)
+    options = options_of(FormulationName.QP1, options)
     program = statement(contact, options)
     eigenvalue = smallest_eigenvalue(scaled(contact), scaled_weights(contact, options.weights))
     only = eigenvalue is None or eigenvalue > NEGLIGIBLE
-    found = searched(contact, options, FormulationName.QP1, program, only=only)
-    return replace(polished(contact, options, found), smallest_eigenvalue=eigenvalue)
+    solution = searched(contact, options, program, only=only)
+    return replace(polished(contact, options, solution), smallest_eigenvalue=eigenvalue)

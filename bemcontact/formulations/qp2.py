@@ -1,6 +1,6 @@
-"""QP2, (30)-(34): QP1 with the equations penalised, over displacements and pressures, from a local solver.
+"""QP2, (30)-(34): QP1 with the equations penalized, over displacements and pressures, from a local solver.
 
-    minimise   pᵀJ(ε + u_n) + (1/μ)|K u_n - B p - r|²    over u_n, p
+    minimize   pᵀJ(ε + u_n) + (1/μ)|K u_n - B p - r|²    over u_n, p
     subject to ε + u_n >= 0,  p >= 0,  ℓᵀp = -load
 
 on the scaled problem, where μ = 1 weighs an error of T in the equations like the work of T on U.
@@ -10,7 +10,7 @@ Stationary points. Let sym(JM) be positive definite on the equilibrium space, �
 conditions of first order read p >= 0, Jδ - σ' >= 0, δ >= 0, Jp + w >= 0, the first two and the last two complementary:
 in each case w_i σ'_i <= 0. From S M = I - Vℓᵀ follows σ' = Mᵀw + ℓz, and Rᵀw = 0. So with v = w/J, which is in
 equilibrium, vᵀJM v = wᵀσ'/J <= 0: v = 0, σ = 0, and the point is the contact state, whatever μ is. With the compliance
-rows w = σ and σ' = Mᵀσ + ℓy lead to the same. Where equilibrium is penalised as all the rest, as [SS92] has it, p = 0
+rows w = σ and σ' = Mᵀσ + ℓy lead to the same. Where equilibrium is penalized as all the rest, as [SS92] has it, p = 0
 with the body lifted far enough is another stationary point: the residual then is balanced by no force, and small
 changes of p and u_n improve nothing.
 
@@ -29,7 +29,6 @@ from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Penalty, Status
 from bemcontact.errors import OptionError
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.program import (
     Program,
     contact_equations,
@@ -39,10 +38,8 @@ from bemcontact.formulations.program import (
 )
 from bemcontact.formulations.scaling import scaled, scaled_weights
 from bemcontact.formulations.search import polished, searched
-from bemcontact.options import Equilibrium, FormulationName, Rows, Weights
+from bemcontact.options import Equilibrium, FormulationName, Rows, SolveOptions, Weights, options_of
 
-OPTIONS = ("weights", "penalty", "rows", "equilibrium", "start")
-"""Those of `FormulationOptions` that have a meaning here."""
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR that is round-off; by the scaling the numbers are of size one."""
 
@@ -64,7 +61,7 @@ class Ray:
     limit: float
 
 
-def statement(contact: CondensedContact, options: FormulationOptions) -> Program:
+def statement(contact: CondensedContact, options: SolveOptions) -> Program:
     """Write (30)-(34) on the scaled problem.
 
     Parameters
@@ -80,28 +77,28 @@ def statement(contact: CondensedContact, options: FormulationOptions) -> Program
     Raises
     ------
     ProblemError
-        The problem does not carry the weights asked for, or the rows do not contain the equilibrium to be penalised.
+        The problem does not carry the weights asked for, or the rows do not contain the equilibrium to be penalized.
     """
-    penalised = contact_equations(contact, options.rows)
-    size = penalised.matrix.shape[1]
+    penalized = contact_equations(contact, options.rows)
+    size = penalized.matrix.shape[1]
     exact = no_equations(size)
     if options.equilibrium is Equilibrium.CONSTRAINT:
         exact = equilibrium(scaled(contact), size).of_unit_size
     elif options.rows is Rows.COMPLIANCE and contact.free_motions:
         raise OptionError(
-            "equilibrium can be penalised with the stiffness rows only, which contain it; the compliance rows need it "
+            "equilibrium can be penalized with the stiffness rows only, which contain it; the compliance rows need it "
             "as a constraint"
         )
     return Program(
         weights=scaled_weights(contact, options.weights),
-        penalised=penalised,
+        penalized=penalized,
         penalty=options.penalty,
         equations=exact,
         lower=lower_bounds(contact, size),
     )
 
 
-def penalty_unit(contact: CondensedContact, options: FormulationOptions) -> float:
+def penalty_unit(contact: CondensedContact, options: SolveOptions) -> float:
     """The μ in the user's units that is 1 in scaled ones: T/(U max J) for stiffness rows, U/(T max J) for others.
 
     It is that of pᵀJδ + (1/μ)|K u_n - B p - r|² with K, B, r, J as they are. Where a change of units multiplies
@@ -112,7 +109,7 @@ def penalty_unit(contact: CondensedContact, options: FormulationOptions) -> floa
     return (T / U if options.rows is Rows.STIFFNESS else U / T) / weight
 
 
-def convexity_limit(contact: CondensedContact, options: FormulationOptions) -> float:
+def convexity_limit(contact: CondensedContact, options: SolveOptions) -> float:
     """The largest μ, free of units, for which QP2 is convex.
 
     Parameters
@@ -144,7 +141,7 @@ def convexity_limit(contact: CondensedContact, options: FormulationOptions) -> f
     return float(eigvalsh(2 * (W + W.T), D @ D.T, subset_by_index=(0, 0))[0])
 
 
-def two_point_ray(contact: CondensedContact, options: FormulationOptions) -> Ray | None:
+def two_point_ray(contact: CondensedContact, options: SolveOptions) -> Ray | None:
     """Find p growing by β at i and u_n by α at j, J_ij < 0, such that αβ J_ij + (1/μ)|α K e_j - β B e_i|² < 0.
 
     For given i, j the quadratic form in α, β > 0 is somewhere negative if μ > 2(|K e_j||B e_i| - K e_j·B e_i)/(-J_ij).
@@ -174,7 +171,7 @@ def two_point_ray(contact: CondensedContact, options: FormulationOptions) -> Ray
     return Ray(pressed=i, opened=j, direction=direction, limit=float(limits[i, j]))
 
 
-def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
+def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:
     """Find a local minimum of QP2, then polish it unless it is certain not to be the contact state.
 
     Parameters
@@ -193,10 +190,9 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
     ------
     ProblemError
         QP2 has no minimum, as with the consistent weights and a large penalty; the problem does not carry the weights
-        asked for; the rows do not contain the equilibrium to be penalised.
+        asked for; the rows do not contain the equilibrium to be penalized.
     """
-    options = options or FormulationOptions()
-    options.ensure_used(FormulationName.QP2, *OPTIONS)
+    options = options_of(FormulationName.QP2, options)
     program = statement(contact, options)
     unit = penalty_unit(contact, options)
     if ray := two_point_ray(contact, options):
@@ -209,17 +205,19 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
         convexity_limit_raw=limit * unit if np.isfinite(limit) else None,
         dimension="p/L²" if options.rows is Rows.STIFFNESS else "1/p",
     )
-    found = searched(contact, options, FormulationName.QP2, program, only=limit > 0, penalty=penalty)
-    if found.status is Status.UNBOUNDED and options.weights is Weights.CONSISTENT:
-        raise OptionError(f"QP2 has no minimum with consistent weights: {found.notes[-1]}; take the tributary weights")
-    if found.status in (Status.NUMERICAL_FAILURE, Status.NO_SOLUTION_FOUND):
+    solution = searched(contact, options, program, only=limit > 0, penalty=penalty)
+    if solution.status is Status.UNBOUNDED and options.weights is Weights.CONSISTENT:
+        raise OptionError(
+            f"QP2 has no minimum with consistent weights: {solution.notes[-1]}; take the tributary weights"
+        )
+    if solution.status in (Status.NUMERICAL_FAILURE, Status.NO_SOLUTION_FOUND):
         notes = ("take a penalty nearer to 1, or stiffness rows, which lose least to round-off",)
     else:
-        notes = _notes(contact, options, found)
-    return polished(contact, options, replace(found, notes=(*found.notes, *notes)))
+        notes = _notes(contact, options, solution)
+    return polished(contact, options, replace(solution, notes=(*solution.notes, *notes)))
 
 
-def _unbounded(contact: CondensedContact, options: FormulationOptions, ray: Ray, unit: float) -> str:
+def _unbounded(contact: CondensedContact, options: SolveOptions, ray: Ray, unit: float) -> str:
     """Tell of a ray in words."""
     (x, y), (v, w) = contact.points[ray.pressed], contact.points[ray.opened]
     return (
@@ -231,16 +229,16 @@ def _unbounded(contact: CondensedContact, options: FormulationOptions, ray: Ray,
     )
 
 
-def _notes(contact: CondensedContact, options: FormulationOptions, found: ContactSolution) -> tuple[str, ...]:
-    """What to know of equilibrium that is only penalised."""
+def _notes(contact: CondensedContact, options: SolveOptions, solution: ContactSolution) -> tuple[str, ...]:
+    """What to know of equilibrium that is only penalized."""
     if options.equilibrium is Equilibrium.CONSTRAINT:
         return ()
     if not contact.free_motions:
-        return ("conditions hold all rigid motions: there is no equilibrium of a free body to be penalised",)
-    if found.status is not Status.LOCAL_MINIMUM:
+        return ("conditions hold all rigid motions: there is no equilibrium of a free body to be penalized",)
+    if solution.status is not Status.LOCAL_MINIMUM:
         return ()
-    state = "lifted off its support" if not found.pressure.any() else "out of equilibrium"
+    state = "lifted off its support" if not solution.pressure.any() else "out of equilibrium"
     return (
-        f"equilibrium was only penalised, and the body was left {state}, where no small change helps; keep "
+        f"equilibrium was only penalized, and the body was left {state}, where no small change helps; keep "
         "equilibrium as a constraint, or take another start",
     )

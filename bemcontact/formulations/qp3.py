@@ -1,6 +1,6 @@
 """QP3, (40)-(42): the quadratic program in pressures and rigid amplitudes, written in cvxpy and solved by Clarabel.
 
-    minimise   pᵀJ(ε + Δ1 + R a) + pᵀJ M p    over p, a
+    minimize   pᵀJ(ε + Δ1 + R a) + pᵀJ M p    over p, a
     subject to ε + Δ1 + M p + R a >= 0,  p >= 0,  ℓᵀp = -load
 
 In equilibrium the objective is pᵀJδ, (19). M stays unsymmetric in the constraints; the objective sees its symmetric
@@ -18,20 +18,17 @@ from bemcontact.contact.solution import ContactSolution, Status, Trace
 from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.clarabel import STATUSES, minimize
 from bemcontact.formulations.complementarity import escape_note, polish
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_weights, unscaled
-from bemcontact.options import FormulationName, Weights
+from bemcontact.options import FormulationName, SolveOptions, Weights, options_of
 
-OPTIONS = ("weights",)
-"""Those of `FormulationOptions` that have a meaning here."""
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR, or negative eigenvalue, that is round-off; by the scaling the numbers are of size one."""
 SLIGHT = 1e-2
-"""Negative part of a Hessian, relative to its largest eigenvalue, that is blamed on the mesh."""
+"""Negative part of a Hessian, relative to its largest eigenvalue, that is attributed to the mesh."""
 
 
 def load() -> None:
-    """Import cvxpy, which takes half a second, so that what follows can be timed."""
+    """Import cvxpy, which takes half a second, so that later steps can be timed."""
     import cvxpy  # noqa: F401
 
 
@@ -58,8 +55,8 @@ class Objective:
         return float(quadratic + self.pressure @ pressure + self.amplitudes @ amplitudes + self.constant)
 
 
-def objective(problem: ScaledContact, J: Array) -> Objective:
-    """Write pᵀJδ as a convex function of (p, a), with the help of equilibrium.
+def objective(contact: ScaledContact, J: Array) -> Objective:
+    """Write pᵀJδ as a convex function of (p, a) by means of equilibrium.
 
     With P = I - R(ℓᵀR)⁻¹ℓᵀ and p0 = -R(ℓᵀR)⁻¹load every p in equilibrium is P p + p0, so that
     pᵀJM p = (P p)ᵀJM(P p) + p0ᵀ(JM + MᵀJᵀ)P p + p0ᵀJM p0. And if JR = ℓC, then pᵀJR a = -loadᵀC a; C = I for the
@@ -67,25 +64,20 @@ def objective(problem: ScaledContact, J: Array) -> Objective:
 
     Parameters
     ----------
-    problem : ScaledContact
     J : (n, n) weights of the objective, scaled
-
-    Returns
-    -------
-    Objective
     """
-    weighted, project, p0 = J @ problem.compliance, problem.projector, problem.balancing_pressure
+    weighted, project, p0 = J @ contact.compliance, contact.projector, contact.balancing_pressure
     hessian = weighted + weighted.T
-    share = np.linalg.lstsq(problem.equilibrium, J @ problem.rigid_motions, rcond=None)[0]
+    share = np.linalg.lstsq(contact.equilibrium, J @ contact.rigid_motions, rcond=None)[0]
     return Objective(
         hessian=project.T @ hessian @ project,
-        pressure=J @ problem.offset + project.T @ (hessian @ p0),
-        amplitudes=-share.T @ problem.motion_load,
+        pressure=J @ contact.offset + project.T @ (hessian @ p0),
+        amplitudes=-share.T @ contact.motion_load,
         constant=float(p0 @ weighted @ p0),
     )
 
 
-def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
+def smallest_eigenvalue(contact: ScaledContact, J: Array) -> float | None:
     """Smallest eigenvalue of Zᵀ(JM + MᵀJᵀ)Z, Z spanning {p : ℓᵀp = 0}: the curvature on the equilibrium space.
 
     Where ZᵀJR is not zero, pᵀJR a makes the objective a saddle in (p, a), and the eigenvalue is that of the Hessian in
@@ -93,7 +85,6 @@ def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
 
     Parameters
     ----------
-    problem : ScaledContact
     J : (n, n) weights of the objective, scaled
 
     Returns
@@ -101,11 +92,11 @@ def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
     float or None
         Dimensionless; None if equilibrium leaves no pressure free (n = k).
     """
-    R, Z = problem.rigid_motions, problem.equilibrium_space
+    R, Z = contact.rigid_motions, contact.equilibrium_space
     n, k = R.shape
     if n == k:
         return None
-    weighted = J @ problem.compliance
+    weighted = J @ contact.compliance
     hessian = Z.T @ (weighted + weighted.T) @ Z
     coupling = Z.T @ J @ R
     if np.abs(coupling).max(initial=0.0) > NEGLIGIBLE:
@@ -113,15 +104,14 @@ def smallest_eigenvalue(problem: ScaledContact, J: Array) -> float | None:
     return float(eigvalsh(hessian, subset_by_index=(0, 0))[0])
 
 
-def solve(contact: CondensedContact, options: FormulationOptions | None = None) -> ContactSolution:
-    """Minimise QP3, (40)-(42), on the scaled problem, then polish.
+def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:
+    """Minimize QP3, (40)-(42), on the scaled problem, then polish.
 
-    With the consistent weights the minimum need not be the contact state, as J has negative entries; so the result then
-    is left as it is.
+    With the consistent weights the minimum need not be the contact state, because J has negative entries. The result is
+    then not polished.
 
     Parameters
     ----------
-    contact : CondensedContact
     options : weights of the objective, whether to polish, limit of Clarabel's iterations
 
     Returns
@@ -141,11 +131,10 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
     SolverError
         Clarabel broke down.
     """
-    options = options or FormulationOptions()
-    options.ensure_used(FormulationName.QP3, *OPTIONS)
-    problem, J = scaled(contact), scaled_weights(contact, options.weights)
-    eigenvalue = smallest_eigenvalue(problem, J)
-    work = objective(problem, J)
+    options = options_of(FormulationName.QP3, options)
+    body, J = scaled(contact), scaled_weights(contact, options.weights)
+    eigenvalue = smallest_eigenvalue(body, J)
+    work = objective(body, J)
     notes = []
     if eigenvalue is not None and eigenvalue < -NEGLIGIBLE:
         work = nearly_convex(work, eigenvalue, options.weights)
@@ -153,12 +142,12 @@ def solve(contact: CondensedContact, options: FormulationOptions | None = None) 
             f"QP3 is not convex on this mesh (smallest eigenvalue {eigenvalue:.1e}): it was solved without the "
             "negative part of its Hessian, as a start for the active-set step"
         )
-    optimum = _minimized(problem, work, options.max_iterations)
-    widest, escape = float(np.abs(problem.offset).max(initial=0.0)), None
+    optimum = _minimized(body, work, options.max_iterations)
+    widest, escape = float(np.abs(body.offset).max(initial=0.0)), None
     if optimum.status in (Status.UNBOUNDED, Status.INFEASIBLE):
-        escape = escape_note(contact, problem)
+        escape = escape_note(contact)
         if widest > 1 and not escape:  # the widest gaps drown the pressures
-            optimum = _minimized(problem, work, options.max_iterations, widest)
+            optimum = _minimized(body, work, options.max_iterations, widest)
     if optimum.status is Status.INFEASIBLE and escape:
         notes.append(escape)
     p, u_n, a = unscaled(contact, optimum.pressure, optimum.amplitudes)
@@ -196,16 +185,16 @@ class _Optimum:
     progress: Array
 
 
-def _minimized(problem: ScaledContact, work: Objective, max_iterations: int | None, size: float = 1.0) -> _Optimum:
+def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | None, size: float = 1.0) -> _Optimum:
     """State the quadratic program in cvxpy, and solve it with pressures and gaps divided by a size."""
     import cvxpy as cp
 
-    M, R, ell, load = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.motion_load
+    M, R, ell, load = contact.compliance, contact.rigid_motions, contact.equilibrium, contact.motion_load
     n, k = R.shape
     p = cp.Variable(n, nonneg=True, name="pressure")
     a = cp.Variable(k, name="rigid_amplitudes") if k else None
     goal = 0.5 * cp.quad_form(p, cp.psd_wrap(work.hessian)) + work.pressure @ p
-    gap, balance = problem.offset + M @ p, []
+    gap, balance = contact.offset + M @ p, []
     if a is not None:
         goal, gap, balance = goal + work.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
     program = cp.Problem(cp.Minimize(goal), [gap >= 0, *balance])
@@ -228,19 +217,14 @@ def _minimized(problem: ScaledContact, work: Objective, max_iterations: int | No
 
 
 def nearly_convex(work: Objective, eigenvalue: float, weights: Weights) -> Objective:
-    """Leave out the negative part of a Hessian that is indefinite by the mesh alone; refuse any other.
+    """Drop the negative part of a Hessian that is slightly indefinite because of the mesh; refuse any other.
 
     Collocation leaves sym(JM) slightly indefinite on coarse meshes of slender bodies and at acute corners.
 
     Parameters
     ----------
-    work : Objective
     eigenvalue : `smallest_eigenvalue` of the problem, negative
     weights : of the objective
-
-    Returns
-    -------
-    Objective
 
     Raises
     ------

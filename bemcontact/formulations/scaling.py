@@ -1,4 +1,4 @@
-"""Make a contact problem dimensionless, and bring its solution back: one pair.
+"""Scaling: make a contact problem dimensionless, and put the units back into its solution.
 
 Displacement is divided by U, pressure by T (`CondensedContact.scales`), weights by the largest one, and each free
 motion by its own largest component along the normals. A change of units leaves the numbers here
@@ -50,12 +50,7 @@ def scaled(contact: CondensedContact, scales: ContactScales | None = None) -> Sc
 
     Parameters
     ----------
-    contact : CondensedContact
     scales : other ones than those of the problem, which depend on its load; then ‖M‖∞ = 1 only if U = ‖M‖∞ T
-
-    Returns
-    -------
-    ScaledContact
     """
     U, T = scales or contact.scales
     weight = contact.weights.max()
@@ -92,7 +87,6 @@ def unscaled(contact: CondensedContact, pressure: Array, amplitudes: Array) -> t
 
     Parameters
     ----------
-    contact : CondensedContact
     pressure : (n,) p, dimensionless
     amplitudes : (k,) a, dimensionless
 
@@ -108,10 +102,5 @@ def unscaled(contact: CondensedContact, pressure: Array, amplitudes: Array) -> t
 
 
 def motion_sizes(contact: CondensedContact) -> Array:
-    """Largest normal component of each free motion, (k,).
-
-    Parameters
-    ----------
-    contact : CondensedContact
-    """
+    """Largest normal component of each free motion, (k,)."""
     return np.abs(contact.rigid_motions).max(axis=0, initial=0.0)

@@ -1,4 +1,4 @@
-"""The search of a local solver for the least of QP1 or QP2, and what its end is: the contact state, or what else."""
+"""The search of the local solver for a minimum of QP1 or QP2, and whether its end is the contact state."""
 
 from dataclasses import replace
 from itertools import groupby
@@ -9,11 +9,11 @@ from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, LocalSearch, Penalty, Status, Trace, traces_in_turn
 from bemcontact.formulations.complementarity import escape_note, polish
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.local_solver import QPResult, QPStatus
-from bemcontact.formulations.program import Program, amplitudes, minimise, start_vector
+from bemcontact.formulations.program import Program, amplitudes, minimize, start_vector
 from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
-from bemcontact.options import Weights
+from bemcontact.formulations.start import Start, start_of
+from bemcontact.options import SolveOptions, Weights
 
 SOLUTION = 1e-8
 """Residual up to which the end of a search counts as the contact state: searches that go well leave 1e-10 and less."""
@@ -26,7 +26,7 @@ BIASED = (
     "not the solution, with an objective of {:.1e} (scaled): consistent weights have negative entries, so that the "
     "least objective lies below 0 and off the solution, and an objective of 0 certifies nothing"
 )
-"""What the points are where a search ended, with their objectives."""
+"""What is said of points where a search ended, with their objectives."""
 POLISHED = (Status.SOLVED, Status.NO_SOLUTION_FOUND, Status.NUMERICAL_FAILURE)
 """Ends from which the polish is tried."""
 NO_CONTACT_STATE = (
@@ -35,9 +35,9 @@ NO_CONTACT_STATE = (
 )
 SOLVER = "inertia-controlling active set"
 QUANTITIES = {1: "infeasibility", 2: "objective"}
-"""What each phase of the solver makes less."""
+"""What each phase of the solver reduces."""
 STATUSES = {
-    QPStatus.LOCAL_MINIMISER: Status.SOLVED,
+    QPStatus.LOCAL_MINIMIZER: Status.SOLVED,
     QPStatus.UNDECIDED: Status.SOLVED,
     QPStatus.UNBOUNDED: Status.UNBOUNDED,
     QPStatus.INFEASIBLE: Status.INFEASIBLE,
@@ -48,37 +48,31 @@ STATUSES = {
 
 def searched(
     contact: CondensedContact,
-    options: FormulationOptions,
-    formulation: str,
+    options: SolveOptions,
     program: Program,
     *,
     only: bool,
     penalty: Penalty | None = None,
 ) -> ContactSolution:
-    """Solve a program and say what its end is, by its residual and not by what the solver says.
+    """Solve a program and judge its end by its residual, not by what the solver claims.
 
-    With weights that are not negative the best value is zero, attained at the contact state alone. An end elsewhere is
-    a local minimum, or the work of round-off if there is none.
+    With weights that are not negative the least value is zero, attained at the contact state alone. An end elsewhere is
+    a local minimum, or due to round-off if there is none. The displacement of the solution is the solver's own u_n.
 
     Parameters
     ----------
     contact : CondensedContact
     options : start, limit of iterations, weights
-    formulation : its name
     program : Program
     only : whether the contact state is proved to be the only stationary point with weights that are not negative
-    penalty : to be told with the search
-
-    Returns
-    -------
-    ContactSolution
-        Its displacement is the solver's own u_n.
+    penalty : reported with the search
     """
-    result = minimise(program, start_vector(contact, options.start, len(program.linear)), options.max_iterations)
-    found = _as_found(contact, formulation, result, _search(options, program, result, penalty))
-    residual, objective = contact_residual(contact, found), program.value(result.x)
-    if found.status is not Status.SOLVED or residual <= SOLUTION:
-        return found
+    start = start_of(contact, options)
+    result = minimize(program, start_vector(contact, start, len(program.linear)), options.max_iterations)
+    solution = _solution(contact, options.formulation, result, _search(start, program, result, penalty))
+    residual, objective = contact_residual(contact, solution), program.value(result.x)
+    if solution.status is not Status.SOLVED or residual <= SOLUTION:
+        return solution
     if options.weights is Weights.CONSISTENT:
         status, what = Status.LOCAL_MINIMUM, BIASED
     elif objective * max(1.0, program.penalty) <= ZERO:  # times μ it is the residual of the equations, squared
@@ -86,22 +80,22 @@ def searched(
     else:
         status, what = (Status.NUMERICAL_FAILURE, LOST) if only else (Status.LOCAL_MINIMUM, STATIONARY)
     note = (
-        f"{formulation.upper()} ended at a point where contact conditions and equations are violated by {residual:.1e} "
-        f"of their scales; it is {what.format(objective)}"
+        f"{options.formulation.upper()} ended at a point where contact conditions and equations are violated by "
+        f"{residual:.1e} of their scales; it is {what.format(objective)}"
     )
-    return replace(found, status=status, notes=(*found.notes, note))
+    return replace(solution, status=status, notes=(*solution.notes, note))
 
 
-def polished(contact: CondensedContact, options: FormulationOptions, found: ContactSolution) -> ContactSolution:
-    """The polish, where it is asked for and due, which may make the solution of an end that round-off has spoilt.
+def polished(contact: CondensedContact, options: SolveOptions, solution: ContactSolution) -> ContactSolution:
+    """Polish a solution where that is asked for and useful; an end that round-off has spoilt may become the solution.
 
-    Not due are a true minimum elsewhere, a search that was cut short or proved that there is nothing to find, and the
-    consistent weights, which are left as they are.
+    These are left as they are: a true minimum elsewhere, a search that was cut short or proved that there is nothing to
+    find, and a solution with consistent weights.
     """
-    if not options.polish or options.weights is Weights.CONSISTENT or found.status not in POLISHED:
-        return found
-    better = polish(contact, found)
-    if found.status is Status.SOLVED or contact_residual(contact, better) > SOLUTION:
+    if not options.polish or options.weights is Weights.CONSISTENT or solution.status not in POLISHED:
+        return solution
+    better = polish(contact, solution)
+    if solution.status is Status.SOLVED or contact_residual(contact, better) > SOLUTION:
         return better
     return replace(better, status=Status.SOLVED, notes=(*better.notes, "the polish led from there to the solution"))
 
@@ -110,9 +104,9 @@ def contact_residual(contact: CondensedContact, solution: ContactSolution) -> fl
     """Largest of |min(p/T, δ/U)|, of (12) over U and of |ℓᵀp + load| over T Σ|ℓ|, over the size of the numbers."""
     problem = scaled(contact)
     p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
-    strange = solution.displacement - unscaled(contact, p, a)[1]
+    residual = solution.displacement - unscaled(contact, p, a)[1]
     size = 1.0 + float(np.abs(p).max(initial=0.0) + np.abs(a).sum())
-    return max(problem.residual(p, a), float(np.abs(strange).max()) / contact.scales.displacement / size)
+    return max(problem.residual(p, a), float(np.abs(residual).max()) / contact.scales.displacement / size)
 
 
 def ray_in_words(contact: CondensedContact, ray: Array) -> str:
@@ -127,10 +121,10 @@ def ray_in_words(contact: CondensedContact, ray: Array) -> str:
     return " while ".join(terms) or "the body moves rigidly"
 
 
-def _search(options: FormulationOptions, program: Program, result: QPResult, penalty: Penalty | None) -> LocalSearch:
-    """How the solver came to its end."""
+def _search(start: Start | None, program: Program, result: QPResult, penalty: Penalty | None) -> LocalSearch:
+    """What is reported of a search."""
     return LocalSearch(
-        start="null vector" if options.start is None else options.start.label,
+        start="null vector" if start is None else start.label,
         phase_one_iterations=result.phase_one_iterations,
         phase_two_iterations=result.phase_two_iterations,
         working_set_changes=result.working_set_changes,
@@ -143,7 +137,7 @@ def _search(options: FormulationOptions, program: Program, result: QPResult, pen
     )
 
 
-def _as_found(contact: CondensedContact, formulation: str, result: QPResult, search: LocalSearch) -> ContactSolution:
+def _solution(contact: CondensedContact, formulation: str, result: QPResult, search: LocalSearch) -> ContactSolution:
     """The end of the solver in the user's units."""
     n = contact.size
     U, T = contact.scales
@@ -153,7 +147,7 @@ def _as_found(contact: CondensedContact, formulation: str, result: QPResult, sea
     if result.status is QPStatus.UNBOUNDED and result.ray is not None:
         notes.append(f"the objective falls without end along a ray: {ray_in_words(contact, result.ray)}")
     if result.status is QPStatus.INFEASIBLE:
-        notes.append(escape_note(contact, scaled(contact)) or NO_CONTACT_STATE)
+        notes.append(escape_note(contact) or NO_CONTACT_STATE)
     u_n, p = result.x[:n] * U, result.x[n : 2 * n] * T
     return ContactSolution(
         formulation=formulation,

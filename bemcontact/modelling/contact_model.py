@@ -17,22 +17,22 @@ from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import minimize
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
 from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
-from bemcontact.modelling.model_result import ModelResult, judged, solution_at, taken_out
+from bemcontact.modelling.model_result import ModelResult, judged, read_back, solution_at
 from bemcontact.modelling.parameters import Parameters, Value
 from bemcontact.options import Weights
 
 
 class ContactProblem(cp.Problem):
-    """A problem of cvxpy that Clarabel solves unless another solver is named: OSQP, cvxpy's choice, ends far off."""
+    """A cvxpy problem that Clarabel solves unless another solver is named: OSQP, cvxpy's choice, is too inaccurate."""
 
     def solve(self, *args: Any, **options: Any) -> Any:
-        """Solve as `cvxpy.Problem.solve` does, which tells of arguments and options."""
+        """Solve as `cvxpy.Problem.solve` does; arguments and options are described there."""
         return super().solve(*args, **{"solver": cp.CLARABEL, **options})
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ContactModel:
-    """Minimise F3 = pᵀJ gap with gap = q + M p + R a >= 0, p >= 0, ℓᵀp = -load, (40)-(42): to build on in cvxpy.
+    """Minimize F3 = pᵀJ gap with gap = q + M p + R a >= 0, p >= 0, ℓᵀp = -load, (40)-(42), to be extended in cvxpy.
 
     All is in the user's units; the variables behind the expressions are scaled, so that units do not matter to a
     solver. The expressions are affine and may be used in what is added. After new values of parameters nothing is
@@ -40,7 +40,7 @@ class ContactModel:
 
     Parameters
     ----------
-    condensed : what the model was made of
+    original : the contact problem that the model was made of
     parameters : what may change; `initial_gap`, `case_factors`, `tool_position` and `tool_force` are its own
     pressure : (n,) p [p], an expression
     motions : (k,) a, an expression; None without free motions
@@ -50,10 +50,10 @@ class ContactModel:
     objective : F3 [p L²], which is zero at a contact state; in equilibrium it is pᵀJ gap
     constraints : "no_penetration", "no_tension" and, with free motions, "equilibrium"
     scales : displacement [L] and pressure [p] that the variables behind the expressions are divided by
-    notes : what a person should know
+    notes : what a user should know
     """
 
-    condensed: CondensedContact
+    original: CondensedContact
     parameters: Parameters
     pressure: cp.Expression
     motions: cp.Expression | None
@@ -68,7 +68,7 @@ class ContactModel:
     def __repr__(self) -> str:
         """One line: name, points, what may change."""
         names = ", ".join(parameter.name() for parameter in self.objective.parameters())
-        return f"<ContactModel of {self.condensed.name!r}: {self.condensed.size} points; {names} may change>"
+        return f"<ContactModel of {self.original.name!r}: {self.original.size} points; {names} may change>"
 
     @property
     def initial_gap(self) -> cp.Parameter:
@@ -109,11 +109,11 @@ class ContactModel:
         ProblemError
             If there is no such zone.
         """
-        names = self.condensed.zone_names
+        names = self.original.zone_names
         if zone is not None and zone not in names:
             raise ProblemError(f"there is no contact zone '{zone}'; there are: {', '.join(names)}")
-        inside = np.ones(self.condensed.size, bool) if zone is None else self.condensed.zone == names.index(zone)
-        return self.condensed.forces(inside.astype(float)).T @ self.pressure
+        inside = np.ones(self.original.size, bool) if zone is None else self.original.zone == names.index(zone)
+        return self.original.forces(inside.astype(float)).T @ self.pressure
 
     @property
     def contact(self) -> CondensedContact:
@@ -141,8 +141,8 @@ class ContactModel:
             new problem.
         """
         if extra_objective is not None and not isinstance(extra_objective, cp.Expression | Real):
-            found = type(extra_objective).__name__
-            raise ProblemError(f"extra_objective is an expression, which is added to F3 and minimised; found {found}")
+            kind = type(extra_objective).__name__
+            raise ProblemError(f"extra_objective is an expression, which is added to F3 and minimized; found {kind}")
         if isinstance(extra_constraints, cp.Constraint):
             raise ProblemError("extra_constraints is a list of constraints; put the one that is given into brackets")
         goal = self.objective if extra_objective is None else self.objective + extra_objective
@@ -152,7 +152,7 @@ class ContactModel:
 
     @cached_property
     def _pure(self) -> cp.Problem:
-        """Nothing added."""
+        """The problem with nothing added."""
         return self.problem()
 
     def solve(
@@ -189,25 +189,25 @@ class ContactModel:
         if problem is not None and added:
             raise ProblemError("give either a problem that was made before, or what is to be added, not both")
         chosen = problem or (self.problem(extra_objective, extra_constraints) if added else self._pure)
-        if chosen is self._pure and (found := self._from_last()) is not None:
-            return found
+        if chosen is self._pure and (result := self._from_last()) is not None:
+            return result
         minimize(chosen, max_iterations)
         return self.result(chosen)
 
     def _from_last(self) -> ModelResult | None:
-        """Try a few active-set steps from the values that stand in the model; None if they do not get there."""
+        """Try a few active-set steps from the values of the last solve; None if they do not lead to a contact state."""
         if self.pressure.value is None:
             return None
         contact, motions = self.contact, self.motions
-        found = judged(contact, polish(contact, solution_at(contact, self.pressure, motions, ACTIVE_SET)), added=False)
-        solution, certificate = found.solution, found.certificate
+        result = judged(contact, polish(contact, solution_at(contact, self.pressure, motions, ACTIVE_SET)), added=False)
+        solution, certificate = result.solution, result.certificate
         if solution is None or certificate is None or not certificate.certified:
             return None
         U, T = self.scales
         self.pressure.variables()[0].value = solution.pressure / T
         if motions is not None:
-            motions.variables()[0].value = solution.rigid_amplitudes * (motion_sizes(self.condensed) / U)
-        return found
+            motions.variables()[0].value = solution.rigid_amplitudes * (motion_sizes(self.original) / U)
+        return result
 
     def result(self, problem: cp.Problem) -> ModelResult:
         """Take everything out of a problem that has been solved, and judge it at the present values of the parameters.
@@ -227,7 +227,7 @@ class ContactModel:
         """
         parts = zip(problem.constraints, self.constraints.values(), strict=False)
         pure = len(problem.constraints) == len(self.constraints) and all(one is other for one, other in parts)
-        return taken_out(
+        return read_back(
             self.contact,
             problem,
             self.pressure,
@@ -264,7 +264,7 @@ def model(contact: CondensedContact) -> ContactModel:
     balance = {} if a is None else {"equilibrium": problem.equilibrium.T @ p == -load}
     motions = None if a is None else cp.multiply(U / sizes, a)
     return ContactModel(
-        condensed=contact,
+        original=contact,
         parameters=given,
         pressure=T * p,
         motions=motions,
@@ -291,26 +291,17 @@ def ensure_convex(problem: cp.Problem) -> None:
     bad = next(name for name, part in parts if not part.is_dcp())
     raise ProblemError(
         f"the model is not convex by cvxpy's rules (DCP) in {bad:.200}; write what was added with convex functions "
-        "that are minimised or bounded from above"
+        "that are minimized or bounded from above"
     )
 
 
-def typical_scales(condensed: CondensedContact) -> ContactScales:
-    """Displacement [L] and pressure [p] of the present state, or of a load case by itself, whichever is largest.
-
-    Parameters
-    ----------
-    condensed : CondensedContact
-
-    Returns
-    -------
-    ContactScales
-    """
-    cases = condensed.cases
+def typical_scales(contact: CondensedContact) -> ContactScales:
+    """Displacement [L] and pressure [p] of the present state, or of a load case by itself, whichever is largest."""
+    cases = contact.cases
     steps = np.eye(len(cases)) - cases.factors
-    states = [condensed, *(condensed.stepped(step, cases.position @ step, cases.force @ step) for step in steps)]
-    told = [state for state in states if state.offset.any() or state.motion_load.any()]
-    return max((state.scales for state in told), default=condensed.scales)
+    states = [contact, *(contact.stepped(step, cases.position @ step, cases.force @ step) for step in steps)]
+    acting = [state for state in states if state.offset.any() or state.motion_load.any()]
+    return max((state.scales for state in acting), default=contact.scales)
 
 
 def _convex_hessian(problem: ScaledContact) -> tuple[Array, tuple[str, ...]]:
@@ -345,7 +336,7 @@ def _work(
 
 
 def _tool_displacement(given: Parameters, motions: cp.Expression | None) -> cp.Expression | None:
-    """Where the tools are, (t, 3)."""
+    """Displacements (t, 3) of the tools."""
     tools = given.rest.tools
     if not len(tools):
         return None

@@ -1,4 +1,4 @@
-"""What came out of a model: arrays of ours, judged, and a verdict in words."""
+"""The result of a model: arrays, residuals and certificate, and a verdict in words."""
 
 from dataclasses import dataclass, replace
 from typing import Any, cast
@@ -14,7 +14,6 @@ from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.clarabel import STATUSES
 from bemcontact.formulations.complementarity import escape_note, polish
-from bemcontact.formulations.scaling import scaled
 
 SEEN = 1e-5
 """Residual above which the optimum of a model with additions is no contact state: the root of Clarabel's tolerance."""
@@ -29,15 +28,15 @@ class ModelResult:
     Parameters
     ----------
     status : how the solver ended
-    words : what this is, in a sentence or two
+    words : the verdict in a sentence or two
     contact_state : whether it is a contact state: to round-off if nothing was added, else to the solver's tolerance
-    objective : of all that was minimised, in the user's units
+    objective : of all that was minimized, in the user's units
     pressure : (n,) [p]
     gap : (n,) [L]
     motions : (k,) a
     tool_displacement : (t, 3) x, y [L] and rotation [rad]
     solution : the same as a contact solution, polished if nothing was added
-    residuals, certificate : the judgement, recomputed
+    residuals, certificate : recomputed
     """
 
     status: Status
@@ -61,7 +60,7 @@ class ModelResult:
         return f"<ModelResult: {self.words}>"
 
 
-def taken_out(
+def read_back(
     contact: CondensedContact,
     problem: cp.Problem,
     pressure: cp.Expression,
@@ -77,10 +76,6 @@ def taken_out(
     problem : solved
     pressure, motions : of the model
     added : whether the problem is more than the contact problem
-
-    Returns
-    -------
-    ModelResult
 
     Raises
     ------
@@ -100,24 +95,20 @@ def taken_out(
         iterations=int(statistics.num_iters or 0),
         notes=("the tolerance asked of the solver was not reached",) if problem.status == INACCURATE else (),
     )
-    found = judged(contact, solution if added else polish(contact, solution), added=added)
-    return replace(found, objective=float(value)) if added else found
+    result = judged(contact, solution if added else polish(contact, solution), added=added)
+    return replace(result, objective=float(value)) if added else result
 
 
 def solution_at(
     contact: CondensedContact, pressure: cp.Expression, motions: cp.Expression | None, solver: str
 ) -> ContactSolution:
-    """The values that stand in a model, as a contact solution.
+    """The present values of a model as a contact solution.
 
     Parameters
     ----------
     contact : the contact problem with the present values of the parameters
     pressure, motions : of the model
     solver : name of the program that found them
-
-    Returns
-    -------
-    ContactSolution
     """
     p = np.array(pressure.value, float)
     a = np.zeros(0) if motions is None else np.array(motions.value, float)
@@ -140,17 +131,13 @@ def judged(contact: CondensedContact, solution: ContactSolution, *, added: bool)
     contact : the contact problem with the present values of the parameters
     solution : of the model
     added : whether the model is more than the contact problem
-
-    Returns
-    -------
-    ModelResult
     """
-    found = residuals(contact, solution)
-    certificate = certify(contact, solution, found, SEEN) if added else certify(contact, solution, found)
+    recomputed = residuals(contact, solution)
+    certificate = certify(contact, solution, recomputed, SEEN) if added else certify(contact, solution, recomputed)
     gap = contact.initial_gap + solution.displacement
     return ModelResult(
         status=solution.status,
-        words=_words(solution.status, certificate, found, added=added),
+        words=_words(solution.status, certificate, recomputed, added=added),
         contact_state=not certificate.complaint,
         objective=float(contact.weights @ (solution.pressure * gap)),
         pressure=solution.pressure,
@@ -158,7 +145,7 @@ def judged(contact: CondensedContact, solution: ContactSolution, *, added: bool)
         motions=solution.rigid_amplitudes,
         tool_displacement=contact.tools.displacement(solution.rigid_amplitudes),
         solution=solution,
-        residuals=found,
+        residuals=recomputed,
         certificate=certificate,
     )
 
@@ -168,28 +155,28 @@ def _ensure_of_the_model(problem: cp.Problem, pressure: cp.Expression) -> None:
     variable = pressure.variables()[0]
     if variable.id not in {own.id for own in problem.variables()}:
         raise ProblemError("the problem does not contain the pressure of this model; build it from the model's parts")
-    found = None if problem.solution is None else problem.solution.primal_vars.get(variable.id)
-    same = found is None if variable.value is None else found is not None and np.array_equal(found, variable.value)
+    solved = None if problem.solution is None else problem.solution.primal_vars.get(variable.id)
+    same = solved is None if variable.value is None else solved is not None and np.array_equal(solved, variable.value)
     if not same:
         raise ProblemError("another problem of this model was solved since; take a result out right after its solve")
 
 
 def _without_optimum(contact: CondensedContact, status: Status, *, added: bool) -> str:
     """Say why there is no optimum."""
-    reason = escape_note(contact, scaled(contact)) if status is Status.INFEASIBLE else None
+    reason = escape_note(contact) if status is Status.INFEASIBLE else None
     if reason is not None:
         return f"There is no contact state: {reason}."
     of_whom = "what was added to the model" if added else "the contact problem"
     match status:
         case Status.INFEASIBLE:
-            return f"No pressure satisfies all constraints: {of_whom} asks for too much."
+            return f"No pressure satisfies all constraints: {of_whom} cannot be satisfied."
         case Status.UNBOUNDED:
-            return f"The objective has no lower bound: {of_whom} rewards something without limit."
+            return f"The objective has no lower bound: {of_whom} decreases it without limit."
         case _:
             return f"No optimum was found: the solver {status.value}."
 
 
-def _words(status: Status, certificate: Certificate, found: Residuals, *, added: bool) -> str:
+def _words(status: Status, certificate: Certificate, recomputed: Residuals, *, added: bool) -> str:
     """The verdict."""
     cut = "" if status is Status.SOLVED else f" The solver {status.value}."
     if certificate.complaint and added:
@@ -197,6 +184,6 @@ def _words(status: Status, certificate: Certificate, found: Residuals, *, added:
     if added:
         return (
             "What was added leaves a contact state, to the solver's tolerance (residual of complementarity "
-            f"{found.complementarity:.1e}).{cut}"
+            f"{recomputed.complementarity:.1e}).{cut}"
         )
     return f"{certificate.words}{cut}"

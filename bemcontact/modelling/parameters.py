@@ -1,4 +1,4 @@
-"""What may change in a model: initial gap, load cases and tools as parameters of cvxpy, and what they add up to."""
+"""Parameters of a model: initial gap, load cases and tools as parameters of cvxpy, and the sums that they enter."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property

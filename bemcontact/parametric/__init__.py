@@ -1,1 +1,1 @@
-"""How a contact state answers to what changes linearly: its derivative, its sensitivities, its path."""
+"""Contact states under linear changes of gap and load: derivatives, sensitivities, paths."""

@@ -5,8 +5,8 @@ along a change (q̇, ḟ) of offset and load is the solution of the mixed comple
 
     δ̇ = 0 on S,  0 <= ṗ ⟂ δ̇ >= 0 on W,  ṗ = 0 elsewhere,  ℓᵀṗ = -ḟ,  δ̇ = q̇ + M ṗ + R ȧ,
 
-(Robinson's generalised equations; Facchinei and Pang, "Finite-Dimensional Variational Inequalities and Complementarity
-Problems", 2003, section 5.4, for strongly regular solutions). S and the motions are eliminated by one factorisation.
+(Robinson's generalized equations; Facchinei and Pang, "Finite-Dimensional Variational Inequalities and Complementarity
+Problems", 2003, section 5.4, for strongly regular solutions). S and the motions are eliminated by one factorization.
 Where S alone does not hold the body, points B of W join them, on which pressure and gap change places, as in
 `bemcontact.formulations.complementarity.standard_form`.
 """
@@ -28,22 +28,22 @@ from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import ScaledContact
 
 WEAK = 1e-10
-"""Pressure and gap, over the size of the numbers in them, that count as zero together."""
+"""Pressure and gap, over the size of the numbers in them, up to which both count as zero."""
 RANK = 1e-9
-"""Part of a motion by which it must move some point, for the point to hold it."""
+"""Fraction of a motion by which it must move a point, so that the point holds it."""
 UNCARRIED = 1e-12
-"""Part of the change of load that may be left without support."""
+"""Fraction of the change of load that may remain without support."""
 STILL = 1e-13
 """Rate over the size of the numbers in it that counts as zero."""
 
 NOT_HELD = "the points in contact do not hold the body, so that its position is not determined"
 NOT_UNIQUE = "the contact state may go on in more than one way here, as the compliance does not rule out"
-NO_WAY = "no contact state was found to continue this one: the path turns back or breaks off here"
+NO_WAY = "no contact state was found to continue this one: the path turns back or ends here"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Rate:
-    """Derivative of a state, free of units.
+    """Derivative of a state, dimensionless.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Rate:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Tangent:
-    """A contact state, seen by what may change at once.
+    """A contact state with its strongly and weakly active points.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Tangent:
         unique: bool,
         before: ContactBlock | None = None,
     ) -> Self:
-        """Look at a state: p (n,), δ (n,) and a (k,), free of units; the rest is as of the class."""
+        """Classify the points of a state: p (n,), δ (n,) and a (k,), dimensionless."""
         small = WEAK * (1.0 + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
         loaded, closed = pressure > small, gap <= small
         return cls(
@@ -104,7 +104,7 @@ class Tangent:
         return ContactBlock(contact=self.contact, points=self.strong).touching
 
     def escape(self, change: Change) -> Array:
-        """The part r (k,) of a change of load that neither S nor W can answer: the least ℓᵀṗ + ḟ by norm.
+        """The part r (k,) of a change of load that neither S nor W can carry: the least ℓᵀṗ + ḟ by norm.
 
         Where it is not zero, it is a motion that moves no point of S, closes none of W, and on which the load works.
         """
@@ -137,8 +137,8 @@ class Tangent:
             if self.weak.size < free.shape[1]:
                 raise ProblemError(NOT_HELD)
             seen = (self.contact.rigid_motions[self.weak] @ free).T
-            found = qr(seen, mode="r", pivoting=True)
-            triangle, order = np.asarray(found[0]), np.asarray(found[-1])
+            factors = qr(seen, mode="r", pivoting=True)
+            triangle, order = np.asarray(factors[0]), np.asarray(factors[-1])
             sizes = np.abs(np.diag(triangle))
             if sizes.min() <= RANK:
                 raise ProblemError(NOT_HELD)
@@ -147,7 +147,7 @@ class Tangent:
 
     @cached_property
     def exchanged(self) -> IntArray:
-        """B: what there is in `held` beside S."""
+        """B: the points of `held` that are not in S."""
         return np.setdiff1d(self.held.points, self.strong, assume_unique=True)
 
     @cached_property
@@ -169,10 +169,6 @@ class Tangent:
         Parameters
         ----------
         change : (q̇, ḟ), free of units
-
-        Returns
-        -------
-        Rate
 
         Raises
         ------
@@ -219,7 +215,7 @@ def _scale(N: Array, b: int) -> Array:
 
 
 def size_of(change: Change, pressure: Array, amplitudes: Array) -> float:
-    """Size of the numbers that are added up in a rate, or in a state."""
+    """Size of the numbers that are added in a rate, or in a state."""
     return float(np.abs(change.offset).max(initial=0.0) + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
 
 

@@ -1,4 +1,4 @@
-"""A load path told in the values of a parameter: what a table, a file and a picture of it are made from."""
+"""A load path as a function of a parameter: the data of its table, file and figure."""
 
 import csv
 import io
@@ -15,11 +15,11 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.path import LoadPath
 
 BETWEEN = (0.25, 0.5, 0.75)
-"""Where intervals, whose ends are not linear, are looked at between two breakpoints."""
+"""Fractions between two breakpoints at which intervals are evaluated, because their ends are not linear."""
 ROUND_OFF = 1e-14
-"""Part of a parameter that counts as zero."""
+"""Fraction of a parameter that counts as zero."""
 RESIDUAL = 1e-10
-"""Allowed at breakpoints, as by the certificate of a single solution."""
+"""Allowed residual at breakpoints, as in the certificate of a single solution."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,8 +50,8 @@ class PathState:
 
     def ends(self, zone: str) -> tuple[list[float], list[float]]:
         """Arc positions of the starts and ends of the intervals of a zone [L]."""
-        found = [item for item in self.footprint.intervals if item.zone == zone]
-        return [item.start_arc for item in found], [item.end_arc for item in found]
+        intervals = [item for item in self.footprint.intervals if item.zone == zone]
+        return [item.start_arc for item in intervals], [item.end_arc for item in intervals]
 
     def to_dict(self) -> dict[str, Any]:
         """Give it as numbers and lists, ready for JSON."""
@@ -87,8 +87,8 @@ class ParameterPath:
     def __repr__(self) -> str:
         """One line: key, values, the path."""
         counts = f"{len(self.path.parameter)} breakpoints, {self.path.pivots} pivots"
-        told = "".join(f"; {note}" for note in self.notes)
-        return f"<ParameterPath of {self.key} from {self.start:g} to {self.end:g}: {counts}{told}>"
+        notes = "".join(f"; {note}" for note in self.notes)
+        return f"<ParameterPath of {self.key} from {self.start:g} to {self.end:g}: {counts}{notes}>"
 
     @property
     def contact(self) -> CondensedContact:
@@ -112,9 +112,9 @@ class ParameterPath:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a person should know of the path."""
+        """Notes on the path, one sentence each."""
         begin, end = self.reaches
-        return self.path.told(f"{begin:.6g}", f"{end:.6g}")
+        return self.path.notes_between(f"{begin:.6g}", f"{end:.6g}")
 
     @cached_property
     def states(self) -> tuple[PathState, ...]:
@@ -127,14 +127,14 @@ class ParameterPath:
         return tuple(state for state in self.states if state.breakpoint)
 
     def _states(self) -> Iterator[PathState]:
-        """Go along the path."""
+        """States along the path."""
         for i, t in enumerate(self.path.parameter.tolist()):
             yield self._state(t, i)
             if i + 1 < len(self.path.parameter) and (width := self.path.parameter[i + 1] - t) > 0:
                 yield from (self._state(float(t + share * width), None) for share in BETWEEN)
 
     def _state(self, t: float, i: int | None) -> PathState:
-        """Look at breakpoint i, or at a state at t."""
+        """The state at breakpoint i, or at t."""
         solution = self.path.at(t) if i is None else self.path.breakpoint(i)
         p, contact = solution.pressure, self.path.contact(t)
         return PathState(
@@ -193,10 +193,10 @@ class ParameterPath:
 
 
 def _cell(numbers: Sequence[float]) -> str:
-    """Several numbers in one cell."""
+    """Numbers in one cell."""
     return " ".join(map(repr, map(_plain, numbers)))
 
 
 def _plain(number: float) -> float:
-    """A number of Python's own kind, so that it is written plainly."""
+    """A number as a Python number, so that it is written plainly."""
     return int(number) if isinstance(number, int | np.integer) else float(number)

@@ -23,13 +23,13 @@ COMMON = {
     "weights": "weights",
     "normals": "directions of the rigid surfaces",
 }
-"""What the ends of a path have in common, and what it is called."""
+"""Fields that the ends of a path have in common, and their names in sentences."""
 SAME = 1e-11
-"""Difference of two compliances, motions or weights, over the largest entry, that is round-off."""
+"""Difference of two compliances, motions or weights, over the largest entry, up to which it is round-off."""
 SAME_LOAD = 1e-14
-"""Difference of two loads, over the largest component, that is round-off."""
+"""Difference of two loads, over the largest component, up to which it is round-off."""
 CANCELLED = 4 * float(np.finfo(float).eps)
-"""What is left where two ends of opposite sign cancel each other, over the larger one: none."""
+"""Sum of two ends of opposite sign, over the larger one, up to which they cancel each other."""
 SOLVER = "parametric pivoting"
 NOT_PROVED = "the compliance does not rule out other contact states beside those of this path"
 
@@ -91,13 +91,13 @@ class LoadPath:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a person should know of the path."""
-        return self.told(f"{self.begins_at:.6g}", f"{self.ends_at:.6g}")
+        """Notes on the path, one sentence each."""
+        return self.notes_between(f"{self.begins_at:.6g}", f"{self.ends_at:.6g}")
 
-    def told(self, begin: str, end: str) -> tuple[str, ...]:
-        """Say what a person should know, in a sentence each, of a path from `begin` to `end`."""
+    def notes_between(self, begin: str, end: str) -> tuple[str, ...]:
+        """Notes on a path from `begin` to `end`, one sentence each."""
         where = f"from {begin} on" if self.begins_at > 0.0 else f"up to {end}"
-        early = f"the path is there {where}; beyond, {self.note}" if self.note else ""
+        early = f"the path exists {where}; beyond that, {self.note}" if self.note else ""
         return tuple(text for text in (early, "" if self.unique else NOT_PROVED) if text)
 
     @cached_property
@@ -112,8 +112,8 @@ class LoadPath:
 
     def _changed(self, masks: BoolArray) -> tuple[tuple[int, ...], ...]:
         """Indices of points at the breakpoints between the first and the last."""
-        found = (tuple(np.flatnonzero(mask).tolist()) for mask in masks)
-        return ((), *found, ())[: len(self.parameter)]
+        changed = (tuple(np.flatnonzero(mask).tolist()) for mask in masks)
+        return ((), *changed, ())[: len(self.parameter)]
 
     @property
     def pivots(self) -> int:
@@ -147,8 +147,8 @@ class LoadPath:
         first, last = self.start, self.end
 
         def between(one: Array, other: Array) -> Array:
-            found = (1 - t) * one + t * other
-            return np.where(np.abs(found) <= CANCELLED * np.maximum(np.abs(one), np.abs(other)), 0.0, found)
+            value = (1 - t) * one + t * other
+            return np.where(np.abs(value) <= CANCELLED * np.maximum(np.abs(one), np.abs(other)), 0.0, value)
 
         load = between(first.motion_load, last.motion_load)
         largest = np.abs([first.motion_load, last.motion_load]).max(initial=0.0)
@@ -268,8 +268,8 @@ def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:
     """
     for given in (start, end):
         if not isinstance(given, CondensedContact):
-            found = type(given).__name__
-            raise ProblemError(f"a path leads between two CondensedContact, which condense makes; found {found}")
+            kind = type(given).__name__
+            raise ProblemError(f"a path leads between two CondensedContact, which condense makes; found {kind}")
     ensure_same_body(start, end)
     trail, note = _followed(start, end)
     if trail is None or len(trail.states) == 1:
@@ -295,7 +295,7 @@ WAY_OUT = "a path is exact only for loads, gaps and tools: condense once, then u
 
 
 def _followed(first: CondensedContact, last: CondensedContact) -> tuple[Trail | None, str]:
-    """Solve the first problem and follow its state to the last; why it does not get there, or nothing."""
+    """Solve the first problem and follow its state to the last; with the reason if it does not get there."""
     solution = complementarity.solve(first)
     if solution.status is not Status.SOLVED:
         return None, "; ".join(solution.notes) or solution.status.value
@@ -306,13 +306,13 @@ def _followed(first: CondensedContact, last: CondensedContact) -> tuple[Trail | 
 
 
 def measure(first: CondensedContact, last: CondensedContact) -> CondensedContact:
-    """The one whose scales are to be used: the larger ones, but not of a widest gap where nothing needs a pressure."""
+    """The problem whose scales are used: the larger ones, but not those of a problem that needs no pressure."""
     loaded = [item for item in (first, last) if item.motion_load.any() or (item.offset < 0).any()]
     return max(loaded or (first, last), key=lambda item: item.scales.displacement)
 
 
 def line_between(unit: CondensedContact, first: CondensedContact, last: CondensedContact) -> Line:
-    """The offsets and loads from one problem to another, free of units by the scales of `unit`."""
+    """The offsets and loads from one problem to another, over the scales of `unit`."""
     begin, end = (scaled_change(unit, Change(item.offset, item.motion_load)) for item in (first, last))
     largest = np.abs([begin.motion_load, end.motion_load]).max(initial=0.0)
     same = np.abs(end.motion_load - begin.motion_load) <= SAME_LOAD * largest
@@ -323,15 +323,15 @@ def _path(start: CondensedContact, end: CondensedContact, trail: Trail, note: st
     """Put units back, and t in ascending order."""
     unit, order = measure(start, end), slice(None, None, -1 if backwards else 1)
     states = trail.states[order]
-    found = [unscaled(unit, state.pressure, state.amplitudes) for state in states]
+    points = [unscaled(unit, state.pressure, state.amplitudes) for state in states]
     s = np.array([state.s for state in states])
     return LoadPath(
         start=start,
         end=end,
         parameter=1.0 - s if backwards else s,
-        pressure=np.array([pressure for pressure, _, _ in found]),
+        pressure=np.array([pressure for pressure, _, _ in points]),
         gap=np.array([state.gap for state in states]) * unit.scales.displacement,
-        rigid_amplitudes=np.array([amplitudes for _, _, amplitudes in found]),
+        rigid_amplitudes=np.array([amplitudes for _, _, amplitudes in points]),
         touching=np.array(trail.touching[order], bool).reshape(-1, start.size),
         unique=trail.unique,
         note=note,

@@ -6,8 +6,8 @@ afterwards. This is parametric principal pivoting (Cottle, Pang and Stone, "The 
 section 4.5), in which a block of several points is settled at once. On each piece state and derivative are solved for
 anew from the points in contact: no error adds up.
 
-Where a support is left to which the load has wandered away, the body tips at a constant load until another point holds
-it: the pressure stays, the position jumps.
+If the load has moved beyond the support, the body tips at constant load until another point holds it: the pressure
+stays, the position jumps.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ from bemcontact.parametric.derivative import RANK, STILL, WEAK, Tangent, is_mono
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Line:
-    """Offset and load between two ends, s = 0 and s = 1, free of units."""
+    """Offset and load between two ends, s = 0 and s = 1, dimensionless."""
 
     first: Change
     last: Change
@@ -41,7 +41,7 @@ class Line:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class State:
-    """A contact state on the line: s, p >= 0 (n,), δ >= 0 (n,), a (k,), free of units."""
+    """A contact state on the line: s, p >= 0 (n,), δ >= 0 (n,), a (k,), dimensionless."""
 
     s: float
     pressure: Array
@@ -51,7 +51,7 @@ class State:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trail:
-    """The states where something happens, from s = 0 on.
+    """The breakpoints of a path, from s = 0 on.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _tipped(contact: ScaledContact, state: State, tangent: Tangent, motion: Arra
 
 
 def first_zero(values: Array, rates: Array, still: float) -> tuple[float, BoolArray]:
-    """How far values >= 0 can go at their rates until one is zero, and which are; infinitely far if none falls.
+    """Largest step of values >= 0 at their rates until one is zero, and which ones are; infinite if none falls.
 
     Rates up to `still` count as zero.
     """

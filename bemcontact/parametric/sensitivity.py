@@ -1,4 +1,4 @@
-"""Sensitivities: exact derivatives of a contact state, from the points in contact and one factorisation for all."""
+"""Sensitivities: exact derivatives of a contact state, from the points in contact and one factorization for all."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -20,9 +20,9 @@ from bemcontact.parametric.derivative import WEAK, Tangent, is_monotone
 from bemcontact.parametric.path import NOT_PROVED
 
 EXACT = 1e-9
-"""Residual up to which a solution is one whose derivative has a meaning."""
+"""Residual up to which a solution has a meaningful derivative."""
 INVERSE = 1e-10
-"""Part by which a compliance may differ from twice that at twice the modulus."""
+"""Relative difference that a compliance may have from twice that at twice the modulus."""
 
 NAMED = 4
 """Points that a note names; the others are counted."""
@@ -84,7 +84,7 @@ class Sensitivity:
 
     @property
     def one_sided(self) -> bool:
-        """Whether the two sides are to be told apart."""
+        """Whether the two sides differ."""
         return self.rising is not self.falling
 
     def __repr__(self) -> str:
@@ -137,8 +137,8 @@ class Sensitivities:
 
     def __repr__(self) -> str:
         """One line: keys, and what is to be known."""
-        told = "".join(f"; {note}" for note in self.notes)
-        return f"<Sensitivities to {', '.join(self.each) or 'nothing'}{told}>"
+        notes = "".join(f"; {note}" for note in self.notes)
+        return f"<Sensitivities to {', '.join(self.each) or 'nothing'}{notes}>"
 
     def to_dict(self) -> dict[str, Any]:
         """Give all of them as numbers, lists and texts, ready for JSON."""
@@ -201,7 +201,7 @@ def sensitivities(
 
 
 def modulus_change(contact: CondensedContact, doubled: CondensedContact, modulus: float, pressure: Array) -> Change:
-    """What a change of Young's modulus E does to the gap at a given pressure, per unit of E.
+    """Change of the gap at a given pressure with Young's modulus E, per unit of E.
 
     M falls as 1/E, and so does the part Δs/E of Δ1 that loads bring about; Δu, from prescribed displacements, stays.
     Δ1(E) - Δ1(2E) = Δs/(2E) tells them apart, so that d(Δ1 + M p)/dE = -(2 (Δ1(E) - Δ1(2E)) + M p)/E.
@@ -288,7 +288,7 @@ def _highest(contact: CondensedContact, solution: ContactSolution) -> IntArray:
 
 
 def _notes(contact: CondensedContact, weak: IntArray, highest: IntArray, unique: bool) -> Iterator[str]:
-    """What is not as usual."""
+    """Notes on what is unusual."""
     if weak.size:
         verb = "touch" if weak.size > 1 else "touches"
         yield f"{_placed(contact, weak)} {verb} without pressure: derivatives differ as a parameter rises and falls"
@@ -299,7 +299,7 @@ def _notes(contact: CondensedContact, weak: IntArray, highest: IntArray, unique:
 
 
 def _at_rest(contact: CondensedContact, state: ContactSolution) -> Iterator[str]:
-    """Which ends of contact have no rate, as they are kept at a point."""
+    """Notes on ends of contact without a rate, because they are kept at a point."""
     for x, y in resting_ends(contact, state):
         yield (
             f"the end of contact at ({x:.6g}, {y:.6g}) is read at a point, where it rests while little changes: "
@@ -309,6 +309,6 @@ def _at_rest(contact: CondensedContact, state: ContactSolution) -> Iterator[str]
 
 def _placed(contact: CondensedContact, points: IntArray) -> str:
     """Name points by number and place."""
-    told = [f"{i} at ({x:g}, {y:g})" for i, (x, y) in zip(points, contact.points[points], strict=True)]
-    more = f" and {len(told) - NAMED} more" if len(told) > NAMED else ""
-    return f"{'points' if len(points) > 1 else 'point'} {', '.join(told[:NAMED])}{more}"
+    places = [f"{i} at ({x:g}, {y:g})" for i, (x, y) in zip(points, contact.points[points], strict=True)]
+    more = f" and {len(places) - NAMED} more" if len(places) > NAMED else ""
+    return f"{'points' if len(points) > 1 else 'point'} {', '.join(places[:NAMED])}{more}"

@@ -14,7 +14,7 @@ from rich.text import Text
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.study import MeshLevel, Study
 from bemcontact.assessment.comparison import Comparison
-from bemcontact.bem.condense import Body
+from bemcontact.bem.body import Body
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.formatting import (

@@ -10,7 +10,7 @@ import numpy as np
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.bem.recovery import BoundaryState
+from bemcontact.bem.condense import BoundaryState
 from bemcontact.errors import ProblemError
 from bemcontact.files import output
 from bemcontact.problem.problem import Problem

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bemcontact.adaptivity.fitted_ends import CONTACT_SHARE, Touched, fitted_ends, half_way, halved, movement, resolved
-from bemcontact.adaptivity.zone_runs import ZoneRun
+from bemcontact.adaptivity.fitted_ends import CONTACT_SHARE, fitted_ends, half_way, halved, movement, resolved
+from bemcontact.adaptivity.zone_runs import Touched, ZoneRun
 from bemcontact.problem.curves import Edge, Segment
 
 

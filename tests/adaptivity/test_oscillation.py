@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from contact_problems import random_contact
 
-from bemcontact.adaptivity.oscillation import sawing
+from bemcontact.adaptivity.oscillation import oscillation
 from bemcontact.contact.condensed_contact import CondensedContact
 
 ARC = np.cumsum(np.random.default_rng(3).uniform(0.2, 2.0, 30))
@@ -17,28 +17,28 @@ def contact_on(arc: np.ndarray) -> CondensedContact:
     return replace(random_contact(1, len(arc), 1), arc_position=arc, run=np.zeros(len(arc), int))
 
 
-def test_a_cubic_does_not_saw():
+def test_a_cubic_does_not_oscillate():
     """Exactly, on any spacing."""
-    assert sawing(contact_on(ARC), SMOOTH) <= 1e-13
+    assert oscillation(contact_on(ARC), SMOOTH) <= 1e-13
 
 
-def test_the_edge_of_a_contact_does_not_saw():
+def test_the_edge_of_a_contact_does_not_oscillate():
     """sqrt(1 - x²) on equal points up to its end, where no polynomial follows it: it is off to one side."""
     x = np.linspace(0, 1, 30, endpoint=False)
-    assert sawing(contact_on(x), np.sqrt(1 - x**2)) == 0
+    assert oscillation(contact_on(x), np.sqrt(1 - x**2)) == 0
 
 
 def test_what_alternates_is_found_with_its_amplitude():
     """A cubic and ±a: the divided difference sees a only, on any spacing."""
     p = SMOOTH + 0.05 * (-1.0) ** np.arange(30)
-    assert sawing(contact_on(ARC), p) == pytest.approx(0.05 / p.max(), rel=1e-9)
+    assert oscillation(contact_on(ARC), p) == pytest.approx(0.05 / p.max(), rel=1e-9)
     order = np.random.default_rng(4).permutation(30)
-    assert sawing(contact_on(ARC[order]), p[order]) == pytest.approx(0.05 / p.max(), rel=1e-9)
+    assert oscillation(contact_on(ARC[order]), p[order]) == pytest.approx(0.05 / p.max(), rel=1e-9)
 
 
 def test_few_points_do_not_tell():
     """Eight in a row under pressure do."""
-    assert sawing(contact_on(ARC), np.zeros(30)) is None
-    assert sawing(contact_on(ARC), np.where(np.arange(30) % 8, SMOOTH, 0.0)) is None
-    assert sawing(contact_on(ARC), np.where(np.arange(30) % 9, SMOOTH, 0.0)) is not None
-    assert sawing(contact_on(ARC[:7]), SMOOTH[:7]) is None
+    assert oscillation(contact_on(ARC), np.zeros(30)) is None
+    assert oscillation(contact_on(ARC), np.where(np.arange(30) % 8, SMOOTH, 0.0)) is None
+    assert oscillation(contact_on(ARC), np.where(np.arange(30) % 9, SMOOTH, 0.0)) is not None
+    assert oscillation(contact_on(ARC[:7]), SMOOTH[:7]) is None

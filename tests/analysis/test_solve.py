@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import bemcontact
 from bemcontact.formulations import FORMULATIONS as FORMULATIONS_BY_NAME
-from bemcontact.formulations import FormulationOptions
+from bemcontact.options import SolveOptions
 from bemcontact.problem import Problem
 
 PEAK, HALF_WIDTH = 183.335, 2.7685
@@ -228,7 +228,7 @@ def test_stiffness_of_the_material_does_not_matter(cylinder, formulation, modulu
         "conditions.top.pressure", 50.625 * factor
     )
     condensed = bemcontact.condense(problem)
-    solution = FORMULATIONS_BY_NAME[formulation](condensed, FormulationOptions(polish=False))
+    solution = FORMULATIONS_BY_NAME[formulation](condensed, SolveOptions.of(formulation, polish=False))
     reference = bemcontact.solve(cylinder, "complementarity").solution.pressure
     assert abs(solution.pressure / factor - reference).max() < 1e-9 * reference.max()
 

@@ -14,19 +14,21 @@ from bemcontact.assessment.verdict import Outcome
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.formulations import complementarity, qp1
-from bemcontact.options import FormulationName, Setting, Weights
+from bemcontact.options import FormulationName, SolveOptions
 
 
 def compared(contact: CondensedContact, *found: Found) -> Comparison:
     direct = Found(
-        setting=Setting(formulation=FormulationName.COMPLEMENTARITY), solution=complementarity.solve(contact)
+        options=SolveOptions(formulation=FormulationName.COMPLEMENTARITY),
+        label="direct",
+        solution=complementarity.solve(contact),
     )
     return comparison(contact, direct, found)
 
 
 def of_qp1(contact: CondensedContact) -> Found:
-    setting = Setting(formulation=FormulationName.QP1, weights=Weights.TRIBUTARY)
-    return Found(setting=setting, solution=qp1.solve(contact))
+    options = SolveOptions(formulation=FormulationName.QP1)
+    return Found(options=options, label=options.label(), solution=qp1.solve(contact))
 
 
 def test_those_that_agree_are_certified_together():
@@ -72,11 +74,11 @@ def test_two_contact_states_are_told():
     direct = complementarity.solve(contact)
     mirrored = dataclasses.replace(direct, pressure=np.array([1.0, 0.0]), displacement=np.array([1.0, 2.0]))
     other = dataclasses.replace(direct, pressure=np.array([0.0, 1.0]), displacement=np.array([2.0, 1.0]))
-    setting = Setting(formulation=FormulationName.QP1, weights=Weights.TRIBUTARY)
+    options = SolveOptions(formulation=FormulationName.QP1)
     found = comparison(
         contact,
-        Found(setting=Setting(formulation=FormulationName.COMPLEMENTARITY), solution=mirrored),
-        [Found(setting=setting, solution=other)],
+        Found(options=SolveOptions(formulation=FormulationName.COMPLEMENTARITY), label="direct", solution=mirrored),
+        [Found(options=options, label=options.label(), solution=other)],
     )
     assert "QP1 and direct meet all conditions, but differ by 1.0e+00 of the peak" in found.verdict
     assert found.contenders[0].verdict.outcome is Outcome.SOLVES_PERHAPS_NOT_ALONE

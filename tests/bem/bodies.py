@@ -6,12 +6,10 @@ import numpy as np
 
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
-from bemcontact.bem.factorisation import solve
-from bemcontact.bem.loading import Loading
+from bemcontact.bem.loading import Loading, particular_solution
 from bemcontact.bem.mesh import Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
-from bemcontact.bem.system import System
-from bemcontact.bem.volume_loads import particular_solution
+from bemcontact.bem.system import System, solve
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.material import Material
 

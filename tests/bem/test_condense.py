@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bemcontact.analysis.solve import solve
-from bemcontact.bem.condense import body_of, condense
-from bemcontact.bem.recovery import boundary_state
+from bemcontact.bem.body import body_of
+from bemcontact.bem.condense import boundary_state, condense
 from bemcontact.errors import ProblemError
 from bemcontact.problem import Problem
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from bodies import arc, even, mesh_of, rectangle, solved, system_of, values_of, without_rigid_motion
 
-from bemcontact.bem.factorisation import solve
 from bemcontact.bem.rigid_motions import RigidMotions
+from bemcontact.bem.system import solve
 from bemcontact.problem.material import Material
 
 

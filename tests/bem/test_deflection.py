@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bemcontact.analysis.solve import condense, solve
-from bemcontact.bem.condense import body_of
+from bemcontact.bem.body import body_of
 from bemcontact.errors import ProblemError
 from bemcontact.problem import Problem
 

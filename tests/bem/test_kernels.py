@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mpmath.calculus.quadrature import GaussLegendre
 
-from bemcontact.bem import kernels, quadrature, shape_functions
+from bemcontact.bem import kernels, reference_element
 
 ELEMENTS = {
     "straight": np.array([-1, 0, 1], complex),
@@ -53,11 +53,11 @@ def computed(nodes: np.ndarray, z: complex) -> np.ndarray:
     factor = kernels.factors(0.3)
     tau = (nodes - z)[None]
     root = kernels.nearest_root(tau)
-    tier = int(quadrature.tier(quadrature.bernstein_parameter(root.r))[0])
-    if tier == len(quadrature.ORDERS):
+    tier = int(reference_element.tier(reference_element.bernstein_parameter(root.r))[0])
+    if tier == len(reference_element.ORDERS):
         result = kernels.components(kernels.near_singular(tau, root), factor)
     else:
-        rule = kernels.gauss_rule(int(quadrature.ORDERS[tier]), factor)
+        rule = kernels.gauss_rule(int(reference_element.ORDERS[tier]), factor)
         integrands = kernels.numerators((tau @ rule.shapes).T, (nodes[None] @ rule.derivatives).T)
         result = kernels.regular(integrands, rule, factor, with_U=True)
     return np.concatenate([result.T[..., 0], result.U[..., 0]])
@@ -94,8 +94,8 @@ def test_point_on_an_element_is_the_limit_from_outside(element, local):
 def test_regular_rule_sums_kelvins_kernels():
     """U and T as printed in textbooks (Banerjee and Butterfield 1981), summed by the same rule, give the same."""
     nodes, z, nu = ELEMENTS["arc of 60 degrees"], 2.5 - 1.5j, 0.3
-    xi, weights = quadrature.gauss_legendre(int(quadrature.ORDERS[-1]))
-    N, dN = shape_functions.values(xi), shape_functions.derivatives(xi)
+    xi, weights = reference_element.gauss_legendre(int(reference_element.ORDERS[-1]))
+    N, dN = reference_element.values(xi), reference_element.derivatives(xi)
     d, slope = N @ nodes - z, dN @ nodes
     J, r = abs(slope), abs(d)
     unit, n = np.stack([d.real, d.imag]) / r, np.stack([slope.imag, -slope.real]) / abs(slope)
@@ -116,13 +116,13 @@ def test_regular_rule_sums_kelvins_kernels():
 
 def test_tiers_are_as_good_as_they_say():
     """Poles 1/(ξ - r)² and ln(ξ - r), times N_1, with r on the ellipse of each rule: errors below 30 tolerances."""
-    for order, rho in zip(quadrature.ORDERS, quadrature.SMALLEST_RHO, strict=True):
-        xi, weights = quadrature.gauss_legendre(int(order))
-        fine, fine_weights = quadrature.gauss_legendre(60)
+    for order, rho in zip(reference_element.ORDERS, reference_element.SMALLEST_RHO, strict=True):
+        xi, weights = reference_element.gauss_legendre(int(order))
+        fine, fine_weights = reference_element.gauss_legendre(60)
         for angle in (0.0, 0.7, np.pi / 2):
             u = rho * np.exp(1j * angle)
             r = (u + 1 / u) / 2
             for f in (lambda x, r=r: r.imag / (x - r) ** 2, lambda x, r=r: np.log(abs(x - r))):
-                coarse = weights @ (shape_functions.values(xi)[:, 0] * f(xi))
-                exact = fine_weights @ (shape_functions.values(fine)[:, 0] * f(fine))
-                assert abs(coarse - exact) < 30 * quadrature.TOLERANCE, (order, angle)
+                coarse = weights @ (reference_element.values(xi)[:, 0] * f(xi))
+                exact = fine_weights @ (reference_element.values(fine)[:, 0] * f(fine))
+                assert abs(coarse - exact) < 30 * reference_element.TOLERANCE, (order, angle)

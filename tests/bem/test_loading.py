@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tool_problems import FREE, FREE_BY_HAND, FREE_CASES, HELD, HELD_BY_HAND, HELD_CASES, Spec, made
 
-from bemcontact.bem.condense import Body, body_of
+from bemcontact.bem.body import Body, body_of
 from bemcontact.bem.loading import case_loadings, combined, permanent_loading
 from bemcontact.bem.mesh import build
 from bemcontact.bem.rigid_motions import all_rigid_motions

@@ -6,7 +6,7 @@ from bodies import arc, even, mesh_of, rectangle, values_of
 
 from bemcontact.bem import influence
 from bemcontact.bem.influence import Influence
-from bemcontact.bem.quadrature import TOLERANCE
+from bemcontact.bem.reference_element import TOLERANCE
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
 from bemcontact.bem.system import number_unknowns, place_equations
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from bodies import arc, even, mesh_of, rectangle, solved, values_of, without_rigid_motion
 
-from bemcontact.bem.volume_loads import particular_solution
+from bemcontact.bem.loading import particular_solution
 from bemcontact.problem.conditions import Centrifugal, Gravity, Loads, Temperature
 from bemcontact.problem.material import Material
 

@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf
 
+from bemcontact.bem.body import body_of
 from bemcontact.bem.compiled import far_sums
-from bemcontact.bem.condense import body_of
-from bemcontact.bem.factorisation import assemble
-from bemcontact.bem.system import System
+from bemcontact.bem.system import System, assemble
 from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]

@@ -36,9 +36,9 @@ from rich.table import Table
 
 from bemcontact import CondensedContact, ContactSolution, Equilibrium, Status, minimize_qp
 from bemcontact.formulations import FORMULATIONS, complementarity
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled
-from bemcontact.formulations.starts import random_points
+from bemcontact.formulations.start import draw_starts
+from bemcontact.options import SolveOptions
 
 MODULI = (1e3, 2e6, 2e11)
 """Young's moduli in kN/cm²."""
@@ -73,17 +73,15 @@ def error(truth: ContactSolution, pressure: Array, displacement: Array) -> Error
     )
 
 
-def unpolished(
-    contact: CondensedContact, formulation: str, options: FormulationOptions | None = None
-) -> ContactSolution:
-    return FORMULATIONS[formulation](contact, replace(options or FormulationOptions(), polish=False))
+def unpolished(contact: CondensedContact, formulation: str, options: SolveOptions | None = None) -> ContactSolution:
+    return FORMULATIONS[formulation](contact, replace(options or SolveOptions.of(formulation), polish=False))
 
 
-def from_random_points(
-    contact: CondensedContact, formulation: str, count: int, options: FormulationOptions | None = None
+def from_draw_starts(
+    contact: CondensedContact, formulation: str, count: int, options: SolveOptions | None = None
 ) -> list[ContactSolution]:
-    given = options or FormulationOptions()
-    return [unpolished(contact, formulation, replace(given, start=start)) for start in random_points(contact, count)]
+    given = options or SolveOptions.of(formulation)
+    return [unpolished(contact, formulation, replace(given, start=start)) for start in draw_starts(contact, count)]
 
 
 def table(title: str, *headings: str) -> Table:
@@ -154,7 +152,7 @@ def random_starts(count: int, small: bool) -> Table:
         truth = complementarity.solve(contact)
         for formulation in ("qp1", "qp2"):
             begin = time.perf_counter()
-            found = from_random_points(contact, formulation, count)
+            found = from_draw_starts(contact, formulation, count)
             seconds = time.perf_counter() - begin
             errors = [error(truth, end.pressure, end.displacement) for end in found]
             right = [one for one in errors if one.within(NEAR)]
@@ -191,13 +189,13 @@ class Search:
 
 
 def searches(
-    contact: CondensedContact, states: list[Array], count: int, formulation: str, options: FormulationOptions
+    contact: CondensedContact, states: list[Array], count: int, formulation: str, options: SolveOptions
 ) -> list[Search]:
     """From random starts."""
     T = contact.scales.pressure
     return [
         Search(status=end.status, objective=end.search.objective, right=is_among(end.pressure / T, states))
-        for end in from_random_points(contact, formulation, count, options)
+        for end in from_draw_starts(contact, formulation, count, options)
         if end.search
     ]
 
@@ -206,7 +204,7 @@ def qp3_searches(contact: CondensedContact, states: list[Array], count: int) -> 
     """QP3 over p of a held body by the local solver, convex or not: min pᵀJ(q + M p), q + M p >= 0, p >= 0."""
     problem, found = scaled(contact), []
     weighted = problem.weights[:, None] * problem.compliance
-    for start in random_points(contact, count):
+    for start in draw_starts(contact, count):
         end = minimize_qp(
             weighted + weighted.T, problem.weights * problem.offset, A=problem.compliance, cl=-problem.offset,
             bl=np.zeros(contact.size), x0=start.pressure / contact.scales.pressure,
@@ -219,7 +217,7 @@ def qp3_searches(contact: CondensedContact, states: list[Array], count: int) -> 
 
 def statements(contact: CondensedContact, states: list[Array], count: int) -> Iterator[tuple[str, list[Search]]]:
     """The name of each statement and what it finds."""
-    yield "QP1", searches(contact, states, count, "qp1", FormulationOptions())
+    yield "QP1", searches(contact, states, count, "qp1", SolveOptions.of("qp1"))
     for options in map(with_penalty, PENALTIES):
         yield f"QP2 μ = {options.penalty:g}", searches(contact, states, count, "qp2", options)
     if not contact.free_motions:
@@ -230,8 +228,8 @@ def statements(contact: CondensedContact, states: list[Array], count: int) -> It
         yield name, searches(contact, states, count, "qp2", paper)
 
 
-def with_penalty(penalty: float) -> FormulationOptions:
-    return FormulationOptions(penalty=penalty)
+def with_penalty(penalty: float) -> SolveOptions:
+    return SolveOptions.of("qp2", penalty=penalty)
 
 
 def all_contact_sets(count: int, seeds: int, sizes: list[int]) -> Table:

@@ -30,7 +30,7 @@ WRONG = 1e-3
 """The same, of one that is false if its solver calls it optimal."""
 
 CLAIMS = {
-    QPStatus.LOCAL_MINIMISER: Claim.OPTIMAL,
+    QPStatus.LOCAL_MINIMIZER: Claim.OPTIMAL,
     QPStatus.INFEASIBLE: Claim.INFEASIBLE,
     QPStatus.UNBOUNDED: Claim.UNBOUNDED,
 }

@@ -18,7 +18,6 @@ import bemcontact
 from bemcontact import cli, spec
 from bemcontact.analysis import solve as analysis
 from bemcontact.assessment.certificate import CertificateKind
-from bemcontact.cli import solving
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import NotConvexError, SingularSystemError
 from bemcontact.formulations import FORMULATIONS
@@ -229,7 +228,7 @@ def test_schema_is_json_schema():
 def test_a_result_without_certificate_ends_with_status_1(block: Path, monkeypatch: pytest.MonkeyPatch):
     result = analysis.solve(spec.load(block))
     certificate = dataclasses.replace(result.certificate, kind=CertificateKind.LOCAL, words="Another may exist.")
-    monkeypatch.setattr(analysis, "carry_out", lambda *_, **__: dataclasses.replace(result, certificate=certificate))
+    monkeypatch.setattr(analysis, "solve_with", lambda *_, **__: dataclasses.replace(result, certificate=certificate))
     table = run("solve", block)
     assert table.exit_code == 1
     assert "NOT certified. Another may exist." in table.stdout
@@ -243,7 +242,7 @@ def test_a_program_that_is_not_convex_ends_with_status_2(block: Path, monkeypatc
     def not_convex(*_: object, **__: object) -> None:
         raise NotConvexError("smallest eigenvalue -0.5", smallest_eigenvalue=-0.5)
 
-    monkeypatch.setattr(analysis, "carry_out", not_convex)
+    monkeypatch.setattr(analysis, "solve_with", not_convex)
     assert_refused(run("solve", block), "smallest eigenvalue -0.5")
 
 
@@ -251,7 +250,7 @@ def test_a_solver_that_breaks_down_ends_with_status_1(block: Path, monkeypatch: 
     def breaks_down(*_: object, **__: object) -> None:
         raise SingularSystemError("the system is singular")
 
-    monkeypatch.setattr(analysis, "carry_out", breaks_down)
+    monkeypatch.setattr(analysis, "solve_with", breaks_down)
     answer = run("solve", block)
     assert (answer.exit_code, answer.stdout, answer.stderr) == (1, "", "failed: the system is singular\n")
 
@@ -262,7 +261,7 @@ def interrupted(*_: object, **__: object) -> None:
 
 def test_an_interrupt_says_that_nothing_was_written(block: Path, monkeypatch: pytest.MonkeyPatch):
     """130 is what shells give to a program that Ctrl-C ended."""
-    monkeypatch.setattr(analysis, "carry_out", interrupted)
+    monkeypatch.setattr(analysis, "solve_with", interrupted)
     old = block.with_name("old.json")
     old.write_text("{}")
     answer = run("solve", block, "--json", old, "--figure", block.with_name("new.svg"))
@@ -386,7 +385,7 @@ OUTPUTS = [
 def test_a_file_that_cannot_be_written_is_found_out_before_any_work(
     block: Path, command: str, option: str, name: str, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr(analysis, "carry_out", None)
+    monkeypatch.setattr(analysis, "solve_with", None)
     monkeypatch.setattr(analysis, "condense", None)
     assert_refused(run(command, block, option, block.parent / "nowhere" / name), "nowhere")
     (block.parent / name).mkdir()
@@ -609,13 +608,12 @@ def test_progress_tells_the_start_and_reaches_the_terminal(block: Path, monkeypa
     said = []
 
     @contextmanager
-    def listening(what: str) -> Iterator[Callable[[str], None]]:
-        said.append(what)
-        yield said.append
+    def listening() -> Iterator[Callable[[str, str], None]]:
+        yield lambda stage, now: said.append((stage, now))
 
-    monkeypatch.setattr(solving, "busy", listening)
+    monkeypatch.setattr("bemcontact.cli.command.stages", listening)
     run("solve", block, "--formulation", "qp1", "--starts", 3)
-    assert said == ["solving", *(f"solving, start {number} of 3" for number in (2, 3, 3))]
+    assert said == [("solving", ""), *(("solving", f"start {number} of 3") for number in (2, 3, 3))]
 
 
 def test_a_penalty_that_leaves_no_minimum_is_refused(block: Path):

@@ -10,7 +10,7 @@ from typer.testing import CliRunner, Result
 from bemcontact import cli
 from bemcontact.analysis import compare as comparing
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.formulations.plan import planned_comparison
+from bemcontact.options import ComparisonOptions
 
 SPEC = """\
 name: block
@@ -94,7 +94,7 @@ def test_json_holds_what_the_schema_says(block: Path, tmp_path: Path):
 def test_what_is_not_certified_ends_with_status_1(block: Path, monkeypatch: pytest.MonkeyPatch):
     """Instead of the block a problem with a spurious local minimum, as in tests/assessment/test_comparison.py."""
     spurious = CondensedContact.from_compliance([[1.0, 2.0], [1.0, 1.0]], [-1.0, -2.0])
-    found = comparing.study(planned_comparison(["qp1"]), spurious)
+    found = comparing.study(ComparisonOptions.of(["qp1"]), spurious)
     monkeypatch.setattr(comparing, "study", lambda *_: found)
     answer = run("compare", block)
     assert answer.exit_code == 1

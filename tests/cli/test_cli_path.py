@@ -34,7 +34,7 @@ def test_path_that_does_not_arrive_is_said_and_has_a_status():
     answer = run(CYLINDER, "--vary", PRESSURE, "--to", -20)
     assert answer.exit_code == 1
     told = " ".join(answer.stdout.split())
-    assert "NOT certified. The path is there up to 0; beyond, the load carries the body off its support" in told
+    assert "NOT certified. The path exists up to 0; beyond that, the load carries the body off its support" in told
 
 
 def test_folder_gets_picture_table_and_numbers(tmp_path: Path):
@@ -62,7 +62,7 @@ def test_json_on_standard_output_and_the_reason_beside_it():
     answer = run(CYLINDER, "--vary", PRESSURE, "--to", -20, "--json", "-")
     assert answer.exit_code == 1
     assert json.loads(answer.stdout)["reaches"] == [50.625, 0.0]
-    assert "not certified: The path is there up to 0" in answer.stderr
+    assert "not certified: The path exists up to 0" in answer.stderr
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from reproductions import on_base_meshes, with_coarse_mesh_judged
 from typer.testing import CliRunner, Result
 
 from bemcontact import cli
-from bemcontact.analysis import reproduction
+from bemcontact.analysis import reproduction as analysis
 
 
 def run(*words: object) -> Result:
@@ -19,7 +19,7 @@ def run(*words: object) -> Result:
 @pytest.fixture
 def carried_out(monkeypatch: pytest.MonkeyPatch) -> None:
     """All five on their base meshes, whatever is asked for."""
-    monkeypatch.setattr(reproduction, "reproduce", lambda *_: on_base_meshes())
+    monkeypatch.setattr(analysis, "reproduce", lambda *_: on_base_meshes())
 
 
 def test_it_runs_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -45,7 +45,7 @@ def test_a_table_a_page_and_its_numbers(tmp_path: Path):
 
 
 def test_what_is_not_reproduced_ends_with_status_1(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(reproduction, "reproduce", lambda *_: with_coarse_mesh_judged())
+    monkeypatch.setattr(analysis, "reproduce", lambda *_: with_coarse_mesh_judged())
     answer = run("reproduce")
     assert answer.exit_code == 1
     assert "NOT reproduced" in answer.stdout

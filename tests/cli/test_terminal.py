@@ -13,8 +13,8 @@ def no_patience(monkeypatch: pytest.MonkeyPatch):
 
 
 def worked() -> None:
-    with terminal.busy("solving") as say:
-        say("solving, start 2 of 3")
+    with terminal.stages() as report:
+        report("solving", "start 2 of 3")
         time.sleep(0.3)  # a thread draws ten times in a second
 
 
@@ -36,8 +36,8 @@ def test_elsewhere_nothing_is_shown(monkeypatch: pytest.MonkeyPatch, capsys: pyt
 
 def test_short_work_shows_nothing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     monkeypatch.setenv("FORCE_COLOR", "1")
-    with terminal.busy("solving"):
-        pass
+    with terminal.stages() as report:
+        report("solving", "")
     assert capsys.readouterr() == ("", "")
 
 

@@ -266,7 +266,7 @@ def test_load_that_carries_the_body_away_is_named(load, motion):
 
 def test_note_of_a_supported_body_is_none():
     problem = block_in_a_corner((0.0, -1.0, -1.0))
-    assert escape_note(problem, scaled(problem)) is None
+    assert escape_note(problem) is None
 
 
 @pytest.mark.parametrize("k", [0, 1, 2, 3])

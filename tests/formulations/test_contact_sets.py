@@ -27,9 +27,9 @@ from bemcontact import (
 from bemcontact.arrays import Array
 from bemcontact.contact.multistart import End
 from bemcontact.formulations import qp1, qp2, qp3
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled
-from bemcontact.formulations.starts import random_points
+from bemcontact.formulations.start import draw_starts
+from bemcontact.options import SolveOptions
 
 BoolArray = NDArray[np.bool_]
 
@@ -101,7 +101,7 @@ def first_order_points_of_qp1(condensed: CondensedContact) -> list[Array]:
 
 def first_order_points_of_qp2(condensed: CondensedContact, penalty: float) -> list[Array]:
     """The scaled (δ, p) of a held body at which QP2 is stationary: x >= lower complementary to H x + c >= 0."""
-    program = qp2.statement(condensed, FormulationOptions(penalty=penalty))
+    program = qp2.statement(condensed, SolveOptions.of("qp2", penalty=penalty))
     return complementary_points(program.hessian, program.linear + program.hessian @ program.lower)
 
 
@@ -241,12 +241,12 @@ def test_qp3_of_p_matrices(kind):
             with pytest.raises(NotConvexError):
                 qp3.solve(condensed)
         weighted = problem.weights[:, None] * problem.compliance
-        for start in random_points(condensed, 10, seed):
+        for start in draw_starts(condensed, 10, seed):
             found = minimize_qp(
                 weighted + weighted.T, problem.weights * problem.offset, A=problem.compliance, cl=-problem.offset,
                 bl=np.zeros(6), x0=start.pressure / condensed.scales.pressure,
             )  # fmt: skip
-            assert found.status is QPStatus.LOCAL_MINIMISER
+            assert found.status is QPStatus.LOCAL_MINIMIZER
             assert among(found.x, [truth])
 
 
@@ -331,8 +331,8 @@ def test_a_lifted_body_stays_lifted(k, penalty):
     for seed in range(3):
         problem = free_body(np.random.default_rng([seed, k]), 7, k)
         height = np.full(7, 1e3 * problem.scales.displacement)
-        options = FormulationOptions(
-            penalty=penalty, equilibrium=Equilibrium.PENALTY, polish=False,
+        options = SolveOptions.of(
+            "qp2", penalty=penalty, equilibrium=Equilibrium.PENALTY, polish=False,
             start=Start(pressure=np.zeros(7), displacement=height),
         )  # fmt: skip
         solution = qp2.solve(problem, options)
@@ -377,8 +377,8 @@ def test_a_first_order_point_without_a_p_matrix_in_exact_numbers():
     assert sorted(x.item() for x in first_order_points_of_qp1(problem)) == pytest.approx([0, 0.5, 1])
     for end, pressure in scaled_ends(problem, random_starts(problem, "qp1", count=10)):
         assert judge_end(end, pressure, contact_states(problem))  # not the maximum at 1/2, even started there
-    program = qp1.statement(problem, FormulationOptions())
+    program = qp1.statement(problem, SolveOptions.of("qp1"))
     E, e = program.equations.matrix, program.equations.right
     found = minimize_qp(program.hessian, program.linear, A=E, cl=e, cu=e, bl=program.lower, x0=np.array([-0.5, 0.5]))
-    assert found.status is QPStatus.LOCAL_MINIMISER
+    assert found.status is QPStatus.LOCAL_MINIMIZER
     assert program.value(found.x) == pytest.approx(0, abs=1e-15)

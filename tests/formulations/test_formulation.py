@@ -10,18 +10,18 @@ import pytest
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError
-from bemcontact.formulations import FORMULATIONS, OPTIONS, FormulationOptions
-from bemcontact.options import FormulationName
+from bemcontact.formulations import FORMULATIONS
+from bemcontact.options import USES, FormulationName, SolveOptions
 
 
 def test_every_name_has_a_formulation_and_its_options():
-    assert [*FORMULATIONS] == [*OPTIONS] == [*FormulationName]
+    assert [*FORMULATIONS] == [*USES] == [*FormulationName]
 
 
 @pytest.mark.parametrize("name", FORMULATIONS)
 def test_every_formulation_solves_and_bears_its_name(name):
     """One point with interference 3 and compliance 2: p = 3/2."""
-    solution = FORMULATIONS[name](CondensedContact.from_compliance([[2.0]], [-3.0]), FormulationOptions())
+    solution = FORMULATIONS[name](CondensedContact.from_compliance([[2.0]], [-3.0]), SolveOptions.of(name))
     assert solution.formulation == name
     assert solution.status is Status.SOLVED
     np.testing.assert_allclose(solution.pressure, [1.5], rtol=1e-14)
@@ -30,17 +30,17 @@ def test_every_formulation_solves_and_bears_its_name(name):
 @pytest.mark.parametrize("limit", [0, -1, 2.5, "many", True])
 def test_a_limit_of_iterations_that_is_none_is_refused(limit):
     with pytest.raises(OptionError, match="limit of iterations must be a whole number of at least 1"):
-        FormulationOptions(max_iterations=limit)
+        SolveOptions(max_iterations=limit)
 
 
 def test_a_solution_is_told_in_a_line():
-    solution = FORMULATIONS["qp1"](CondensedContact.from_compliance([[2.0]], [-3.0]), FormulationOptions())
+    solution = FORMULATIONS["qp1"](CondensedContact.from_compliance([[2.0]], [-3.0]), SolveOptions.of("qp1"))
     assert repr(solution) == "<ContactSolution by qp1: solved, 1 contact points>"
 
 
 def test_options_do_not_change():
     with pytest.raises(FrozenInstanceError):
-        FormulationOptions().polish = False  # pyright: ignore[reportAttributeAccessIssue]
+        SolveOptions().polish = False  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def test_importing_the_formulations_does_not_import_cvxpy():

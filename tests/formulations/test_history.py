@@ -11,14 +11,16 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.formulations import FORMULATIONS, clarabel, complementarity, qp1, qp2, qp3
 from bemcontact.formulations.complementarity import ACCEPTED
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled, scaled_point
-from bemcontact.formulations.starts import random_points
-from bemcontact.options import FormulationName
+from bemcontact.formulations.start import draw_starts
+from bemcontact.options import FormulationName, SolveOptions
 
 N = 9
-UNPOLISHED = FormulationOptions(polish=False)
-LOCAL = [(qp1, UNPOLISHED), (qp2, UNPOLISHED), (qp2, replace(UNPOLISHED, penalty=0.03))]
+LOCAL = [
+    (qp1, SolveOptions.of("qp1", polish=False)),
+    (qp2, SolveOptions.of("qp2", polish=False)),
+    (qp2, SolveOptions.of("qp2", polish=False, penalty=0.03)),
+]
 CYCLE = CondensedContact.from_compliance(
     [[2, -2, -1, 2, 0], [0, 2, -2, 2, -1], [2, 1, 1, -1, 0], [-2, -2, 1, 2, -3], [3, -3, -2, 3, 2]],
     [0.0, -2.0, 1.0, 0.0, -2.0],
@@ -65,7 +67,7 @@ def test_local_search_goes_down(formulation, options, k):
     They do so but for the round-off of the largest value.
     """
     problem = random_contact(2, N, k)
-    for start in random_points(problem, 3):
+    for start in draw_starts(problem, 3):
         found = formulation.solve(problem, replace(options, start=start))
         assert found.status is Status.SOLVED
         assert counted(found) == [*range(1, found.iterations + 1)]
@@ -83,7 +85,7 @@ def test_local_search_goes_down(formulation, options, k):
 def test_objective_of_a_local_search_is_that_of_the_program(formulation, options, k):
     """Stopped after any iteration of phase two: `Program.value` of that point, whose best is 0, without a constant."""
     problem = random_contact(3, N, k)
-    start = random_points(problem, 1)[0]
+    start = draw_starts(problem, 1)[0]
     whole = formulation.solve(problem, replace(options, start=start))
     program = formulation.statement(problem, options)
     U, T = problem.scales
@@ -116,10 +118,10 @@ def test_objective_of_qp3_is_that_of_the_point(k):
     problem = random_contact(4, N, k)
     small = scaled(problem)
     work = qp3.objective(small, np.diag(small.weights))
-    whole = qp3.solve(problem, UNPOLISHED)
+    whole = qp3.solve(problem, SolveOptions(polish=False))
     assert counted(whole) == 2 * [*range(whole.iterations + 1)]
     for limit in range(1, whole.iterations + 1):
-        stopped = qp3.solve(problem, replace(UNPOLISHED, max_iterations=limit))
+        stopped = qp3.solve(problem, SolveOptions(polish=False, max_iterations=limit))
         values, told = of(stopped, "objective"), of(stopped, "infeasibility")
         np.testing.assert_array_equal(values, of(whole, "objective")[: limit + 1])
         p, a = scaled_point(problem, stopped.pressure, stopped.rigid_amplitudes)
@@ -142,7 +144,7 @@ def test_units_of_wide_gaps_are_taken_back(k):
     problem = replace(problem, initial_gap=problem.initial_gap + 1e7 * np.eye(N)[0])
     small = scaled(problem)
     work = qp3.objective(small, np.diag(small.weights))
-    found = qp3.solve(problem, UNPOLISHED)
+    found = qp3.solve(problem, SolveOptions(polish=False))
     assert counted(found) == 2 * [*range(found.iterations + 1)]
     p, a = scaled_point(problem, found.pressure, found.rigid_amplitudes)
     assert work.value(p, a) > 1.0
@@ -185,15 +187,16 @@ def test_ray_of_lemke_is_told():
 def test_units_do_not_matter(name, length, stress):
     """All numbers are free of units, so that only round-off differs; 1e-9 leaves it six digits to grow."""
     for problem in (random_contact(7, N, 1), *([CYCLE] if name == FormulationName.COMPLEMENTARITY else [])):
-        one, two = (FORMULATIONS[name](p, UNPOLISHED).history for p in (problem, in_units(problem, length, stress)))
+        options = SolveOptions.of(name, polish=name == FormulationName.COMPLEMENTARITY)
+        one, two = (FORMULATIONS[name](p, options).history for p in (problem, in_units(problem, length, stress)))
         assert [(trace.quantity, trace.first) for trace in one] == [(trace.quantity, trace.first) for trace in two]
         for ours, theirs in zip(one, two, strict=True):
             np.testing.assert_allclose(theirs.values, ours.values, rtol=1e-9, atol=1e-9)
 
 
-@pytest.mark.parametrize("formulation", [qp1, qp2, qp3])
-def test_polish_adds_nothing(formulation):
+@pytest.mark.parametrize("name", ["qp1", "qp2", "qp3"])
+def test_polish_adds_nothing(name):
     problem = random_contact(8, N, 1)
-    polished, plain = formulation.solve(problem), formulation.solve(problem, UNPOLISHED)
+    polished, plain = (FORMULATIONS[name](problem, SolveOptions.of(name, polish=polish)) for polish in (True, False))
     assert polished.polished
     assert polished.history == plain.history

@@ -121,7 +121,7 @@ def test_every_claim_of_a_random_programme_holds(seed):
     elif result.status is QPStatus.UNBOUNDED:
         assert_ray(H, c, G, low, high, result)
     else:
-        assert result.status is QPStatus.LOCAL_MINIMISER
+        assert result.status is QPStatus.LOCAL_MINIMIZER
         assert_first_order(H, c, A, cl, cu, bl, bu, result)
         equal, inwards = cone_of(H, c, A, cl, cu, bl, bu, result.x)
         assert lowest_curvature_on_faces(H, equal, inwards, H @ result.x + c) > -1e-7
@@ -158,7 +158,7 @@ def test_the_value_is_one_of_all_first_order_values(seed):
     if result.status is QPStatus.INFEASIBLE:
         assert values.size == 0
     else:
-        assert result.status is QPStatus.LOCAL_MINIMISER
+        assert result.status is QPStatus.LOCAL_MINIMIZER
         assert np.abs(values - result.objective).min() < 1e-8
 
 
@@ -194,7 +194,7 @@ def test_units_of_variables_rows_and_objective_change_no_answer(seed):
         1024.0 * D[:, None] * H * D, 1024.0 * D * c, E[:, None] * A * D, E * cl, E * cu, bl / D, bu / D
     )
     assert scaled.status is plain.status
-    if plain.status is QPStatus.LOCAL_MINIMISER and np.linalg.eigvalsh(H)[0] > -1e-12:
+    if plain.status is QPStatus.LOCAL_MINIMIZER and np.linalg.eigvalsh(H)[0] > -1e-12:
         assert_allclose(scaled.objective, 1024.0 * plain.objective, rtol=1e-8, atol=1e-8)
 
 
@@ -207,7 +207,7 @@ def test_order_of_variables_and_rows_changes_no_status_and_no_convex_value(seed)
     plain = minimize_qp(H, c, A, cl, cu, bl, bu)
     moved = minimize_qp(H[np.ix_(v, v)], c[v], A[np.ix_(r, v)], cl[r], cu[r], bl[v], bu[v])
     assert moved.status is plain.status
-    if plain.status is QPStatus.LOCAL_MINIMISER:
+    if plain.status is QPStatus.LOCAL_MINIMIZER:
         assert_allclose(moved.objective, plain.objective, atol=1e-8)
 
 
@@ -229,7 +229,7 @@ def test_equalities_with_tiny_right_hand_sides_are_met_to_their_own_size(unit):
     A = np.hstack([np.eye(n), -unit * M])
     result = minimize_qp(H, np.zeros(2 * n), A, unit * q, unit * q, np.zeros(2 * n))
     u, p = result.x[:n] / unit, result.x[n:]
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(u, M @ p + q, atol=1e-12)
     assert_allclose(np.minimum(u, p), 0.0, atol=1e-12)
 
@@ -244,7 +244,7 @@ def test_minus_xy_over_the_quadrant_is_unbounded_from_its_dead_point():
 def test_xy_over_the_quadrant_has_its_minimiser_at_the_dead_point():
     """On the quadrant xy >= 0: copositive though indefinite."""
     result = minimize_qp(np.array([[0.0, 1.0], [1.0, 0.0]]), np.zeros(2), bl=np.zeros(2))
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(result.weakly_active, [0, 1])
     assert result.inertia == (1, 0, 1)
 
@@ -275,7 +275,7 @@ def test_the_horn_form_is_copositive_and_the_bounded_search_says_when_it_stops(s
     H = np.eye(size)
     H[:5, :5] = [np.roll(row, i) for i in range(5)]
     proved = minimize_qp(H, np.zeros(size), bl=np.zeros(size))
-    assert proved.status is QPStatus.LOCAL_MINIMISER
+    assert proved.status is QPStatus.LOCAL_MINIMIZER
     stopped = minimize_qp(H, np.zeros(size), bl=np.zeros(size), options=QPOptions(search=2))
     assert stopped.status is QPStatus.UNDECIDED
 
@@ -309,7 +309,7 @@ KUHN = (
 def test_cycling_linear_programmes_end_at_their_published_optimum(cycling):
     c, A, cu, best = cycling
     result = minimize_qp(np.zeros((4, 4)), c, A, None, cu, np.zeros(4))
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(result.objective, best, atol=1e-12)
 
 
@@ -320,7 +320,7 @@ def test_a_very_degenerate_vertex_is_left_or_proved_optimal(seed):
     A, c = rng.integers(-2, 3, (60, 6)).astype(float), rng.standard_normal(6)
     A[:, 0] = np.abs(A[:, 0])  # the cone holds (1, 0, ..., 0)
     result = minimize_qp(np.zeros((6, 6)), c, A, np.zeros(60), None, np.full(6, -1.0), np.full(6, 1.0))
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(result.objective, linprog(c, -A, np.zeros(60), bounds=(-1, 1)).fun, atol=1e-9)
 
 
@@ -333,7 +333,7 @@ def test_a_warm_start_from_the_solution_changes_nothing(seed):
     warm = minimize_qp(*data, x0=cold.x, working_set=cold.working_set)
     assert cold.working_set_changes > 0
     assert warm.working_set_changes == 0
-    assert warm.status is QPStatus.LOCAL_MINIMISER
+    assert warm.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(warm.x, cold.x, atol=1e-12)
 
 
@@ -373,7 +373,7 @@ def test_no_iteration_is_needed_to_know_an_optimal_start():
     """(1, -1) is the minimiser of a bowl inside its box; one iteration less than none is asked for and none is used."""
     H, c = np.array([[2.0, 1.0], [1.0, 3.0]]), np.array([-1.0, 2.0])
     result = minimize_qp(H, c, x0=[1.0, -1.0], bl=[-2.0, -2.0], options=QPOptions(max_iterations=0))
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert result.iterations == 0
     away = minimize_qp(H, c, x0=[0.0, 0.0], bl=[-2.0, -2.0], options=QPOptions(max_iterations=0))
     assert away.status is QPStatus.ITERATION_LIMIT
@@ -385,7 +385,7 @@ def test_a_small_curvature_is_told_from_none_by_its_own_terms(coupling, curvatur
     """½ x'Hx + c'x at (0, t) is curvature (t²/2 - 5e10 t), least at t = 5e10; the multiplier of x1 is coupling t."""
     H = np.array([[2.0, coupling], [coupling, curvature]])
     result = minimize_qp(H, np.array([0.0, -5e10 * curvature]), bl=np.zeros(2))
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(result.x, [0.0, 5e10], rtol=1e-12)
 
 
@@ -402,7 +402,7 @@ def test_variables_of_very_different_size_are_judged_each_by_its_own(seed):
     G = np.hstack([np.eye(n), -M])
     H = 2.0 * G.T @ G + np.block([[np.zeros((n, n)), np.eye(n)], [np.eye(n), np.zeros((n, n))]])
     result = minimize_qp(H, -2.0 * G.T @ q, bl=np.zeros(2 * n))
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(result.x[:n], u, atol=1e-8 * u.max())
     assert_allclose(result.x[n:], p, atol=1e-8 * p.max())
 
@@ -432,7 +432,7 @@ def test_inertia_counts_small_eigenvalues(small):
 def test_the_result_says_its_end_in_one_line_and_logs_the_objective_in_the_units_of_the_data():
     result = minimize_qp(1e6 * np.eye(2), [-4e6, 1e6], bl=[0.0, 0.0])
     phases = f"{result.phase_one_iterations} + {result.phase_two_iterations}"
-    assert str(result) == f"local minimiser: objective -8000000 after {phases} iterations (phase 1 + phase 2)"
+    assert str(result) == f"local minimizer: objective -8000000 after {phases} iterations (phase 1 + phase 2)"
     assert result.log[-1].value == pytest.approx(-8e6)
     assert "LogLine" not in repr(result)
 
@@ -487,7 +487,7 @@ def test_bad_input_is_refused_with_what_and_why(change, message):
 def test_a_far_bound_takes_no_digit_from_the_near_one(far):
     """Least x1 + x2 with 1 <= x1 + x2 <= far, x >= 0: 1, however far the other bound is."""
     result = minimize_qp(np.zeros((2, 2)), [1.0, 1.0], [[1.0, 1.0]], [1.0], [far], [0.0, 0.0])
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(result.objective, 1.0, rtol=1e-9)
 
 
@@ -501,12 +501,12 @@ def test_rows_satisfied_at_the_start_are_no_trap(seed):
     q, identity, zero = np.round(rng.standard_normal(k)), np.eye(k), np.zeros((k, k))
     H = np.block([[zero, identity], [identity, zero]])
     result = minimize_qp(H, np.zeros(2 * k), np.hstack([identity, -M]), q, q, np.zeros(2 * k))
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(result.objective, 0.0, atol=1e-12)
 
 
 def test_a_variable_that_nothing_moves_is_a_minimiser():
-    assert minimize_qp([[0.0]], [0.0]).status is QPStatus.LOCAL_MINIMISER
+    assert minimize_qp([[0.0]], [0.0]).status is QPStatus.LOCAL_MINIMIZER
 
 
 def test_multipliers_of_rounding_hold_no_saddle():
@@ -524,14 +524,14 @@ def test_a_dead_point_is_left_only_where_the_objective_falls():
     """x1 and x3 have 9e-8 and 2e-10 of room: the least is at x2 = -2, and no walk goes to and fro between the ends."""
     H = [[-4.0, -2.0, 2.0], [-2.0, -1.0, 1.0], [2.0, 1.0, -1.0]]
     result = minimize_qp(H, [0.0, 1.0, 2.0], bl=[0.0, -2.0, 0.0], bu=[8.8e-8, 0.0, 2.06e-10])
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(result.x, [0.0, -2.0, 0.0], atol=1e-9)
 
 
 def test_a_start_far_away_is_no_obstacle():
     """Least |x|²/2 + x1 + x2 with 1 <= x1 + x2 <= 2 is at (1/2, 1/2), from 1e20 too."""
     result = minimize_qp(np.eye(2), [1.0, 1.0], [[1.0, 1.0]], [1.0], [2.0], x0=[1e20, 1e20])
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(result.objective, 1.25, rtol=1e-6)
 
 
@@ -541,17 +541,17 @@ def test_an_entry_of_1e_12_in_a_row_counts():
     free = minimize_qp(np.zeros((2, 2)), [0.0, -1.0], [row], *bounds, bu=[1.0, INF])
     assert free.status is QPStatus.UNBOUNDED
     paid = minimize_qp(np.diag([1.0, 0.0]), [0.0, -1.0], [row], *bounds)
-    assert paid.status is QPStatus.LOCAL_MINIMISER
+    assert paid.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(paid.x, [-1e12, 1e24], rtol=1e-9)
 
 
 def test_tiny_and_huge_entries_neither_vanish_nor_overflow():
     """1e-170 x1 >= 1e-170 asks for x1 >= 1; a form of 1e308 has its least value where the one of size one has."""
     tiny = minimize_qp(np.eye(2), [1.0, 1.0], [[1e-170, 0.0]], [1e-170])
-    assert tiny.status is QPStatus.LOCAL_MINIMISER
+    assert tiny.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(tiny.x, [1.0, -1.0], rtol=1e-9)
     huge = minimize_qp(1e307 * np.eye(2), [1e307, -1e307])
-    assert huge.status is QPStatus.LOCAL_MINIMISER
+    assert huge.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(huge.x, [-1.0, 1.0], rtol=1e-9)
 
 
@@ -563,5 +563,5 @@ def test_rows_that_are_nearly_one_end_with_a_status_and_numbers(gap):
     A = np.vstack([a, a + gap * rng.standard_normal(4)])
     result = minimize_qp(-np.eye(4), np.ones(4), A, [1.0, 1.0], [1.0, 1.0], np.full(4, -5.0), np.full(4, 5.0))
     assert np.isfinite(result.x).all()
-    assert result.status is QPStatus.LOCAL_MINIMISER
+    assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(A[0] @ result.x, 1.0, atol=1e-8)

@@ -16,9 +16,9 @@ import bemcontact
 from bemcontact import CondensedContact, QPResult, QPStatus, Status, minimize_qp
 from bemcontact.arrays import Array
 from bemcontact.formulations import FORMULATIONS, complementarity, qp3
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled
-from bemcontact.formulations.starts import random_points
+from bemcontact.formulations.start import draw_starts
+from bemcontact.options import SolveOptions
 
 CYLINDER = Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml"
 SIZES = (11, 21, 41)
@@ -202,7 +202,7 @@ def test_written_by_hand_in_scaled_numbers(statement, body, mesh, modulus, units
         truth = complementarity.solve(condensed)
         problem = without_units(condensed)
         found = by_hand(statement, problem)
-        assert found.status is QPStatus.LOCAL_MINIMISER
+        assert found.status is QPStatus.LOCAL_MINIMIZER
         gap = (problem.initial_gap + found.x[:n]) * condensed.scales.displacement
         assert_right(found.x[n:] * condensed.scales.pressure, truth.pressure)
         assert_right(gap - condensed.initial_gap, truth.displacement)
@@ -215,7 +215,7 @@ def test_formulations_in_raw_units(formulation, body, mesh, modulus, units):
     for n in (*SIZES, 81):
         condensed = body(n, modulus, units, mesh)
         truth = complementarity.solve(condensed)
-        found = FORMULATIONS[formulation](condensed, FormulationOptions(polish=False))
+        found = FORMULATIONS[formulation](condensed, SolveOptions.of(formulation, polish=False))
         assert found.status is Status.SOLVED
         assert_right(found.pressure, truth.pressure)
         assert_right(found.displacement, truth.displacement)
@@ -243,7 +243,7 @@ def test_hertz_is_approached(formulation, body, mesh):
     E, load = 1e3, np.pi / 2 * HALF_WIDTH * peak(1e3)
     for n in SIZES:
         condensed = body(n, E, UNITS["kN cm"], mesh)
-        p = FORMULATIONS[formulation](condensed, FormulationOptions()).pressure
+        p = FORMULATIONS[formulation](condensed, SolveOptions.of(formulation)).pressure
         order = 2.5 / n**2
         assert condensed.weights[p > 0].sum() / 2 == pytest.approx(HALF_WIDTH, abs=4 * HALF_WIDTH / (n - 1))
         assert p.max() == pytest.approx(peak(E), rel=order)
@@ -270,8 +270,8 @@ def test_slender_beam_from_random_starts(formulation, n, condition):
     weighted = condensed.weights[:, None] * condensed.compliance
     assert np.linalg.cond(condensed.compliance) > condition
     assert np.linalg.eigvalsh(weighted + weighted.T)[0] > 0
-    for start in (None, *random_points(condensed, 135)[100:]):  # from three of these a phase one once gave up
-        found = FORMULATIONS[formulation](condensed, FormulationOptions(polish=False, start=start))
+    for start in (None, *draw_starts(condensed, 135)[100:]):  # from three of these a phase one once gave up
+        found = FORMULATIONS[formulation](condensed, SolveOptions.of(formulation, polish=False, start=start))
         assert found.status is Status.SOLVED
         assert_right(found.pressure, np.ones(n))
         assert_right(found.displacement, -condensed.offset)

@@ -12,12 +12,12 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import FORMULATIONS, complementarity, qp1, qp3
-from bemcontact.formulations.formulation import FormulationOptions, Start
 from bemcontact.formulations.scaling import scaled, scaled_point
-from bemcontact.options import Rows, Weights
+from bemcontact.formulations.start import Start
+from bemcontact.options import Rows, SolveOptions, Weights
 
 ROWS = [*Rows]
-NOT_POLISHED = FormulationOptions(polish=False)
+NOT_POLISHED = SolveOptions.of("qp1", polish=False)
 
 
 def contact_sets(problem: CondensedContact) -> list[np.ndarray]:
@@ -47,7 +47,7 @@ def test_quadratic_is_the_work_of_the_pressure_in_the_gap(k, rows):
     rng = np.random.default_rng(k)
     condensed = random_contact(1, 9, k)
     problem = scaled(condensed)
-    program = qp1.statement(condensed, FormulationOptions(rows=rows))
+    program = qp1.statement(condensed, SolveOptions.of("qp1", rows=rows))
     work = qp3.objective(problem, np.diag(problem.weights))
     for _ in range(5):
         p, a, gap = in_equilibrium(problem, rng)
@@ -66,7 +66,7 @@ def test_hessian_on_the_equations_is_that_of_qp3(k, rows):
     """Along the null space of the equations dδ = M dp + R da with ℓᵀdp = 0, so that dxᵀH dx = dpᵀ(JM + MᵀJᵀ)dp."""
     condensed = random_contact(2, 8, k)
     problem = scaled(condensed)
-    program = qp1.statement(condensed, FormulationOptions(rows=rows))
+    program = qp1.statement(condensed, SolveOptions.of("qp1", rows=rows))
     free = null_space(program.equations.matrix)
     assert free.shape[1] == condensed.size  # n - k pressures in equilibrium and k motions
     p = free[8:16]
@@ -82,8 +82,8 @@ def test_all_statements_have_one_solution(seed, k, rows):
     """sym(JM) is positive definite on the equilibrium space: 1e-9 polished; an active set ends at 1e-12 without."""
     problem = random_contact(seed, 12, k)
     direct = complementarity.solve(problem)
-    rough = qp1.solve(problem, FormulationOptions(rows=rows, polish=False))
-    polished = qp1.solve(problem, FormulationOptions(rows=rows))
+    rough = qp1.solve(problem, SolveOptions.of("qp1", rows=rows, polish=False))
+    polished = qp1.solve(problem, SolveOptions.of("qp1", rows=rows))
     peak, U = direct.pressure.max(), problem.scales.displacement
     for solution, tolerance in ((rough, 1e-12), (polished, 1e-13), (qp3.solve(problem), 1e-9)):
         assert solution.status is Status.SOLVED
@@ -109,7 +109,7 @@ def test_units_do_not_matter(formulation, length, stress, k):
         rigid_motions=problem.rigid_motions,
         motion_load=problem.motion_load * stress * length,
     )
-    one, two = (FORMULATIONS[formulation](p, NOT_POLISHED) for p in (problem, other))
+    one, two = (FORMULATIONS[formulation](p, SolveOptions.of(formulation, polish=False)) for p in (problem, other))
     np.testing.assert_allclose(two.pressure / stress, one.pressure, atol=1e-12 * one.pressure.max())
 
 
@@ -119,7 +119,7 @@ def test_units_do_not_matter(formulation, length, stress, k):
 def test_against_all_contact_sets(formulation, n, seed):
     problem = random_contact(seed, n, 0)
     (truth,) = contact_sets(problem)
-    solution = FORMULATIONS[formulation](problem, NOT_POLISHED)
+    solution = FORMULATIONS[formulation](problem, SolveOptions.of(formulation, polish=False))
     assert solution.status is Status.SOLVED
     np.testing.assert_allclose(solution.pressure, truth, atol=1e-11)
 
@@ -127,7 +127,7 @@ def test_against_all_contact_sets(formulation, n, seed):
 def test_search_is_told():
     """[[0, J], [J, 0]] with J > 0 has as many positive as negative eigenvalues; the limit is QP3's eigenvalue."""
     problem = random_contact(3, 10, 1)
-    solution = qp1.solve(problem, FormulationOptions(rows=Rows.COMPLIANCE))
+    solution = qp1.solve(problem, SolveOptions.of("qp1", rows=Rows.COMPLIANCE))
     search = solution.search
     assert search is not None
     assert search.inertia == (10, 1, 10)
@@ -144,7 +144,7 @@ def test_a_start_at_the_solution_stays_there():
     problem = random_contact(3, 10, 1)
     direct = complementarity.solve(problem)
     start = Start(pressure=direct.pressure, displacement=direct.displacement)
-    solution = qp1.solve(problem, FormulationOptions(start=start, polish=False))
+    solution = qp1.solve(problem, SolveOptions.of("qp1", start=start, polish=False))
     assert solution.search is not None
     assert solution.search.start == "given point"
     np.testing.assert_allclose(solution.pressure, direct.pressure, atol=1e-12)
@@ -166,13 +166,14 @@ def test_infeasible_load_is_named():
     """An upward load on a body that rests on a plane."""
     problem = CondensedContact.from_compliance(np.eye(3), np.zeros(3), rigid_motions=np.ones(3), motion_load=1.0)
     for formulation in ("qp1", "qp2"):
-        solution = FORMULATIONS[formulation](problem, FormulationOptions())
+        solution = FORMULATIONS[formulation](problem, SolveOptions.of(formulation))
         assert solution.status is Status.INFEASIBLE
         assert "+1 x motion 1" in solution.notes[0]
 
 
 def test_iteration_limit_is_named():
-    assert qp1.solve(random_contact(1, 12, 1), FormulationOptions(max_iterations=2)).status is Status.ITERATION_LIMIT
+    solution = qp1.solve(random_contact(1, 12, 1), SolveOptions.of("qp1", max_iterations=2))
+    assert solution.status is Status.ITERATION_LIMIT
 
 
 def test_consistent_weights_are_left_as_they_are():
@@ -180,8 +181,8 @@ def test_consistent_weights_are_left_as_they_are():
     J = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30
     M = np.array([[2.0, 0.0, 1.0], [0.0, 0.5, 0.0], [1.0, 0.0, 2.0]])
     problem = replace(CondensedContact.from_compliance(M, [-1.0, 0.2, 0.6], J.sum(axis=1)), consistent_weights=J)
-    solution = qp1.solve(problem, FormulationOptions(weights=Weights.CONSISTENT))
-    convex = qp3.solve(problem, FormulationOptions(weights=Weights.CONSISTENT))
+    solution = qp1.solve(problem, SolveOptions.of("qp1", weights=Weights.CONSISTENT))
+    convex = qp3.solve(problem, SolveOptions.of("qp3", weights=Weights.CONSISTENT))
     assert not solution.polished
     work = solution.pressure @ J @ (problem.initial_gap + solution.displacement)
     assert work < -1e-4
@@ -199,4 +200,4 @@ def test_consistent_weights_are_left_as_they_are():
 )
 def test_options_without_a_meaning_are_refused(formulation, options, name):
     with pytest.raises(ProblemError, match=f"{formulation} has no use for the option '{name}'"):
-        FORMULATIONS[formulation](random_contact(0, 3, 0), FormulationOptions(**options))
+        FORMULATIONS[formulation](random_contact(0, 3, 0), SolveOptions.of(formulation, **options))

@@ -12,12 +12,12 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError, ProblemError
 from bemcontact.formulations import complementarity, qp2
-from bemcontact.formulations.formulation import FormulationOptions, Start
+from bemcontact.formulations.multistart import multistart
 from bemcontact.formulations.search import contact_residual
-from bemcontact.formulations.starts import random_points, search_from
-from bemcontact.options import Equilibrium, Rows, Weights
+from bemcontact.formulations.start import Start, draw_starts
+from bemcontact.options import Equilibrium, Rows, SolveOptions, Weights
 
-PENALISED = FormulationOptions(equilibrium=Equilibrium.PENALTY)
+PENALIZED = SolveOptions.of("qp2", equilibrium=Equilibrium.PENALTY)
 
 
 @pytest.mark.parametrize("length", [1.0, 0.1])
@@ -35,7 +35,7 @@ def test_objective_in_the_units_of_the_user(k, length, stress):
         motion_load=one.motion_load * stress * length,
     )
     U, T = condensed.scales
-    options = FormulationOptions(penalty=0.3)
+    options = SolveOptions.of("qp2", penalty=0.3)
     program = qp2.statement(condensed, options)
     raw = 0.3 * qp2.penalty_unit(condensed, options)
     K, B, r = condensed.stiffness_rows
@@ -60,7 +60,7 @@ def test_agrees_with_the_direct_solver(k, rows, penalty):
         direct = complementarity.solve(problem)
         peak, U = direct.pressure.max(), problem.scales.displacement
         for polish in (False, True):
-            solution = qp2.solve(problem, FormulationOptions(rows=rows, penalty=penalty, polish=polish))
+            solution = qp2.solve(problem, SolveOptions.of("qp2", rows=rows, penalty=penalty, polish=polish))
             assert solution.status is Status.SOLVED
             np.testing.assert_allclose(solution.pressure, direct.pressure, atol=1e-10 * peak)
             np.testing.assert_allclose(solution.displacement, direct.displacement, atol=1e-10 * U)
@@ -71,10 +71,10 @@ def test_agrees_with_the_direct_solver(k, rows, penalty):
 def test_limit_of_convexity(k, rows):
     """On the null space of its equations QP2's Hessian is semidefinite a little below the limit, and not above it."""
     problem = random_contact(6, 7, k)
-    limit = qp2.convexity_limit(problem, FormulationOptions(rows=rows))
+    limit = qp2.convexity_limit(problem, SolveOptions.of("qp2", rows=rows))
     assert limit > 0
     for factor, convex in ((0.999, True), (1.001, False)):
-        program = qp2.statement(problem, FormulationOptions(rows=rows, penalty=factor * limit))
+        program = qp2.statement(problem, SolveOptions.of("qp2", rows=rows, penalty=factor * limit))
         free = null_space(program.equations.matrix) if k else np.eye(len(program.lower))
         values = np.linalg.eigvalsh(free.T @ program.hessian @ free)
         assert (values[0] >= -1e-13 * values[-1]) == convex
@@ -82,7 +82,7 @@ def test_limit_of_convexity(k, rows):
 
 def test_penalty_and_its_limit_are_told():
     problem = random_contact(6, 7, 1)
-    options = FormulationOptions(penalty=0.5)
+    options = SolveOptions.of("qp2", penalty=0.5)
     search = qp2.solve(problem, options).search
     assert search is not None
     penalty = search.penalty
@@ -98,7 +98,7 @@ def test_penalty_and_its_limit_are_told():
 def test_a_penalty_that_is_none_is_refused(penalty):
     """Beyond 1e±8 less than eight of sixteen digits are left of the smaller term, or of its numbers nothing at all."""
     with pytest.raises(OptionError, match=r"number from 1e-08 to 1e\+08; found .* round-off"):
-        FormulationOptions(penalty=penalty)
+        SolveOptions.of("qp2", penalty=penalty)
 
 
 @pytest.mark.parametrize("penalty", [1e-8, 1e8])
@@ -107,7 +107,7 @@ def test_a_penalty_that_is_none_is_refused(penalty):
 def test_the_ends_of_the_range_lead_to_the_contact_state(k, rows, penalty):
     problem = random_contact(2, 12, k)
     direct = complementarity.solve(problem)
-    solution = qp2.solve(problem, FormulationOptions(rows=rows, penalty=penalty, polish=False))
+    solution = qp2.solve(problem, SolveOptions.of("qp2", rows=rows, penalty=penalty, polish=False))
     assert solution.status is Status.SOLVED
     np.testing.assert_allclose(solution.pressure, direct.pressure, atol=1e-8 * direct.pressure.max())
 
@@ -118,8 +118,8 @@ def test_all_stationary_points_are_the_contact_state(k):
     problem = random_contact(4, 8, k)
     direct = complementarity.solve(problem)
     for penalty in (0.01, 1.0, 1e3):
-        for start in random_points(problem, 10, seed=1):
-            found = qp2.solve(problem, FormulationOptions(penalty=penalty, start=start, polish=False))
+        for start in draw_starts(problem, 10, seed=1):
+            found = qp2.solve(problem, SolveOptions.of("qp2", penalty=penalty, start=start, polish=False))
             assert found.status is Status.SOLVED
             np.testing.assert_allclose(found.pressure, direct.pressure, atol=1e-9 * direct.pressure.max())
 
@@ -135,7 +135,7 @@ def negative_corner() -> CondensedContact:
 def test_the_ray_of_consistent_weights(rows):
     """Above the limit the ray keeps all bounds and has negative curvature; just below, no pair of points does."""
     problem = negative_corner()
-    options = FormulationOptions(weights=Weights.CONSISTENT, rows=rows, penalty=1e6)
+    options = SolveOptions.of("qp2", Weights.CONSISTENT, rows=rows, penalty=1e6)
     ray = qp2.two_point_ray(problem, options)
     assert ray is not None
     assert (ray.direction >= 0).all()
@@ -156,7 +156,7 @@ def test_consistent_weights_above_their_limit_are_refused():
     with pytest.raises(
         ProblemError, match=r"no minimum with consistent weights .* falls without end .* take a penalty"
     ):
-        qp2.solve(negative_corner(), FormulationOptions(weights=Weights.CONSISTENT, penalty=1e6))
+        qp2.solve(negative_corner(), SolveOptions.of("qp2", weights=Weights.CONSISTENT, penalty=1e6))
 
 
 def test_consistent_weights_below_their_limit_miss_the_contact_state():
@@ -164,14 +164,14 @@ def test_consistent_weights_below_their_limit_miss_the_contact_state():
     problem = negative_corner()
     residuals = []
     for penalty in (1e-3, 1e-2):
-        solution = qp2.solve(problem, FormulationOptions(weights=Weights.CONSISTENT, penalty=penalty))
+        solution = qp2.solve(problem, SolveOptions.of("qp2", weights=Weights.CONSISTENT, penalty=penalty))
         assert solution.status is Status.LOCAL_MINIMUM
         assert not solution.polished
         assert solution.search.objective < 0
         assert "an objective of 0 certifies nothing" in solution.notes[0]
         residuals.append(contact_residual(problem, solution))
     assert residuals[1] == pytest.approx(10 * residuals[0], rel=0.01)
-    found = search_from(problem, qp2.solve, FormulationOptions(weights=Weights.CONSISTENT, penalty=1e-3), count=5)
+    found = multistart(problem, SolveOptions.of("qp2", "consistent", penalty=1e-3, starts=5))
     assert found.solved == 0
 
 
@@ -208,12 +208,12 @@ def test_compliance_rows_of_a_slender_body_hide_errors_of_pressure():
     """
     problem = slender(40)
     assert np.linalg.cond(problem.compliance) > 1e7
-    rough = qp2.solve(problem, FormulationOptions(rows=Rows.COMPLIANCE, polish=False))
+    rough = qp2.solve(problem, SolveOptions.of("qp2", rows=Rows.COMPLIANCE, polish=False))
     assert rough.search.objective < 1e-9
     assert np.abs(rough.pressure - 1).max() > 0.1
-    stiff = qp2.solve(problem, FormulationOptions(polish=False))
+    stiff = qp2.solve(problem, SolveOptions.of("qp2", polish=False))
     np.testing.assert_allclose(stiff.pressure, 1, atol=1e-8)
-    polished = qp2.solve(problem, FormulationOptions(rows=Rows.COMPLIANCE))
+    polished = qp2.solve(problem, SolveOptions.of("qp2", rows=Rows.COMPLIANCE))
     assert polished.status is Status.SOLVED
     np.testing.assert_allclose(polished.pressure, 1, atol=1e-8)
 
@@ -226,7 +226,7 @@ def test_no_penalty_costs_digits(penalty):
     equations, M + Mᵀ, which is positive definite. With μ large that of the product pᵀJδ, n positive and n negative.
     """
     problem = slender()
-    found = qp2.solve(problem, FormulationOptions(penalty=penalty, polish=False))
+    found = qp2.solve(problem, SolveOptions.of("qp2", penalty=penalty, polish=False))
     assert found.status is Status.SOLVED
     np.testing.assert_allclose(found.pressure, 1, atol=1e-8)
     if penalty <= 1e-8:
@@ -237,7 +237,7 @@ def test_no_penalty_costs_digits(penalty):
 
 def test_stiffness_rows_of_a_slender_body_do_not():
     """The same body to 1e-8 without a polish; the pressure is known only as well as cond M · eps = 1e-10 allows."""
-    solution = qp2.solve(slender(), FormulationOptions(polish=False))
+    solution = qp2.solve(slender(), SolveOptions.of("qp2", polish=False))
     assert solution.status is Status.SOLVED
     np.testing.assert_allclose(solution.pressure, 1, atol=1e-8)
 
@@ -246,17 +246,17 @@ def test_penalised_equilibrium_finds_the_solution_from_near_it():
     problem = resting()
     direct = complementarity.solve(problem)
     start = Start(pressure=direct.pressure * 1.01, displacement=direct.displacement)
-    solution = qp2.solve(problem, replace(PENALISED, start=start, polish=False))
+    solution = qp2.solve(problem, replace(PENALIZED, start=start, polish=False))
     assert solution.status is Status.SOLVED
     np.testing.assert_allclose(solution.pressure, direct.pressure, atol=1e-10 * direct.pressure.max())
 
 
 def test_penalised_equilibrium_of_a_held_body_is_told_to_be_nothing():
-    solution = qp2.solve(random_contact(0, 5, 0), PENALISED)
+    solution = qp2.solve(random_contact(0, 5, 0), PENALIZED)
     assert solution.status is Status.SOLVED
     assert "no equilibrium of a free body" in solution.notes[0]
 
 
 def test_compliance_rows_do_not_contain_equilibrium():
     with pytest.raises(ProblemError, match="stiffness rows only"):
-        qp2.solve(resting(), replace(PENALISED, rows=Rows.COMPLIANCE))
+        qp2.solve(resting(), replace(PENALIZED, rows=Rows.COMPLIANCE))

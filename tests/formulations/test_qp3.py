@@ -10,11 +10,10 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import NotConvexError, ProblemError, SolverError
 from bemcontact.formulations import clarabel, complementarity, qp3
-from bemcontact.formulations.formulation import FormulationOptions
 from bemcontact.formulations.scaling import scaled
-from bemcontact.options import Weights
+from bemcontact.options import SolveOptions, Weights
 
-UNPOLISHED = FormulationOptions(polish=False)
+UNPOLISHED = SolveOptions(polish=False)
 
 
 def balanced(problem, rng: np.random.Generator) -> np.ndarray:
@@ -120,7 +119,7 @@ def test_nonconvex_program_is_refused():
     with pytest.raises(
         NotConvexError, match=r"element_length weights: the smallest eigenvalue .* use the tributary"
     ) as e:
-        qp3.solve(problem, FormulationOptions(weights=Weights.ELEMENT_LENGTH))
+        qp3.solve(problem, SolveOptions.of("qp3", weights=Weights.ELEMENT_LENGTH))
     assert e.value.smallest_eigenvalue < 0
     other = CondensedContact.from_compliance(M, [-1.0, -1.0], [4.0, 1.0])
     with pytest.raises(NotConvexError, match=r"not convex with tributary weights: .* refine the mesh"):
@@ -131,7 +130,7 @@ def test_weights_that_couple_pressure_and_motion_are_refused():
     """Where ZᵀJR is not zero, pᵀJRa makes a saddle, however definite sym(JM) is."""
     problem = replace(random_contact(6, 6, 1), element_length_weights=np.arange(1.0, 7.0))
     with pytest.raises(NotConvexError) as e:
-        qp3.solve(problem, FormulationOptions(weights=Weights.ELEMENT_LENGTH))
+        qp3.solve(problem, SolveOptions.of("qp3", weights=Weights.ELEMENT_LENGTH))
     assert e.value.smallest_eigenvalue < -1e-3
 
 
@@ -139,7 +138,7 @@ def test_other_weights_have_the_same_solution():
     """Any positive diagonal J for which the program is convex ends at the complementary solution."""
     problem = random_contact(7, 10, 0)
     problem = replace(problem, element_length_weights=problem.weights * np.linspace(1.0, 1.05, 10))
-    solution = qp3.solve(problem, FormulationOptions(weights=Weights.ELEMENT_LENGTH))
+    solution = qp3.solve(problem, SolveOptions.of("qp3", weights=Weights.ELEMENT_LENGTH))
     np.testing.assert_allclose(solution.pressure, complementarity.solve(problem).pressure, atol=1e-12)
 
 
@@ -148,7 +147,7 @@ def test_consistent_weights_are_left_as_they_are():
     J = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30
     M = np.array([[2.0, 0.0, 1.0], [0.0, 0.5, 0.0], [1.0, 0.0, 2.0]])
     problem = replace(CondensedContact.from_compliance(M, [-1.0, 0.2, 0.6], J.sum(axis=1)), consistent_weights=J)
-    solution = qp3.solve(problem, FormulationOptions(weights=Weights.CONSISTENT))
+    solution = qp3.solve(problem, SolveOptions.of("qp3", weights=Weights.CONSISTENT))
     gap = problem.initial_gap + solution.displacement
     assert solution.status is Status.SOLVED
     assert not solution.polished
@@ -157,7 +156,7 @@ def test_consistent_weights_are_left_as_they_are():
 
 def test_weights_that_are_not_there():
     with pytest.raises(ProblemError, match="no consistent weights"):
-        qp3.solve(random_contact(0, 4, 0), FormulationOptions(weights=Weights.CONSISTENT))
+        qp3.solve(random_contact(0, 4, 0), SolveOptions.of("qp3", weights=Weights.CONSISTENT))
 
 
 def test_infeasible_load_is_named():
@@ -169,7 +168,7 @@ def test_infeasible_load_is_named():
 
 
 def test_iteration_limit_is_named():
-    solution = qp3.solve(random_contact(1, 12, 1), FormulationOptions(polish=False, max_iterations=2))
+    solution = qp3.solve(random_contact(1, 12, 1), SolveOptions.of("qp3", polish=False, max_iterations=2))
     assert solution.status is Status.ITERATION_LIMIT
 
 

@@ -13,10 +13,10 @@ import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError
-from bemcontact.formulations import complementarity, qp1, qp2
-from bemcontact.formulations.formulation import FormulationOptions, Start
-from bemcontact.formulations.starts import random_points, search_from
-from bemcontact.options import Equilibrium, Weights
+from bemcontact.formulations import complementarity, qp1
+from bemcontact.formulations.multistart import multistart
+from bemcontact.formulations.start import Start, draw_starts
+from bemcontact.options import Equilibrium, SolveOptions
 
 P_MATRIX = np.array([[1.0, -3.0, 0.0], [0.0, 1.0, -3.0], [0.0, 0.0, 1.0]])
 """Triangular with positive diagonal, so a P-matrix, but far from positive definite."""
@@ -25,20 +25,20 @@ P_MATRIX = np.array([[1.0, -3.0, 0.0], [0.0, 1.0, -3.0], [0.0, 0.0, 1.0]])
 def test_random_points_are_repeatable_and_free_of_units():
     """Fewer starts are the first of more, and a change of units scales them."""
     problem = resting()
-    few, many = random_points(problem, 2, seed=4), random_points(problem, 5, seed=4)
+    few, many = draw_starts(problem, 2, seed=4), draw_starts(problem, 5, seed=4)
     np.testing.assert_array_equal(few[1].displacement, many[1].displacement)
     assert (many[0].pressure >= 0).all()
     assert not np.array_equal(many[0].pressure, many[1].pressure)
     stiff = CondensedContact.from_compliance(
         problem.compliance / 1e3, problem.offset, rigid_motions=problem.rigid_motions, motion_load=-7e3
     )
-    np.testing.assert_allclose(random_points(stiff, 1, seed=4)[0].pressure, many[0].pressure * 1e3, rtol=1e-12)
+    np.testing.assert_allclose(draw_starts(stiff, 1, seed=4)[0].pressure, many[0].pressure * 1e3, rtol=1e-12)
 
 
-@pytest.mark.parametrize("solve", [qp1.solve, qp2.solve])
-def test_a_strictly_monotone_problem_has_one_end(solve):
+@pytest.mark.parametrize("formulation", ["qp1", "qp2"])
+def test_a_strictly_monotone_problem_has_one_end(formulation):
     problem = resting()
-    found = search_from(problem, solve, count=25)
+    found = multistart(problem, SolveOptions.of(formulation, starts=25))
     (end,) = found.ends
     assert (found.solved, end.count, end.first_start) == (25, 25, 0)
     assert end.residual < 1e-10
@@ -49,7 +49,7 @@ def test_a_strictly_monotone_problem_has_one_end(solve):
 
 def test_penalised_equilibrium_has_a_second_end():
     """The lifted body: one end wherever it is lifted to, F2 > 0, counted apart and put last."""
-    found = search_from(resting(), qp2.solve, FormulationOptions(equilibrium=Equilibrium.PENALTY), count=60)
+    found = multistart(resting(), SolveOptions.of("qp2", equilibrium=Equilibrium.PENALTY, starts=60))
     best, lifted = found.ends
     assert best.solution.status is Status.SOLVED
     assert lifted.solution.status is Status.LOCAL_MINIMUM
@@ -60,13 +60,13 @@ def test_penalised_equilibrium_has_a_second_end():
     assert str(found).startswith(f"{best.count} of 60 random starts (seed 0) end at the contact state\n")
 
 
-@pytest.mark.parametrize("solve", [qp1.solve, qp2.solve])
-def test_a_p_matrix_has_one_end(solve):
+@pytest.mark.parametrize("formulation", ["qp1", "qp2"])
+def test_a_p_matrix_has_one_end(formulation):
     """Every first-order point of QP1 and QP2 is the solution for a P-matrix of any definiteness (row sufficient)."""
     rng = np.random.default_rng(0)
     for _ in range(3):
         problem = CondensedContact.from_compliance(P_MATRIX, rng.standard_normal(3))
-        found = search_from(problem, solve, count=15)
+        found = multistart(problem, SolveOptions.of(formulation, starts=15))
         assert [end.solution.status for end in found.ends] == [Status.SOLVED]
         truth = complementarity.solve(problem).pressure
         np.testing.assert_allclose(found.ends[0].solution.pressure, truth, atol=1e-9)
@@ -83,7 +83,7 @@ def test_a_matrix_that_is_not_p_has_all_its_ends_named():
         if min(p.min(), (q + M @ p).min()) >= 0:
             truths.append(p)
     assert len(truths) == 3
-    found = search_from(CondensedContact.from_compliance(M, q), qp1.solve, count=40)
+    found = multistart(CondensedContact.from_compliance(M, q), SolveOptions.of("qp1", starts=40))
     assert len(found.ends) > 1
     for end in found.ends:
         assert end.solution.status is Status.SOLVED
@@ -109,7 +109,7 @@ def test_one_random_start_is_the_first_of_many():
     assert one.certified
     assert one.starts is None
     assert one.solution.search.start == "random point 0, seed 5"
-    again = qp1.solve(problem, FormulationOptions(start=random_points(problem, 1, 5)[0]))
+    again = qp1.solve(problem, SolveOptions.of("qp1", start=draw_starts(problem, 1, 5)[0]))
     assert again.iterations == one.solution.iterations
 
 
@@ -189,7 +189,7 @@ def test_progress_counts_what_is_done():
 
 def test_all_infeasible_ends_are_one():
     """M = -1, q = -1 has no contact state; where the search saw that means nothing, nor does the objective there."""
-    found = search_from(CondensedContact.from_compliance([[-1.0]], [-1.0]), qp1.solve, count=12)
+    found = multistart(CondensedContact.from_compliance([[-1.0]], [-1.0]), SolveOptions.of("qp1", starts=12))
     (end,) = found.ends
     assert (end.count, end.objective, found.solved) == (12, None, 0)
     assert re.fullmatch(r"12 x infeasible, (\d+ to )?\d+ iterations?", str(end))
@@ -200,7 +200,7 @@ def test_all_unbounded_ends_are_one():
     """On δ = 1 + p both grow along p = (1, 1), where pᵀJδ falls as -2p² for J = [[1, -2], [-2, 1]]."""
     J = np.array([[1.0, -2.0], [-2.0, 1.0]])
     problem = replace(CondensedContact.from_compliance(np.eye(2), [1.0, 1.0]), consistent_weights=J)
-    found = search_from(problem, qp1.solve, FormulationOptions(weights=Weights.CONSISTENT), count=12)
+    found = multistart(problem, SolveOptions.of("qp1", "consistent", starts=12))
     assert [end.solution.status for end in found.ends] == [Status.UNBOUNDED]
     assert found.ends[0].count == 12
 
@@ -221,5 +221,5 @@ def test_random_starts_are_for_local_solvers():
 
 def test_nothing_is_polished():
     """A polish would turn the lifted body into the solution."""
-    found = search_from(resting(), qp1.solve, replace(FormulationOptions(), polish=True), count=2)
+    found = multistart(resting(), SolveOptions.of("qp1", polish=True, starts=2))
     assert not any(end.solution.polished for end in found.ends)

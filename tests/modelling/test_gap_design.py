@@ -17,8 +17,8 @@ from bemcontact import GapDesign, Relief, design_gap, spec
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.modelling.designed_gap import relieved
-from bemcontact.modelling.relief import Profiles
+from bemcontact.modelling.gap_design.designed_gap import relieved
+from bemcontact.modelling.gap_design.relief import Profiles
 
 GALLERY = Path(__file__).parents[2] / "models" / "gallery"
 POWERS = [lambda s, k=k: (1 - s / 5) ** k for k in (2, 4, 8)]

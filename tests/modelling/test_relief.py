@@ -7,7 +7,7 @@ import pytest
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
-from bemcontact.modelling.relief import Profiles, Relief
+from bemcontact.modelling.gap_design.relief import Profiles, Relief
 
 ARC = np.array([0.0, 1.0, 1.5, 3.0, 4.0, 6.0, 0.0, 2.0])
 """Eight points in two zones, six on the first run and two on the second."""

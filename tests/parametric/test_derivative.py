@@ -88,5 +88,5 @@ def test_state_that_may_go_on_in_two_ways_is_refused():
     assert not tangent.unique
     with pytest.raises(ProblemError, match="more than one way"):
         tangent.rate(Change(np.array([0.0, 1.0]), np.zeros(0)))
-    with pytest.raises(ProblemError, match="turns back or breaks off"):
+    with pytest.raises(ProblemError, match="turns back or ends"):
         tangent.rate(Change(np.array([0.0, -1.0]), np.zeros(0)))

@@ -63,7 +63,9 @@ def test_numbers_are_json():
     told = json.loads(crossing(-0.5, 1.5).to_json())
     assert not told["certified"]
     assert told["reaches"] == pytest.approx([-0.5, 1.0])
-    assert told["notes"][0].startswith("the path is there up to 1; beyond, the load carries the body off its support")
+    assert told["notes"][0].startswith(
+        "the path exists up to 1; beyond that, the load carries the body off its support"
+    )
     assert [state["left"] for state in told["states"] if state["breakpoint"]] == [[], [0], [], []]
 
 

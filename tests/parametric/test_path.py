@@ -286,7 +286,7 @@ def test_load_that_crosses_a_support_with_the_next_one_level():
 
 @pytest.mark.parametrize(
     ("start", "end", "reach", "words"),
-    [(-0.5, 1.5, (0, 0.75), "the path is there up to 0.75"), (1.5, -0.5, (0.25, 1), "the path is there from 0.25 on")],
+    [(-0.5, 1.5, (0, 0.75), "the path exists up to 0.75"), (1.5, -0.5, (0.25, 1), "the path exists from 0.25 on")],
 )
 def test_load_beyond_the_last_support_ends_the_path(start, end, reach, words):
     """The load reaches the outer support, x = 1, a quarter of the way from 1.5 to -0.5."""
@@ -294,7 +294,7 @@ def test_load_beyond_the_last_support_ends_the_path(start, end, reach, words):
     assert not path.complete
     assert (path.begins_at, path.ends_at) == pytest.approx(reach, abs=1e-14)
     assert path.note.startswith("the load carries the body off its support, in a motion that no contact resists")
-    assert path.notes == (f"{words}; beyond, {path.note}",)
+    assert path.notes == (f"{words}; beyond that, {path.note}",)
     with pytest.raises(ProblemError, match="there is nothing at"):
         path.at(1.0 if reach[0] == 0 else 0.0)
     np.testing.assert_allclose(path.pressure[-1 if reach[0] == 0 else 0], [0, 0, 1], atol=1e-14)
@@ -315,7 +315,7 @@ def test_path_that_turns_back_is_not_followed_silently():
     path = load_path(start, replace(start, initial_gap=np.array([-1.0, -2.1])))
     np.testing.assert_allclose(path.parameter, [0, 0.5], atol=1e-14)
     np.testing.assert_allclose(path.pressure, [[2.8 / 3, 0.1 / 3], [1, 0]], atol=1e-14)
-    assert path.notes[0].startswith("the path is there up to 0.5; beyond, no contact state was found to continue")
+    assert path.notes[0].startswith("the path exists up to 0.5; beyond that, no contact state was found to continue")
     assert "does not rule out other contact states" in path.notes[1]
 
 
@@ -370,7 +370,7 @@ def test_resultants_and_peaks_are_those_of_the_states(full_load: LoadPath):
 def test_path_in_words_and_numbers():
     path = load_path(rocker(-0.5), rocker(1.5))
     assert repr(path).startswith(
-        "<LoadPath of 'unnamed': 4 breakpoints from 0 to 0.75, 2 pivots; the path is there up to 0.75; "
+        "<LoadPath of 'unnamed': 4 breakpoints from 0 to 0.75, 2 pivots; the path exists up to 0.75; "
     )
     told = path.to_dict()
     assert (told["complete"], told["pivots"], told["left"]) == (False, 2, [[], [0], [], []])

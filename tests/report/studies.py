@@ -5,7 +5,7 @@ from functools import cache
 from bemcontact.analysis import compare as comparing
 from bemcontact.analysis.study import Study
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.formulations.plan import planned_comparison
+from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
 
 
@@ -52,20 +52,20 @@ def roller(**changes: object) -> Problem:
 @cache
 def on_one_mesh() -> Study:
     """The block, with three random starts."""
-    return comparing.study(planned_comparison(starts=3), block())
+    return comparing.study(ComparisonOptions.of(starts=3), block())
 
 
 @cache
 def on_three_meshes() -> Study:
     """The roller, with two random starts."""
-    return comparing.study(planned_comparison(starts=2), roller(), (1, 2, 3))
+    return comparing.study(ComparisonOptions.of(starts=2), roller(), (1, 2, 3))
 
 
 @cache
 def of_many_settings() -> Study:
     """The roller beside Hertz, with weights that are refused, and with which QP2 ends far from the contact state."""
     hertz = {"kind": "hertz", "load": 480, "radius": 8, "half": True}
-    plan = planned_comparison(weights=["tributary", "consistent"], penalties=[1.0, 1e3])
+    plan = ComparisonOptions.of(weights=["tributary", "consistent"], penalties=[1.0, 1e3])
     return comparing.study(plan, roller(reference={"Hertz": hertz}))
 
 
@@ -73,21 +73,21 @@ def of_many_settings() -> Study:
 def without_a_body() -> Study:
     """Three points, of which two touch; no boundary stands behind them."""
     compliance = [[2.0, 0.5, 0.0], [0.5, 2.0, 0.5], [0.0, 0.5, 2.0]]
-    return comparing.study(planned_comparison(), CondensedContact.from_compliance(compliance, [-1.0, -0.5, 1.0]))
+    return comparing.study(ComparisonOptions.of(), CondensedContact.from_compliance(compliance, [-1.0, -0.5, 1.0]))
 
 
 @cache
 def without_contact() -> Study:
     """Three points, none of which touches."""
     compliance = [[2.0, 0.5, 0.0], [0.5, 2.0, 0.5], [0.0, 0.5, 2.0]]
-    return comparing.study(planned_comparison(), CondensedContact.from_compliance(compliance, [1.0, 0.5, 1.0]))
+    return comparing.study(ComparisonOptions.of(), CondensedContact.from_compliance(compliance, [1.0, 0.5, 1.0]))
 
 
 @cache
 def not_unique() -> Study:
     """Two points, of which each holds the body without the other: pressures (1, 0), (0, 1) and both together."""
     contact = CondensedContact.from_compliance([[1.0, 2.0], [2.0, 1.0]], [-1.0, -1.0])
-    return comparing.study(planned_comparison(["qp1", "qp2"]), contact)
+    return comparing.study(ComparisonOptions.of(["qp1", "qp2"]), contact)
 
 
 ALL = (on_one_mesh, on_three_meshes, of_many_settings, without_a_body, without_contact, not_unique)

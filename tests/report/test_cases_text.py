@@ -11,7 +11,7 @@ from tool_problems import BETWEEN, FREE, FREE_CASES, HELD, HELD_CASES, made
 import bemcontact
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import CertificateKind
-from bemcontact.bem.condense import body_of
+from bemcontact.bem.body import body_of
 from bemcontact.report import cases_text, formatting, text
 
 UNITS = {"units": {"length": "mm", "force": "N"}}

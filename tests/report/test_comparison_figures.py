@@ -27,7 +27,7 @@ from bemcontact.analysis import compare as comparing
 from bemcontact.analysis.study import Study
 from bemcontact.assessment.comparison import Contender
 from bemcontact.contact.solution import Trace
-from bemcontact.formulations.plan import planned_comparison
+from bemcontact.options import ComparisonOptions
 from bemcontact.report import figures
 
 GREY = "#7d838c"
@@ -95,7 +95,7 @@ def test_gaps_are_drawn_beside_the_initial_gap():
 def test_gaps_that_are_closed_everywhere_are_told_and_their_round_off_is_not_blown_up():
     """A block in a corner under uniform pressure touches both planes with all of its edges."""
     problem = spec.load(Path(__file__).parents[2] / "models" / "gallery" / "block_in_corner.yaml")
-    level, axes = comparing.study(planned_comparison(["qp3"]), problem).finest, Figure().add_subplot()
+    level, axes = comparing.study(ComparisonOptions.of(["qp3"]), problem).finest, Figure().add_subplot()
     figures.draw_gaps(axes, level)
     assert "closed everywhere" in [text.get_text() for text in axes.texts]
     assert axes.get_ylim()[1] == level.answer.contact.scales.displacement
@@ -114,7 +114,7 @@ def test_differences_are_relative_to_the_peak():
 
 
 def test_two_zones_stand_side_by_side_each_with_its_own_distances():
-    study = comparing.study(planned_comparison(["qp3"]), block_in_a_corner())
+    study = comparing.study(ComparisonOptions.of(["qp3"]), block_in_a_corner())
     axes = Figure().add_subplot()
     figures.draw_pressures(axes, study.finest)
     assert [text.get_text() for text in axes.texts] == ["floor", "wall"]

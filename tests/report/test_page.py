@@ -13,7 +13,7 @@ from tool_problems import BETWEEN, made
 
 from bemcontact.analysis import compare as comparing
 from bemcontact.analysis.study import Study
-from bemcontact.formulations.plan import planned_comparison
+from bemcontact.options import ComparisonOptions
 from bemcontact.report import formatting
 from bemcontact.report.page import render
 
@@ -155,6 +155,6 @@ def test_the_page_tells_which_load_cases_act_and_where_the_tools_are():
     cases = {name: {"tools": {"press": {"force": {"y": -20}}}} for name in ("more", "most")}
     tools = {"press": {"zones": "press", "point": [1, 1], "force": {"y": -40}}}
     problem = made(BETWEEN, tools=tools, load_cases=cases, combinations={"half": {"more": 0.5}}, case="half")
-    page = read(render(report_of(comparing.study(planned_comparison(), problem)), {}, None)).text
+    page = read(render(report_of(comparing.study(ComparisonOptions.of(), problem)), {}, None)).text
     assert "Beside what is permanent act the load cases 0.5 more." in page
     assert "the body presses on it with (0, 50), moment 0 about (1, 1)" in page

@@ -10,7 +10,7 @@ from jsonschema import Draft202012Validator, ValidationError, validate
 
 from bemcontact.analysis import compare as comparing
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.formulations.plan import planned_comparison
+from bemcontact.options import ComparisonOptions
 from bemcontact.report.reproduction_schema import reproduction_schema
 from bemcontact.report.schema import Report, report_schema
 from bemcontact.spec import load
@@ -21,17 +21,17 @@ SPURIOUS = CondensedContact.from_compliance([[1.0, 2.0], [1.0, 1.0]], [-1.0, -2.
 def reports() -> dict[str, dict]:
     cylinder = load("models/cylinder_on_plane.yaml")
     cases = {
-        "cylinder": (planned_comparison(weights=["tributary", "consistent"], penalties=[1, 1e3]), cylinder, (1, 2)),
-        "fitted": (planned_comparison(["qp3"]), cylinder.with_value("mesh.fit_contact_edges", True), (1,)),
-        "refused": (planned_comparison(["qp3"]), SPURIOUS, (1,)),
-        "spurious": (planned_comparison(["qp1", "qp2"], starts=3), SPURIOUS, (1,)),
-        "no contact": (planned_comparison(), CondensedContact.from_compliance(np.eye(2), [1.0, 1.0]), (1,)),
+        "cylinder": (ComparisonOptions.of(weights=["tributary", "consistent"], penalties=[1, 1e3]), cylinder, (1, 2)),
+        "fitted": (ComparisonOptions.of(["qp3"]), cylinder.with_value("mesh.fit_contact_edges", True), (1,)),
+        "refused": (ComparisonOptions.of(["qp3"]), SPURIOUS, (1,)),
+        "spurious": (ComparisonOptions.of(["qp1", "qp2"], starts=3), SPURIOUS, (1,)),
+        "no contact": (ComparisonOptions.of(), CondensedContact.from_compliance(np.eye(2), [1.0, 1.0]), (1,)),
         "fixed by equilibrium": (
-            planned_comparison(),
+            ComparisonOptions.of(),
             CondensedContact.from_compliance([[1.0]], [0.0], rigid_motions=[1.0], motion_load=-1.0),
             (1,),
         ),
-        "free": (planned_comparison(), random_contact(3, 7, 2), (1,)),
+        "free": (ComparisonOptions.of(), random_contact(3, 7, 2), (1,)),
     }
     return {name: json.loads(comparing.study(*case).to_json()) for name, case in cases.items()}
 

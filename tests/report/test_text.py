@@ -9,7 +9,7 @@ from rich.console import Console, RenderableType
 
 from bemcontact.analysis import solve as analysis
 from bemcontact.assessment.certificate import CertificateKind
-from bemcontact.bem.condense import body_of
+from bemcontact.bem.body import body_of
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import LocalSearch, Penalty, Status
 from bemcontact.problem import Circle, DeflectedContour, Field, Plane, Polyline, Problem, Spline, Units

@@ -1,6 +1,6 @@
-"""A local solver for quadratic programmes of any inertia; it knows nothing of contact."""
+"""A local solver for quadratic programs of any inertia; it knows nothing of contact."""
 
-from bemcontact.formulations.local_solver.factorisations import inertia
+from bemcontact.formulations.local_solver.factorizations import inertia
 from bemcontact.formulations.local_solver.minimize import minimize_qp
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 

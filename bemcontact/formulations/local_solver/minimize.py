@@ -1,4 +1,4 @@
-"""`minimize_qp`: the data read and scaled, the walk, and its end in the units of the data."""
+"""`minimize_qp`: the data read and scaled, both phases, and its end in the units of the data."""
 
 from typing import Any
 
@@ -7,11 +7,11 @@ from numpy.typing import ArrayLike
 
 from bemcontact.arrays import BoolArray
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.local_solver.factorisations import Inertia
+from bemcontact.formulations.local_solver.factorizations import Inertia
+from bemcontact.formulations.local_solver.phases import Finding, run_phases
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult
 from bemcontact.formulations.local_solver.statement import Scales, Statement, equilibrate, numbers, read, unscaled
-from bemcontact.formulations.local_solver.walk import Finding, walk
 
 
 def minimize_qp(
@@ -26,7 +26,7 @@ def minimize_qp(
     options: QPOptions | None = None,
     working_set: ArrayLike | None = None,
 ) -> QPResult:
-    """Find a local minimiser of cᵀx + xᵀHx/2 over cl <= A x <= cu, bl <= x <= bu, H of any inertia.
+    """Find a local minimizer of cᵀx + xᵀHx/2 over cl <= A x <= cu, bl <= x <= bu, H of any inertia.
 
     An inertia-controlling active-set method (Gill, Murray, Saunders and Wright, SIAM Review 33 (1991) 1-36).
 
@@ -57,7 +57,7 @@ def minimize_qp(
     Raises
     ------
     ProblemError
-        The data do not state a quadratic programme.
+        The data do not state a quadratic program.
     """
     if options is None:
         options = QPOptions()
@@ -72,7 +72,7 @@ def minimize_qp(
     sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
-    finding, reduced_start = walk(progress, sides)
+    finding, reduced_start = run_phases(progress, sides)
     return _result(stated, scales, progress, finding, reduced_start)
 
 

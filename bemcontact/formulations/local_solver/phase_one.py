@@ -9,9 +9,8 @@ from math import sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.pricing import wrong_sign
+from bemcontact.formulations.local_solver.pivoting import INFINITY, Block, nearest, side_reached, wrong_sign
 from bemcontact.formulations.local_solver.progress import Progress
-from bemcontact.formulations.local_solver.ratio_test import INFINITY, Block, nearest, side_reached
 from bemcontact.formulations.local_solver.statement import Sides, Statement
 from bemcontact.formulations.local_solver.working_set import WorkingSet
 

@@ -10,9 +10,8 @@ from math import sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.pricing import wrong_sign
+from bemcontact.formulations.local_solver.pivoting import Block, nearest, wrong_sign
 from bemcontact.formulations.local_solver.progress import Progress
-from bemcontact.formulations.local_solver.ratio_test import Block, nearest
 from bemcontact.formulations.local_solver.reduced_hessian import ReducedHessian
 from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, WorkingSet
 
@@ -35,7 +34,7 @@ class Outcome:
 
 
 class Descent:
-    """The walk of phase two from a feasible point.
+    """Phase two from a feasible point.
 
     Parameters
     ----------
@@ -149,7 +148,7 @@ class Descent:
         return np.where(np.isin(self.working.numbers, list(self._refused)), 0.0, multipliers)
 
     def _newton_step(self) -> None:
-        """Towards the minimiser on the working set, as far as the constraints allow."""
+        """Towards the minimizer on the working set, as far as the constraints allow."""
         progress, working = self.progress, self.working
         direction = self.hessian.newton(progress.gradient)
         along = progress.statement.values(direction)
@@ -163,7 +162,7 @@ class Descent:
             self._advance(along, length, step, step * (1.0 - 0.5 * step) * slope, block)
 
     def _follow_curvature(self, direction: Array) -> Outcome | None:
-        """Along the direction of non-positive curvature downhill to the next constraint; None if the walk goes on."""
+        """Along the direction of non-positive curvature downhill to the next constraint; None if phase two goes on."""
         progress, working = self.progress, self.working
         slope, curvature = float(progress.gradient.dot(direction)), self.hessian.curvature
         level = abs(slope) <= progress.zero and abs(slope) <= self._fine_slope(direction)

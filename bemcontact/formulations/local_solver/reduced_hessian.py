@@ -12,7 +12,7 @@ from math import sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.factorisations import add_rank_one, inverse_triangle, pivoted_cholesky
+from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, pivoted_cholesky
 from bemcontact.formulations.local_solver.statement import EPS, Statement
 
 
@@ -61,7 +61,7 @@ class ReducedHessian:
         self.size, self.Z = size, self._columns[:, :size]
 
     def newton(self, gradient: Array) -> Array:
-        """-Z Zᵀg: to the minimiser on the working set."""
+        """-Z Zᵀg: to the minimizer on the working set."""
         return -self.Z.dot(gradient.dot(self.Z))
 
     def is_stationary(self, gradient: Array, zero: float) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.factorisations import Inertia, inertia
+from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 
 
 class QPStatus(StrEnum):
@@ -20,7 +20,7 @@ class QPStatus(StrEnum):
     the limits of double precision for any claim.
     """
 
-    LOCAL_MINIMISER = "local minimiser"
+    LOCAL_MINIMIZER = "local minimizer"
     UNDECIDED = "second-order undecided"
     UNBOUNDED = "unbounded"
     INFEASIBLE = "infeasible"

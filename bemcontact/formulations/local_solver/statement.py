@@ -1,4 +1,4 @@
-"""The quadratic programme as stated, checked on entry, and its equilibration."""
+"""The quadratic program as stated, checked on entry, and its equilibration."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +11,7 @@ from scipy import sparse
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.local_solver.factorisations import row_lengths
+from bemcontact.formulations.local_solver.factorizations import row_lengths
 
 Sides = NDArray[np.int8]
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.factorisations import add_rank_one, inverse_triangle, orthogonal, unit_rows
+from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, orthogonal, unit_rows
 from bemcontact.formulations.local_solver.statement import Sides, Statement
 
 EQUALITY = 2

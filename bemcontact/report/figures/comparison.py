@@ -41,7 +41,7 @@ class Curve:
     @property
     def colour(self) -> str:
         """Its formulation's."""
-        return COLOURS[self.contenders[0].found.setting.formulation]
+        return COLOURS[self.contenders[0].found.options.formulation]
 
     @property
     def label(self) -> str:
@@ -199,7 +199,7 @@ def _curves(level: MeshLevel, *, merged: bool = True) -> list[Curve]:
     widths = [WIDEST, *np.linspace(5.0, THINNEST, max(len(groups) - 1, 1))]
     curves, seen = list[Curve](), dict[FormulationName, int]()
     for group, width in zip(groups, widths, strict=False):
-        name = group[0].found.setting.formulation
+        name = group[0].found.options.formulation
         order = seen.get(name, 0)
         seen[name] = order + 1
         curves.append(Curve(contenders=tuple(group), width=float(width), dashes=DASHES[order % len(DASHES)]))
@@ -212,7 +212,7 @@ def _alike(one: Contender, other: Contender, level: MeshLevel) -> bool:
         return False
     apart = float(np.abs(one.judged.solution.pressure - other.judged.solution.pressure).max())
     peak = float(level.answer.solution.pressure.max(initial=0.0)) or level.answer.contact.scales.pressure
-    return one.found.setting.formulation is other.found.setting.formulation and apart <= SAME * peak
+    return one.found.options.formulation is other.found.options.formulation and apart <= SAME * peak
 
 
 def _cut_off(axes: Axes, found: dict[str, float], top: float, unit: str) -> None:

@@ -10,8 +10,8 @@ from scipy.spatial import KDTree
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.bem import shape_functions
-from bemcontact.bem.recovery import BoundaryState
+from bemcontact.bem import reference_element
+from bemcontact.bem.condense import BoundaryState
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, place_names
 from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain, without_glyph_warnings
@@ -122,7 +122,7 @@ def draw_contact(axes: Axes, result: Result) -> None:
 
 def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
     """Draw the body as it is deformed, and its undeformed outline where that can be told apart; return loops (j, 2)."""
-    curves = shape_functions.values(np.linspace(-1, 1, 5))
+    curves = reference_element.values(np.linspace(-1, 1, 5))
     before, after = curves @ state.points, curves @ (state.points + state.displacement)
     outline = outline_of(state, after)
     axes.add_patch(PathPatch(outline, facecolor=BODY, edgecolor="none", zorder=0))
@@ -211,7 +211,7 @@ def _surfaces(result: Result, problem: Problem, overhang: float) -> Iterator[tup
 
 def _displacement(state: BoundaryState) -> Displacement:
     """Displacement of any point of the boundary: that of the nearest of some on each element."""
-    curves = shape_functions.values(np.linspace(-1, 1, 17))
+    curves = reference_element.values(np.linspace(-1, 1, 17))
     nearest = KDTree((curves @ state.points).reshape(-1, 2))
     displacement = (curves @ state.displacement).reshape(-1, 2)
     return lambda points: displacement[nearest.query(points)[1]]

@@ -41,7 +41,7 @@ def draw_history(axes: Axes, contenders: Sequence[Contender]) -> None:
     told = [item for item in contenders if item.judged is not None and item.judged.solution.history]
     below_zero = False
     for order, contender in enumerate(told):
-        alone = COLOURS[contender.found.setting.formulation] if len(told) == 1 else None
+        alone = COLOURS[contender.found.options.formulation] if len(told) == 1 else None
         colour = alone or CYCLE[order % len(CYCLE)]
         for trace in contender.judged.solution.history if contender.judged else ():
             label = trace.quantity if alone else plain(f"{contender.label}: {trace.quantity}")

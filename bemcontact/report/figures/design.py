@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.modelling.designed_gap import GapDesign
+from bemcontact.modelling.gap_design.designed_gap import GapDesign
 from bemcontact.report.figures.course import CYCLE
 from bemcontact.report.figures.page import GREY, labelled, new_page, plain
 from bemcontact.report.formatting import units_of

@@ -12,9 +12,9 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from bemcontact.arrays import Array
-from bemcontact.bem import shape_functions
+from bemcontact.bem import reference_element
+from bemcontact.bem.body import deflections
 from bemcontact.bem.boundary_values import applied_traction
-from bemcontact.bem.deflection import deflections
 from bemcontact.bem.mesh import Mesh
 from bemcontact.problem import (
     AxisFields,
@@ -144,7 +144,7 @@ def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     """Draw elements in the colour of their edge's role, with large dots at their ends and small ones between."""
     corners = mesh.nodes[mesh.elements]
     colours = [ROLES[role(problem, mesh.edge_names[edge])] for edge in mesh.edge]
-    curves = shape_functions.values(np.linspace(-1, 1, 9)) @ corners
+    curves = reference_element.values(np.linspace(-1, 1, 9)) @ corners
     axes.add_collection(LineCollection(list(curves), colors=colours, linewidths=2.2, zorder=3))
     for nodes, diameter in ((corners[:, 0], 4.5), (corners[:, 1], 2.5)):
         axes.scatter(*nodes.T, s=diameter**2, c="white", edgecolors=colours, linewidths=0.9, zorder=4)

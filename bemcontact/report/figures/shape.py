@@ -10,8 +10,8 @@ from matplotlib.path import Path
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.bem import shape_functions
-from bemcontact.bem.recovery import BoundaryState
+from bemcontact.bem import reference_element
+from bemcontact.bem.condense import BoundaryState
 from bemcontact.report.figures.marks import draw_ground
 from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
 from bemcontact.report.figures.pieces import pieces_of
@@ -44,7 +44,7 @@ def draw_deformed(axes: Axes, result: Result) -> None:
     if state is None:
         raise ValueError("the result of a condensed problem has no boundary to draw")
     factor = _magnification(state)
-    curves = shape_functions.values(np.linspace(-1, 1, 9))
+    curves = reference_element.values(np.linspace(-1, 1, 9))
     before = curves @ state.points
     after = curves @ (state.points + factor * state.displacement)
     axes.add_collection(LineCollection(list(before), colors=GREY, linewidths=0.9, linestyles="dashed", zorder=2))

@@ -62,10 +62,10 @@ def _recorded(level: MeshLevel) -> dict[str, list[Contender]]:
     """The contenders whose solvers recorded how they got there, by formulation and weights."""
     groups = dict[str, list[Contender]]()
     for item in level.comparison.everyone:
-        setting = item.found.setting
+        options = item.found.options
         if item.judged is not None and item.judged.solution.history:
-            weights = "" if setting.weights in (None, Weights.TRIBUTARY) else f"-{setting.weights.replace('_', '-')}"
-            name = "direct" if setting.weights is None else setting.formulation.value
+            weights = "" if options.weights is Weights.TRIBUTARY else f"-{options.weights.replace('_', '-')}"
+            name = options.formulation.value if options.uses("weights") else "direct"
             groups.setdefault(f"{name}{weights}", []).append(item)
     return groups
 

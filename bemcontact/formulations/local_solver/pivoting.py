@@ -1,4 +1,4 @@
-"""How far a direction leads to the next constraint."""
+"""Which constraint leaves the working set (pricing), and which one a step meets first (ratio test)."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, Progress
-from bemcontact.formulations.local_solver.working_set import WorkingSet
+from bemcontact.formulations.local_solver.working_set import TEMPORARY, WorkingSet
 
 INFINITY = float("inf")
 FAINT = 1e-14
@@ -67,3 +67,31 @@ def side_reached(progress: Progress, constraint: int, along: Array) -> int:
     if progress.statement.equality[constraint]:
         return 2
     return -1 if along.item(constraint) < 0.0 else 1
+
+
+def wrong_sign(working: WorkingSet, multipliers: Array, zero: float | Array, *, least_index: bool) -> int | None:
+    """The place of the constraint to drop; None if all signs are right.
+
+    Parameters
+    ----------
+    multipliers : (n + r,) array
+        As from `WorkingSet.multipliers`.
+    zero : float or (n + r,) array
+        Size of a multiplier that counts as zero.
+    least_index : bool
+        Take the constraint of the lowest number among those with a wrong sign (Bland 1977).
+    """
+    wrong = working.signs * multipliers
+    if working.temporary:
+        n, ids = working.free.size, working.ids
+        of_temporary = np.where(ids == TEMPORARY, np.inf, np.abs(multipliers[n:]))
+        wrong[n:] = np.where(ids < 0, of_temporary, wrong[n:])
+    if not isinstance(zero, float):
+        wrong = np.where(wrong > zero, wrong, -np.inf)
+        zero = 0.0
+    place = int(wrong.argmax())
+    if wrong.item(place) <= zero:
+        return None
+    if least_index:
+        return int(np.where(wrong > zero, working.numbers, working.held.size).argmin())
+    return place

@@ -1,4 +1,4 @@
-"""The few dense factorisations that everything here is made of, straight from LAPACK and BLAS."""
+"""The few dense factorizations that everything here is made of, straight from LAPACK and BLAS."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The profiles that a design may choose from: bounds on values, slope and curvature, or on a few shapes."""
+"""The set of profiles of a design: bounds on values, slope and curvature, or on a few shapes."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from bemcontact.errors import ProblemError
 Shape = Callable[[Array], ArrayLike]
 Range = float | tuple[float, float]
 UNBOUNDED = 3
-"""Status of a linear program of scipy that has no end."""
+"""Status of an unbounded linear program of SciPy."""
 
 
 class Bounds(NamedTuple):
@@ -35,7 +35,7 @@ class Relief:
     Parameters
     ----------
     lower, upper : of g [L], a number or one for each point of the interval
-    slope : of g between neighbouring points [1], ± a number or (least, largest)
+    slope : of g between neighboring points [1], ± a number or (least, largest)
     curvature : of g at inner points, by second divided differences over arc length [1/L], likewise
     shapes : functions of the arc position (m,) that g is a combination of, or their values (m, s) at the points of the
         interval; without them each point has a value of its own
@@ -84,18 +84,13 @@ class Profiles:
     def of(
         cls, contact: CondensedContact, relief: Relief, zone: str | None = None, arc: tuple[float, float] | None = None
     ) -> Self:
-        """Write bounds as rows, and see that some profile keeps them all.
+        """Write bounds as rows, and check that some profile keeps them all.
 
         Parameters
         ----------
-        contact : CondensedContact
         relief : the bounds
         zone : name of the contact zone, which may be left out if there is one only
         arc : least and largest arc position of the interval [L], the whole zone if left out
-
-        Returns
-        -------
-        Profiles
 
         Raises
         ------
@@ -117,7 +112,7 @@ class Profiles:
         )
         kept = (size > 0) | (low > 0) | (high < 0)  # what no profile changes and none violates bounds nothing
         size = np.where(size > 0, size, 1.0)
-        found = cls(
+        profiles = cls(
             points=points,
             shapes=shapes,
             rows=(rows / size[:, None])[kept],
@@ -128,15 +123,15 @@ class Profiles:
             sizes=sizes,
             shaped=relief.shapes is not None,
         )
-        found._ensure_some()
-        return found
+        profiles._ensure_some()
+        return profiles
 
     def extreme(self, weights: Array) -> Array:
         """Find the coefficients (s,) of the profile with the least weights·g; weights (n,) at all contact points."""
-        found = self._least(self.shapes.T @ weights, range(len(self.families)))
-        if found is None or not np.isfinite(found).all():
+        coefficients = self._least(self.shapes.T @ weights, range(len(self.families)))
+        if coefficients is None or not np.isfinite(coefficients).all():
             raise ProblemError("the profile has no bound; give lower and upper values, or bounds on coefficients")
-        return found
+        return coefficients
 
     def nearest_to_none(self) -> Array:
         """Find the coefficients (s,) of a profile whose largest value is as small as can be."""
@@ -145,11 +140,11 @@ class Profiles:
         rows, limits = self._one_sided(range(len(self.families)))
         matrix = np.vstack([np.hstack([rows, np.zeros((len(rows), 1))]), below])
         cost = np.append(np.zeros(there.shape[1]), 1.0)
-        found = linprog(cost, A_ub=matrix, b_ub=np.append(limits, np.zeros(len(below))), bounds=(None, None))
-        return self._unit * found.x[:-1]
+        optimum = linprog(cost, A_ub=matrix, b_ub=np.append(limits, np.zeros(len(below))), bounds=(None, None))
+        return self._unit * optimum.x[:-1]
 
     def kept(self, coefficients: Array) -> Array:
-        """Draw coefficients (s,) [L] that keep the bounds to a solver's tolerance inwards, to where they do exactly."""
+        """Move coefficients (s,) [L] that keep the bounds to a solver's tolerance inwards to the exact bounds."""
         inner, now = self.rows @ self._innermost, self.rows @ coefficients
         over = np.stack([now - self.high, self.low - now])
         ways = np.stack([now - inner, inner - now])
@@ -164,10 +159,10 @@ class Profiles:
         bounded = np.isfinite(np.concatenate([self.high, -self.low]))
         room = np.tile(self.high > self.low, 2)[bounded, None].astype(float)
         cost = np.append(np.zeros(rows.shape[1]), -1.0)
-        found = linprog(
+        optimum = linprog(
             cost, A_ub=np.hstack([rows, room]), b_ub=limits, bounds=[(None, None)] * rows.shape[1] + [(0, 1)]
         )
-        return self._unit * found.x[:-1]
+        return self._unit * optimum.x[:-1]
 
     @cached_property
     def value_range(self) -> tuple[Array, Array]:
@@ -195,10 +190,10 @@ class Profiles:
     def _least(self, cost: Array, families: Iterable[int]) -> Array | None:
         """The c with the least cost·c within some families of bounds; None if they exclude each other."""
         rows, limits = self._one_sided(families)
-        found = linprog(cost, A_ub=rows, b_ub=limits, bounds=(None, None))
-        if found.status == UNBOUNDED:
+        optimum = linprog(cost, A_ub=rows, b_ub=limits, bounds=(None, None))
+        if optimum.status == UNBOUNDED:
             return np.full(len(cost), np.inf)
-        return self._unit * found.x if found.success else None
+        return self._unit * optimum.x if optimum.success else None
 
     def _ensure_some(self) -> None:
         """Refuse bounds that exclude each other, by the fewest of them that do, and profiles without bounds."""
@@ -245,19 +240,21 @@ def _shapes(relief: Relief, position: Array) -> Array:
             raise ProblemError("coefficients belong to shapes; give shapes, or lower and upper values")
         return np.eye(m)
     if isinstance(relief.shapes, np.ndarray):
-        found = np.array(relief.shapes, float, ndmin=2)
+        shapes = np.array(relief.shapes, float, ndmin=2)
     else:
         columns = [np.broadcast_to(np.asarray(shape(position), float), m) for shape in relief.shapes]
-        found = np.column_stack(columns) if columns else np.zeros((m, 0))
-    if found.shape[0] != m or not found.shape[1] or not np.isfinite(found).all():
-        raise ProblemError(f"shapes need finite values at the {m} points of the interval; found an array {found.shape}")
-    if not np.abs(found).max(axis=0).all():
-        raise ProblemError(f"shape {int(np.argmin(np.abs(found).max(axis=0)))} is zero on the interval; leave it out")
-    return found
+        shapes = np.column_stack(columns) if columns else np.zeros((m, 0))
+    if shapes.shape[0] != m or not shapes.shape[1] or not np.isfinite(shapes).all():
+        raise ProblemError(
+            f"shapes need finite values at the {m} points of the interval; found an array {shapes.shape}"
+        )
+    if not np.abs(shapes).max(axis=0).all():
+        raise ProblemError(f"shape {int(np.argmin(np.abs(shapes).max(axis=0)))} is zero on the interval; leave it out")
+    return shapes
 
 
 def _families(relief: Relief, shapes: Array, sizes: Array, position: Array, run: IntArray) -> dict[str, Bounds]:
-    """All bounds by what they bound, as rows W with their limits: low <= W c <= high."""
+    """All bounds by family, as rows W with their limits: low <= W c <= high."""
     m, step = len(position), np.diff(position)
     inner = np.flatnonzero(run[1:] == run[:-1])
     slopes = (np.eye(m)[1:] - np.eye(m)[:-1])[inner] / step[inner, None]
@@ -296,5 +293,5 @@ def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int, what: s
 
 
 def _nothing_bounded() -> dict[str, Bounds]:
-    """Refuse a relief that says nothing."""
+    """Refuse a relief without bounds."""
     raise ProblemError("nothing bounds the profile; give lower and upper values, or shapes with coefficients")

@@ -1,5 +1,4 @@
-#!/usr/bin/env python3
-"""Make the picture of a report, .docs/report.png: the head of the page of the shipped cylinder, in Chromium.
+"""Make the picture of a report, .docs/pictures/report.png: the head of the page of the shipped cylinder, in Chromium.
 
 Run it from the top of the tree, with the Python in which the package and its extra ``test`` are installed.
 """
@@ -27,4 +26,4 @@ with tempfile.TemporaryDirectory() as folder:
     picture = Image.open(work / "report.png").convert("RGB")
     size = round(picture.width * 0.8), round(picture.height * 0.8)
     small = picture.resize(size, Image.Resampling.LANCZOS)
-    small.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(".docs/report.png", optimize=True)
+    small.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(".docs/pictures/report.png", optimize=True)

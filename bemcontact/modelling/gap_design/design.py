@@ -17,12 +17,12 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import complementarity
-from bemcontact.modelling.contact_sets import Piece, SharedProfile
-from bemcontact.modelling.designed_gap import GapDesign, Goal, LoadState, relieved
-from bemcontact.modelling.relief import Profiles, Relief
+from bemcontact.modelling.gap_design.contact_sets import Piece, SharedProfile
+from bemcontact.modelling.gap_design.designed_gap import GapDesign, Goal, LoadState, relieved
+from bemcontact.modelling.gap_design.relief import Profiles, Relief
 
 GAIN = 1e-8
-"""Part of the goal that a step must gain to be one."""
+"""Least relative gain of a step."""
 MET = 1e-6
 """Distance from the lower bound, relative, at which a design is proved to be the best."""
 STEPS = 200
@@ -108,7 +108,7 @@ def _carried_out(
 def _states(
     contact: CondensedContact | Sequence[CondensedContact], cases: Sequence[Mapping[str, float]] | None
 ) -> tuple[CondensedContact, ...]:
-    """The load states, and that they are those of one body."""
+    """Check that the load states are those of one body."""
     states = (contact,) if isinstance(contact, CondensedContact) else tuple(contact)
     if not states or not all(isinstance(state, CondensedContact) for state in states):
         raise ProblemError("a design needs a CondensedContact, or several of one body; bemcontact.condense makes them")
@@ -144,18 +144,18 @@ def _solved(contact: CondensedContact, profile: Array) -> LoadState:
     solution = complementarity.solve(there)
     if solution.status is not Status.SOLVED:
         raise ProblemError(f"a load state has no contact state: {' '.join((solution.status.value, *solution.notes))}")
-    found = residuals(there, solution)
+    recomputed = residuals(there, solution)
     return LoadState(
         contact=there,
         solution=solution,
-        residuals=found,
-        certificate=certify(there, solution, found),
+        residuals=recomputed,
+        certificate=certify(there, solution, recomputed),
         footprint=footprint(there, solution),
     )
 
 
 def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> Piece:
-    """The best of what all starts lead to."""
+    """The best end of all starts."""
     known = set[bytes]()
     ends: list[Piece] = []
     for sets in _starts(shared, states):
@@ -197,9 +197,9 @@ def _corner(profiles: Profiles, direction: Array) -> Array:
 def _state(states: Sequence[CondensedContact], profile: Array) -> tuple[list[Array], BoolArray]:
     """Pressure (n,) [p] of each state with a profile, and the contact sets (loads, n)."""
     contacts = [relieved(state, profile) for state in states]
-    found = [complementarity.solve(contact) for contact in contacts]
-    sets = [one.touching(two.pressure, two.displacement) for one, two in zip(contacts, found, strict=True)]
-    return [solution.pressure for solution in found], np.array(sets)
+    solutions = [complementarity.solve(contact) for contact in contacts]
+    sets = [one.touching(two.pressure, two.displacement) for one, two in zip(contacts, solutions, strict=True)]
+    return [solution.pressure for solution in solutions], np.array(sets)
 
 
 def _value(piece: Piece) -> float:
@@ -238,7 +238,7 @@ def _next(shared: SharedProfile, piece: Piece) -> Piece | None:
         touching = piece.touching.copy()
         for load, point in turned:
             touching[load, point] ^= True
-        found = shared.best_with(touching)
-        if found is not None and found.value < piece.value - GAIN * abs(piece.value):
-            return found
+        better = shared.best_with(touching)
+        if better is not None and better.value < piece.value - GAIN * abs(piece.value):
+            return better
     return None

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from tool_problems import FREE, HELD, ROLLER, WEDGE, Spec, made
 
-from bemcontact.bem.condense import Body, body_of
-from bemcontact.bem.free_motions import FreeMotions
-from bemcontact.bem.rigid_motions import RigidMotions
+from bemcontact.bem.body import Body, body_of
+from bemcontact.bem.rigid_motions import FreeMotions, RigidMotions
 
 WIDE = {"table": FREE["contact_zones"]["table"], "press": {
     "edges": ["head", "top"], "surface": FREE["contact_zones"]["punch"]["surface"]}}  # fmt: skip

@@ -17,12 +17,12 @@ from bemcontact.errors import ProblemError
 from bemcontact.problem.rigid_surface import Polyline, Spline
 
 AGREED = 1e-6
-"""Difference of the designed pressure from that of the contact state, over the peak, that is none."""
+"""Difference of the designed pressure from that of the contact state, over the peak, up to which they agree."""
 SURFACES = {"spline": Spline, "polyline": Polyline}
 
 
 class Goal(Enum):
-    """What a design makes small, in the worst of all load states."""
+    """Quantity that a design minimizes, in the worst of all load states."""
 
     PEAK = "peak"
     UNIFORM = "uniform"
@@ -69,7 +69,7 @@ class LoadState:
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class GapDesign:
-    """The best profile that was found, with the contact states of all load states without and with it.
+    """The best computed profile, with the contact states of all load states without and with it.
 
     Parameters
     ----------
@@ -119,8 +119,8 @@ class GapDesign:
     @property
     def difference(self) -> float:
         """Largest difference of the designed pressure from that of the contact state, over the peak."""
-        found = np.array([state.pressure for state in self.after])
-        return float(np.abs(found - self.designed).max()) / (self.peak or 1.0)
+        reached = np.array([state.pressure for state in self.after])
+        return float(np.abs(reached - self.designed).max()) / (self.peak or 1.0)
 
     @property
     def verified(self) -> bool:
@@ -129,10 +129,10 @@ class GapDesign:
 
     @property
     def words(self) -> str:
-        """What was reached and what is proved of it, in a few sentences."""
+        """The result and what is proved about it, in a few sentences."""
         change = f" ({100 * (self.value / self.value_before - 1):+.1f} %)" if self.value_before > 0 else ""
         worst = f", the worst of {len(self.after)} load states" if len(self.after) > 1 else ""
-        told = f"{MEASURED[self.goal]} goes from {self.value_before:.5g} to {self.value:.5g}{change}{worst}."
+        change_of_goal = f"{MEASURED[self.goal]} goes from {self.value_before:.5g} to {self.value:.5g}{change}{worst}."
         if self.proved_optimal:
             proof = "No profile within the bounds does better: the lower bound of the convex relaxation is met."
         else:
@@ -149,14 +149,16 @@ class GapDesign:
                 f"The contact states with the profile are not as designed: pressures differ by {self.difference:.0e} "
                 f"of the peak. {' '.join(state.certificate.words for state in self.after)}"
             )
-        return f"{told}{self._elsewhere} {proof} {check}"
+        return f"{change_of_goal}{self._elsewhere} {proof} {check}"
 
     @property
     def _elsewhere(self) -> str:
         """Say if the largest pressure is where the profile is not."""
         highest = max(self.after, key=lambda state: state.peak)
         inside = self.goal is not Goal.PEAK or int(np.argmax(highest.pressure)) in self.points
-        return "" if inside else " It is now outside of the interval: there the profile can lower it no more."
+        return (
+            "" if inside else " The largest pressure is now outside of the interval, where the profile cannot lower it."
+        )
 
     def surface(self, kind: str = "spline") -> Spline | Polyline:
         """Make a rigid surface of the zone's own and the profile, through the feet of all its contact points.
@@ -238,12 +240,7 @@ def relieved(contact: CondensedContact, profile: Array) -> CondensedContact:
 
     Parameters
     ----------
-    contact : CondensedContact
     profile : (n,) g [L]
-
-    Returns
-    -------
-    CondensedContact
     """
     return replace(contact, initial_gap=contact.initial_gap + profile)
 

@@ -6,13 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.dead_point import examine
-from bemcontact.formulations.local_solver.factorisations import Inertia, inertia
-from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, first_order
+from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
+from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, examine, first_order
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
+from bemcontact.formulations.local_solver.pivoting import nearest
 from bemcontact.formulations.local_solver.progress import Progress
-from bemcontact.formulations.local_solver.ratio_test import nearest
 from bemcontact.formulations.local_solver.result import QPStatus
 from bemcontact.formulations.local_solver.statement import EPS, Sides, largest
 from bemcontact.formulations.local_solver.working_set import WorkingSet
@@ -27,7 +26,7 @@ FINER = 1e-2
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """The end of the walk in scaled units.
+    """The end of a run in scaled units.
 
     Parameters
     ----------
@@ -63,7 +62,7 @@ class Restart:
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # ratio tests divide by what does not move
-def walk(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
+def run_phases(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
     """Rounds of both phases until a claim survives its check, or the iterations or attempts are used up.
 
     Returns
@@ -120,13 +119,13 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
 def _second_order(
     progress: Progress, descent: Descent, conditions: FirstOrder, multipliers: Array
 ) -> Finding | Restart:
-    """A minimiser if H is copositive on the critical cone; else leave along the direction that shows it is not."""
+    """A minimizer if H is copositive on the critical cone; else leave along the direction that shows it is not."""
     if _strict(descent, conditions):
-        return _minimiser(descent, conditions, multipliers, QPStatus.LOCAL_MINIMISER)
+        return _minimizer(descent, conditions, multipliers, QPStatus.LOCAL_MINIMIZER)
     curvature = examine(progress.statement.H, conditions.cone(progress.statement), faces=progress.options.search)
     if curvature.direction is None:
-        status = QPStatus.LOCAL_MINIMISER if curvature.copositive else QPStatus.UNDECIDED
-        return _minimiser(descent, conditions, multipliers, status)
+        status = QPStatus.LOCAL_MINIMIZER if curvature.copositive else QPStatus.UNDECIDED
+        return _minimizer(descent, conditions, multipliers, status)
     direction = curvature.direction
     along = progress.statement.values(direction)
     block = nearest(progress, along, 1.0, conditions.strong)
@@ -164,7 +163,7 @@ def _strict(descent: Descent, conditions: FirstOrder) -> bool:
     return inverse and null and definite and complete
 
 
-def _minimiser(descent: Descent, conditions: FirstOrder, multipliers: Array, status: QPStatus) -> Finding:
+def _minimizer(descent: Descent, conditions: FirstOrder, multipliers: Array, status: QPStatus) -> Finding:
     """What can be said at a first-order point."""
     return Finding(
         status=status,

@@ -20,16 +20,16 @@ from bemcontact.errors import SolverError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import minimize
 from bemcontact.formulations.scaling import ScaledContact, scaled
-from bemcontact.modelling.designed_gap import Goal
+from bemcontact.modelling.gap_design.designed_gap import Goal
+from bemcontact.modelling.gap_design.relief import Profiles
 from bemcontact.modelling.parameters import value_of
-from bemcontact.modelling.relief import Profiles
 
 WEAK = 1e-6
-"""Scaled pressure or gap that is none to the tolerance of the solver."""
+"""Scaled pressure or gap that is zero to the tolerance of the solver."""
 ROOM = 3e-10
-"""Part of the goal that the gentlest profile may give away."""
+"""Fraction of the goal that the gentlest profile may lose."""
 MARGIN = 1e-6
-"""By which a value that is reached is taken too high, so that the relaxation surely admits it."""
+"""Relative increase of a known value of the goal, so that the relaxation surely admits it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -133,10 +133,6 @@ class SharedProfile:
         Parameters
         ----------
         touching : (loads, n)
-
-        Returns
-        -------
-        Piece or None
         """
         program = self._stated()
         sets = program.with_contact(touching)
@@ -169,8 +165,8 @@ class SharedProfile:
             minimize(cp.Problem(goal, [*program.constraints, *sets.constraints, as_good]))
         except SolverError:
             return piece
-        found = None if program.top.value is None else self._piece(program, piece.touching, sets.promise())
-        return found if found is not None and found.value <= piece.value + 2 * ROOM * abs(piece.value) else piece
+        gentler = None if program.top.value is None else self._piece(program, piece.touching, sets.promise())
+        return gentler if gentler is not None and gentler.value <= piece.value + 2 * ROOM * abs(piece.value) else piece
 
     def _piece(self, program: "_Program", touching: BoolArray, promise: Array) -> Piece:
         """Take the numbers out of a program that has been solved."""
@@ -190,15 +186,11 @@ class SharedProfile:
 
         Complementarity is dropped but for what is convex in it: F3 at the designed gap is zero, and in it p·g is at
         least what McCormick's two planes say (Math. Programming 10, 1976, 147-175) for g within its range and, where
-        the peak is minimised, p up to the best peak that is known.
+        the peak is minimized, p up to the best peak that is known.
 
         Parameters
         ----------
         best : a value of the goal that is reached [p]
-
-        Returns
-        -------
-        Relaxation
         """
         U, T = self.scales
         program = self._stated()
@@ -252,15 +244,15 @@ class _Sets(NamedTuple):
 
     @property
     def constraints(self) -> list[cp.Constraint]:
-        """What is zero, and what is not negative."""
+        """The equations and inequalities of the contact sets."""
         return [constraint for side in self.sides for constraint in (side.zero, side.signed >= 0)]
 
     def promise(self) -> Array:
-        """What turning a point would gain, to first order, (loads, n); minus infinity off the edge of contact."""
-        found = np.full(self.shape, -np.inf)
+        """First-order gain of switching a point (loads, n); minus infinity off the edge of contact."""
+        gains = np.full(self.shape, -np.inf)
         for load, points, zero, signed in self.sides:
-            found[load, points] = np.where(value_of(signed) <= WEAK, np.asarray(zero.dual_value, float), -np.inf)
-        return found
+            gains[load, points] = np.where(value_of(signed) <= WEAK, np.asarray(zero.dual_value, float), -np.inf)
+        return gains
 
 
 class _Program(NamedTuple):

@@ -1,0 +1,267 @@
+"""A problem on its mesh, before it is condensed: what is known, where contact may be, and what contact holds."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import linprog, nnls
+
+from bemcontact.arrays import Array
+from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
+from bemcontact.bem.contact_points import ContactPoints, contact_points
+from bemcontact.bem.loading import Loading, case_loadings, combined, particular_solution, permanent_loading
+from bemcontact.bem.mesh import Mesh, build
+from bemcontact.bem.rigid_motions import (
+    BODY,
+    UNSEEN,
+    FreeMotions,
+    PlacedTools,
+    RigidMotions,
+    free_motions,
+    free_rigid_motions,
+    placed_tools,
+)
+from bemcontact.bem.system import System, solve
+from bemcontact.contact.tools import BALANCED, Pinned
+from bemcontact.errors import Issue, KeyPath, ProblemError
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.rigid_surface import DeflectedContour
+
+IDLE = 1e-7
+"""Least normal displacement, over that of the motion, of a motion that opens gaps."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Body:
+    """A problem on its mesh, before it is condensed: boundary values, contact points, rigid motions.
+
+    Parameters
+    ----------
+    problem, mesh, points : the stages up to here
+    loadings : 1 + c, what is permanent and what each load case adds
+    tools : rigid surfaces that move
+    motions : all rigid motions of the body that the conditions leave free
+    seen : those of them, and those of tools, or combinations, that move contact points along the rigid normals
+    unseen : the others, that no contact point sees
+    """
+
+    problem: Problem
+    mesh: Mesh
+    points: ContactPoints
+    loadings: tuple[Loading, ...]
+    tools: PlacedTools
+    motions: RigidMotions
+    seen: FreeMotions
+    unseen: FreeMotions
+
+    @cached_property
+    def factors(self) -> Array:
+        """Factors of the loadings (1 + c,)."""
+        named = self.problem.factors()
+        return np.array([1.0, *(named.get(case, 0.0) for case in self.problem.load_cases)])
+
+    @cached_property
+    def acting(self) -> Loading:
+        """The loading that acts on the body."""
+        return combined(self.loadings, self.factors.tolist())
+
+    def motion_load(self, motions: FreeMotions) -> Array:
+        """Work (k, 1 + c) of each loading, forces on tools included, in free motions [p L]."""
+        on_body = np.column_stack([loading.work(self.mesh, motions.body) for loading in self.loadings])
+        return on_body + motions.tools.T @ self.tools.force
+
+    @cached_property
+    def pinned(self) -> Pinned:
+        """The motions that move no contact point, with the true loads: their balance does not depend on the mesh."""
+        motions = self.unseen.in_user_units()
+        return Pinned(
+            motions=tuple(f"{motions.who(j)} against the {motions.way(j)}" for j in range(len(motions))),
+            turns=np.array([motions.turns(j) for j in range(len(motions))], bool),
+            load=np.column_stack([item.true_work(self.mesh, motions.body) for item in self.loadings]),
+            tools=motions.tools,
+            magnitude=np.array([item.magnitude(self.mesh) for item in self.loadings]),
+            length=self.motions.radius,
+        )
+
+    @cached_property
+    def forces(self) -> Array:
+        """Forces on the tools (3 t,)."""
+        return self.tools.force @ self.factors
+
+    def normal_motion(self, motions: FreeMotions) -> Array:
+        """R (n, k): change of the gaps in free motions."""
+        return motions.body.along_normals(self.points) + self.tools.motions @ motions.tools
+
+    @cached_property
+    def relative_load(self) -> tuple[Array, Array]:
+        """R (n, k) without round-off, and the load (k,) that acts in the seen motions, relative to the largest."""
+        R, load = self.normal_motion(self.seen), self.motion_load(self.seen) @ self.factors
+        largest = abs(load).max(initial=0.0)
+        none = largest <= BALANCED * self.pinned.total(self.factors, self.forces)
+        return np.where(abs(R) > UNSEEN, R, 0.0), np.zeros_like(load) if none else load / largest
+
+    @cached_property
+    def idle_motion(self) -> str | None:
+        """A motion that opens gaps and closes none, and in which the loads do no work; None if there is none.
+
+        Contact leaves open how far the body or a tool goes in it: a linear program.
+        """
+        R, load = self.relative_load
+        if not load.size:
+            return None
+        optimum = linprog(
+            -R.sum(axis=0), A_ub=-R, b_ub=np.zeros(len(R)), A_eq=load[None, :], b_eq=[0.0], bounds=(-1.0, 1.0),
+            options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+        )  # fmt: skip
+        idle = optimum.success and (R @ optimum.x).max() > IDLE
+        return self.seen.combined(optimum.x[:, None]).describe()[0] if idle else None
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Decisions that a user should know."""
+        pinned = tuple(
+            f"the {motion} moves no contact point and has no load: {_pinned(self.unseen.who(j))} against it"
+            for j, motion in enumerate(self.unseen.describe())
+        )
+        idle = self.idle_motion if self.relative_load[1].any() else None
+        left_open = (
+            f"the loads do no work in the {idle}, which only opens gaps: contact does not determine its amplitude"
+        )
+        return pinned if idle is None else (*pinned, left_open)
+
+
+def _pinned(who: str) -> str:
+    """Say who is pinned."""
+    return "they are pinned" if who.endswith(" together") else f"{who} is pinned"
+
+
+def body_of(problem: Problem) -> Body:
+    """Mesh a problem, spread its conditions, and find out whether contact can hold it.
+
+    Raises
+    ------
+    ProblemError
+        If the loads pull the body off its support, move it in a way that no contact resists, or do not press it on;
+        or if the conditions of a deflected contour do not hold the body. Of a problem with load cases of which none
+        acts, it is not asked whether contact can hold the body.
+    """
+    mesh = build(problem)
+    permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
+    added = [loading.values for loading in cases]
+    points = contact_points(problem, mesh, permanent.values, deflections(problem, mesh), added)
+    tools = placed_tools(problem, points)
+    motions = free_rigid_motions(mesh, permanent.values.displacement_given)
+    seen, unseen = free_motions(points, motions, tools)
+    body = Body(
+        problem=problem, mesh=mesh, points=points, loadings=(permanent, *cases), tools=tools,
+        motions=motions, seen=seen, unseen=unseen,
+    )  # fmt: skip
+    if problem.case is not None or not problem.load_cases:
+        ensure_held(body)
+    return body
+
+
+def each_case(body: Body) -> Iterator[Body]:
+    """The body under each load case and combination where none of them acts yet; else nothing."""
+    if body.problem.case is None:
+        yield from (replace(body, problem=body.problem.with_case(name)) for name in body.problem.case_names)
+
+
+def ensure_held(body: Body) -> None:
+    """Refuse what acts on a body if contact cannot hold it; `ProblemError` as of `body_of`."""
+    try:
+        if complaint := body.pinned.complaint(body.factors, body.forces):
+            raise ProblemError(complaint)
+        _check_support(body)
+    except ProblemError as error:
+        case = body.problem.case
+        if case is None:
+            raise
+        path = ("load_cases" if case in body.problem.load_cases else "combinations", case)
+        raise ProblemError(Issue(path=path, message=str(error))) from None
+
+
+def _check_support(body: Body) -> None:
+    """Refuse loads that no pressure p >= 0 can balance, and a body that no load presses on."""
+    R, load = body.relative_load
+    forces, residual = nnls(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
+    if residual > BALANCED:
+        pull = body.seen.combined((R.T @ forces + load)[:, None])
+        who, off = pull.who(0), "its support" if pull.who(0) == BODY else "what it touches"
+        raise ProblemError(
+            f"the load pulls {who} off {off}: it drives the {pull.way(0)}, which no contact resists; "
+            "turn the load around, or move it to where contact can hold it, or prescribe a displacement that holds "
+            f"{who if off == 'its support' else 'it'}"
+        )
+    if not load.any() and body.idle_motion is not None:
+        raise ProblemError(
+            f"only contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
+            "is not determined; apply a load, or prescribe a displacement"
+        )
+
+
+def _against(motions: FreeMotions) -> str:
+    """Describe who is free to move, and how: the body against one motion and another, and a tool against a third."""
+    ways: dict[str, list[str]] = {}
+    for j in range(len(motions)):
+        ways.setdefault(motions.who(j), []).append(f"the {motions.way(j)}")
+    return ", and ".join(f"{who} against {' and '.join(way)}" for who, way in ways.items())
+
+
+def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
+    """Deflect the body to each contour that serves as a rigid surface.
+
+    Parameters
+    ----------
+    mesh : of it
+
+    Returns
+    -------
+    dict
+        By contact zone, for those on a deflected contour: displacement (N, 2) [L] of the nodes.
+
+    Raises
+    ------
+    ProblemError
+        If the conditions of a contour contradict each other, or leave the body free to move.
+    SingularSystemError
+        If the equations of the body have no unique solution.
+    """
+    surfaces = {name: zone.surface for name, zone in problem.contact_zones.items()}
+    return {
+        name: _deflection(problem, mesh, surface, ("contact_zones", name, "surface"))
+        for name, surface in surfaces.items()
+        if isinstance(surface, DeflectedContour)
+    }
+
+
+def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> Array:
+    """Displacement (N, 2) [L] of the body under the loads that shape a contour, whose path of keys is given."""
+    values = _boundary_values(problem, mesh, surface, path)
+    motions = free_rigid_motions(mesh, values.displacement_given)
+    if len(motions):
+        message = (
+            f"with these conditions nothing holds the body against the {' and the '.join(motions.describe())}, for "
+            "there is no contact where the contour is found; prescribe displacements that hold it"
+        )
+        raise ProblemError(Issue(path=(*path, "conditions"), message=message))
+    loading = Loading(values=values, particular=particular_solution(surface.loads, problem.material, mesh))
+    system = System(
+        mesh=mesh, material=problem.material, points=ContactPoints.none(mesh), motions=motions, loadings=(loading,),
+    )  # fmt: skip
+    displacement, _ = system.fields(solve(system)[:, 0], loading)
+    return displacement
+
+
+def _boundary_values(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> BoundaryValues:
+    """Spread the conditions of a contour; issues about its own get the path to them."""
+    other = problem.model_copy(update={"conditions": problem.conditions | surface.conditions})
+    try:
+        return boundary_values(other, mesh)
+    except ProblemError as error:
+        issues = [
+            replace(item, path=(*path, *item.path)) if item.path[1] in surface.conditions else item
+            for item in error.issues
+        ]
+        raise ProblemError(issues) from None

@@ -1,0 +1,319 @@
+"""What the commands have in common: arguments, a check of outputs, work with progress, results, and the exit status."""
+
+import inspect
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, is_dataclass
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any, NoReturn, TypeVar, get_type_hints
+
+import typer
+
+from bemcontact.cli.terminal import RenderableType, Report, show, stages, tell
+from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError
+from bemcontact.files import output
+from bemcontact.options import ComparisonOptions, SolveOptions, StartName
+
+Number = TypeVar("Number", int, float)
+
+UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+"""Exit statuses other than 0."""
+STANDARD_OUTPUT = Path("-")
+"""The file name that means standard output."""
+
+RefineOption = Annotated[int, typer.Option(min=1, metavar="K", help="Split each element into K equal parts.")]
+FitOption = Annotated[
+    bool,
+    typer.Option("--fit-edges", help="Solve first, then grade the contact zones towards the ends of contact."),
+]
+FigureOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Draw a picture; FILE ends in .png, .svg or .pdf.", show_default=False),
+]
+JsonOption = Annotated[
+    Path | None,
+    typer.Option("--json", metavar="FILE", help="Write all results; - for standard output.", show_default=False),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """The spec that a command reads, with the changes made to it on the command line."""
+
+    spec: Annotated[Path, typer.Argument(metavar="SPEC", help="Problem to read, a YAML file.", show_default=False)]
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY.PATH=VALUE",
+            help="Replace one value of the spec before it is checked; repeatable.",
+            show_default=False,
+        ),
+    ] = None
+    variant: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Take a variant of the spec; check lists them. --set changes the variant.",
+            show_default=False,
+        ),
+    ] = None
+    case: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Apply one load case or combination of the spec; check lists them.",
+            show_default=False,
+        ),
+    ] = None
+
+    @property
+    def changes(self) -> list[str]:
+        """All changes as --set writes them."""
+        return [*(self.overrides or ()), *([] if self.case is None else [f"case={json.dumps(self.case)}"])]
+
+    def problem(self, refine: int = 1, *, fit_edges: bool = False):  # its type costs the time of importing it
+        """Read the problem, with each element split and the mesh fitted to the ends of contact as asked for."""
+        from bemcontact import spec
+
+        problem = spec.load(self.spec, self.changes, self.variant).refined(refine)
+        return problem.with_value("mesh.fit_contact_edges", True) if fit_edges else problem
+
+    def as_run(self) -> str:
+        """The spec with all changes, as YAML."""
+        from bemcontact import spec
+
+        return spec.as_run(self.spec, self.changes, self.variant)
+
+    def located(self, error: ProblemError) -> str:
+        """The text of an error with file, line and column."""
+        from bemcontact import spec
+
+        return str(spec.located(error, self.spec, self.changes, self.variant))
+
+
+def option(kind: type[SolveOptions | ComparisonOptions], name: str) -> Any:
+    """An option of the command line as `SolveOptions` or `ComparisonOptions` declares it."""
+    about = next(item.metadata for item in fields(kind) if item.name == name)
+    return typer.Option(
+        metavar=about["metavar"],
+        help=about["meaning"],
+        min=about["least"],
+        show_default=about["shown"],
+        parser=_start if name == "start" else None,
+    )
+
+
+def _start(text: str) -> StartName | Path:
+    """Read --start: a name, or else a file."""
+    return StartName(text) if text in [*StartName] else Path(text)
+
+
+def flattened(command: Callable[..., None]) -> Callable[..., None]:
+    """Replace each parameter of a command that is a dataclass by the fields of it, which typer can read."""
+    hints = get_type_hints(command, include_extras=True)
+    groups = {name: kind for name, kind in hints.items() if isinstance(kind, type) and is_dataclass(kind)}
+    parameters = list[inspect.Parameter]()
+    for parameter in inspect.signature(command).parameters.values():
+        if kind := groups.get(parameter.name):
+            parameters.extend(_parameters_of(kind))
+        else:
+            parameters.append(parameter.replace(kind=parameter.KEYWORD_ONLY, annotation=hints[parameter.name]))
+
+    @wraps(command)
+    def run(**given: Any) -> None:
+        with reported():
+            for name, kind in groups.items():
+                given[name] = kind(**{item.name: given.pop(item.name) for item in fields(kind)})
+        command(**given)
+
+    run.__signature__ = inspect.Signature(parameters)  # pyright: ignore[reportAttributeAccessIssue]
+    run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    return run
+
+
+def _parameters_of(group: Any) -> Iterator[inspect.Parameter]:
+    """The parameters that stand for the fields of a dataclass."""
+    hints = get_type_hints(group, include_extras=True)
+    for item in fields(group):
+        annotation = hints[item.name]
+        if group is SolveOptions:
+            read = Any if item.name == "start" else annotation  # by a parser
+            annotation = Annotated[read, option(group, item.name)]
+        default = {} if item.default is item.default_factory else {"default": item.default}
+        yield inspect.Parameter(item.name, inspect.Parameter.KEYWORD_ONLY, annotation=annotation, **default)
+
+
+def names(text: str) -> list[str]:
+    """Read names with commas between them, in any case."""
+    return [item.strip().lower() for item in text.split(",")]
+
+
+def several(text: str, option: str, kind: str, read: Callable[[str], Number]) -> list[Number]:
+    """Read numbers with commas between them; `OptionError` says which one is not of the kind."""
+    numbers = []
+    for item in text.split(","):
+        try:
+            numbers.append(read(item))
+        except ValueError:
+            message = f"{option}: expected {kind}s with commas between, found '{item.strip()}'"
+            raise OptionError(message) from None
+    return numbers
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What a command has to show at its end.
+
+    Parameters
+    ----------
+    summary : makes what is printed
+    json : makes what --json writes
+    holds : whether the exit status is 0
+    verdict : why not, for standard error where standard output is JSON
+    claim : what the verdict denies
+    """
+
+    summary: Callable[[], RenderableType]
+    json: Callable[[], str] = str
+    holds: bool = True
+    verdict: str = ""
+    claim: str = "certified"
+
+
+def run(
+    stage: str,
+    work: Callable[[Report], Outcome],
+    *,
+    source: Source | None = None,
+    files: Mapping[str, Path | None] | None = None,
+    folder: Path | None = None,
+    kind: str = "report",
+    json_file: Path | None = None,
+) -> NoReturn:
+    """Run a command: check outputs, work with progress, write and print results, end with the exit status.
+
+    Parameters
+    ----------
+    stage : what the command does first, in a word
+    work : the command itself, which reports its stages
+    source : what it reads
+    files : by option, what it writes
+    folder, kind : that --out names, and what is written there, a key of `report.folder.KINDS`
+    json_file : for all results
+    """
+    files = {**(files or {}), "--json": None if json_file == STANDARD_OUTPUT else json_file}
+    with reported(source, (folder, *files.values())), stages() as report:
+        check_outputs(source, files)
+        check_folder(source, folder, files["--json"], kind)
+        report(stage, "")
+        outcome = work(report)
+        if path := files["--json"]:
+            with output.whole_file(path) as temporary:
+                temporary.write_text(outcome.json() + "\n", encoding="utf-8")
+    with reported(source):
+        if json_file != STANDARD_OUTPUT:
+            show(outcome.summary())
+        else:
+            write_json(outcome.json())
+            if not outcome.holds:
+                tell(f"not {outcome.claim}: ", outcome.verdict)
+    raise typer.Exit(0 if outcome.holds else UNCERTIFIED)
+
+
+def check_outputs(source: Source | None, files: Mapping[str, Path | None]) -> None:
+    """Refuse files (by option) that cannot be written, or that would overwrite another, before any work is done."""
+    taken = {} if source is None else {source.spec.resolve(): "the spec itself"}
+    for option, path in files.items():
+        if path is None:
+            continue
+        if path.resolve() in taken:
+            refuse(f"{option} {path} would overwrite {taken[path.resolve()]}; name another file")
+        taken[path.resolve()] = f"the file of {option}"
+        try:
+            _ensure_possible(option, path)
+            output.ensure_writable(path)
+        except (OSError, ValueError, ModuleNotFoundError) as error:
+            refuse(f"{option}: {error}")
+
+
+def check_folder(source: Source | None, folder: Path | None, json_file: Path | None, kind: str) -> None:
+    """Refuse a folder that cannot be written, or that would replace the spec or the file of --json."""
+    if folder is None:
+        return
+    for path in (source and source.spec, json_file):
+        if path is not None and folder.resolve() in (path.resolve(), *path.resolve().parents):
+            refuse(f"--out {folder} would replace {path}; name another folder")
+    from bemcontact.report.folder import KINDS, ensure_folder_writable
+
+    try:
+        ensure_folder_writable(folder, KINDS[kind])
+    except OSError as error:
+        refuse(f"--out: {error}")
+
+
+def _ensure_possible(option: str, path: Path) -> None:
+    """Refuse names of files that cannot be written in the format of an option."""
+    match option:
+        case "--figure":
+            from bemcontact.report import figures
+
+            figures.ensure_known_format(path)
+        case "--vtk":
+            from bemcontact.report import vtk
+
+            vtk.ensure_possible(path)
+        case "--out" if path.suffix != ".npz":
+            raise ValueError(f"{path}: a condensed problem is written as .npz; end the file name in it")
+
+
+def write_json(text: str) -> None:
+    """Write JSON on standard output, in UTF-8 whatever the encoding of the terminal."""
+    typer.echo(text.encode() + b"\n", nl=False)
+
+
+def refuse(message: str) -> NoReturn:
+    """Say what is wrong with the input and end."""
+    tell("error: ", message)
+    raise typer.Exit(BAD_INPUT)
+
+
+@contextmanager
+def reported(source: Source | None = None, outputs: Sequence[Path | None] | None = None) -> Iterator[None]:
+    """Turn each error that is raised on purpose into one text on standard error and an exit status.
+
+    After an interrupt the text names the outputs written by then; with outputs None it says nothing of them.
+    """
+    before = {path: _identity(path) for path in outputs or () if path is not None}
+    try:
+        yield
+    except KeyboardInterrupt:
+        written = [str(path) for path, identity in before.items() if _identity(path) != identity]
+        so_far = f"; {', '.join(written) or 'nothing'} was written" if outputs is not None else ""
+        tell("interrupted", so_far)
+        raise typer.Exit(INTERRUPTED) from None
+    except BrokenPipeError:
+        raise
+    except (SpecError, OptionError, NotConvexError) as error:
+        refuse(str(error))
+    except ProblemError as error:
+        refuse(str(error) if source is None else source.located(error))
+    except OSError as error:
+        where = error.filename or ("standard output" if error.errno else "")
+        refuse(f"{where}: {error.strerror}" if where else str(error))
+    except BemContactError as error:
+        tell("failed: ", str(error))
+        raise typer.Exit(UNCERTIFIED) from error
+    except MemoryError as error:
+        tell("failed: ", "not enough memory for so many elements; take a smaller --refine")
+        raise typer.Exit(UNCERTIFIED) from error
+
+
+def _identity(path: Path) -> int | None:
+    """Inode of a file or folder, which is another one after it was replaced as a whole; None if there is none."""
+    try:
+        return path.stat().st_ino
+    except OSError:
+        return None

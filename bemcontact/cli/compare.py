@@ -1,0 +1,69 @@
+"""The command compare."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from bemcontact.cli.command import FitOption, JsonOption, Outcome, Source, names, option, run, several
+from bemcontact.cli.terminal import Report
+from bemcontact.options import ComparisonOptions
+
+DEFAULT = ComparisonOptions()
+
+
+def compare(
+    source: Source,
+    formulations: Annotated[str, option(ComparisonOptions, "formulations")] = ",".join(DEFAULT.formulations),
+    weights: Annotated[str, option(ComparisonOptions, "weights")] = ",".join(DEFAULT.weights),
+    penalty: Annotated[str | None, option(ComparisonOptions, "penalties")] = None,
+    starts: Annotated[int | None, option(ComparisonOptions, "starts")] = DEFAULT.starts,
+    seed: Annotated[int | None, option(ComparisonOptions, "seed")] = DEFAULT.seed,
+    refine: Annotated[
+        str, typer.Option(metavar="K,…", help="Split each element into K parts; several compare the meshes.")
+    ] = "1",
+    fit_edges: FitOption = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Write a page with pictures, and its numbers.", show_default=False),
+    ] = None,
+    json_file: JsonOption = None,
+) -> None:
+    """Solve one problem by several formulations, and show whether they agree and which of them give the solution.
+
+    QP1, QP2 and QP3 are compared with the direct solution of the complementarity problem; objectives, residuals and
+    certificates of all are recomputed. The exit status is 0 only if all of them are certified.
+
+    FOLDER gets report.html (one file, pictures inside), report.json, figures/, contact.npz and spec.yaml; an earlier
+    report there is replaced.
+
+    [bold]Examples[/bold]
+      bemcontact compare models/cylinder_on_plane.yaml
+      bemcontact compare models/cylinder_on_plane.yaml --out report
+      bemcontact compare models/cylinder_on_plane.yaml --refine 1,2,4
+      bemcontact compare models/cylinder_on_plane.yaml --weights tributary,consistent,element_length
+      bemcontact compare models/cylinder_on_plane.yaml --formulations qp2 --penalty 1e-6,1e-3,1,1e3
+      bemcontact compare models/cylinder_on_plane.yaml --starts 100
+    """
+
+    def work(report: Report) -> Outcome:
+        from bemcontact.analysis import compare as comparing
+        from bemcontact.report import text
+
+        parts = several(refine, "--refine", "whole number", int)
+        penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
+        options = ComparisonOptions.of(names(formulations), names(weights), penalties, starts=starts, seed=seed)
+        study = comparing.study(options, source.problem(fit_edges=fit_edges), parts, report, source.changes)
+        if out:
+            report("report", "")
+            from bemcontact.report import folder
+
+            folder.save(study, out, source.as_run())
+        return Outcome(
+            summary=lambda: text.study_summary(study),
+            json=study.to_json,
+            holds=study.certified,
+            verdict=study.finest.comparison.verdict,
+        )
+
+    run("reading", work, source=source, folder=out, json_file=json_file)

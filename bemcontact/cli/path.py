@@ -1,0 +1,62 @@
+"""The command path."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from bemcontact.cli.command import JsonOption, Outcome, RefineOption, Source, run
+from bemcontact.cli.terminal import Report
+
+
+def path(
+    source: Source,
+    vary: Annotated[
+        str, typer.Option(metavar="KEY.PATH", help="Value to vary, by the same paths as --set.", show_default=False)
+    ],
+    to: Annotated[float, typer.Option(metavar="VALUE", help="Where the path ends.", show_default=False)],
+    start: Annotated[
+        float | None,
+        typer.Option("--from", metavar="VALUE", help="Where the path begins.", show_default="as in the spec"),
+    ] = None,
+    refine: RefineOption = 1,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Write path.svg, path.csv and path.json.", show_default=False),
+    ] = None,
+    json_file: JsonOption = None,
+) -> None:
+    """Follow the contact state from one value of a parameter to another, with each point that enters or leaves contact.
+
+    Between two breakpoints pressure and gap are linear in the parameter, so that the path is exact and has no steps.
+    Only gaps and loads may depend on the parameter, and linearly: a pressure, a traction, a prescribed displacement,
+    gravity, the position of a rigid surface, the force on a tool, the factor of a load case (load_cases.NAME). The exit
+    status is 0 only if the path reaches its end and each state on it is proved to be the only one.
+
+    FOLDER gets a picture of peak, resultants and ends of contact over the parameter (path.svg), the same as a table
+    with three rows between each two breakpoints (path.csv), and all of it (path.json). An earlier path is replaced.
+
+    [bold]Examples[/bold]
+      bemcontact path models/cylinder_on_plane.yaml --vary conditions.top.pressure --from 0 --to 50.625
+      bemcontact path models/cantilever_flat_surface.yaml --vary conditions.top.traction.y --from 0 --to -3.6 --out path
+      bemcontact path models/gallery/three_zones.yaml --vary conditions.loaded.pressure --to 40 --json - | jq .pivots
+    """
+
+    def work(report: Report) -> Outcome:
+        from bemcontact.analysis.follow import follow
+        from bemcontact.report import path_text
+
+        followed = follow(source.problem(refine), vary, to, start)
+        if out:
+            report("drawing", "")
+            from bemcontact.report import folder
+
+            folder.save_path(followed, out)
+        return Outcome(
+            summary=lambda: path_text.path_summary(followed),
+            json=followed.to_json,
+            holds=followed.certified,
+            verdict=path_text.verdict(followed),
+        )
+
+    run("following", work, source=source, folder=out, kind="path", json_file=json_file)

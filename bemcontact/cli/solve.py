@@ -1,0 +1,82 @@
+"""The command solve."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from bemcontact.cli.command import FigureOption, FitOption, JsonOption, Outcome, RefineOption, Source, run
+from bemcontact.cli.terminal import Report
+from bemcontact.errors import OptionError
+from bemcontact.options import SolveOptions
+
+
+def solve(
+    source: Source,
+    options: SolveOptions,
+    refine: RefineOption = 1,
+    fit_edges: FitOption = False,
+    figure: FigureOption = None,
+    json_file: JsonOption = None,
+    vtk_file: Annotated[
+        Path | None,
+        typer.Option("--vtk", metavar="FILE", help="Write the boundary; ends in .vtu or .vtk.", show_default=False),
+    ] = None,
+) -> None:
+    """Compute the contact pressure, assess it, and print a short table.
+
+    Pressures are per UNDEFORMED length. The exit status is 0 only if the solution is certified.
+
+    If a spec has load cases, all of them and all combinations are solved; --case selects one.
+
+    [bold]Examples[/bold]
+      bemcontact solve models/cylinder_on_plane.yaml
+      bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
+      bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
+      bemcontact solve models/cylinder_on_plane.yaml --fit-edges
+      bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
+      bemcontact solve models/gallery/roller_in_v_block.yaml --case aside
+      bemcontact solve models/cylinder_on_plane.yaml --formulation qp1
+      bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --starts 20
+    """
+
+    def work(report: Report) -> Outcome:
+        from bemcontact.analysis import load_cases
+        from bemcontact.analysis import solve as analysis
+        from bemcontact.report import cases_text, formatting, text
+
+        def draw(results: analysis.Result | load_cases.CaseResults) -> None:
+            if figure:
+                from bemcontact.report import figures
+
+                figures.save(figures.figure_of(results), figure)
+
+        problem = source.problem(refine, fit_edges=fit_edges)
+        if problem.load_cases and problem.case is None:
+            if vtk_file:
+                raise OptionError("--vtk writes the boundary of one load case; name it with --case")
+            results = load_cases.solve_cases_with(options, problem, lambda case, _: report("solving", case))
+            draw(results)
+            return Outcome(
+                summary=lambda: cases_text.cases_summary(results),
+                json=results.to_json,
+                holds=results.certified,
+                verdict=cases_text.uncertified(results),
+            )
+        several = options.starts or 1
+        result = analysis.solve_with(
+            options, problem, lambda done: report("solving", f"start {min(done + 1, several)} of {several}")
+        )
+        draw(result)
+        if vtk_file:
+            from bemcontact.report import vtk
+
+            vtk.save(result, vtk_file)
+        return Outcome(
+            summary=lambda: text.result_summary(result),
+            json=result.to_json,
+            holds=result.certified,
+            verdict=formatting.verdict(result),
+        )
+
+    run("solving", work, source=source, files={"--figure": figure, "--vtk": vtk_file}, json_file=json_file)

@@ -1,0 +1,57 @@
+"""Algebra of the free motions by its identities, the order of points, forces by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.free_motions import MotionAlgebra
+
+
+@pytest.fixture(params=[0, 1, 3])
+def motions(request: pytest.FixtureRequest) -> MotionAlgebra:
+    rng, n, k = np.random.default_rng(7), 8, request.param
+    return MotionAlgebra(
+        rigid_motions=rng.standard_normal((n, k)), weights=rng.uniform(0.5, 1, n), motion_load=rng.standard_normal(k)
+    )
+
+
+def test_projector_removes_the_motions(motions: MotionAlgebra):
+    """P² = P, P R = 0 and ℓᵀP = 0; P keeps the equilibrium space, whose basis Z is orthonormal."""
+    P, Z, ell = motions.projector, motions.equilibrium_space, motions.equilibrium
+    np.testing.assert_allclose(P @ P, P, atol=1e-13)
+    np.testing.assert_allclose(P @ motions.rigid_motions, 0, atol=1e-13)
+    np.testing.assert_allclose(ell.T @ P, 0, atol=1e-13)
+    np.testing.assert_allclose(ell.T @ Z, 0, atol=1e-13)
+    np.testing.assert_allclose(P @ Z, Z, atol=1e-13)
+    np.testing.assert_allclose(Z.T @ Z, np.eye(Z.shape[1]), atol=1e-13)
+
+
+def test_balancing_pressure_is_in_equilibrium(motions: MotionAlgebra):
+    """Also with any pressure P p added."""
+    p = motions.projector @ np.arange(8.0) + motions.balancing_pressure
+    np.testing.assert_allclose(motions.imbalance(motions.balancing_pressure), 0, atol=1e-13)
+    np.testing.assert_allclose(motions.imbalance(p), 0, atol=1e-12)
+
+
+def test_amplitudes_of_a_motion_are_its_own(motions: MotionAlgebra):
+    a = np.arange(1.0, 1 + len(motions.motion_load))
+    np.testing.assert_allclose(motions.amplitudes_of(motions.rigid_motions @ a), a, rtol=1e-12)
+
+
+def test_forces_and_order_of_points():
+    """Four points in two zones and three runs; Σ w p n of each zone by hand."""
+    contact = replace(
+        CondensedContact.from_compliance(np.eye(4), np.zeros(4), [1.0, 2.0, 1.0, 1.0]),
+        zone_names=("floor", "wall"),
+        zone=np.array([0, 1, 0, 0]),
+        run=np.array([2, 1, 0, 2]),
+        arc_position=np.array([3.0, 0.0, 5.0, 1.0]),
+        normals=np.array([[0.0, 1.0], [1.0, 0.0], [0.0, 1.0], [0.0, 1.0]]),
+    )
+    pressure = np.array([1.0, 2.0, 3.0, 4.0])
+    np.testing.assert_array_equal(contact.resultants(pressure), [[0.0, 8.0], [4.0, 0.0]])
+    np.testing.assert_array_equal(contact.resultants(np.stack([pressure, 2 * pressure]))[1], [[0.0, 16.0], [8.0, 0.0]])
+    assert contact.in_order(np.arange(4)).tolist() == [2, 1, 3, 0]
+    assert contact.points_of_run(2).tolist() == [3, 0]
