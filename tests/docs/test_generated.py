@@ -1,7 +1,6 @@
 """The parts of the reference that are made from the program: nothing is left out of them."""
 
 import re
-from pathlib import Path
 from typing import Any
 
 import generated
@@ -11,8 +10,6 @@ import typer.main
 
 import bemcontact
 from bemcontact import cli
-
-BLOCK = Path(__file__).parents[2] / "models" / "gallery" / "flat_punch.yaml"
 
 
 def keys(schema: dict[str, Any]) -> set[str]:
@@ -33,7 +30,7 @@ def test_each_key_of_each_json_file_is_shown():
     """The command schema has an option for each file of results."""
     text = generated.json_files()
     options = [parameter.opts[0] for parameter in generated.COMMANDS.commands["schema"].params]
-    assert {"--report", "--reproduction"} <= {*options}
+    assert {"--result", "--cases", "--path", "--report", "--reproduction"} <= {*options}
     for option in options:
         part = text.partition(f"\n## `schema {option}`\n")[2].partition("\n## ")[0]
         assert keys(generated._schema(option)) == shown(part), option
@@ -52,13 +49,6 @@ def test_each_public_name_has_a_place():
     names = " ".join(words for what, words in generated.MARK.findall(page) if what == "names").split()
     assert sorted(names) == sorted(generated.public())
     assert {"load", "solve", "Result", "SpecError"} <= {*names}
-
-
-def test_each_key_of_a_result_is_listed():
-    page = (pages.DOCS / "reference" / "json.md").read_text(encoding="utf-8")
-    table = page.partition("## Result of solve")[2].partition("<!--")[0]
-    listed = {key for row in re.findall(r"^\| (`.*?`) \|", table, flags=re.M) for key in re.findall(r"`(\w+)`", row)}
-    assert bemcontact.solve(bemcontact.load(BLOCK)).to_dict().keys() == listed
 
 
 def test_a_part_that_does_not_exist_is_an_error():
