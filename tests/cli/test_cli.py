@@ -392,7 +392,7 @@ def test_a_file_that_cannot_be_written_is_found_out_before_any_work(
     assert_refused(run(command, block, option, block.parent / name), "is a directory")
     (block.parent / name).rmdir()
     os.mkfifo(block.parent / name)
-    assert_refused(run(command, block, option, block.parent / name), "not an ordinary file")
+    assert_refused(run(command, block, option, block.parent / name), "not a regular file")
 
 
 def test_an_unknown_figure_format_lists_the_known_ones(block: Path):

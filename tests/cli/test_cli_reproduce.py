@@ -83,4 +83,4 @@ def test_mistakes_end_with_status_2_and_a_sentence(
 def test_two_schemas_at_once_are_refused():
     answer = run("schema", "--report", "--reproduction")
     assert answer.exit_code == 2
-    assert "ask for one" in answer.stderr
+    assert "choose one" in answer.stderr

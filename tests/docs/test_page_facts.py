@@ -7,6 +7,7 @@ from pathlib import Path
 import pages
 import pytest
 import yaml
+from test_architecture import FOUNDATION, PACKAGE, ROOMS
 
 import bemcontact
 
@@ -54,3 +55,21 @@ def test_the_page_on_messages_has_a_row_for_each_status():
     text = Path(pages.DOCS, "how-to", "messages.md").read_text(encoding="utf-8").partition("## Statuses")[2]
     rows = re.findall(r"^\| `?(.+?)`? \|", text.partition("## Notes")[0], flags=re.MULTILINE)[1:]
     assert len(rows) == len(bemcontact.Status)
+
+
+ARCHITECTURE = (pages.DOCS / "explanation/architecture.md").read_text(encoding="utf-8")
+
+
+def test_the_page_on_the_architecture_has_the_table_of_the_rooms():
+    """The test of the architecture keeps `ROOMS`; rooms inside a room are left out."""
+    rows = re.findall(r"^\| `(\w+)` \| [^|]* \| ?([^|]*?) ?\|$", ARCHITECTURE, flags=re.MULTILINE)
+    table = {room: set(re.findall(r"`(\w+)`", allowed)) for room, allowed in rows}
+    inner = {room for room in ROOMS if "." in room}
+    expected = {room: {*allowed} - {*FOUNDATION} - inner for room, allowed in ROOMS.items()}
+    assert table == {room: expected[room] for room in ROOMS if room not in (*FOUNDATION, *inner, "__main__")}
+
+
+def test_the_walks_name_modules_that_exist():
+    named = set(re.findall(r"`((?:spec|bem|analysis|contact|formulations)/\w+)`", ARCHITECTURE))
+    assert len(named) >= 5
+    assert [name for name in named if not (PACKAGE / f"{name}.py").is_file()] == []

@@ -113,7 +113,7 @@ def test_what_cannot_be_written_is_refused_before_any_work(block: Path, monkeypa
     answers = {
         r"--vtk: .*\.vtu, \.vtk": solve(block, "--vtk", block.with_suffix(".stl")),
         "--vtk: .*there is no directory": solve(block, "--vtk", block.parent / "none" / "a.vtu"),
-        "overwrite the file of --json": solve(
+        "overwrite the file of --vtk": solve(
             block, "--json", block.with_suffix(".vtu"), "--vtk", block.with_suffix(".vtu")
         ),
     }
