@@ -11,9 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from bemcontact.assessment.contender import Attempt, Contender, ContenderRecord, assess, contender, contender_record
+from bemcontact.assessment.contender import (
+    OUTCOMES,
+    Attempt,
+    Contender,
+    ContenderRecord,
+    Outcome,
+    assess,
+    contender,
+    contender_record,
+)
 from bemcontact.assessment.matrices import WeightedCompliance, condition, weighted_compliance
-from bemcontact.assessment.verdict import OUTCOMES, Outcome
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.record import ContactRecord, contact_record
 from bemcontact.contact.solution import ContactSolution
@@ -150,7 +158,7 @@ class Comparison:
         return next((item for item in self.differences if (item.one, item.other) == pair), None)
 
     def record(self) -> ComparisonRecord:
-        """Return what JSON holds of it."""
+        """Return the JSON form of the comparison."""
         return ComparisonRecord(
             name=self.contact.name,
             version=__version__,
@@ -166,7 +174,7 @@ class Comparison:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON."""
+        """Return the comparison as numbers, lists and texts, ready for JSON."""
         return self.record().to_dict()
 
     def to_json(self, indent: int | None = 2) -> str:
@@ -177,16 +185,8 @@ class Comparison:
 def comparison(contact: CondensedContact, reference: Attempt, attempts: Sequence[Attempt]) -> Comparison:
     """Assess the solutions of formulations, without trust in a solver, and put them side by side.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    reference : the direct solution
-    attempts : of the formulations
-
-    Raises
-    ------
-    ProblemError
-        The problem does not carry the weights asked for.
+    The reference is the attempt of the direct solver. `ProblemError` if the problem does not carry the weights asked
+    for.
     """
     asked = [item.options.weights for item in attempts if item.options.uses("weights")]
     weights = [*dict.fromkeys([Weights.TRIBUTARY, *asked])]
@@ -235,7 +235,7 @@ def _difference(
     peak: float,
     size: float,
 ) -> Difference:
-    """Of two solutions with their labels, over a peak pressure and a mean square."""
+    """Difference of two solutions with their labels, over a peak pressure and a mean square."""
     (label, solution), (against, basis) = one, other
     apart = solution.pressure - basis.pressure
     own = solution.pressure if solution.unpolished is None else solution.unpolished
@@ -249,7 +249,7 @@ def _difference(
 
 
 def _verdict(direct: Contender, contenders: Sequence[Contender], differences: Sequence[Difference]) -> str:
-    """Say what a comparison shows as a whole."""
+    """The result of a comparison as a whole, in sentences."""
     solving = [item for item in contenders if OUTCOMES[item.verdict.outcome].solves]
     labels = {item.label for item in [*solving, direct]}
     apart = max((item.largest for item in differences if {item.one, item.other} <= labels), default=0.0)

@@ -9,8 +9,7 @@ from contact_problems import random_contact
 
 from bemcontact.analysis import compare as comparing
 from bemcontact.assessment.comparison import Comparison, comparison
-from bemcontact.assessment.contender import Attempt
-from bemcontact.assessment.verdict import Outcome
+from bemcontact.assessment.contender import Attempt, Outcome
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.formulations import complementarity, qp1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from contact_problems import random_contact
 
-from bemcontact.assessment.objectives import objectives
+from bemcontact.assessment.residual import objectives
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError

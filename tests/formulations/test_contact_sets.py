@@ -28,7 +28,7 @@ from bemcontact.arrays import Array
 from bemcontact.contact.multistart import End
 from bemcontact.formulations import qp1, qp2, qp3
 from bemcontact.formulations.scaling import scaled
-from bemcontact.formulations.start import draw_starts
+from bemcontact.formulations.search import draw_starts
 from bemcontact.options import SolveOptions
 
 BoolArray = NDArray[np.bool_]

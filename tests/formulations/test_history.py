@@ -12,7 +12,7 @@ from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_i
 from bemcontact.formulations import FORMULATIONS, clarabel, complementarity, qp1, qp2, qp3
 from bemcontact.formulations.complementarity import ACCEPTED
 from bemcontact.formulations.scaling import scaled, scaled_point
-from bemcontact.formulations.start import draw_starts
+from bemcontact.formulations.search import draw_starts
 from bemcontact.options import FormulationName, SolveOptions
 
 N = 9

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bemcontact.contact.solution import Status
-from bemcontact.formulations.lemke import lemke
+from bemcontact.formulations.complementarity import lemke
 
 
 def is_p_matrix(M: np.ndarray) -> bool:

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from bemcontact.formulations.local_solver.factorizations import orthogonal
-from bemcontact.formulations.local_solver.reduced_hessian import ReducedHessian
+from bemcontact.formulations.local_solver.phase_two import ReducedHessian
 from bemcontact.formulations.local_solver.statement import Statement
 from bemcontact.formulations.local_solver.working_set import TEMPORARY, WorkingSet
 

@@ -13,8 +13,7 @@ from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError, ProblemError
 from bemcontact.formulations import complementarity, qp2
 from bemcontact.formulations.multistart import multistart
-from bemcontact.formulations.search import contact_residual
-from bemcontact.formulations.start import Start, draw_starts
+from bemcontact.formulations.search import Start, contact_residual, draw_starts
 from bemcontact.options import Equilibrium, Rows, SolveOptions, Weights
 
 PENALIZED = SolveOptions.of("qp2", equilibrium=Equilibrium.PENALTY)

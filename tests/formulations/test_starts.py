@@ -15,7 +15,7 @@ from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError
 from bemcontact.formulations import complementarity, qp1
 from bemcontact.formulations.multistart import multistart
-from bemcontact.formulations.start import Start, draw_starts
+from bemcontact.formulations.search import Start, draw_starts
 from bemcontact.options import Equilibrium, SolveOptions
 
 P_MATRIX = np.array([[1.0, -3.0, 0.0], [0.0, 1.0, -3.0], [0.0, 0.0, 1.0]])

@@ -46,10 +46,10 @@ def design_gap(
     Parameters
     ----------
     contact : the problem, or several load states of one body on the same surfaces, of which the worst counts
-    relief : what the profile may be
-    zone, arc : where it is: a contact zone, which may be left out if it is the only one, and the least and largest arc
+    relief : the bounds on the profile
+    zone, arc : its interval: a contact zone, which may be left out if it is the only one, and the least and largest arc
         position on it [L], the whole zone if left out
-    cases : factors of load cases, one mapping for each load state, as of `CondensedContact.with_factors`
+    cases : factors of load cases, one mapping for each load state, as in `CondensedContact.with_factors`
     goal : a `Goal` or its name: "peak" (the largest pressure anywhere) or "uniform" (the mean square deviation of the
         pressure on the interval from its mean there)
 
@@ -62,9 +62,9 @@ def design_gap(
     Raises
     ------
     ProblemError
-        If bounds exclude each other, states are not those of one body, or a state has no contact state.
+        Bounds exclude each other, states are not those of one body, or a state has no contact state.
     SolverError
-        If Clarabel breaks down.
+        Clarabel breaks down.
     """
     states, goal = _states(contact, cases), _goal(goal)
     profiles = Profiles.of(states[0], relief, zone, arc)
@@ -139,7 +139,7 @@ def _goal(goal: Goal | str) -> Goal:
 
 
 def _solved(contact: CondensedContact, profile: Array) -> LoadState:
-    """Solve and judge the contact problem with a profile (n,)."""
+    """Solve and assess the contact problem with a profile (n,)."""
     there = relieved(contact, profile)
     solution = complementarity.solve(there)
     if solution.status is not Status.SOLVED:
@@ -169,9 +169,9 @@ def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> Piece:
 
 
 def _starts(shared: SharedProfile, states: Sequence[CondensedContact]) -> Iterator[BoolArray]:
-    """Contact sets (loads, n): the whole interval, and those of profiles.
+    """Contact sets (loads, n) of the whole interval and of profiles.
 
-    These are next to none, extreme in mean value, tilt and crown, and the best of random ones.
+    The profiles are next to zero, extreme in mean value, tilt and crown, and the best of random ones.
     """
     profiles, rng = shared.profiles, np.random.default_rng(0)
     yield np.tile(np.isin(np.arange(states[0].size), profiles.points), (len(states), 1))
@@ -207,7 +207,7 @@ def _value(piece: Piece) -> float:
 
 
 def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:
-    """Turn points on the edge of contact as long as that makes the goal smaller."""
+    """Turn points on the edge of contact as long as the goal gets smaller."""
     piece = shared.best_with(touching)
     for _ in range(STEPS if piece is not None else 0):
         assert piece is not None
@@ -219,7 +219,7 @@ def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:
 
 
 def _gently_descended(shared: SharedProfile, best: Piece) -> tuple[Piece, Piece]:
-    """Go on from the gentlest of equally good profiles: others may lie off an edge of contact that leads on."""
+    """Continue from the gentlest of equally good profiles: others may not be on an edge of contact that leads on."""
     gentlest = shared.gentlest(best)
     for _ in range(STEPS):
         better = _next(shared, gentlest)

@@ -1,4 +1,4 @@
-"""A designed gap: the profile, the contact states without and with it, and what is proved of it."""
+"""A designed gap: the profile, the contact states without and with it, and the proof of optimality."""
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -79,13 +79,7 @@ class GapDesignRecord(Record):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LoadState:
-    """A contact state, solved by the direct solver and judged.
-
-    Parameters
-    ----------
-    contact : the problem
-    solution, residuals, certificate, footprint : of it
-    """
+    """A contact state, solved by the direct solver and assessed."""
 
     contact: CondensedContact
     solution: ContactSolution
@@ -104,7 +98,7 @@ class LoadState:
         return self.contact.peak(self.pressure)
 
     def record(self) -> LoadStateRecord:
-        """Return what JSON holds of it."""
+        """Return the JSON form of the state."""
         return LoadStateRecord(
             pressure=self.pressure,
             **dict(footprint_record(self.footprint)),
@@ -210,21 +204,16 @@ class GapDesign:
         """Make a rigid surface of the zone's own and the profile, through the feet of all its contact points.
 
         Its normals are tilted by the slope of the profile, which a contact problem on it sees as a relative change of
-        pressure by about that slope.
+        pressure by about that slope. Tools are at their undisplaced place.
 
         Parameters
         ----------
         kind : "spline" or "polyline"
 
-        Returns
-        -------
-        Spline or Polyline
-            Where no tool is displaced.
-
         Raises
         ------
         ProblemError
-            If the kind is unknown, the zone has several pieces or goes round, or the surface would fold.
+            The kind is unknown, the zone has several pieces or goes round, or the surface would fold.
         """
         if kind not in SURFACES:
             raise ProblemError(f"there is no surface of kind {kind!r} to write; there are: {', '.join(SURFACES)}")
@@ -243,21 +232,12 @@ class GapDesign:
         return SURFACES[kind](points=tuple((float(x), float(y)) for x, y in feet))
 
     def to_yaml(self, kind: str = "spline") -> str:
-        """Write the surface as it stands in a spec, to go below a contact zone's ``edges``.
-
-        Parameters
-        ----------
-        kind : "spline" or "polyline"
-
-        Returns
-        -------
-        str
-        """
+        """Write the `surface` of a kind as YAML, to go below the ``edges`` of a contact zone in a spec."""
         points = "".join(f"    - [{_number(x)}, {_number(y)}]\n" for x, y in self.surface(kind).points)
         return f"surface:\n  kind: {kind}\n  points:\n{points}"
 
     def record(self) -> GapDesignRecord:
-        """Return what JSON holds of it."""
+        """Return the JSON form of the design."""
         contact = self.before[0].contact
         return GapDesignRecord(
             goal=self.goal,
@@ -278,7 +258,7 @@ class GapDesign:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON."""
+        """Return the design as numbers, lists and texts, ready for JSON."""
         return self.record().to_dict()
 
     def to_json(self, indent: int | None = 2) -> str:
@@ -287,12 +267,7 @@ class GapDesign:
 
 
 def relieved(contact: CondensedContact, profile: Array) -> CondensedContact:
-    """Add a profile (n,) [L] to the initial gap.
-
-    Parameters
-    ----------
-    profile : (n,) g [L]
-    """
+    """Add a profile (n,) [L] to the initial gap."""
     return replace(contact, initial_gap=contact.initial_gap + profile)
 
 

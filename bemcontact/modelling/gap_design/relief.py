@@ -30,7 +30,7 @@ class Bounds(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Relief:
-    """Bounds on a profile g that is added to the initial gap: g > 0 takes material away. All given bounds hold at once.
+    """Bounds on a profile g that is added to the initial gap: g > 0 removes material. All given bounds hold at once.
 
     Parameters
     ----------
@@ -84,19 +84,10 @@ class Profiles:
     def of(
         cls, contact: CondensedContact, relief: Relief, zone: str | None = None, arc: tuple[float, float] | None = None
     ) -> Self:
-        """Write bounds as rows, and check that some profile keeps them all.
+        """Write bounds as rows, on the whole zone or on an interval of arc positions [L].
 
-        Parameters
-        ----------
-        relief : the bounds
-        zone : name of the contact zone, which may be left out if there is one only
-        arc : least and largest arc position of the interval [L], the whole zone if left out
-
-        Raises
-        ------
-        ProblemError
-            If there is no such zone or no point on the interval, shapes do not fit, the profile is not bounded, or
-            bounds exclude each other.
+        The zone may be left out if there is one only. `ProblemError` if there is no such zone or no point on the
+        interval, shapes do not fit, the profile is not bounded, or bounds exclude each other.
         """
         points = _interval(contact, zone, arc)
         position, run = contact.arc_position[points], contact.run[points]
@@ -144,7 +135,7 @@ class Profiles:
         return self._unit * optimum.x[:-1]
 
     def kept(self, coefficients: Array) -> Array:
-        """Move coefficients (s,) [L] that keep the bounds to a solver's tolerance inwards to the exact bounds."""
+        """Move coefficients (s,) [L] that keep the bounds to the tolerance of a solver inwards to the exact bounds."""
         inner, now = self.rows @ self._innermost, self.rows @ coefficients
         over = np.stack([now - self.high, self.low - now])
         ways = np.stack([now - inner, inner - now])
