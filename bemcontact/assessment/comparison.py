@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
@@ -26,7 +25,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.record import ContactRecord, contact_record
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import Weights
-from bemcontact.serialization import Leaf, Record, json_text
+from bemcontact.serialization import Leaf, Record, Recorded
 from bemcontact.version import __version__
 
 SAME = 1e-6
@@ -88,7 +87,7 @@ class ComparisonRecord(Record):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Comparison:
+class Comparison(Recorded):
     """Formulations of one condensed problem side by side."""
 
     contact: CondensedContact
@@ -172,14 +171,6 @@ class Comparison:
             differences=self.differences,
             matrices=MatricesRecord(condition=self.condition, weighted=self.matrices),
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the comparison as numbers, lists and texts, ready for JSON."""
-        return self.record().to_dict()
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)
 
 
 def comparison(contact: CondensedContact, reference: Attempt, attempts: Sequence[Attempt]) -> Comparison:

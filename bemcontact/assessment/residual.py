@@ -62,7 +62,7 @@ def residuals(contact: CondensedContact, solution: ContactSolution, force_balanc
         work=float(contact.weights @ (p * gap)) / (U * T * float(contact.weights.max())),
         equilibrium=_largest(np.abs(residual) / U),
         stiffness_rows=_largest(np.abs(K @ u_n - B @ p - r) / T),
-        balance=_largest(_imbalance(contact, p) / (T * np.abs(contact.equilibrium).sum(axis=0))),
+        balance=_largest(np.abs(contact.imbalance(p)) / (T * np.abs(contact.equilibrium).sum(axis=0))),
         round_off=_largest(_round_off(contact, solution)[contact.touching(p, u_n)] / U),
         force_balance=force_balance,
     )
@@ -76,13 +76,8 @@ def _round_off(contact: CondensedContact, solution: ContactSolution) -> Array:
     return contact.size * np.finfo(float).eps * terms
 
 
-def _imbalance(contact: CondensedContact, pressure: Array) -> Array:
-    """|ℓᵀp + load| (k,)."""
-    return np.abs(contact.imbalance(pressure))
-
-
 def _largest(values: Array) -> float:
-    """The largest positive one, or zero."""
+    """The largest positive value, or zero."""
     return float(values.max(initial=0.0))
 
 

@@ -6,6 +6,7 @@ problem.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from operator import attrgetter
 
 import numpy as np
 
@@ -74,7 +75,7 @@ def design_gap(
     bound, coefficients, sets = shared.relaxed(best.value * shared.scales.pressure)
     if best.value * shared.scales.pressure > bound * (1 + MET):
         others = (_descended(shared, some) for some in (sets, _state(states, profiles.shapes @ coefficients)[1]))
-        best = min((piece for piece in (best, *others) if piece is not None), key=_value)
+        best = min((piece for piece in (best, *others) if piece is not None), key=attrgetter("value"))
     best, gentlest = _gently_descended(shared, best)
     gentle = _carried_out(shared, states, before, gentlest, bound)
     return gentle if gentle.verified else _carried_out(shared, states, before, best, bound)
@@ -165,7 +166,7 @@ def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> Piece:
             ends.append(end)
     if not ends:
         raise SolverError("no convex program of the design had an optimum; look in the mesh for very short elements")
-    return min(ends, key=_value)
+    return min(ends, key=attrgetter("value"))
 
 
 def _starts(shared: SharedProfile, states: Sequence[CondensedContact]) -> Iterator[BoolArray]:
@@ -200,10 +201,6 @@ def _state(states: Sequence[CondensedContact], profile: Array) -> tuple[list[Arr
     solutions = [complementarity.solve(contact) for contact in contacts]
     sets = [one.touching(two.pressure, two.displacement) for one, two in zip(contacts, solutions, strict=True)]
     return [solution.pressure for solution in solutions], np.array(sets)
-
-
-def _value(piece: Piece) -> float:
-    return piece.value
 
 
 def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
 from bemcontact.problem.rigid_surface import Polyline, Spline
-from bemcontact.serialization import Pairs, Record, Vector, json_text
+from bemcontact.serialization import Pairs, Record, Recorded, Vector
 
 AGREED = 1e-6
 """Difference of the designed pressure from that of the contact state, over the peak, up to which they agree."""
@@ -108,7 +107,7 @@ class LoadState:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class GapDesign:
+class GapDesign(Recorded):
     """The best computed profile, with the contact states of all load states without and with it.
 
     Parameters
@@ -256,14 +255,6 @@ class GapDesign:
             verified=self.verified,
             words=self.words,
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the design as numbers, lists and texts, ready for JSON."""
-        return self.record().to_dict()
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)
 
 
 def relieved(contact: CondensedContact, profile: Array) -> CondensedContact:

@@ -263,7 +263,10 @@ def _families(relief: Relief, shapes: Array, sizes: Array, position: Array, run:
     if relief.coefficients is not None:
         low, high = _limits(relief.coefficients, len(sizes), "coefficients")
         families["coefficients"] = Bounds(np.eye(len(sizes)), low * sizes, high * sizes)
-    return {name: bounds for name, bounds in families.items() if len(bounds.low)} or _nothing_bounded()
+    families = {name: bounds for name, bounds in families.items() if len(bounds.low)}
+    if not families:
+        raise ProblemError("nothing bounds the profile; give lower and upper values, or shapes with coefficients")
+    return families
 
 
 def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int, what: str) -> tuple[Array, Array]:
@@ -281,8 +284,3 @@ def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int, what: s
     if not (low <= high).all():  # false also for what is not a number
         raise ProblemError(f"the lower bound on {what} is above the upper one, or no number; exchange them")
     return low, high
-
-
-def _nothing_bounded() -> dict[str, Bounds]:
-    """Refuse a relief without bounds."""
-    raise ProblemError("nothing bounds the profile; give lower and upper values, or shapes with coefficients")
