@@ -28,7 +28,7 @@ from .formulations.local_solver import QPOptions as QPOptions
 from .formulations.local_solver import QPResult as QPResult
 from .formulations.local_solver import QPStatus as QPStatus
 from .formulations.local_solver import minimize_qp as minimize_qp
-from .formulations.start import Start as Start
+from .formulations.search import Start as Start
 from .modelling.contact_model import ContactModel as ContactModel
 from .modelling.contact_model import model as model
 from .modelling.gap_design.design import design_gap as design_gap

@@ -1,4 +1,4 @@
-"""The options of solving and comparing, each declared once: name, default, range, meaning, and who has a use for it.
+"""The options of solving and comparing, each declared once: name, default, range, meaning, and formulations.
 
 There are no numerics here, so that ``bemcontact --help`` answers at once.
 """
@@ -18,7 +18,7 @@ Name = TypeVar("Name", bound=StrEnum)
 Options = TypeVar("Options")
 
 LEAST_PENALTY, LARGEST_PENALTY = 1e-8, 1e8
-"""Beyond, the smaller of QP2's two terms is lost in the round-off of the other: doubles carry 16 digits."""
+"""Outside this range the smaller of QP2's two terms is lost in the round-off of the other."""
 
 
 class FormulationName(StrEnum):
@@ -31,7 +31,7 @@ class FormulationName(StrEnum):
 
 
 COMPARED = (FormulationName.QP1, FormulationName.QP2, FormulationName.QP3)
-"""What is compared with the direct solution."""
+"""Formulations that are compared with the direct solution."""
 
 USES: Mapping[FormulationName, tuple[str, ...]] = {
     FormulationName.QP1: ("weights", "rows", "start", "polish"),
@@ -50,7 +50,7 @@ class Weights(StrEnum):
     CONSISTENT = "consistent"
     """∫ h hᵀ ds, (24)-(25): has negative entries, so that objective = 0 certifies nothing."""
     ELEMENT_LENGTH = "element_length"
-    """Diagonal, the element length once per node, (26) read word for word: makes QP3 indefinite on uniform meshes."""
+    """Diagonal, the element length once per node, (26) taken literally: makes QP3 indefinite on uniform meshes."""
 
 
 class Rows(StrEnum):
@@ -82,7 +82,7 @@ class StartName(StrEnum):
 
 @runtime_checkable
 class GivenStart(Protocol):
-    """A start given by numbers: `bemcontact.Start`, which needs NumPy and so stands elsewhere."""
+    """A start given by numbers: `bemcontact.Start`, which needs NumPy and so is defined elsewhere."""
 
     @property
     def pressure(self) -> Any:
@@ -96,33 +96,34 @@ class GivenStart(Protocol):
 
     @property
     def label(self) -> str:
-        """What reports call it."""
+        """Label in reports."""
         ...
 
 
-def _about(
+def _option(
+    default: Any,
     meaning: str,
     *,
     noun: str = "",
     metavar: str | None = None,
     least: int | None = None,
     shown: str | bool = True,
-) -> dict[str, Any]:
-    """What else is declared of an option.
+) -> Any:
+    """Declare an option by its default and its meaning, for help and documentation.
 
     Parameters
     ----------
-    meaning : a text for help and documentation
-    noun : what errors call it, if not by its name
-    metavar : what stands for its value in the help of the command line
+    noun : its name in errors, if that is another one
+    metavar : stands for its value in the help of the command line
     least : least value of a whole number
     shown : the default in words, or whether the help shows it
     """
-    return {"meaning": meaning, "noun": noun, "metavar": metavar, "least": least, "shown": shown}
+    about = {"meaning": meaning, "noun": noun, "metavar": metavar, "least": least, "shown": shown}
+    return field(default=default, metadata=about)
 
 
 def _documented(options: type[Options]) -> type[Options]:
-    """Write the meanings of options into the docstring of their class, where `help` and documentation look for them."""
+    """Write the meanings of options into the docstring of their class, for `help` and documentation."""
     head, rule, rest = (options.__doc__ or "").partition("\n\n    Raises\n")
     about = (f"{item.name} : {item.metadata['meaning']}" for item in fields(cast(Any, options)))
     lines = "\n".join(fill(text, 100, initial_indent="    ", subsequent_indent=" " * 8) for text in about)
@@ -131,7 +132,7 @@ def _documented(options: type[Options]) -> type[Options]:
 
 
 class StatementKeywords(TypedDict, total=False):
-    """Keywords that state a formulation, besides formulation and weights; `SolveOptions` says what they mean."""
+    """Keywords of `bemcontact.random_starts`: types of fields of `SolveOptions`, with names as texts."""
 
     penalty: float
     rows: Rows | str
@@ -140,7 +141,7 @@ class StatementKeywords(TypedDict, total=False):
 
 
 class SolveKeywords(StatementKeywords, total=False):
-    """Keywords of `bemcontact.solve` besides formulation and weights; `SolveOptions` says what they mean."""
+    """Keywords of `bemcontact.solve`: types of fields of `SolveOptions`, with names as texts."""
 
     start: GivenStart | os.PathLike[str] | StartName | str | None
     seed: int | None
@@ -161,78 +162,55 @@ class SolveOptions:
         A `ProblemError`: a name is unknown, a number out of range, or the formulation has no use for an option.
     """
 
-    formulation: FormulationName = field(
-        default=FormulationName.QP3,
-        metadata=_about(
-            "Statement of the contact problem: qp3 (convex program), complementarity (direct solver), or qp1 and qp2 "
-            "(local solver over pressures and displacements).",
-            noun="formulation",
-        ),
+    formulation: FormulationName = _option(
+        FormulationName.QP3,
+        "Statement of the contact problem: qp3 (convex program), complementarity (direct solver), or qp1 and qp2 "
+        "(local solver over pressures and displacements).",
+        noun="formulation",
     )
-    weights: Weights = field(
-        default=Weights.TRIBUTARY,
-        metadata=_about("Weights of the objective; complementarity has none.", noun="weights"),
+    weights: Weights = _option(Weights.TRIBUTARY, "Weights of the objective; complementarity has none.", noun="weights")
+    penalty: float = _option(
+        1.0,
+        f"qp2: an error of the equations costs its square over μ, a number without unit from {LEAST_PENALTY:g} to "
+        f"{LARGEST_PENALTY:g}; a smaller μ enforces them harder.",
+        metavar="μ",
     )
-    penalty: float = field(
-        default=1.0,
-        metadata=_about(
-            f"qp2: an error of the equations costs its square over μ, a number without unit from {LEAST_PENALTY:g} to "
-            f"{LARGEST_PENALTY:g}; a smaller μ enforces them harder.",
-            metavar="μ",
-        ),
+    rows: Rows = _option(
+        Rows.STIFFNESS, "qp1, qp2: equations in terms of pressure (stiffness) or of displacement.", noun="rows"
     )
-    rows: Rows = field(
-        default=Rows.STIFFNESS,
-        metadata=_about("qp1, qp2: equations in terms of pressure (stiffness) or of displacement.", noun="rows"),
+    equilibrium: Equilibrium = _option(
+        Equilibrium.CONSTRAINT,
+        "qp2, bodies with free rigid motions: exact (constraint), or penalized as in the paper.",
+        noun="ways of equilibrium",
     )
-    equilibrium: Equilibrium = field(
-        default=Equilibrium.CONSTRAINT,
-        metadata=_about(
-            "qp2, bodies with free rigid motions: exact (constraint), or penalized as in the paper.",
-            noun="ways of equilibrium",
-        ),
+    start: GivenStart | os.PathLike[str] | StartName | None = _option(
+        None,
+        "qp1, qp2: first point of the solver; a FILE is one that --json wrote. With a seed or a number of starts the "
+        "first point is random.",
+        metavar="null|random|FILE",
+        shown="null",
     )
-    start: GivenStart | os.PathLike[str] | StartName | None = field(
-        default=None,
-        metadata=_about(
-            "qp1, qp2: first point of the solver; a FILE is one that --json wrote. With a seed or a number of starts "
-            "the first point is random.",
-            metavar="null|random|FILE",
-            shown="null",
-        ),
+    seed: int | None = _option(
+        None, "qp1, qp2: seed of random starts; the same seed gives the same starts.", metavar="S", least=0, shown="0"
     )
-    seed: int | None = field(
-        default=None,
-        metadata=_about(
-            "qp1, qp2: seed of random starts; the same seed gives the same starts.",
-            metavar="S",
-            least=0,
-            shown="0",
-        ),
+    starts: int | None = _option(
+        None,
+        "qp1, qp2: search from N random starts; the result is the best of them.",
+        noun="number of starts",
+        metavar="N",
+        least=1,
+        shown=False,
     )
-    starts: int | None = field(
-        default=None,
-        metadata=_about(
-            "qp1, qp2: search from N random starts; the result is the best of them.",
-            noun="number of starts",
-            metavar="N",
-            least=1,
-            shown=False,
-        ),
+    max_iterations: int | None = _option(
+        None,
+        "Stop the solver after N iterations (complementarity: after N pivots of Lemke's method).",
+        noun="limit of iterations",
+        metavar="N",
+        least=1,
+        shown="its own",
     )
-    max_iterations: int | None = field(
-        default=None,
-        metadata=_about(
-            "Stop the solver after N iterations (complementarity: after N pivots of Lemke's method).",
-            noun="limit of iterations",
-            metavar="N",
-            least=1,
-            shown="its own",
-        ),
-    )
-    polish: bool = field(
-        default=True,
-        metadata=_about("qp1, qp2, qp3: make the result of the solver exact by a few steps of an active-set method."),
+    polish: bool = _option(
+        True, "qp1, qp2, qp3: make the result of the solver exact by a few steps of an active-set method."
     )
 
     def __post_init__(self) -> None:
@@ -247,12 +225,12 @@ class SolveOptions:
         if not (is_number and LEAST_PENALTY <= self.penalty <= LARGEST_PENALTY):
             raise OptionError(
                 f"the penalty must be a number from {LEAST_PENALTY:g} to {LARGEST_PENALTY:g}; found {self.penalty!r}: "
-                "beyond, the work or the equations are lost in the round-off of the other; 1 is the default"
+                "outside this range the work or the equations are lost in the round-off of the other; 1 is the default"
             )
         ensure_whole_fields(self)
         if not (self.start is None or isinstance(self.start, StartName | os.PathLike | GivenStart)):
-            found = f"'{self.start}'" if isinstance(self.start, str) else f"of type {type(self.start).__name__}"
-            raise OptionError(f"there is no start {found}; take {', '.join(StartName)}, or a Start of your own")
+            given = f"'{self.start}'" if isinstance(self.start, str) else f"of type {type(self.start).__name__}"
+            raise OptionError(f"there is no start {given}; take {', '.join(StartName)}, or a Start of your own")
         if not self.is_random and not (self.seed is None and self.starts is None):
             raise OptionError("a seed or a number of starts goes with random starts; leave out the other start")
         self._ensure_used()
@@ -278,19 +256,19 @@ class SolveOptions:
         """Whether the formulation has a use for an option."""
         return option in USES[self.formulation]
 
-    def label(self, *, tells_penalty: bool = False) -> str:
-        """What a comparison calls it, such as QP2 (consistent, μ = 0.001); defaults are left out.
+    def label(self, *, with_penalty: bool = False) -> str:
+        """Label in a comparison, such as QP2 (consistent, μ = 0.001), without defaults.
 
         Parameters
         ----------
-        tells_penalty : whether to tell the penalty even if it is the default
+        with_penalty : whether the label has the penalty even if it is the default
         """
         if not self.uses("weights"):
             return "direct"
         other = []
         if self.weights is not Weights.TRIBUTARY:
             other.append(self.weights.value.replace("_", " "))
-        if self.uses("penalty") and (tells_penalty or self.penalty != 1.0):
+        if self.uses("penalty") and (with_penalty or self.penalty != 1.0):
             other.append(f"μ = {self.penalty:.15g}")
         return f"{self.formulation.upper()} ({', '.join(other)})" if other else self.formulation.upper()
 
@@ -307,7 +285,7 @@ class SolveOptions:
 
 
 class ComparisonKeywords(TypedDict, total=False):
-    """Keywords of `bemcontact.compare`; `ComparisonOptions` says what they mean."""
+    """Keywords of `bemcontact.compare`: types of fields of `ComparisonOptions`."""
 
     starts: int | None
     seed: int | None
@@ -321,42 +299,36 @@ class ComparisonOptions:
     Raises
     ------
     OptionError
-        Something is there twice or not at all, out of range, or of no use.
+        A value occurs twice, is missing, out of range, or of no use.
     """
 
-    formulations: tuple[FormulationName, ...] = field(
-        default=COMPARED,
-        metadata=_about(f"What to compare with the direct solution: {', '.join(COMPARED)}.", metavar="NAME,…"),
+    formulations: tuple[FormulationName, ...] = _option(
+        COMPARED, f"What to compare with the direct solution: {', '.join(COMPARED)}.", metavar="NAME,…"
     )
-    weights: tuple[Weights, ...] = field(
-        default=(Weights.TRIBUTARY,),
-        metadata=_about(f"Weights of the objectives: {', '.join(Weights)}.", metavar="NAME,…"),
+    weights: tuple[Weights, ...] = _option(
+        (Weights.TRIBUTARY,), f"Weights of the objectives: {', '.join(Weights)}.", metavar="NAME,…"
     )
-    penalties: tuple[float, ...] | None = field(
-        default=None, metadata=_about("qp2: penalties, such as 1e-6,1e-3,1,1e3.", metavar="μ,…", shown="1")
+    penalties: tuple[float, ...] | None = _option(
+        None, "qp2: penalties, such as 1e-6,1e-3,1,1e3.", metavar="μ,…", shown="1"
     )
-    starts: int | None = field(
-        default=None,
-        metadata=_about(
-            "qp1, qp2: count how many of N random starts end at the solution.",
-            noun="number of starts",
-            metavar="N",
-            least=1,
-            shown=False,
-        ),
+    starts: int | None = _option(
+        None,
+        "qp1, qp2: count how many of N random starts end at the solution.",
+        noun="number of starts",
+        metavar="N",
+        least=1,
+        shown=False,
     )
-    seed: int | None = field(
-        default=None,
-        metadata=_about(
-            "qp1, qp2: seed of the random starts; the same seed gives the same starts.",
-            metavar="S",
-            least=0,
-            shown="0",
-        ),
+    seed: int | None = _option(
+        None,
+        "qp1, qp2: seed of the random starts; the same seed gives the same starts.",
+        metavar="S",
+        least=0,
+        shown="0",
     )
 
     def __post_init__(self) -> None:
-        """Read names and numbers, one alone as a list of it; refuse what is out of range, there twice, or of no use."""
+        """Read names and numbers, a single one as a list; refuse what is out of range, given twice, or of no use."""
         formulations = tuple(_compared(name) for name in _listed(self.formulations))
         weights = tuple(named(Weights, name, "weights") for name in _listed(self.weights))
         penalties = None if self.penalties is None else tuple(_as_float(value) for value in _listed(self.penalties))
@@ -373,7 +345,7 @@ class ComparisonOptions:
         ensure_whole_fields(self)
         if self.starts is not None and self.formulations == (FormulationName.QP3,):
             raise OptionError("random starts are for qp1 and qp2, which are not among the formulations; add one")
-        _ = self.attempts  # which check the penalties
+        _ = self.attempts  # SolveOptions checks the penalties
 
     @classmethod
     def of(
@@ -397,12 +369,12 @@ class ComparisonOptions:
         )
 
     @property
-    def tells_penalty(self) -> bool:
-        """Whether labels tell each penalty, as there are several."""
+    def has_penalties(self) -> bool:
+        """Whether there are several penalties, so that each label needs its own."""
         return len(self.penalties or ()) > 1
 
     def to_dict(self) -> dict[str, Any]:
-        """Give it as numbers, lists and texts, ready for JSON."""
+        """Return the options as numbers, lists and texts, ready for JSON."""
         return {
             "formulations": [name.value for name in self.formulations],
             "weights": [name.value for name in self.weights],
@@ -422,7 +394,7 @@ def options_of(formulation: FormulationName, options: SolveOptions | None) -> So
 
 
 def named(kind: type[Name], name: object, what: str) -> Name:
-    """Read a name of a kind; `what` says in the error of which."""
+    """Read a name of a kind, which errors call `what`."""
     try:
         return kind(name)
     except ValueError:
@@ -430,13 +402,13 @@ def named(kind: type[Name], name: object, what: str) -> Name:
 
 
 def ensure_whole(value: object, what: str, least: int) -> None:
-    """Refuse what is no whole number of at least `least`; `what` names it in the error."""
+    """Refuse all but a whole number of at least `least`; errors call it `what`."""
     if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
         raise OptionError(f"the {what} must be a whole number of at least {least}; found {value!r}")
 
 
 def ensure_whole_fields(options: SolveOptions | ComparisonOptions) -> None:
-    """Make each field that is to be a whole number an int, if it is given; refuse what is none."""
+    """Make each whole number that is given an int; refuse other values."""
     for item in fields(options):
         value, least = getattr(options, item.name), item.metadata["least"]
         if least is not None and value is not None:
@@ -452,17 +424,17 @@ def _compared(name: object) -> FormulationName:
 
 
 def _listed(items: Any) -> Iterable[Any]:
-    """A list, also of one item that stands alone."""
+    """The items; a single one as a list."""
     return [items] if isinstance(items, str | Real) else items
 
 
 def _as_float(value: object) -> Any:
-    """A number of any kind as a float; `SolveOptions` refuses what is none."""
+    """A number of any kind as a float; `SolveOptions` refuses other values."""
     return float(value) if isinstance(value, Real) else value
 
 
 def _ensure_different(items: Sequence[object] | None, what: str) -> None:
-    """Refuse a list in which something is twice, or nothing at all."""
+    """Refuse an empty list, and one with equal items."""
     if items is not None and (not items or len({*items}) < len(items)):
         listed = ", ".join(map(str, items)) or "none"
         raise OptionError(f"the {what} must be different from each other, and at least one; found {listed}")

@@ -1,10 +1,11 @@
-"""JSON of results and the JSON Schema of it, both from the fields of the results and the docstrings below these.
+"""JSON of results and its JSON Schema, both from the fields of the results and the docstrings below these.
 
 In all of them [L] is the unit of length and [p] that of pressure, force over length squared, in the user's units; a
 number without either has no unit.
 """
 
 import json
+from abc import ABC, abstractmethod
 from functools import cache
 from typing import Annotated, Any, TypeVar
 
@@ -66,7 +67,7 @@ class Leaf:
 
 
 class Record(BaseModel):
-    """Base of what JSON has in another form than the object it is made from; all keys are always there."""
+    """Base of the JSON form of an object, where the two differ; all keys are always present."""
 
     model_config = CONFIG
 
@@ -75,13 +76,29 @@ class Record(BaseModel):
         return self.model_dump(mode="json")
 
 
+class Recorded(ABC):
+    """Base of a result whose JSON is a `Record`."""
+
+    @abstractmethod
+    def record(self) -> Record:
+        """Return the JSON form of the result."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the result as numbers, lists and texts, ready for JSON."""
+        return self.record().to_dict()
+
+    def to_json(self, indent: int | None = 2) -> str:
+        """Return `to_dict` as JSON; every number in it is finite."""
+        return json_text(self.to_dict(), indent)
+
+
 def json_text(record: dict[str, Any], indent: int | None = 2) -> str:
     """Write numbers, lists and texts as JSON; `ValueError` for a number that is not finite."""
     return json.dumps(record, indent=indent, allow_nan=False, ensure_ascii=False)
 
 
 class _Schema(GenerateJsonSchema):
-    """Describes what is written; a default is of no use to a reader."""
+    """JSON Schema of written results, without defaults."""
 
     def default_schema(self, schema: Any) -> dict[str, Any]:
         """Describe a field without its default."""
@@ -96,5 +113,5 @@ def schema_of(result: type[Leaf] | type[Record]) -> dict[str, Any]:
 
 @cache
 def _adapter(kind: type[Any]) -> TypeAdapter[Any]:
-    """Read the fields of a class once."""
+    """The adapter of a class, made once."""
     return TypeAdapter(kind)

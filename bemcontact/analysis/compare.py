@@ -157,7 +157,7 @@ def _attempted(
     attempt: SolveOptions, options: ComparisonOptions, contact: CondensedContact, watch: Stopwatch
 ) -> Attempt:
     """Solve by one formulation, from the null start, and from random ones if that is asked for."""
-    label = attempt.label(tells_penalty=options.tells_penalty)
+    label = attempt.label(with_penalty=options.has_penalties)
     begin, searches = time.perf_counter(), None
     try:
         with watch.stage(label):

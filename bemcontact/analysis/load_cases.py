@@ -8,7 +8,7 @@ from bemcontact.analysis.solve import assessed, condensation_of, ensure_kind, so
 from bemcontact.analysis.stopwatch import Progress, Stopwatch
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
-from bemcontact.formulations.start import with_start_read
+from bemcontact.formulations.search import with_start_read
 from bemcontact.options import FormulationName, SolveKeywords, SolveOptions, Weights
 from bemcontact.problem.problem import Problem
 from bemcontact.serialization import Record, json_text

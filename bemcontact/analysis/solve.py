@@ -20,7 +20,7 @@ from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.formulations.multistart import multistart, solve_contact
-from bemcontact.formulations.start import with_start_read
+from bemcontact.formulations.search import with_start_read
 from bemcontact.options import (
     FormulationName,
     SolveKeywords,

@@ -120,7 +120,7 @@ def _smallest_eigenvalue(D: Array, M: Array, Z: Array) -> float | None:
 
 
 def _error_bound(contact: CondensedContact, solution: ContactSolution, eigenvalue: float | None) -> float | None:
-    """|p - y| + |s|/λ of the module's head in units of pressure; s includes the round-off of δ."""
+    """|p - y| + |s|/λ, as in the module's docstring, in units of pressure; s includes the round-off of δ."""
     U, T = contact.scales
     D, M = _scaled_compliance(contact)
     p = solution.pressure / T
@@ -141,7 +141,7 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, eigenvalu
 
 
 def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> float:
-    """What ℓᵀy = -load may leave open of a scaled pressure in floating-point numbers: n eps cond(ℓ) |y|."""
+    """Round-off of ℓᵀy = -load as an error of a scaled pressure: n eps cond(ℓ) |y|."""
     if not contact.free_motions:
         return 0.0
     spread = float(np.linalg.cond(_unit_rows(contact)[0]))
@@ -175,7 +175,7 @@ def _nearest_balanced(p: Array, contact_set: NDArray[np.bool_], ell: Array, load
 
 
 def _complaint(residuals: Residuals, tolerance: float, size: float) -> str:
-    """The worst violation in words, or nothing; `size` is that of the pressure over T."""
+    """The worst violation in words, or empty; `size` is that of the pressure over T."""
     of_gaps = max(tolerance * size, residuals.round_off)
     checks = {
         "penetration": (residuals.penetration, of_gaps),
@@ -208,15 +208,15 @@ def _certificate_sentence(
             )
         case CertificateKind.OPEN:
             return (
-                "All contact conditions hold to their tolerance, but in floating-point numbers this pressure cannot be "
-                f"told from others that are far from it ({sure}).{error} Look in the mesh for very short elements."
+                "All contact conditions hold to their tolerance, but round-off leaves open whether other pressures, "
+                f"far from this one, satisfy them too ({sure}).{error} Look in the mesh for very short elements."
             )
         case CertificateKind.NOT_A_SOLUTION:
             return f"This is not the contact state: {complaint}.{error} {way_out}"
 
 
 def advice(solution: ContactSolution) -> str:
-    """Say in a sentence what to try where a solution is not the contact state, in the words of the command line."""
+    """Say in a sentence what to try where a solution is not the contact state, with options of the command line."""
     match solution.status:
         case Status.INFEASIBLE:
             return "Check that loads and conditions press the body onto its support, or refine the mesh (--refine 2)."
@@ -235,5 +235,5 @@ def advice(solution: ContactSolution) -> str:
 
 
 def _or_another(solution: ContactSolution) -> str:
-    """Another way out of a search that is too long."""
+    """Another remedy for a search that is too long."""
     return ", or take another start (--seed 1)" if solution.formulation in LOCAL else ""

@@ -7,18 +7,25 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
-from bemcontact.assessment.contender import Attempt, Contender, ContenderRecord, assess, contender, contender_record
+from bemcontact.assessment.contender import (
+    OUTCOMES,
+    Attempt,
+    Contender,
+    ContenderRecord,
+    Outcome,
+    assess,
+    contender,
+    contender_record,
+)
 from bemcontact.assessment.matrices import WeightedCompliance, condition, weighted_compliance
-from bemcontact.assessment.verdict import OUTCOMES, Outcome
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.record import ContactRecord, contact_record
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import Weights
-from bemcontact.serialization import Leaf, Record, json_text
+from bemcontact.serialization import Leaf, Record, Recorded
 from bemcontact.version import __version__
 
 SAME = 1e-6
@@ -80,7 +87,7 @@ class ComparisonRecord(Record):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Comparison:
+class Comparison(Recorded):
     """Formulations of one condensed problem side by side."""
 
     contact: CondensedContact
@@ -150,7 +157,7 @@ class Comparison:
         return next((item for item in self.differences if (item.one, item.other) == pair), None)
 
     def record(self) -> ComparisonRecord:
-        """Return what JSON holds of it."""
+        """Return the JSON form of the comparison."""
         return ComparisonRecord(
             name=self.contact.name,
             version=__version__,
@@ -165,28 +172,12 @@ class Comparison:
             matrices=MatricesRecord(condition=self.condition, weighted=self.matrices),
         )
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON."""
-        return self.record().to_dict()
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)
-
 
 def comparison(contact: CondensedContact, reference: Attempt, attempts: Sequence[Attempt]) -> Comparison:
     """Assess the solutions of formulations, without trust in a solver, and put them side by side.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    reference : the direct solution
-    attempts : of the formulations
-
-    Raises
-    ------
-    ProblemError
-        The problem does not carry the weights asked for.
+    The reference is the attempt of the direct solver. `ProblemError` if the problem does not carry the weights asked
+    for.
     """
     asked = [item.options.weights for item in attempts if item.options.uses("weights")]
     weights = [*dict.fromkeys([Weights.TRIBUTARY, *asked])]
@@ -235,7 +226,7 @@ def _difference(
     peak: float,
     size: float,
 ) -> Difference:
-    """Of two solutions with their labels, over a peak pressure and a mean square."""
+    """Difference of two solutions with their labels, over a peak pressure and a mean square."""
     (label, solution), (against, basis) = one, other
     apart = solution.pressure - basis.pressure
     own = solution.pressure if solution.unpolished is None else solution.unpolished
@@ -249,7 +240,7 @@ def _difference(
 
 
 def _verdict(direct: Contender, contenders: Sequence[Contender], differences: Sequence[Difference]) -> str:
-    """Say what a comparison shows as a whole."""
+    """The result of a comparison as a whole, in sentences."""
     solving = [item for item in contenders if OUTCOMES[item.verdict.outcome].solves]
     labels = {item.label for item in [*solving, direct]}
     apart = max((item.largest for item in differences if {item.one, item.other} <= labels), default=0.0)

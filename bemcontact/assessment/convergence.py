@@ -1,4 +1,4 @@
-"""How an answer changes as the mesh gets finer: differences, and the order that they show."""
+"""How an answer changes as the mesh gets finer: differences, and their order."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from bemcontact.serialization import Leaf
 ORDERS = 0.05, 12.0
 """Orders between which one is looked for."""
 ROUND_OFF = 1e-9
-"""Change relative to the value below which it tells of round-off and no longer of the mesh."""
+"""Change relative to the value below which it is due to round-off and not to the mesh."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,18 +48,10 @@ class Convergence(Leaf):
 
 
 def convergence(refine: Sequence[int], footprints: Sequence[Footprint], asymmetries: Sequence[float]) -> Convergence:
-    """Compare the answer on several meshes.
+    """Compare the answer on several meshes, each element of which is cut into `refine` parts, ascending.
 
-    Parameters
-    ----------
-    refine : parts into which each element is cut, ascending; the element length goes with the reciprocal
-    footprints : of the answer on each mesh
-    asymmetries : of J M on each mesh, zero in the limit
-
-    Returns
-    -------
-    Convergence
-        Ends of contact by their arc positions; without them where the number of intervals changes.
+    The element length goes with the reciprocal. Ends of contact are compared by their arc positions, unless the number
+    of intervals changes. The asymmetry of J M is zero in the limit.
     """
     h = [1.0 / parts for parts in refine]
     peaks = [item.peak.pressure for item in footprints if item.peak is not None]
@@ -69,10 +61,10 @@ def convergence(refine: Sequence[int], footprints: Sequence[Footprint], asymmetr
     if all(stretch == stretches[0] for stretch in stretches):
         for i, zone in enumerate(stretches[0]):
             place, of = stretches[0][: i + 1].count(zone), stretches[0].count(zone)
-            told = f"contact {place} in {zone}, along it" if of > 1 else f"contact in {zone}, along it"
+            part = f"contact {place} in {zone}, along it" if of > 1 else f"contact in {zone}, along it"
             for name, key in (("start", "start_arc"), ("end", "end_arc")):
                 values = _unwound([item.intervals[i] for item in footprints], key)
-                quantities.append(_towards_a_limit(f"{name} of {told}", "L", h, values))
+                quantities.append(_towards_a_limit(f"{name} of {part}", "L", h, values))
     else:
         remark = "the contact intervals are not the same on all meshes, so that their ends cannot be compared"
     quantities.append(_towards_zero("asymmetry of J M", h, asymmetries))
@@ -80,7 +72,7 @@ def convergence(refine: Sequence[int], footprints: Sequence[Footprint], asymmetr
 
 
 def _unwound(intervals: Sequence[ContactInterval], key: str) -> list[float]:
-    """Arc positions on one mesh after the other, on closed runs counted on from the one before by the nearest way."""
+    """Arc positions on one mesh after the other; on a closed run each is the nearest to the one before."""
     values: list[float] = []
     for interval in intervals:
         value = float(getattr(interval, key))
@@ -111,7 +103,7 @@ def _towards_a_limit(name: str, dimension: Literal["p", "L"], h: Sequence[float]
 
 
 def _order(h: Sequence[float], values: Sequence[float]) -> float | None:
-    """The order that three meshes show, if they do."""
+    """The order shown by three meshes; None if there is none."""
     first, second = values[0] - values[1], values[1] - values[2]
     size = ROUND_OFF * max(map(abs, values))
     if abs(first) <= size or abs(second) <= size:

@@ -98,22 +98,13 @@ def footprint_record(footprint: Footprint) -> FootprintRecord:
 
 
 def footprint(contact: CondensedContact, solution: ContactSolution) -> Footprint:
-    """Find contact intervals, peak and resultant of a solution.
+    """Find contact intervals, peak and resultant of a solution of any formulation.
 
     A point touches if p/T > δ/U. The end of an interval is read off the gap, which grows like s^(3/2) beyond it: the
     zero of the line through δ^(2/3) at the first three open points, as long as the gap grows, kept between the last
     point in contact and the first open one. With two open points the line goes through both; with one the end is put
     half-way. Contact up to the end of a run ends at its last point, or at the node beyond it that a condition holds on
     the rigid surface.
-
-    Parameters
-    ----------
-    contact : CondensedContact
-    solution : of any formulation
-
-    Returns
-    -------
-    Footprint
     """
     return Footprint(
         intervals=tuple(
@@ -131,18 +122,9 @@ def end_rates(
 ) -> tuple[tuple[float | None, float | None], ...]:
     """How fast the ends of contact move along the boundary, as `footprint` reads them off the gap.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    solution : of any formulation
-    gap_rate : (n,) derivative of the gap per unit of something, [L] over its unit; not a number at points that are
-        about to enter or leave contact
-
-    Returns
-    -------
-    tuple
-        For each interval of `footprint` the derivatives of `start_arc` and `end_arc`: zero where an end is kept at a
-        point, None beside a point that is about to enter or leave contact.
+    `gap_rate` (n,) is the derivative of the gap per unit of something; it is not a number at points that are about to
+    enter or leave contact. For each interval the result has the derivatives of `start_arc` and `end_arc`: zero where an
+    end is kept at a point, None beside a point that is about to enter or leave contact.
     """
     return tuple(pair for _, path in _paths(contact, solution) for pair in _rates(path, gap_rate[path.index]))
 
@@ -151,24 +133,15 @@ def resting_ends(contact: CondensedContact, solution: ContactSolution) -> tuple[
     """Ends of contact that `footprint` keeps at a point, although open points follow: their rates are zero.
 
     There the line through the gaps of the open points would end beyond the two points between which contact ends.
-
-    Parameters
-    ----------
-    contact : CondensedContact
-    solution : of any formulation
-
-    Returns
-    -------
-    tuple of points
     """
-    found = []
+    resting = []
     for _, path in _paths(contact, solution):
         for ends in () if path.closed else _stretches(path):
             for last, step in zip(ends, (-1, +1), strict=True):
                 position = _end(path, last, step)
                 if len(_opened(path, last, step)) > 1 and position in (path.arc[last], path.arc[last + step]):
-                    found.append(_at(path, position))
-    return tuple(found)
+                    resting.append(_at(path, position))
+    return tuple(resting)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -227,14 +200,14 @@ def _path(contact: CondensedContact, zone: int, run: int, gap: Array, touching: 
 
 
 def _stretches(path: _Path) -> list[tuple[int, int]]:
-    """First and last point of the unbroken stretches of contact of a run, one that goes all around apart."""
+    """First and last point of each unbroken stretch of contact of a run that does not touch all around."""
     edges = np.diff(np.concatenate([[0], path.touching.astype(int), [0]]))
     begins, ends = np.flatnonzero(edges > 0).tolist(), (np.flatnonzero(edges < 0) - 1).tolist()
     return [(begin, finish) for begin, finish in zip(begins, ends, strict=True) if path.first <= begin < path.last]
 
 
 def _intervals(path: _Path, zone: str) -> list[ContactInterval]:
-    """The unbroken stretches of contact of a run; a closed run in contact all around is one, from its first point."""
+    """The stretches of contact of a run; a closed run in contact all around is one, from its first point."""
     if path.closed:
         return [_interval(path, zone, path.arc[path.first], path.arc[path.last])]
     return [_interval(path, zone, _end(path, begin, -1), _end(path, finish, +1)) for begin, finish in _stretches(path)]

@@ -1,4 +1,4 @@
-"""What the condensed matrices are like: asymmetry, definiteness, condition; they decide what can be proved."""
+"""Asymmetry, definiteness and condition of the condensed matrices, which decide what can be proved."""
 
 from dataclasses import dataclass
 

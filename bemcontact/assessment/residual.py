@@ -1,4 +1,9 @@
-"""How wrong a solution is, recomputed from p and u_n alone: `residuals`."""
+"""Residuals and objectives of a solution, recomputed from p and u_n alone.
+
+All objectives are zero at the contact state with diagonal weights. The consistent weights couple neighbors, so that the
+objectives are not zero there. An objective below that of another solution says nothing where equations or bounds are
+violated: read it beside the residuals.
+"""
 
 from dataclasses import dataclass
 
@@ -7,6 +12,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.options import Weights
 from bemcontact.serialization import Leaf
 
 
@@ -56,7 +62,7 @@ def residuals(contact: CondensedContact, solution: ContactSolution, force_balanc
         work=float(contact.weights @ (p * gap)) / (U * T * float(contact.weights.max())),
         equilibrium=_largest(np.abs(residual) / U),
         stiffness_rows=_largest(np.abs(K @ u_n - B @ p - r) / T),
-        balance=_largest(_imbalance(contact, p) / (T * np.abs(contact.equilibrium).sum(axis=0))),
+        balance=_largest(np.abs(contact.imbalance(p)) / (T * np.abs(contact.equilibrium).sum(axis=0))),
         round_off=_largest(_round_off(contact, solution)[contact.touching(p, u_n)] / U),
         force_balance=force_balance,
     )
@@ -70,11 +76,54 @@ def _round_off(contact: CondensedContact, solution: ContactSolution) -> Array:
     return contact.size * np.finfo(float).eps * terms
 
 
-def _imbalance(contact: CondensedContact, pressure: Array) -> Array:
-    """|ℓᵀp + load| (k,)."""
-    return np.abs(contact.imbalance(pressure))
-
-
 def _largest(values: Array) -> float:
-    """The largest positive one, or zero."""
+    """The largest positive value, or zero."""
     return float(values.max(initial=0.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class PenaltyObjective(Leaf):
+    """Objective of QP2 with one penalty."""
+
+    penalty: float
+    """Penalty μ, free of units."""
+    value: float
+    """F2 = F1 + (1/μ)|K u_n - B p - r|², (30), scaled."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Objectives(Leaf):
+    """Objectives of one solution under every statement, over U T max|J|, the scales and the weights.
+
+    All are zero at the contact state with positive diagonal weights.
+    """
+
+    weights: Weights
+    """The weights J in all of them."""
+    qp1: float
+    """F1 = pᵀJ(ε + u_n), (27), with the solver's own displacements u_n."""
+    qp2: tuple[PenaltyObjective, ...]
+    """F2 of (30) for each penalty μ."""
+    qp3: float
+    """F3 = pᵀJ(ε + Δ1 + M p + R a), (40), with the displacements that the equations give for these pressures."""
+
+
+def objectives(
+    contact: CondensedContact, solution: ContactSolution, weights: Weights, penalties: tuple[float, ...]
+) -> Objectives:
+    """Evaluate (27), (30) and (40) at a solution; `ProblemError` if the problem does not carry these weights."""
+    U, T = contact.scales
+    J = contact.weight_matrix(weights)
+    p, u = solution.pressure / T, solution.displacement / U
+    K, B, r = contact.stiffness_rows
+    residual = (K @ solution.displacement - B @ solution.pressure - r) / T
+    work = p @ J / np.abs(J).max()
+    qp1 = float(work @ (contact.initial_gap / U + u))
+    return Objectives(
+        weights=weights,
+        qp1=qp1,
+        qp2=tuple(
+            PenaltyObjective(penalty=penalty, value=qp1 + float(residual @ residual) / penalty) for penalty in penalties
+        ),
+        qp3=float(work @ contact.gap(solution.pressure, solution.rigid_amplitudes)) / U,
+    )

@@ -26,12 +26,8 @@ SETTLED = 1e-14
 class ContactBlock:
     """The equations of contact: δ = 0 on points A, p = 0 elsewhere, ℓᵀp = -load; factorized once.
 
-    The matrix is [[M, R], [ℓᵀ, 0]] on A and all motions, unsymmetric and indefinite.
-
-    Parameters
-    ----------
-    contact : ScaledContact
-    points : A, indices of points, ascending
+    The matrix is [[M, R], [ℓᵀ, 0]] on A and all motions, unsymmetric and indefinite. The `points` A are ascending
+    indices.
     """
 
     contact: ScaledContact
@@ -72,18 +68,7 @@ class ContactBlock:
         return self._lu.solve(right, lambda x: right - self.matrix @ x) if right.size else right
 
     def solve(self, *given: Change) -> tuple[Array, Array, Array]:
-        """Solve the equations of contact for several offsets and loads.
-
-        Parameters
-        ----------
-        given : m offsets with their loads, dimensionless
-
-        Returns
-        -------
-        pressure : (m, n), zero off A, of either sign
-        gap : (m, n), zero on A
-        amplitudes : (m, k)
-        """
+        """Solve for m offsets with their loads: p (m, n), zero off A, of either sign; δ (m, n), zero on A; a (m, k)."""
         A = self.points
         offset = np.array([change.offset for change in given])
         load = np.array([change.motion_load for change in given])
@@ -127,19 +112,10 @@ def first_active_set(contact: ScaledContact) -> BoolArray:
 
 
 def primal_dual(contact: ScaledContact, active: BoolArray, limit: int = STEP_LIMIT) -> ActiveSetEnd:
-    """Iterate from an active set until nothing changes, a set comes back, or the limit is reached.
+    """Iterate from an active set (n,) until nothing changes, a set comes back, or the limit of steps is reached.
 
-    Each step solves `solve_active_set`, then releases the points in tension and adds the points that penetrate.
-
-    Parameters
-    ----------
-    active : (n,) the points assumed to be in contact
-    limit : most steps to make
-
-    Returns
-    -------
-    ActiveSetEnd
-        The point of smallest residual; only the residual says whether it is a solution.
+    Each step solves `solve_active_set`, then releases the points in tension and adds the points that penetrate. Only
+    the residual of the best point says whether it is a solution.
     """
     points: list[tuple[Array, Array]] = []
     residuals: list[float] = []
@@ -157,17 +133,9 @@ def primal_dual(contact: ScaledContact, active: BoolArray, limit: int = STEP_LIM
 
 
 def solve_active_set(contact: ScaledContact, active: BoolArray) -> tuple[Array, Array]:
-    """Solve δ = 0 on the active set A, p = 0 off it, and ℓᵀp = -load.
+    """Solve δ = 0 on the active set (n,), p = 0 off it, and ℓᵀp = -load for p (n,), of either sign, and a (k,).
 
-    Parameters
-    ----------
-    active : (n,) True on A
-
-    Returns
-    -------
-    pressure : (n,), of either sign
-    amplitudes : (k,)
-        The shortest least-squares solution if A holds the body too little or too often.
+    The amplitudes are the shortest least-squares solution if the set holds the body too little or too often.
     """
     block = ContactBlock(contact=contact, points=np.flatnonzero(active))
     right = -np.append(contact.offset[block.points], contact.motion_load)

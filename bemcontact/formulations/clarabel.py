@@ -46,25 +46,12 @@ class _Scaling(NamedTuple):
 
 
 def minimize(problem: Any, max_iterations: int | None = None, *, equilibrate: bool = True, size: float = 1.0) -> Array:
-    """Solve a cvxpy problem; its status and values are set as by its own `solve`, which has coarser tolerances.
+    """Solve a convex cvxpy problem; its status and values are set as by its own `solve`, which has coarser tolerances.
 
-    Parameters
-    ----------
-    problem : cvxpy problem, convex, with cones that Clarabel knows
-    max_iterations : of Clarabel, 200 if None
-    equilibrate : whether to scale rows and columns; False for a dimensionless problem
-    size : number by which all variables and right sides of a dimensionless problem are divided
-
-    Returns
-    -------
-    Array
-        Objective without its constant, and residual of the constraints that Clarabel holds against its tolerance,
-        (iterations + 1, 2). One row less if Clarabel gave up in the last iteration.
-
-    Raises
-    ------
-    SolverError
-        If Clarabel cannot state or solve it.
+    Rows and columns are scaled (`equilibrate`), unless the problem is dimensionless: then all variables and right sides
+    are divided by `size`. The result (iterations + 1, 2) is the objective without its constant and the residual of the
+    constraints that Clarabel holds against its tolerance. It has one row less if Clarabel gave up in the last
+    iteration. `SolverError` if Clarabel cannot state or solve the problem.
     """
     import cvxpy as cp
 

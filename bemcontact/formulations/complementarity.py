@@ -1,8 +1,12 @@
 """The direct solver: gap = q + M p + R a >= 0, p >= 0, p·gap = 0, ℓᵀp = -load, and the polish of other solvers.
 
-Primal-dual active set first, Lemke's method behind it. The quadratic programs are compared with it.
+The primal-dual active set comes first. Lemke's complementary pivoting follows where that cycles (Cottle, Pang and
+Stone, "The Linear Complementarity Problem", 1992, section 4.4, with the lexicographic rule of section 4.9, which makes
+it finite). For a row sufficient M its path ends at a solution or proves that there is none. The quadratic programs are
+compared with the direct solution.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,10 +19,15 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual
-from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
 from bemcontact.options import FormulationName, SolveOptions, options_of
 
+PIVOT = 1e-11
+TIE = 1e-12
+VANISHED = 1e-13
+ROUND_OFF = 1e-11
+REFRESH = 50
+"""Pivots after which the inverse of the basis is computed anew, against the growth of round-off."""
 ACCEPTED = 1e-11
 """Value of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
 BALANCED = 1e-12
@@ -31,13 +40,132 @@ ACTIVE_SET, LEMKE = "primal-dual active set", "Lemke's method"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class LemkeEnd:
+    """How the path of pivots ended: its status, where z is basic (n,), and z0 after each pivot (`covers`).
+
+    The status is SOLVED, INFEASIBLE (proved by a ray), ITERATION_LIMIT, or NO_SOLUTION_FOUND (no proof).
+    """
+
+    status: Status
+    active: BoolArray
+    covers: tuple[float, ...]
+
+    @property
+    def pivots(self) -> int:
+        """Number of pivots."""
+        return len(self.covers)
+
+
+def lemke(M: Array, q: Array, covering: Array | None = None, limit: int | None = None) -> LemkeEnd:
+    """Follow the solutions of w = q + M z + d z0 from a large z0 down to z0 = 0.
+
+    Solve for the values of the basic variables anew: that is more accurate than the pivots are.
+
+    Parameters
+    ----------
+    M, q : (n, n) and (n,), of size one: the tolerances are absolute
+    covering : (n,) d > 0. The default, row sums of |M| plus max|q|, takes two pivots for the families of Murty and of
+        Fathi; d = (1, 2, 4, ...) takes 2ⁿ for Murty's.
+    limit : of pivots, default 1000 + 50 n
+    """
+    n = len(q)
+    if (q >= 0).all():
+        return LemkeEnd(status=Status.SOLVED, active=np.zeros(n, bool), covers=())
+    d = np.abs(M).sum(axis=1) + np.abs(q).max() if covering is None else covering
+    limit = 1000 + 50 * n if limit is None else limit
+    basis, covers = _Basis(M, q, d), []
+    entering, column, row = basis.cover, -d, basis.leaving_row(d)
+    while row is not None and len(covers) < limit:
+        left = basis.exchange(row, entering, column)
+        covers.append(basis.cover_value)
+        if left == basis.cover:
+            return LemkeEnd(status=Status.SOLVED, active=basis.active, covers=tuple(covers))
+        entering = left + n if left < n else left - n
+        column = basis.column(entering)
+        row = basis.leaving_row(column)
+    status = Status.ITERATION_LIMIT if row is not None else _end_of_ray(M, q, basis, entering, column)
+    return LemkeEnd(status=status, active=basis.active, covers=tuple(covers))
+
+
+class _Basis:
+    """The dictionary w - M z - d z0 = q for one set of basic variables: 0..n-1 are w, n..2n-1 are z, 2n is z0."""
+
+    def __init__(self, M: Array, q: Array, d: Array) -> None:
+        self.cover = 2 * len(q)
+        self.vectors = np.vstack([np.eye(len(q)), -M.T, -d])
+        self.right = q
+        self.basic = np.arange(len(q))
+        self.inverse = np.eye(len(q))
+        self.values = q.copy()
+        self.age = 0
+
+    @property
+    def active(self) -> BoolArray:
+        """(n,) True where z is basic."""
+        active = np.zeros(self.cover + 1, bool)
+        active[self.basic] = True
+        return active[len(self.right) : self.cover]
+
+    @property
+    def cover_value(self) -> float:
+        """z0, which is zero where it is not basic."""
+        return float(self.values[self.basic == self.cover].sum())
+
+    def column(self, variable: int) -> Array:
+        """Decrease of each basic variable per increase of this one, (n,)."""
+        return self.inverse @ self.vectors[variable]
+
+    def leaving_row(self, column: Array) -> int | None:
+        """The basic variable that first falls to zero, lexicographically; z0 where it is among the first."""
+        rows = np.flatnonzero(column > PIVOT * max(1.0, np.abs(column).max()))
+        if not rows.size:
+            return None
+        for values in (self.values, *self.inverse.T):
+            ratios = values[rows] / column[rows]
+            rows = rows[ratios <= ratios.min() + TIE]
+            for row in rows[self.basic[rows] == self.cover]:
+                return int(row)
+            if rows.size == 1:
+                break
+        return int(rows[0])
+
+    def exchange(self, row: int, entering: int, column: Array) -> int:
+        """Pivot, and return the variable that left."""
+        left = int(self.basic[row])
+        self.basic[row] = entering
+        self.age += 1
+        for array in (self.inverse, self.values):
+            pivot_row = array[row] / column[row]
+            array -= np.multiply.outer(column, pivot_row)
+            array[row] = pivot_row
+        if self.age % REFRESH == 0:
+            with suppress(np.linalg.LinAlgError):  # then the updated inverse has to serve
+                self.inverse = np.linalg.inv(self.vectors[self.basic].T)
+                self.values = self.inverse @ self.right
+        return left
+
+
+def _end_of_ray(M: Array, q: Array, basis: _Basis, entering: int, column: Array) -> Status:
+    """A direction y >= 0 of z along which nothing falls proves infeasibility if Mᵀy <= 0 and qᵀy < 0 (Farkas)."""
+    if basis.cover_value <= VANISHED:
+        return Status.SOLVED
+    direction = np.zeros(basis.cover + 1)
+    direction[basis.basic] = -column
+    direction[entering] = 1.0
+    y = np.maximum(direction[len(q) : basis.cover], 0.0)
+    y /= max(y.max(), 1e-300)
+    proved = (M.T @ y).max() <= ROUND_OFF and q @ y < -1e3 * ROUND_OFF
+    return Status.INFEASIBLE if proved else Status.NO_SOLUTION_FOUND
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class LcpResult:
     """Result of `solve_lcp`; z and w are a solution only with `Status.SOLVED`.
 
     Parameters
     ----------
     z, w : (n,) with z >= 0 and w = q + M z
-    status : INFEASIBLE is said only with a certificate of Farkas in hand
+    status : INFEASIBLE only with a certificate of Farkas
     iterations : steps of the active set plus pivots
     method : the one that ended the search
     """
@@ -54,12 +182,13 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
 
     Parameters
     ----------
-    M : (n, n), neither symmetric nor definite of necessity; if it is row sufficient, there is always an answer
+    M : (n, n), of any kind; there is always an answer if it is row sufficient
     q : (n,)
 
     Returns
     -------
     LcpResult
+        Check its `status`.
 
     Raises
     ------
@@ -87,21 +216,10 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
 def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:
     """Solve the complementarity problem (16)-(18) with (35)-(38) directly, without an objective.
 
-    Parameters
-    ----------
-    options : `max_iterations` limits the pivots of Lemke's method; the rest has no meaning here and must not be set
-
-    Returns
-    -------
-    ContactSolution
-        p is exactly zero off the contact set. With `Status.INFEASIBLE` p = 0, and the notes say in which motion the
-        load carries the body away. Its history is `ScaledContact.residual` after each step of the active set, and
-        as "infeasibility" the artificial variable z0 after each pivot of Lemke's method.
-
-    Raises
-    ------
-    ProblemError
-        An option has no meaning here, such as weights.
+    p is exactly zero off the contact set. With `Status.INFEASIBLE` p = 0, and the notes describe the motion in which
+    the load carries the body away. The history is `ScaledContact.residual` after each step of the active set, and as
+    "infeasibility" the artificial variable z0 after each pivot of Lemke's method, which `max_iterations` limits.
+    `ProblemError` if another option is set.
     """
     options = options_of(FormulationName.COMPLEMENTARITY, options)
     if note := escape_note(contact):
@@ -129,15 +247,8 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
 def polish(contact: CondensedContact, solution: ContactSolution) -> ContactSolution:
     """Make an approximate solution exact by a few primal-dual steps from its contact set {p/T > δ/U}.
 
-    Parameters
-    ----------
-    solution : of any formulation
-
-    Returns
-    -------
-    ContactSolution
-        With `polished` set if the natural residual got smaller, or is at round-off where the solver had left traces of
-        pressure off the contact set. Else `solution` itself.
+    `polished` is set if the natural residual got smaller, or is at round-off where the solver had left traces of
+    pressure off the contact set. Otherwise the solution is returned as it is.
     """
     body = scaled(contact)
     p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
@@ -182,13 +293,7 @@ def standard_form(contact: ScaledContact) -> tuple[Array, Array, BoolArray]:
     Choose k points B on which R_B has full rank (QR with pivoting). The block of [[M, R], [ℓᵀ, 0]] on B and the motions
     then is nonsingular whatever M is, so that p_B and a can be expressed by δ_B and p elsewhere. On B pressure and gap
     change places. Rows are weighted by J: Δzᵀ Δw = Δpᵀ JM Δp on the equilibrium space, so that M' inherits
-    semidefiniteness from sym(JM) there.
-
-    Returns
-    -------
-    matrix : (n, n) M'
-    vector : (n,) q'
-    exchanged : (n,) True on B: z is the gap and w the pressure there
+    semidefiniteness from sym(JM) there. The result is M' (n, n), q' (n,) and the mask of B (n,).
     """
     M, R, ell, J = contact.compliance, contact.rigid_motions, contact.equilibrium, contact.weights
     n, k = R.shape

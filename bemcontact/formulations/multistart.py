@@ -10,8 +10,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import End, RandomStarts
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.formulations import FORMULATIONS
-from bemcontact.formulations.search import contact_residual
-from bemcontact.formulations.start import draw_starts
+from bemcontact.formulations.search import contact_residual, draw_starts
 from bemcontact.options import SolveOptions
 
 SAME = 1e-6
@@ -28,8 +27,7 @@ def solve_contact(
 ) -> tuple[ContactSolution, RandomStarts | None]:
     """Solve by the formulation of the options.
 
-    With a number of starts the solution is that of the first start which led to the best end, and all ends are
-    returned beside it.
+    With a number of starts the solution is that from the first start which led to the best end. All ends come with it.
     """
     solve = FORMULATIONS[options.formulation]
     if options.starts is None:
@@ -41,17 +39,9 @@ def solve_contact(
 
 
 def multistart(contact: CondensedContact, options: SolveOptions, progress: Progress | None = None) -> RandomStarts:
-    """Search from random starts, without polish, which would hide where a search ended, and sort the ends.
+    """Search from random starts, and sort the ends; there is no polish, which would hide where a search ended.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    options : of QP1 or QP2, with number and seed of the starts
-    progress : called after each search with the number of searches done
-
-    Returns
-    -------
-    RandomStarts
+    `progress` is called after each search with the number of searches done.
     """
     count, seed = options.starts or 1, options.seed or 0
     ends: list[End] = []

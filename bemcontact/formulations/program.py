@@ -1,4 +1,4 @@
-"""The quadratic program over (u_n, p) that QP1 and QP2 share, and how it is handed to the local solver.
+"""The quadratic program over (u_n, p) that QP1 and QP2 share, and its minimization by the local solver.
 
 x = (u_n, p), or (u_n, p, a) where the compliance rows bring in the amplitudes; all of it dimensionless as in
 `bemcontact.formulations.scaling`, but with u_n itself and not the gap, so that the null vector is that of [SS92].
@@ -13,20 +13,13 @@ from scipy.linalg import block_diag
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations.local_solver import QPOptions, QPResult, inertia, minimize_qp
-from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point
-from bemcontact.formulations.start import Start
+from bemcontact.formulations.scaling import ScaledContact, scaled
 from bemcontact.options import Rows
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Equations:
-    """A x = b over x of N entries.
-
-    Parameters
-    ----------
-    matrix : (m, N) A
-    right : (m,) b
-    """
+    """A x = b over x of N entries: `matrix` (m, N) and `right` (m,)."""
 
     matrix: Array
     right: Array
@@ -159,20 +152,3 @@ def minimize(program: Program, start: Array, max_iterations: int | None) -> QPRe
         x0=np.concatenate([x, (E @ x - e) / root]),
         options=QPOptions(max_iterations=max_iterations),
     )
-
-
-def start_vector(contact: CondensedContact, start: Start | None, size: int) -> Array:
-    """A start as x of `size` entries: u_n/U, p/T, and the amplitudes that fit them best; None is the null vector."""
-    x = np.zeros(size)
-    if start is None:
-        return x
-    n = contact.size
-    p, a = scaled_point(contact, start.pressure, amplitudes(contact, start.pressure, start.displacement))
-    x[:n], x[n : 2 * n] = start.displacement / contact.scales.displacement, p
-    x[2 * n :] = a[: size - 2 * n]
-    return x
-
-
-def amplitudes(contact: CondensedContact, pressure: Array, displacement: Array) -> Array:
-    """The a (k,) with which u_n = Δ1 + M p + R a comes closest, in the least squares of the weights."""
-    return contact.amplitudes_of(displacement - contact.free_displacement - contact.compliance @ pressure)

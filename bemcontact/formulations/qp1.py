@@ -46,22 +46,10 @@ def statement(contact: CondensedContact, options: SolveOptions) -> Program:
 def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:
     """Find a local minimum of QP1, then polish it unless it is certain not to be the contact state.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    options : weights, rows, start, whether to polish, limit of the solver's iterations
-
-    Returns
-    -------
-    ContactSolution
-        `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state, `Status.NUMERICAL_FAILURE` where
-        QP1 is convex on its equations and has no such; with `smallest_eigenvalue` of the Hessian on the equations.
-        Its history is the sum of infeasibilities, as the solver scales them, and then `Program.value`.
-
-    Raises
-    ------
-    ProblemError
-        The problem does not carry the weights asked for, or an option has no meaning for QP1.
+    The status is `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state, and
+    `Status.NUMERICAL_FAILURE` where QP1 is convex on its equations and has no such point. `smallest_eigenvalue` is that
+    of the Hessian on the equations. The history is the sum of infeasibilities, as the solver scales them, and then
+    `Program.value`. `ProblemError` if the problem does not carry the weights, or an option has no meaning for QP1.
     """
     options = options_of(FormulationName.QP1, options)
     program = statement(contact, options)

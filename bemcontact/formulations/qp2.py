@@ -62,22 +62,10 @@ class Ray:
 
 
 def statement(contact: CondensedContact, options: SolveOptions) -> Program:
-    """Write (30)-(34) on the scaled problem.
+    """(30)-(34) on the scaled problem, over (u_n, p), or (u_n, p, a) with the compliance rows.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    options : weights, penalty, rows, equilibrium
-
-    Returns
-    -------
-    Program
-        Over (u_n, p), or (u_n, p, a) with the compliance rows.
-
-    Raises
-    ------
-    ProblemError
-        The problem does not carry the weights asked for, or the rows do not contain the equilibrium to be penalized.
+    `ProblemError` if the problem does not carry the weights, or the rows do not contain the equilibrium to be
+    penalized.
     """
     penalized = contact_equations(contact, options.rows)
     size = penalized.matrix.shape[1]
@@ -112,15 +100,7 @@ def penalty_unit(contact: CondensedContact, options: SolveOptions) -> float:
 def convexity_limit(contact: CondensedContact, options: SolveOptions) -> float:
     """The largest μ, free of units, for which QP2 is convex.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    options : weights, rows, equilibrium
-
-    Returns
-    -------
-    float
-        Zero if QP2 is convex for none, infinite if equilibrium leaves no pressure free.
+    It is zero if QP2 is convex for none, and infinite if equilibrium leaves no pressure free.
     """
     problem, J = scaled(contact), scaled_weights(contact, options.weights)
     n, k = problem.rigid_motions.shape
@@ -145,16 +125,7 @@ def two_point_ray(contact: CondensedContact, options: SolveOptions) -> Ray | Non
     """Find p growing by β at i and u_n by α at j, J_ij < 0, such that αβ J_ij + (1/μ)|α K e_j - β B e_i|² < 0.
 
     For given i, j the quadratic form in α, β > 0 is somewhere negative if μ > 2(|K e_j||B e_i| - K e_j·B e_i)/(-J_ij).
-
-    Parameters
-    ----------
-    contact : CondensedContact
-    options : weights, penalty, rows, equilibrium
-
-    Returns
-    -------
-    Ray or None
-        The one of the lowest limit; None if μ is not above it, or equilibrium lets no single pressure grow.
+    The result is the ray of the lowest limit; None if μ is not above it, or equilibrium lets no single pressure grow.
     """
     n, J = contact.size, scaled_weights(contact, options.weights)
     if not (J < 0).any() or (contact.free_motions and options.equilibrium is Equilibrium.CONSTRAINT):
@@ -174,23 +145,11 @@ def two_point_ray(contact: CondensedContact, options: SolveOptions) -> Ray | Non
 def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:
     """Find a local minimum of QP2, then polish it unless it is certain not to be the contact state.
 
-    Parameters
-    ----------
-    contact : CondensedContact
-    options : weights, penalty, rows, equilibrium, start, whether to polish, limit of the solver's iterations
-
-    Returns
-    -------
-    ContactSolution
-        `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state, `Status.NUMERICAL_FAILURE` where
-        there is none; with the penalty and the limit of convexity in `search`. Its history is the sum of
-        infeasibilities, as the solver scales them, and then `Program.value`.
-
-    Raises
-    ------
-    ProblemError
-        QP2 has no minimum, as with the consistent weights and a large penalty; the problem does not carry the weights
-        asked for; the rows do not contain the equilibrium to be penalized.
+    The status is `Status.LOCAL_MINIMUM` at a stationary point that is not the contact state, and
+    `Status.NUMERICAL_FAILURE` where there is no such point. `search` has the penalty and the limit of convexity. The
+    history is the sum of infeasibilities, as the solver scales them, and then `Program.value`. `ProblemError` if QP2
+    has no minimum, as with the consistent weights and a large penalty, if the problem does not carry the weights, or if
+    the rows do not contain the equilibrium to be penalized.
     """
     options = options_of(FormulationName.QP2, options)
     program = statement(contact, options)
@@ -218,7 +177,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
 
 
 def _unbounded(contact: CondensedContact, options: SolveOptions, ray: Ray, unit: float) -> str:
-    """Tell of a ray in words."""
+    """Describe a ray."""
     (x, y), (v, w) = contact.points[ray.pressed], contact.points[ray.opened]
     return (
         f"QP2 has no minimum with {options.weights.value} weights and penalty {options.penalty:.3g} "
@@ -230,7 +189,7 @@ def _unbounded(contact: CondensedContact, options: SolveOptions, ray: Ray, unit:
 
 
 def _notes(contact: CondensedContact, options: SolveOptions, solution: ContactSolution) -> tuple[str, ...]:
-    """What to know of equilibrium that is only penalized."""
+    """Notes on equilibrium that is only penalized."""
     if options.equilibrium is Equilibrium.CONSTRAINT:
         return ()
     if not contact.free_motions:

@@ -56,15 +56,11 @@ class Objective:
 
 
 def objective(contact: ScaledContact, J: Array) -> Objective:
-    """Write pᵀJδ as a convex function of (p, a) by means of equilibrium.
+    """Write pᵀJδ as a convex function of (p, a) by means of equilibrium; J (n, n) is scaled.
 
     With P = I - R(ℓᵀR)⁻¹ℓᵀ and p0 = -R(ℓᵀR)⁻¹load every p in equilibrium is P p + p0, so that
     pᵀJM p = (P p)ᵀJM(P p) + p0ᵀ(JM + MᵀJᵀ)P p + p0ᵀJM p0. And if JR = ℓC, then pᵀJR a = -loadᵀC a; C = I for the
     tributary J.
-
-    Parameters
-    ----------
-    J : (n, n) weights of the objective, scaled
     """
     weighted, project, p0 = J @ contact.compliance, contact.projector, contact.balancing_pressure
     hessian = weighted + weighted.T
@@ -80,17 +76,9 @@ def objective(contact: ScaledContact, J: Array) -> Objective:
 def smallest_eigenvalue(contact: ScaledContact, J: Array) -> float | None:
     """Smallest eigenvalue of Zᵀ(JM + MᵀJᵀ)Z, Z spanning {p : ℓᵀp = 0}: the curvature on the equilibrium space.
 
-    Where ZᵀJR is not zero, pᵀJR a makes the objective a saddle in (p, a), and the eigenvalue is that of the Hessian in
-    both. Never so with the tributary weights.
-
-    Parameters
-    ----------
-    J : (n, n) weights of the objective, scaled
-
-    Returns
-    -------
-    float or None
-        Dimensionless; None if equilibrium leaves no pressure free (n = k).
+    J (n, n) is scaled. Where ZᵀJR is not zero, pᵀJR a makes the objective a saddle in (p, a), and the eigenvalue is
+    that of the Hessian in both; the tributary weights exclude this. None if equilibrium leaves no pressure free (n =
+    k).
     """
     R, Z = contact.rigid_motions, contact.equilibrium_space
     n, k = R.shape
@@ -108,18 +96,9 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     """Minimize QP3, (40)-(42), on the scaled problem, then polish.
 
     With the consistent weights the minimum need not be the contact state, because J has negative entries. The result is
-    then not polished.
-
-    Parameters
-    ----------
-    options : weights of the objective, whether to polish, limit of Clarabel's iterations
-
-    Returns
-    -------
-    ContactSolution
-        With `smallest_eigenvalue` of the scaled Hessian. The history begins at Clarabel's start: `Objective.value`, and
-        as "infeasibility" the residual of the constraints that Clarabel holds against its tolerance, relative to their
-        terms where those are larger than one.
+    then not polished. `smallest_eigenvalue` is that of the scaled Hessian. The history begins at Clarabel's start:
+    `Objective.value`, and as "infeasibility" the residual of the constraints that Clarabel holds against its tolerance,
+    relative to their terms where those are larger than one.
 
     Raises
     ------
@@ -217,19 +196,10 @@ def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | No
 
 
 def nearly_convex(work: Objective, eigenvalue: float, weights: Weights) -> Objective:
-    """Drop the negative part of a Hessian that is slightly indefinite because of the mesh; refuse any other.
+    """Drop the negative part of a Hessian that is slightly indefinite because of the mesh.
 
     Collocation leaves sym(JM) slightly indefinite on coarse meshes of slender bodies and at acute corners.
-
-    Parameters
-    ----------
-    eigenvalue : `smallest_eigenvalue` of the problem, negative
-    weights : of the objective
-
-    Raises
-    ------
-    NotConvexError
-        If the weights are not tributary, or the eigenvalue is more than a hundredth of the largest.
+    `NotConvexError` if the weights are not tributary, or the eigenvalue is more than a hundredth of the largest.
     """
     values, vectors = np.linalg.eigh(work.hessian)
     if weights is Weights.TRIBUTARY and eigenvalue >= -SLIGHT * values[-1]:

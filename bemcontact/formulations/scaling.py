@@ -1,8 +1,7 @@
 """Scaling: make a contact problem dimensionless, and put the units back into its solution.
 
 Displacement is divided by U, pressure by T (`CondensedContact.scales`), weights by the largest one, and each free
-motion by its own largest component along the normals. A change of units leaves the numbers here
-unchanged.
+motion by its own largest component along the normals. A change of units leaves the numbers here unchanged.
 """
 
 from dataclasses import dataclass
@@ -48,9 +47,7 @@ class ScaledContact(MotionAlgebra):
 def scaled(contact: CondensedContact, scales: ContactScales | None = None) -> ScaledContact:
     """Take the units out of a contact problem.
 
-    Parameters
-    ----------
-    scales : other ones than those of the problem, which depend on its load; then ‖M‖∞ = 1 only if U = ‖M‖∞ T
+    `scales` replace those of the problem, which depend on its load; then ‖M‖∞ = 1 only if U = ‖M‖∞ T.
     """
     U, T = scales or contact.scales
     weight = contact.weights.max()
@@ -83,19 +80,7 @@ def scaled_change(contact: CondensedContact, change: Change) -> Change:
 
 
 def unscaled(contact: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array, Array]:
-    """Put the units of a contact problem back into a solution of `scaled`.
-
-    Parameters
-    ----------
-    pressure : (n,) p, dimensionless
-    amplitudes : (k,) a, dimensionless
-
-    Returns
-    -------
-    pressure : (n,) [p]
-    displacement : (n,) u_n = Δ1 + M p + R a [L]
-    amplitudes : (k,) in the user's units
-    """
+    """Put the units back: p (n,) [p], u_n = Δ1 + M p + R a (n,) [L] and a (k,) from dimensionless p and a."""
     U, T = contact.scales
     p, a = pressure * T, amplitudes * U / motion_sizes(contact)
     return p, contact.free_displacement + contact.compliance @ p + contact.rigid_motions @ a, a

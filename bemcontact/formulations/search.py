@@ -1,32 +1,38 @@
-"""The search of the local solver for a minimum of QP1 or QP2, and whether its end is the contact state."""
+"""The local solver on QP1 and QP2: its start, its search for a minimum, and whether the end is the contact state."""
 
-from dataclasses import replace
+import json
+import os
+from dataclasses import dataclass, replace
 from itertools import groupby
+from pathlib import Path
 
 import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, LocalSearch, Penalty, Status, Trace, traces_in_turn
+from bemcontact.errors import OptionError, SpecError
+from bemcontact.files.text import text_of
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.local_solver import QPResult, QPStatus
-from bemcontact.formulations.program import Program, amplitudes, minimize, start_vector
+from bemcontact.formulations.program import Program, minimize
 from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
-from bemcontact.formulations.start import Start, start_of
-from bemcontact.options import SolveOptions, Weights
+from bemcontact.options import SolveOptions, StartName, Weights, ensure_whole
 
+SPREAD = 2.0
+"""Largest random pressure over T, and size of a random displacement over U."""
 SOLUTION = 1e-8
 """Residual up to which the end of a search counts as the contact state: searches that go well leave 1e-10 and less."""
 ZERO = 1e-6
 """Scaled objective that a solver's tolerance may leave where the best value is 0: large errors may hide behind it."""
 STATIONARY = "stationary but not the solution, with an objective of {:.1e} (scaled) and not 0"
-NEAR = "not the solution, but the solver's tolerance cannot tell its objective, {:.1e} (scaled), from 0"
+NEAR = "not the solution, but its objective, {:.1e} (scaled), is 0 to the solver's tolerance"
 LOST = "not the solution, although round-off makes it look stationary, with an objective of {:.1e} (scaled) and not 0"
 BIASED = (
     "not the solution, with an objective of {:.1e} (scaled): consistent weights have negative entries, so that the "
     "least objective lies below 0 and off the solution, and an objective of 0 certifies nothing"
 )
-"""What is said of points where a search ended, with their objectives."""
+"""Descriptions of points where a search ended, with their objectives."""
 POLISHED = (Status.SOLVED, Status.NO_SOLUTION_FOUND, Status.NUMERICAL_FAILURE)
 """Ends from which the polish is tried."""
 NO_CONTACT_STATE = (
@@ -46,6 +52,117 @@ STATUSES = {
 }
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Start:
+    """Where a local solver starts, in the user's units.
+
+    Parameters
+    ----------
+    pressure : (n,) p [p]
+    displacement : (n,) u_n [L]
+    label : what reports call it
+    """
+
+    pressure: Array
+    displacement: Array
+    label: str = "given point"
+
+    def __post_init__(self) -> None:
+        """Refuse all but two equally long vectors of finite numbers; make them read-only."""
+        for name in ("pressure", "displacement"):
+            try:
+                vector = np.array(getattr(self, name), float, ndmin=1)
+            except (TypeError, ValueError):
+                vector = np.array([np.nan])
+            if vector.ndim != 1 or not np.isfinite(vector).all():
+                raise OptionError(f"the {name} of a start needs finite numbers, one for each contact point")
+            vector.setflags(write=False)
+            object.__setattr__(self, name, vector)
+        if self.pressure.shape != self.displacement.shape:
+            raise OptionError(
+                f"a start needs one pressure and one displacement for each contact point; found {self.pressure.size} "
+                f"pressures and {self.displacement.size} displacements"
+            )
+
+
+def read_start(path: str | os.PathLike[str]) -> Start:
+    """Read a start from a file that `bemcontact solve --json` wrote; `SpecError` says what is wrong with it."""
+    name, text = Path(path).name, text_of(path)
+    try:
+        record = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise SpecError(
+            f"{path}:{error.lineno}:{error.colno}: is no JSON ({error.msg}); name a file of results"
+        ) from None
+    lists = []
+    for key in ("pressure", "normal_displacement"):
+        values = record.get(key) if isinstance(record, dict) else None
+        if not isinstance(values, list) or not all(type(value) in (int, float) for value in values):
+            raise SpecError(
+                f"{path}: has no list '{key}' of numbers, one for each contact point; name a file that "
+                "`bemcontact solve --json FILE` has written"
+            )
+        lists.append(values)
+    return Start(pressure=np.array(lists[0], float), displacement=np.array(lists[1], float), label=f"file {name}")
+
+
+def with_start_read(options: SolveOptions) -> SolveOptions:
+    """Options with the start that its file contains."""
+    return replace(options, start=read_start(options.start)) if isinstance(options.start, os.PathLike) else options
+
+
+def start_of(contact: CondensedContact, options: SolveOptions) -> Start | None:
+    """The start that options ask for, the first of several random ones; None is the null vector."""
+    if options.is_random:
+        return draw_starts(contact, 1, options.seed or 0)[0]
+    given = with_start_read(options).start
+    if given is None or isinstance(given, StartName | os.PathLike):
+        return None
+    if (size := np.size(given.pressure)) != contact.size:
+        raise OptionError(
+            f"the start has {size} contact points and the problem {contact.size}; give one pressure and one "
+            "displacement for each, in the order of the problem's points"
+        )
+    return Start(pressure=given.pressure, displacement=given.displacement, label=given.label)
+
+
+def draw_starts(contact: CondensedContact, count: int, seed: int = 0) -> tuple[Start, ...]:
+    """Draw starts: pressures even in [0, 2T], displacements normal with deviation 2U, the body moved likewise.
+
+    The same seed gives the same starts, in any units, and fewer starts are the first of more. `OptionError` for a count
+    below 1, a negative seed, or numbers that are not whole.
+    """
+    ensure_whole(count, "number of starts", 1)
+    ensure_whole(seed, "seed", 0)
+    rng = np.random.default_rng(seed)
+    U, T = contact.scales
+    motions = contact.rigid_motions / np.abs(contact.rigid_motions).max(axis=0, initial=0.0)
+    starts = []
+    for number in range(count):
+        pressure = rng.uniform(0.0, SPREAD, contact.size)
+        displacement = SPREAD * (rng.standard_normal(contact.size) + motions @ rng.standard_normal(motions.shape[1]))
+        label = f"random point {number}, seed {seed}"
+        starts.append(Start(pressure=pressure * T, displacement=displacement * U, label=label))
+    return tuple(starts)
+
+
+def start_vector(contact: CondensedContact, start: Start | None, size: int) -> Array:
+    """A start as x of `size` entries: u_n/U, p/T, and the amplitudes that fit them best; None is the null vector."""
+    x = np.zeros(size)
+    if start is None:
+        return x
+    n = contact.size
+    p, a = scaled_point(contact, start.pressure, amplitudes(contact, start.pressure, start.displacement))
+    x[:n], x[n : 2 * n] = start.displacement / contact.scales.displacement, p
+    x[2 * n :] = a[: size - 2 * n]
+    return x
+
+
+def amplitudes(contact: CondensedContact, pressure: Array, displacement: Array) -> Array:
+    """The a (k,) with which u_n = Δ1 + M p + R a comes closest, in the least squares of the weights."""
+    return contact.amplitudes_of(displacement - contact.free_displacement - contact.compliance @ pressure)
+
+
 def searched(
     contact: CondensedContact,
     options: SolveOptions,
@@ -54,18 +171,11 @@ def searched(
     only: bool,
     penalty: Penalty | None = None,
 ) -> ContactSolution:
-    """Solve a program and judge its end by its residual, not by what the solver claims.
+    """Solve a program and assess its end by its residual, not by the status of the solver.
 
     With weights that are not negative the least value is zero, attained at the contact state alone. An end elsewhere is
-    a local minimum, or due to round-off if there is none. The displacement of the solution is the solver's own u_n.
-
-    Parameters
-    ----------
-    contact : CondensedContact
-    options : start, limit of iterations, weights
-    program : Program
-    only : whether the contact state is proved to be the only stationary point with weights that are not negative
-    penalty : reported with the search
+    a local minimum, or due to round-off if there is none (`only`). The displacement of the solution is the
+    solver's own u_n. The penalty is reported with the search.
     """
     start = start_of(contact, options)
     result = minimize(program, start_vector(contact, start, len(program.linear)), options.max_iterations)
@@ -89,8 +199,8 @@ def searched(
 def polished(contact: CondensedContact, options: SolveOptions, solution: ContactSolution) -> ContactSolution:
     """Polish a solution where that is asked for and useful; an end that round-off has spoilt may become the solution.
 
-    These are left as they are: a true minimum elsewhere, a search that was cut short or proved that there is nothing to
-    find, and a solution with consistent weights.
+    These are left as they are: a true minimum elsewhere, a search that was cut short or proved that there is no
+    solution, and a solution with consistent weights.
     """
     if not options.polish or options.weights is Weights.CONSISTENT or solution.status not in POLISHED:
         return solution
@@ -122,7 +232,7 @@ def ray_in_words(contact: CondensedContact, ray: Array) -> str:
 
 
 def _search(start: Start | None, program: Program, result: QPResult, penalty: Penalty | None) -> LocalSearch:
-    """What is reported of a search."""
+    """The report of a search."""
     return LocalSearch(
         start="null vector" if start is None else start.label,
         phase_one_iterations=result.phase_one_iterations,
@@ -166,8 +276,8 @@ def _solution(contact: CondensedContact, formulation: str, result: QPResult, sea
 def _history(result: QPResult) -> tuple[Trace, ...]:
     """Sum of infeasibilities after each iteration of phase one, `Program.value` after each of phase two.
 
-    `minimise` hands over squares and a product and no constant beside them: the solver's objective is that value. It
-    goes back to phase one where round-off has taken a constraint away.
+    `minimize` states squares and a product without a constant: the objective of the solver is that value. The solver
+    goes back to phase one where round-off has violated a constraint.
     """
     phases = groupby(result.log, key=lambda line: line.phase)
     return traces_in_turn(*((QUANTITIES[phase], [line.value for line in lines]) for phase, lines in phases))

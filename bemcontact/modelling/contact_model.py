@@ -34,23 +34,23 @@ class ContactProblem(cp.Problem):
 class ContactModel:
     """Minimize F3 = pᵀJ gap with gap = q + M p + R a >= 0, p >= 0, ℓᵀp = -load, (40)-(42), to be extended in cvxpy.
 
-    All is in the user's units; the variables behind the expressions are scaled, so that units do not matter to a
-    solver. The expressions are affine and may be used in what is added. After new values of parameters nothing is
-    compiled anew. Values stand in the expressions, as is cvxpy's way, until the next solve; `result` takes them out.
+    Everything is in the user's units; the variables behind the expressions are scaled, so that units do not matter to a
+    solver. The expressions are affine and may be used in additions. After new values of parameters nothing is compiled
+    anew. Values stay in the expressions until the next solve, as in cvxpy; `result` takes them out.
 
     Parameters
     ----------
     original : the contact problem that the model was made of
-    parameters : what may change; `initial_gap`, `case_factors`, `tool_position` and `tool_force` are its own
+    parameters : `initial_gap`, `case_factors`, `tool_position` and `tool_force`, and the sums that they enter
     pressure : (n,) p [p], an expression
     motions : (k,) a, an expression; None without free motions
     gap : (n,) δ [L]
     displacement : (n,) u_n = Δ1 + M p + R a [L]
-    tool_displacement : (t, 3) where the tools are: x, y [L] and rotation [rad]; None without tools
+    tool_displacement : (t, 3) x, y [L] and rotation [rad] of the tools; None without tools
     objective : F3 [p L²], which is zero at a contact state; in equilibrium it is pᵀJ gap
     constraints : "no_penetration", "no_tension" and, with free motions, "equilibrium"
     scales : displacement [L] and pressure [p] that the variables behind the expressions are divided by
-    notes : what a user should know
+    notes : warnings to the user
     """
 
     original: CondensedContact
@@ -82,15 +82,18 @@ class ContactModel:
 
     @property
     def tool_position(self) -> cp.Parameter | None:
-        """Displacement (t, 3) of tools beside what the load cases add: x, y [L] and rotation [rad]; None without tools.
+        """Displacement (t, 3) of tools, x, y [L] and rotation [rad], beside that of load cases; None without tools.
 
-        That of free components is unused.
+        Free components are not used.
         """
         return self.parameters.tool_position
 
     @property
     def tool_force(self) -> cp.Parameter | None:
-        """Force (t, 3) on the free components of tools, likewise: x, y [p L] and moment [p L²]; None without tools."""
+        """Force (t, 3) on free components of tools, x, y [p L] and moment [p L²], beside that of load cases.
+
+        None without tools.
+        """
         return self.parameters.tool_force
 
     def resultant(self, zone: str | None = None) -> cp.Expression:
@@ -100,14 +103,10 @@ class ContactModel:
         ----------
         zone : name of a contact zone
 
-        Returns
-        -------
-        cvxpy Expression
-
         Raises
         ------
         ProblemError
-            If there is no such zone.
+            There is no such zone.
         """
         names = self.original.zone_names
         if zone is not None and zone not in names:
@@ -123,22 +122,18 @@ class ContactModel:
     def problem(
         self, extra_objective: cp.Expression | None = None, extra_constraints: Sequence[cp.Constraint] = ()
     ) -> cp.Problem:
-        """Put objective and constraints together with what is added; to be solved again after changes of parameters.
+        """Put objective, constraints and additions together; it can be solved again after changes of parameters.
 
         Parameters
         ----------
         extra_objective : convex scalar that is added to F3 [p L²]
         extra_constraints : convex constraints
 
-        Returns
-        -------
-        cvxpy Problem
-
         Raises
         ------
         ProblemError
-            If what is added is of another kind, is not convex, or parameters enter it so that each change of them is a
-            new problem.
+            The additions are of another kind or not convex, or parameters enter them so that each change is a new
+            problem.
         """
         if extra_objective is not None and not isinstance(extra_objective, cp.Expression | Real):
             kind = type(extra_objective).__name__
@@ -167,21 +162,21 @@ class ContactModel:
 
         Parameters
         ----------
-        extra_objective, extra_constraints : as of `problem`
-        problem : one that was made before, in place of these; solved again, it is not compiled again
+        extra_objective, extra_constraints : as in `problem`
+        problem : a result of `problem`, instead of these; it is not compiled again
         max_iterations : of Clarabel, 200 if None
 
         Returns
         -------
         ModelResult
-            Check its `status`: a model without a solution is no error.
+            Check its `status`: a model without a solution is not an error.
 
         Raises
         ------
         ProblemError
-            As of `problem`, or if both ways are used at once.
+            As in `problem`, or if both a problem and additions are given.
         SolverError
-            If Clarabel cannot state the model, or breaks down.
+            Clarabel cannot state the model, or breaks down.
         """
         added = (
             extra_objective is not None or isinstance(extra_constraints, cp.Constraint) or len(extra_constraints) > 0
@@ -195,7 +190,7 @@ class ContactModel:
         return self.result(chosen)
 
     def _from_last(self) -> ModelResult | None:
-        """Try a few active-set steps from the values of the last solve; None if they do not lead to a contact state."""
+        """The contact state by a few active-set steps from the last solve; None if they do not lead to one."""
         if self.pressure.value is None:
             return None
         contact, motions = self.contact, self.motions
@@ -210,20 +205,16 @@ class ContactModel:
         return result
 
     def result(self, problem: cp.Problem) -> ModelResult:
-        """Take everything out of a problem that has been solved, and judge it at the present values of the parameters.
+        """Take the result out of a solved problem, and assess it at the present values of the parameters.
 
         Parameters
         ----------
-        problem : of `problem`, or one that was put together from parts of the model otherwise
-
-        Returns
-        -------
-        ModelResult
+        problem : a result of `problem`, or one that was built otherwise from parts of the model
 
         Raises
         ------
         ProblemError
-            If it has not been solved, or knows nothing of the model's pressure.
+            It has not been solved, or does not contain the pressure of the model.
         """
         parts = zip(problem.constraints, self.constraints.values(), strict=False)
         pure = len(problem.constraints) == len(self.constraints) and all(one is other for one, other in parts)
@@ -237,15 +228,7 @@ class ContactModel:
 
 
 def model(contact: CondensedContact) -> ContactModel:
-    """Write a condensed contact as a cvxpy model; its parameters have the values that are in effect.
-
-    Parameters
-    ----------
-    contact : CondensedContact
-
-    Returns
-    -------
-    ContactModel
+    """Write a condensed contact as a cvxpy model whose parameters have the present values.
 
     Raises
     ------
@@ -279,7 +262,7 @@ def model(contact: CondensedContact) -> ContactModel:
 
 
 def ensure_convex(problem: cp.Problem) -> None:
-    """Refuse what is not convex, or not so in parameters that it need be compiled once only, with a `ProblemError`."""
+    """Refuse, with a `ProblemError`, a problem that is not convex, or that each change of a parameter compiles anew."""
     if problem.is_dpp():
         return
     if problem.is_dcp():
@@ -305,7 +288,7 @@ def typical_scales(contact: CondensedContact) -> ContactScales:
 
 
 def _convex_hessian(problem: ScaledContact) -> tuple[Array, tuple[str, ...]]:
-    """Hessian (n, n) of F3 on the equilibrium space, as QP3 has it, and what was left out of it."""
+    """Hessian (n, n) of F3 on the equilibrium space, as in QP3, and a note on the part that was dropped."""
     J = np.diag(problem.weights)
     work, eigenvalue = qp3.objective(problem, J), qp3.smallest_eigenvalue(problem, J)
     if eigenvalue is None or eigenvalue >= -qp3.NEGLIGIBLE:

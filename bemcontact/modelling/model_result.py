@@ -1,4 +1,4 @@
-"""The result of a model: arrays, residuals and certificate, and a verdict in words."""
+"""The result of a model: arrays, residuals, certificate, and an assessment in sentences."""
 
 from dataclasses import dataclass, replace
 from typing import Any, cast
@@ -23,19 +23,19 @@ NOT_CONTACT = "optimum of your model, not a contact state"
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ModelResult:
-    """The optimum of a contact model, recomputed and judged; arrays are None where there is no optimum.
+    """The optimum of a contact model, recomputed and assessed; arrays are None where there is no optimum.
 
     Parameters
     ----------
     status : how the solver ended
-    words : the verdict in a sentence or two
+    words : the assessment in a sentence or two
     contact_state : whether it is a contact state: to round-off if nothing was added, else to the solver's tolerance
-    objective : of all that was minimized, in the user's units
+    objective : of everything that was minimized, in the user's units
     pressure : (n,) [p]
     gap : (n,) [L]
     motions : (k,) a
     tool_displacement : (t, 3) x, y [L] and rotation [rad]
-    solution : the same as a contact solution, polished if nothing was added
+    solution : contact solution, polished if nothing was added
     residuals, certificate : recomputed
     """
 
@@ -68,19 +68,9 @@ def read_back(
     *,
     added: bool,
 ) -> ModelResult:
-    """Take the arrays out of a solved problem and judge them.
+    """Take the arrays out of a solved problem and assess them; `added` if it is more than the contact problem.
 
-    Parameters
-    ----------
-    contact : the contact problem with the present values of the parameters
-    problem : solved
-    pressure, motions : of the model
-    added : whether the problem is more than the contact problem
-
-    Raises
-    ------
-    ProblemError
-        If the problem has not been solved, has no pressure of the model, or is not the last one solved.
+    `ProblemError` if the problem has not been solved, has no pressure of the model, or is not the last one solved.
     """
     if problem.status is None:
         raise ProblemError("the problem has not been solved; solve it first, or let model.solve do both")
@@ -102,14 +92,7 @@ def read_back(
 def solution_at(
     contact: CondensedContact, pressure: cp.Expression, motions: cp.Expression | None, solver: str
 ) -> ContactSolution:
-    """The present values of a model as a contact solution.
-
-    Parameters
-    ----------
-    contact : the contact problem with the present values of the parameters
-    pressure, motions : of the model
-    solver : name of the program that found them
-    """
+    """The present values of a model as a contact solution of the present contact problem."""
     p = np.array(pressure.value, float)
     a = np.zeros(0) if motions is None else np.array(motions.value, float)
     return ContactSolution(
@@ -124,14 +107,7 @@ def solution_at(
 
 
 def judged(contact: CondensedContact, solution: ContactSolution, *, added: bool) -> ModelResult:
-    """Judge the optimum of a model.
-
-    Parameters
-    ----------
-    contact : the contact problem with the present values of the parameters
-    solution : of the model
-    added : whether the model is more than the contact problem
-    """
+    """Assess the optimum of a model; `added` if the model is more than the contact problem."""
     recomputed = residuals(contact, solution)
     certificate = certify(contact, solution, recomputed, SEEN) if added else certify(contact, solution, recomputed)
     gap = contact.initial_gap + solution.displacement
@@ -177,7 +153,7 @@ def _without_optimum(contact: CondensedContact, status: Status, *, added: bool) 
 
 
 def _words(status: Status, certificate: Certificate, recomputed: Residuals, *, added: bool) -> str:
-    """The verdict."""
+    """The assessment in words."""
     cut = "" if status is Status.SOLVED else f" The solver {status.words}."
     if certificate.complaint and added:
         return f"This is the {NOT_CONTACT}: {certificate.complaint}.{cut}"

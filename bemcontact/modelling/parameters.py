@@ -22,7 +22,7 @@ class Parameters:
     rest : the condensed contact with all load cases off and all tools undisplaced and unloaded
     initial_gap : (n,) [L]
     case_factors : (c,)
-    tool_position, tool_force : (t, 3), beside what the load cases add
+    tool_position, tool_force : (t, 3), without what the load cases add
     """
 
     rest: CondensedContact
@@ -33,7 +33,7 @@ class Parameters:
 
     @classmethod
     def of(cls, contact: CondensedContact) -> "Parameters":
-        """Parameters with the values that are in effect."""
+        """Parameters with the present values of a contact problem."""
         cases, tools = contact.cases, contact.tools
         rest = contact.at_rest()
         position = (tools.position - cases.position @ cases.factors).reshape(-1, 3)
@@ -97,7 +97,7 @@ class Parameters:
 
 
 def value_of(expression: cp.Expression) -> Array:
-    """Give the value of an expression or parameter; `ProblemError` if it has none."""
+    """The value of an expression or parameter; `ProblemError` if it has none."""
     if expression.value is None:
         raise ProblemError(f"'{expression.name()}' has no value yet; set it, or solve first")
     return np.array(expression.value, float)

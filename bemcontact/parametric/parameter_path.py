@@ -95,7 +95,7 @@ class ParameterPath(Leaf):
         return self.path.complete and self.path.unique and self.path.residual <= RESIDUAL
 
     def value(self, t: float) -> float:
-        """The parameter at t of the path; what is round-off of its ends counts as zero."""
+        """The parameter at t of the path; round-off of its ends counts as zero."""
         value = (1 - t) * self.start + t * self.end
         return value if abs(value) > ROUND_OFF * max(abs(self.start), abs(self.end)) else 0.0
 
@@ -207,5 +207,5 @@ def _cell(numbers: Sequence[float]) -> str:
 
 
 def _plain(number: float) -> float:
-    """A number as a Python number, so that it is written plainly."""
+    """An integer or a float of Python, whose text is plain."""
     return int(number) if isinstance(number, int | np.integer) else float(number)

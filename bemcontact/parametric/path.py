@@ -66,7 +66,7 @@ class LoadPath(Leaf):
         freeze_arrays(self)
 
     def __repr__(self) -> str:
-        """One line: name, range, breakpoints, what is wrong."""
+        """One line: name, range, breakpoints, notes."""
         wrong = "".join(f"; {text}" for text in self.notes)
         return (
             f"<LoadPath of {self.start.name!r}: {len(self.parameter)} breakpoints from {self.begins_at:g} to "
@@ -199,12 +199,12 @@ class LoadPath(Leaf):
         Returns
         -------
         ContactSolution
-            Of `contact(t)`. Where the body tips over, that after it.
+            Solution of `contact(t)`. Where the body tips over, it is the state after that.
 
         Raises
         ------
         ProblemError
-            If the path does not reach there.
+            The path does not reach t.
         """
         self._ensure_reached(t)
         i = int(np.searchsorted(self.parameter, t, side="right")) - 1
@@ -248,6 +248,9 @@ class LoadPath(Leaf):
 def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:
     """Follow the contact state from one problem to another of the same body, exactly.
 
+    The path is followed from the start, or from the end backwards where the start has no solution or leaves the
+    position of the body open.
+
     Parameters
     ----------
     start, end : with the same compliance, free motions and weights; gaps and loads differ, as `with_factors` and
@@ -256,13 +259,12 @@ def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:
     Returns
     -------
     LoadPath
-        It is followed from the start, or from the end backwards where the start has no solution or leaves the position
-        of the body open. Where it is given up early, `note` says why.
+        Where it ends early, `note` gives the reason.
 
     Raises
     ------
     ProblemError
-        If they are no condensed problems, differ in something else, or neither has a contact state from which a path
+        They are not condensed problems, differ in something else, or neither has a contact state from which a path
         leads.
     """
     for given in (start, end):
@@ -280,7 +282,7 @@ def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:
 
 
 def ensure_same_body(start: CondensedContact, end: CondensedContact) -> None:
-    """Refuse two problems that differ in more than gap and load with a `ProblemError` that says in what."""
+    """Refuse two problems that differ in more than gap and load; the `ProblemError` names the difference."""
     for name, what in COMMON.items():
         one, other = getattr(start, name), getattr(end, name)
         if one.shape != other.shape:
@@ -294,7 +296,7 @@ WAY_OUT = "a path is exact only for loads, gaps and tools: condense once, then u
 
 
 def _followed(first: CondensedContact, last: CondensedContact) -> tuple[Trail | None, str]:
-    """Solve the first problem and follow its state to the last; with the reason if it does not get there."""
+    """Solve the first problem and follow its state to the last; the text is the reason if it does not reach it."""
     solution = complementarity.solve(first)
     if solution.status is not Status.SOLVED:
         return None, "; ".join(solution.notes) or solution.status.words

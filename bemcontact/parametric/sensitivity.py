@@ -15,8 +15,8 @@ from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
-from bemcontact.parametric.derivative import WEAK, Tangent, is_monotone
 from bemcontact.parametric.path import NOT_PROVED
+from bemcontact.parametric.pivoting import WEAK, Tangent, is_monotone
 from bemcontact.serialization import Internal, Leaf, Pairs, Vector
 
 EXACT = 1e-9
@@ -79,7 +79,7 @@ class Sensitivity(Leaf):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Sensitivities(Leaf):
-    """Derivatives of a contact state with respect to its parameters; a sensitivity is found by its key."""
+    """Derivatives of a contact state with respect to its parameters."""
 
     solution: Internal[ContactSolution]
     """The contact state."""
@@ -107,7 +107,7 @@ class Sensitivities(Leaf):
         return len(self.each)
 
     def __repr__(self) -> str:
-        """One line: keys, and what is to be known."""
+        """One line: keys and notes."""
         notes = "".join(f"; {note}" for note in self.notes)
         return f"<Sensitivities to {', '.join(self.each) or 'nothing'}{notes}>"
 
@@ -123,7 +123,7 @@ def sensitivities(
     changes: Mapping[str, Change] | None = None,
     solution: ContactSolution | None = None,
 ) -> Sensitivities:
-    """Differentiate a contact state with respect to what changes its gap and load linearly.
+    """Differentiate a contact state with respect to parameters that change its gap and load linearly.
 
     Parameters
     ----------
@@ -139,10 +139,10 @@ def sensitivities(
     Raises
     ------
     ProblemError
-        If there is no contact state, the given one is none, or it does not determine a derivative: contact does not
-        hold the body, or the change carries it away.
+        There is no contact state, the given one is none, or it does not determine a derivative: contact does not hold
+        the body, or the change carries it away.
     SingularSystemError
-        If the equations of contact are singular to working precision.
+        The equations of contact are singular to working precision.
     """
     wanted = contact.changes if changes is None else {key: _fitting(contact, key, *changes[key]) for key in changes}
     state = complementarity.solve(contact) if solution is None else solution
@@ -165,26 +165,12 @@ def sensitivities(
 
 
 def modulus_change(contact: CondensedContact, doubled: CondensedContact, modulus: float, pressure: Array) -> Change:
-    """Change of the gap at a given pressure with Young's modulus E, per unit of E.
+    """Change of the gap at a given pressure (n,) with Young's modulus E, per unit of E.
 
     M falls as 1/E, and so does the part Δs/E of Δ1 that loads bring about; Δu, from prescribed displacements, stays.
-    Δ1(E) - Δ1(2E) = Δs/(2E) tells them apart, so that d(Δ1 + M p)/dE = -(2 (Δ1(E) - Δ1(2E)) + M p)/E.
-
-    Parameters
-    ----------
-    contact, doubled : the problem with E, and with 2 E
-    modulus : E [p]
-    pressure : (n,) of the state that is differentiated [p]
-
-    Returns
-    -------
-    Change
-        Of this state only, since it contains M p.
-
-    Raises
-    ------
-    ProblemError
-        If the second problem is not the first with twice the modulus.
+    `doubled` is the problem with 2 E. Δ1(E) - Δ1(2E) = Δs/(2E) separates them, so that
+    d(Δ1 + M p)/dE = -(2 (Δ1(E) - Δ1(2E)) + M p)/E. The change is that of this state only, since it contains M p.
+    `ProblemError` if the second problem is not the first with twice the modulus.
     """
     M = contact.compliance
     if M.shape != doubled.compliance.shape or np.abs(2 * doubled.compliance - M).max() > INVERSE * np.abs(M).max():
@@ -252,7 +238,7 @@ def _highest(contact: CondensedContact, solution: ContactSolution) -> IntArray:
 
 
 def _notes(contact: CondensedContact, weak: IntArray, highest: IntArray, unique: bool) -> Iterator[str]:
-    """Notes on what is unusual."""
+    """Notes on weakly active points, a shared peak and uniqueness."""
     if weak.size:
         verb = "touch" if weak.size > 1 else "touches"
         yield f"{_placed(contact, weak)} {verb} without pressure: derivatives differ as a parameter rises and falls"

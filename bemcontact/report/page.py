@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-from bemcontact.assessment.verdict import OUTCOMES, Outcome
+from bemcontact.assessment.contender import OUTCOMES, Outcome
 from bemcontact.problem import Units
 from bemcontact.report.facts import NOTHING, Record, facts, scores_in_words, small
 from bemcontact.report.formatting import number, penalty_unit, sentence_case, with_unit

@@ -174,8 +174,8 @@ def test_nothing_but_equilibrium_is_certified(seed):
     M = np.eye(2) + 0.1 * rng.standard_normal((2, 2))
     problem = CondensedContact.from_compliance(M, rng.uniform(-1, 1, 2), rigid_motions=R, motion_load=-R.T @ expected)
     for solver in (complementarity.solve, qp3.solve):
-        found = solver(problem)
-        assert certify(problem, found, residuals(problem, found)).certified
-        assert found.pressure == pytest.approx(expected, rel=1e-9)
-    wrong = replace(found, pressure=np.zeros(2))
+        result = solver(problem)
+        assert certify(problem, result, residuals(problem, result)).certified
+        assert result.pressure == pytest.approx(expected, rel=1e-9)
+    wrong = replace(result, pressure=np.zeros(2))
     assert not certify(problem, wrong, residuals(problem, wrong)).certified

@@ -155,33 +155,33 @@ def test_zones_and_runs_are_kept_apart():
 
 def test_no_contact():
     arc = np.arange(4.0)
-    found = footprint(*state(np.column_stack([arc, 0 * arc]), arc, np.zeros(4), np.ones(4)))
-    assert found.intervals == ()
-    assert found.peak is None
-    assert found.resultant.force == (0.0, 0.0)
-    assert found.resultant.line_point is None
+    result = footprint(*state(np.column_stack([arc, 0 * arc]), arc, np.zeros(4), np.ones(4)))
+    assert result.intervals == ()
+    assert result.peak is None
+    assert result.resultant.force == (0.0, 0.0)
+    assert result.resultant.line_point is None
 
 
 def test_resultant_and_line_of_action():
     """Forces (0, 2) at x = 1 and (0, 6) at x = 3: together (0, 8) at x = 2.5, moment 20 about the origin."""
     arc = np.array([0.0, 1.0, 2.0, 3.0])
-    found = footprint(*state(np.column_stack([arc, 0 * arc - 1]), arc, np.array([0.0, 2, 0, 6]), np.zeros(4)))
-    assert found.resultant.force == (0.0, 8.0)
-    assert found.resultant.moment == pytest.approx(20.0)
-    assert found.resultant.line_point == pytest.approx((2.5, 0.0))
-    assert found.peak is not None
-    assert found.peak.pressure == 6.0
-    assert found.peak.at == (3.0, -1.0)
+    result = footprint(*state(np.column_stack([arc, 0 * arc - 1]), arc, np.array([0.0, 2, 0, 6]), np.zeros(4)))
+    assert result.resultant.force == (0.0, 8.0)
+    assert result.resultant.moment == pytest.approx(20.0)
+    assert result.resultant.line_point == pytest.approx((2.5, 0.0))
+    assert result.peak is not None
+    assert result.peak.pressure == 6.0
+    assert result.peak.at == (3.0, -1.0)
 
 
 def test_oblique_resultant():
     """The moment of the force through the point of the line nearest to the origin is the moment."""
     rng = np.random.default_rng(0)
     normals = rng.standard_normal((5, 2))
-    found = footprint(
+    result = footprint(
         *state(rng.standard_normal((5, 2)), np.arange(5.0), rng.uniform(0, 1, 5), np.zeros(5), normals=normals)
     ).resultant
-    assert found.line_point is not None
-    (x, y), (fx, fy) = found.line_point, found.force
-    assert x * fy - y * fx == pytest.approx(found.moment, rel=1e-12)
+    assert result.line_point is not None
+    (x, y), (fx, fy) = result.line_point, result.force
+    assert x * fy - y * fx == pytest.approx(result.moment, rel=1e-12)
     assert x * fx + y * fy == pytest.approx(0.0, abs=1e-12)

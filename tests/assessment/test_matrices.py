@@ -13,14 +13,14 @@ from bemcontact.options import Weights
 
 def test_two_points_by_hand():
     """M = [[2, 1], [0, 1]] over its norm 3: sym = [[2, ½], [½, 1]]/3, eigenvalues (3 ± √2)/6; |M - Mᵀ| / |M + Mᵀ|."""
-    found = weighted_compliance(
+    result = weighted_compliance(
         CondensedContact.from_compliance([[2.0, 1.0], [0.0, 1.0]], [-1.0, 0.0]), Weights.TRIBUTARY
     )
-    assert found.smallest_eigenvalue == pytest.approx((3 - np.sqrt(2)) / 6)
-    assert found.largest_eigenvalue == pytest.approx((3 + np.sqrt(2)) / 6)
-    assert found.asymmetry == pytest.approx(np.sqrt(2) / np.sqrt(16 + 4 + 2))
-    assert found.convex
-    assert found.negative_weights == 0
+    assert result.smallest_eigenvalue == pytest.approx((3 - np.sqrt(2)) / 6)
+    assert result.largest_eigenvalue == pytest.approx((3 + np.sqrt(2)) / 6)
+    assert result.asymmetry == pytest.approx(np.sqrt(2) / np.sqrt(16 + 4 + 2))
+    assert result.convex
+    assert result.negative_weights == 0
 
 
 def test_equilibrium_leaves_one_direction():
@@ -28,27 +28,27 @@ def test_equilibrium_leaves_one_direction():
     contact = CondensedContact.from_compliance(
         [[1.0, 2.0], [2.0, 1.0]], [0.0, 0.0], rigid_motions=[1.0, 1.0], motion_load=-1.0
     )
-    found = weighted_compliance(contact, Weights.TRIBUTARY)
+    result = weighted_compliance(contact, Weights.TRIBUTARY)
     norm = np.abs(contact.compliance).sum(axis=1).max()
-    assert found.smallest_eigenvalue == pytest.approx(-1 / norm)
-    assert found.smallest_eigenvalue == found.largest_eigenvalue
-    assert not found.convex
-    assert not found.saddle
+    assert result.smallest_eigenvalue == pytest.approx(-1 / norm)
+    assert result.smallest_eigenvalue == result.largest_eigenvalue
+    assert not result.convex
+    assert not result.saddle
 
 
 def test_equilibrium_that_leaves_nothing():
     contact = CondensedContact.from_compliance([[1.0]], [0.0], rigid_motions=[1.0], motion_load=-1.0)
-    found = weighted_compliance(contact, Weights.TRIBUTARY)
-    assert found.smallest_eigenvalue is None
-    assert found.convex
+    result = weighted_compliance(contact, Weights.TRIBUTARY)
+    assert result.smallest_eigenvalue is None
+    assert result.convex
 
 
 def test_consistent_weights_that_do_not_share_equilibrium_are_a_saddle():
     """J with rows that do not sum to the tributary weights makes pᵀJR a something that ℓᵀp does not fix."""
     contact = dataclasses.replace(random_contact(1, 5, 1), consistent_weights=np.eye(5) - 0.1 * np.eye(5, k=1))
-    found = weighted_compliance(contact, Weights.CONSISTENT)
-    assert found.saddle
-    assert found.negative_weights == 4
+    result = weighted_compliance(contact, Weights.CONSISTENT)
+    assert result.saddle
+    assert result.negative_weights == 4
     assert not weighted_compliance(contact, Weights.TRIBUTARY).saddle
 
 

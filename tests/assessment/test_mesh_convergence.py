@@ -22,8 +22,8 @@ def print_of(peak: float, *ends: float, zone: str = "foot") -> Footprint:
 def test_a_power_of_the_element_length_shows_its_order(refine: tuple[int, ...], order: float):
     """Of 10 + 3 hᑫ and 0.2 hᑫ, h = 1/refine: the order is q and the limit 10, for any ratio of meshes."""
     peaks = [10 + 3 * parts**-order for parts in refine]
-    found = convergence(refine, [print_of(peak, 5 - peak / 10) for peak in peaks], [0.2 * k**-order for k in refine])
-    peak, start, end, asymmetry = found.quantities
+    result = convergence(refine, [print_of(peak, 5 - peak / 10) for peak in peaks], [0.2 * k**-order for k in refine])
+    peak, start, end, asymmetry = result.quantities
     assert peak.orders == (pytest.approx(order, rel=1e-6),)
     assert peak.limit == pytest.approx(10, rel=1e-9)
     assert start.orders == (None,)  # it does not move
@@ -33,22 +33,22 @@ def test_a_power_of_the_element_length_shows_its_order(refine: tuple[int, ...], 
 
 
 def test_values_that_go_to_and_fro_show_no_order():
-    found = convergence((1, 2, 4), [print_of(p) for p in (1.0, 3.0, 2.0)], [0.1, 0.1, 0.2])
-    assert found.quantities[0].orders == (None,)
-    assert found.quantities[0].limit is None
-    assert found.quantities[-1].orders == (pytest.approx(0.0), pytest.approx(-1.0))
+    result = convergence((1, 2, 4), [print_of(p) for p in (1.0, 3.0, 2.0)], [0.1, 0.1, 0.2])
+    assert result.quantities[0].orders == (None,)
+    assert result.quantities[0].limit is None
+    assert result.quantities[-1].orders == (pytest.approx(0.0), pytest.approx(-1.0))
 
 
 def test_two_meshes_show_only_what_vanishes():
-    found = convergence((1, 3), [print_of(1.0), print_of(1.1)], [0.9, 0.1])
-    assert found.quantities[0].orders == ()
-    assert found.quantities[-1].orders == (pytest.approx(2.0),)
+    result = convergence((1, 3), [print_of(1.0), print_of(1.1)], [0.9, 0.1])
+    assert result.quantities[0].orders == ()
+    assert result.quantities[-1].orders == (pytest.approx(2.0),)
 
 
 def test_contact_that_splits_has_no_ends_to_compare():
-    found = convergence((1, 2), [print_of(1.0, 2.0), print_of(1.0, 1.0, 2.0)], [0.2, 0.1])
-    assert [item.name for item in found.quantities] == ["peak pressure", "asymmetry of J M"]
-    assert "not the same on all meshes" in found.remark
+    result = convergence((1, 2), [print_of(1.0, 2.0), print_of(1.0, 1.0, 2.0)], [0.2, 0.1])
+    assert [item.name for item in result.quantities] == ["peak pressure", "asymmetry of J M"]
+    assert "not the same on all meshes" in result.remark
 
 
 def test_a_symmetric_matrix_shows_no_order():
@@ -64,12 +64,12 @@ def test_positions_on_a_closed_run_are_counted_on():
         )
         return dataclasses.replace(print_of(1.0), intervals=(interval,))
 
-    found = convergence((1, 2, 4), [ring(49.0), ring(49.5), ring(-0.25)], [0.1, 0.1, 0.1])
-    assert found.quantities[1].values == pytest.approx([49.0, 49.5, 49.75])
-    assert found.quantities[1].limit == pytest.approx(50.0)
+    result = convergence((1, 2, 4), [ring(49.0), ring(49.5), ring(-0.25)], [0.1, 0.1, 0.1])
+    assert result.quantities[1].values == pytest.approx([49.0, 49.5, 49.75])
+    assert result.quantities[1].limit == pytest.approx(50.0)
 
 
 def test_a_mesh_without_contact_has_no_peak_to_compare():
     nowhere = dataclasses.replace(print_of(1.0), peak=None, intervals=())
-    found = convergence((1, 2, 4), [nowhere, print_of(1.0), print_of(1.1)], [0.4, 0.2, 0.1])
-    assert [item.name for item in found.quantities] == ["asymmetry of J M"]
+    result = convergence((1, 2, 4), [nowhere, print_of(1.0), print_of(1.1)], [0.4, 0.2, 0.1])
+    assert [item.name for item in result.quantities] == ["asymmetry of J M"]

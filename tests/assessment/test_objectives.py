@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from contact_problems import random_contact
 
-from bemcontact.assessment.objectives import objectives
+from bemcontact.assessment.residual import objectives
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
@@ -27,11 +27,11 @@ def at(contact: CondensedContact, pressure: np.ndarray, displacement: np.ndarray
 def test_all_vanish_at_the_contact_state():
     """There p ≥ 0, δ ≥ 0, p·δ = 0 and the equations hold, so that work and penalty are zero."""
     contact = random_contact(3, 9, 2)
-    found = objectives(contact, complementarity.solve(contact), Weights.TRIBUTARY, (1e-3, 1.0))
-    assert abs(found.qp1) < 1e-13
-    assert abs(found.qp3) < 1e-13
-    assert [item.penalty for item in found.qp2] == [1e-3, 1.0]
-    assert all(abs(item.value) < 1e-13 for item in found.qp2)
+    result = objectives(contact, complementarity.solve(contact), Weights.TRIBUTARY, (1e-3, 1.0))
+    assert abs(result.qp1) < 1e-13
+    assert abs(result.qp3) < 1e-13
+    assert [item.penalty for item in result.qp2] == [1e-3, 1.0]
+    assert all(abs(item.value) < 1e-13 for item in result.qp2)
 
 
 def test_the_three_at_a_point_off_the_equations():
@@ -41,14 +41,14 @@ def test_the_three_at_a_point_off_the_equations():
     """
     contact = CondensedContact.from_compliance([[2.0]], [-1.0], [3.0])  # interference 1: U = 1, T = ½
     point = at(contact, np.array([0.5]), np.array([3.0]))
-    found = objectives(contact, point, Weights.TRIBUTARY, (0.25,))
+    result = objectives(contact, point, Weights.TRIBUTARY, (0.25,))
     U, T = contact.scales
     assert (U, T) == (1.0, 0.5)
-    assert found.qp1 == pytest.approx(0.5 * (-1 + 3) / (U * T))
+    assert result.qp1 == pytest.approx(0.5 * (-1 + 3) / (U * T))
     residual = (3.0 / 2.0 - 0.5) / T  # K u - p with K = 1/2
-    (qp2,) = found.qp2
-    assert (qp2.penalty, qp2.value) == (0.25, pytest.approx(found.qp1 + residual**2 / 0.25))
-    assert found.qp3 == pytest.approx(0.5 * (-1 + 2 * 0.5) / (U * T))
+    (qp2,) = result.qp2
+    assert (qp2.penalty, qp2.value) == (0.25, pytest.approx(result.qp1 + residual**2 / 0.25))
+    assert result.qp3 == pytest.approx(0.5 * (-1 + 2 * 0.5) / (U * T))
 
 
 def test_a_change_of_units_changes_nothing():

@@ -43,23 +43,23 @@ def test_each_condition_has_its_residual():
     p = np.array([2.0, -1.0, 3.0, 0.0])
     lift = -0.5 - problem.gap(p, np.zeros(1)).min()
     gap = problem.gap(p, np.array([lift]))
-    found = residuals(problem, solution(problem, p, lift))
+    result = residuals(problem, solution(problem, p, lift))
     U, T = problem.scales
-    assert found.penetration == pytest.approx(0.5 / U, rel=1e-12)
-    assert found.tension == pytest.approx(1.0 / T, rel=1e-12)
-    assert found.complementarity == pytest.approx(np.abs(np.minimum(p / T, gap / U)).max(), rel=1e-12)
-    assert found.work == pytest.approx((problem.weights * p * gap).sum() / (2 * U * T), rel=1e-12)
-    assert found.equilibrium <= 1e-13
-    assert found.balance <= 1e-15
-    assert found.force_balance is None
+    assert result.penetration == pytest.approx(0.5 / U, rel=1e-12)
+    assert result.tension == pytest.approx(1.0 / T, rel=1e-12)
+    assert result.complementarity == pytest.approx(np.abs(np.minimum(p / T, gap / U)).max(), rel=1e-12)
+    assert result.work == pytest.approx((problem.weights * p * gap).sum() / (2 * U * T), rel=1e-12)
+    assert result.equilibrium <= 1e-13
+    assert result.balance <= 1e-15
+    assert result.force_balance is None
 
 
 def test_load_that_is_not_carried_shows_twice():
     """Without pressure the mean pressure is off by load/Σw = 1; the rows of (12) contain equilibrium as well."""
     problem = contact()
-    found = residuals(problem, solution(problem, np.zeros(4), 0.0))
-    assert found.balance == pytest.approx(1.0 / problem.scales.pressure, rel=1e-12)
-    assert found.stiffness_rows > 0.9 / problem.scales.pressure
+    result = residuals(problem, solution(problem, np.zeros(4), 0.0))
+    assert result.balance == pytest.approx(1.0 / problem.scales.pressure, rel=1e-12)
+    assert result.stiffness_rows > 0.9 / problem.scales.pressure
 
 
 def test_displacement_of_the_solver_is_what_is_judged():
@@ -67,12 +67,12 @@ def test_displacement_of_the_solver_is_what_is_judged():
     problem = contact()
     right = solution(problem, np.array([2.0, 1.0, 1.0, 0.0]), 1.0)
     step = np.array([0.1, 0.0, 0.0, 0.0])
-    found = residuals(problem, replace(right, displacement=right.displacement + step))
+    result = residuals(problem, replace(right, displacement=right.displacement + step))
     expected = np.abs(problem.stiffness_rows.K @ step).max() / problem.scales.pressure
-    assert found.stiffness_rows == pytest.approx(expected, rel=1e-10)
+    assert result.stiffness_rows == pytest.approx(expected, rel=1e-10)
     ell, R = problem.equilibrium[:, 0], problem.rigid_motions[:, 0]
-    strange = step - R * (ell @ step) / (ell @ R)
-    assert found.equilibrium == pytest.approx(abs(strange).max() / problem.scales.displacement, rel=1e-10)
+    outside = step - R * (ell @ step) / (ell @ R)
+    assert result.equilibrium == pytest.approx(abs(outside).max() / problem.scales.displacement, rel=1e-10)
 
 
 @pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6), (25.4, 6.894757)])

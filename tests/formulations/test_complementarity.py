@@ -27,7 +27,7 @@ def fathi(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def exhaustive(problem: CondensedContact) -> np.ndarray:
-    """The pressure that solves the problem, found among all 2ⁿ contact sets."""
+    """The pressure that solves the problem, by a search of all 2ⁿ contact sets."""
     M, R, ell, n, k = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.size, problem.free_motions
     right = -np.concatenate([problem.offset, problem.motion_load])
     bordered = np.block([[M, R], [ell.T, np.zeros((k, k))]])

@@ -28,7 +28,7 @@ from bemcontact.arrays import Array
 from bemcontact.contact.multistart import End
 from bemcontact.formulations import qp1, qp2, qp3
 from bemcontact.formulations.scaling import scaled
-from bemcontact.formulations.start import draw_starts
+from bemcontact.formulations.search import draw_starts
 from bemcontact.options import SolveOptions
 
 BoolArray = NDArray[np.bool_]
@@ -66,11 +66,11 @@ def complementary_points(matrix: Array, vector: Array, free: int = 0) -> list[Ar
 
 def distinct(points: list[Array]) -> list[Array]:
     """Each point once."""
-    found: list[Array] = []
+    result: list[Array] = []
     for point in points:
-        if not among(point, found):
-            found.append(point)
-    return found
+        if not among(point, result):
+            result.append(point)
+    return result
 
 
 def among(point: Array, points: list[Array]) -> bool:
@@ -177,15 +177,15 @@ P_KINDS: list[Kind] = [definite, ring, dominated]
 named = pytest.mark.parametrize("kind", P_KINDS, ids=lambda kind: kind.__name__)
 
 
-def scaled_ends(problem: CondensedContact, found: RandomStarts) -> list[tuple[End, Array]]:
+def scaled_ends(problem: CondensedContact, result: RandomStarts) -> list[tuple[End, Array]]:
     """Each end with its p/T."""
-    return [(end, end.solution.pressure / problem.scales.pressure) for end in found.ends]
+    return [(end, end.solution.pressure / problem.scales.pressure) for end in result.ends]
 
 
-def assert_right(problem: CondensedContact, found: RandomStarts, truth: Array) -> None:
-    """Every search ended at the only contact state, and is told so."""
-    assert found.solved == found.count
-    for end, p in scaled_ends(problem, found):
+def assert_right(problem: CondensedContact, result: RandomStarts, truth: Array) -> None:
+    """Every search ended at the only contact state, and its status is SOLVED."""
+    assert result.solved == result.count
+    for end, p in scaled_ends(problem, result):
         assert among(p, [truth])
         assert end.objective <= 1e-12  # round-off squared, times the condition of the rows
 
@@ -242,16 +242,16 @@ def test_qp3_of_p_matrices(kind):
                 qp3.solve(condensed)
         weighted = problem.weights[:, None] * problem.compliance
         for start in draw_starts(condensed, 10, seed):
-            found = minimize_qp(
+            result = minimize_qp(
                 weighted + weighted.T, problem.weights * problem.offset, A=problem.compliance, cl=-problem.offset,
                 bl=np.zeros(6), x0=start.pressure / condensed.scales.pressure,
             )  # fmt: skip
-            assert found.status is QPStatus.LOCAL_MINIMIZER
-            assert among(found.x, [truth])
+            assert result.status is QPStatus.LOCAL_MINIMIZER
+            assert among(result.x, [truth])
 
 
 def judge_end(end: End, p: Array, states: list[Array]) -> bool:
-    """Check that an end is told as what it is, and say whether it is a contact state."""
+    """Check the status of an end, and return whether it is a contact state."""
     if end.solution.status is Status.INFEASIBLE:  # of QP1 only: no p >= 0 with q + M p >= 0, so no contact state
         assert not states
         return False
@@ -267,7 +267,7 @@ def judge_end(end: End, p: Array, states: list[Array]) -> bool:
 
 
 @pytest.mark.parametrize("statement", STATEMENTS, ids=str)
-def test_ends_of_other_matrices_are_told_by_their_objective(statement):
+def test_ends_of_other_matrices_are_classified_by_their_objective(statement):
     """Objective zero at contact states alone; ends with more are none, are called so, and exist: M has to be P."""
     spurious = 0
     for n, seed in product((2, 3, 5, 8), range(3)):
@@ -284,8 +284,8 @@ def test_ends_of_other_matrices_are_first_order_points(n):
     for seed in range(3):
         problem = not_p(np.random.default_rng([seed, n]), n)
         gap = problem.initial_gap / problem.scales.displacement
-        for _, p in scaled_ends(problem, found := ends(problem, STATEMENTS[0])):
-            infeasible = found.ends[0].solution.status is Status.INFEASIBLE
+        for _, p in scaled_ends(problem, result := ends(problem, STATEMENTS[0])):
+            infeasible = result.ends[0].solution.status is Status.INFEASIBLE
             assert infeasible or among(p, first_order_points_of_qp1(problem))
         for statement in STATEMENTS[1:]:
             for end, p in scaled_ends(problem, ends(problem, statement)):
@@ -312,8 +312,8 @@ def test_free_bodies_out_of_equilibrium_have_spurious_ends(k, penalty):
     for seed in range(4):
         problem = free_body(np.random.default_rng([seed, k]), 7, k)
         states = contact_states(problem)
-        found = random_starts(problem, "qp2", count=40, seed=1, penalty=penalty, equilibrium="penalty")
-        for end, p in scaled_ends(problem, found):
+        result = random_starts(problem, "qp2", count=40, seed=1, penalty=penalty, equilibrium="penalty")
+        for end, p in scaled_ends(problem, result):
             if not judge_end(end, p, states):
                 spurious += end.count
                 balance = np.abs(problem.equilibrium.T @ end.solution.pressure + problem.motion_load)
@@ -379,6 +379,6 @@ def test_a_first_order_point_without_a_p_matrix_in_exact_numbers():
         assert judge_end(end, pressure, contact_states(problem))  # not the maximum at 1/2, even started there
     program = qp1.statement(problem, SolveOptions.of("qp1"))
     E, e = program.equations.matrix, program.equations.right
-    found = minimize_qp(program.hessian, program.linear, A=E, cl=e, cu=e, bl=program.lower, x0=np.array([-0.5, 0.5]))
-    assert found.status is QPStatus.LOCAL_MINIMIZER
-    assert program.value(found.x) == pytest.approx(0, abs=1e-15)
+    result = minimize_qp(program.hessian, program.linear, A=E, cl=e, cu=e, bl=program.lower, x0=np.array([-0.5, 0.5]))
+    assert result.status is QPStatus.LOCAL_MINIMIZER
+    assert program.value(result.x) == pytest.approx(0, abs=1e-15)

@@ -28,12 +28,12 @@ def test_every_formulation_solves_and_bears_its_name(name):
 
 
 @pytest.mark.parametrize("limit", [0, -1, 2.5, "many", True])
-def test_a_limit_of_iterations_that_is_none_is_refused(limit):
+def test_a_limit_of_iterations_that_is_no_whole_number_above_zero_is_refused(limit):
     with pytest.raises(OptionError, match="limit of iterations must be a whole number of at least 1"):
         SolveOptions(max_iterations=limit)
 
 
-def test_a_solution_is_told_in_a_line():
+def test_the_repr_of_a_solution_is_one_line():
     solution = FORMULATIONS["qp1"](CondensedContact.from_compliance([[2.0]], [-3.0]), SolveOptions.of("qp1"))
     assert repr(solution) == "<ContactSolution by qp1: solved, 1 contact points>"
 

@@ -12,7 +12,7 @@ from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_i
 from bemcontact.formulations import FORMULATIONS, clarabel, complementarity, qp1, qp2, qp3
 from bemcontact.formulations.complementarity import ACCEPTED
 from bemcontact.formulations.scaling import scaled, scaled_point
-from bemcontact.formulations.start import draw_starts
+from bemcontact.formulations.search import draw_starts
 from bemcontact.options import FormulationName, SolveOptions
 
 N = 9
@@ -68,12 +68,12 @@ def test_local_search_goes_down(formulation, options, k):
     """
     problem = random_contact(2, N, k)
     for start in draw_starts(problem, 3):
-        found = formulation.solve(problem, replace(options, start=start))
-        assert found.status is Status.SOLVED
-        assert counted(found) == [*range(1, found.iterations + 1)]
-        infeasibility, objective = of(found, "infeasibility"), of(found, "objective")
-        assert len(infeasibility) == found.search.phase_one_iterations
-        assert len(objective) == found.search.phase_two_iterations
+        result = formulation.solve(problem, replace(options, start=start))
+        assert result.status is Status.SOLVED
+        assert counted(result) == [*range(1, result.iterations + 1)]
+        infeasibility, objective = of(result, "infeasibility"), of(result, "objective")
+        assert len(infeasibility) == result.search.phase_one_iterations
+        assert len(objective) == result.search.phase_two_iterations
         for values in (infeasibility, objective):
             assert (np.diff(values) <= 1e-14 * (1 + values.max(initial=0.0))).all()
         assert (infeasibility[-1:] <= 1e-9 * 5 * N).all()
@@ -101,19 +101,19 @@ def test_objective_of_a_local_search_is_that_of_the_program(formulation, options
 
 def test_infeasible_program_has_no_objective():
     """A gap of -1 - p: no pressure takes the penetration away, and phase two never begins."""
-    found = qp1.solve(CondensedContact.from_compliance([[-1.0]], [-1.0]))
-    assert found.status is Status.INFEASIBLE
-    assert len(of(found, "infeasibility")) == found.iterations
-    assert (of(found, "infeasibility") > 0.1).all()
-    assert not of(found, "objective").size
+    result = qp1.solve(CondensedContact.from_compliance([[-1.0]], [-1.0]))
+    assert result.status is Status.INFEASIBLE
+    assert len(of(result, "infeasibility")) == result.iterations
+    assert (of(result, "infeasibility") > 0.1).all()
+    assert not of(result, "objective").size
 
 
 @pytest.mark.parametrize("k", [0, 1, 3])
 def test_objective_of_qp3_is_that_of_the_point(k):
     """Clarabel stopped after any iteration: the start and each iteration have a value, the free body's constant in it.
 
-    No constraint is violated by more than what is told, relative to its terms. Where cvxpy has cut a negative pressure
-    off, the point is another one.
+    No constraint is violated by more than the reported residual, relative to its terms. Where cvxpy has cut off a
+    negative pressure, the point is another one.
     """
     problem = random_contact(4, N, k)
     small = scaled(problem)
@@ -122,14 +122,14 @@ def test_objective_of_qp3_is_that_of_the_point(k):
     assert counted(whole) == 2 * [*range(whole.iterations + 1)]
     for limit in range(1, whole.iterations + 1):
         stopped = qp3.solve(problem, SolveOptions(polish=False, max_iterations=limit))
-        values, told = of(stopped, "objective"), of(stopped, "infeasibility")
+        values, record = of(stopped, "objective"), of(stopped, "infeasibility")
         np.testing.assert_array_equal(values, of(whole, "objective")[: limit + 1])
         p, a = scaled_point(problem, stopped.pressure, stopped.rigid_amplitudes)
         if p.all():
             assert values[-1] == pytest.approx(work.value(p, a), rel=1e-12, abs=1e-14 * (1 + p @ p))
         gap, balance = small.gap(p, a), np.abs(small.equilibrium.T @ p + small.motion_load)
         terms = max(1.0, sum(map(np.linalg.norm, (p, a, gap, small.offset, small.motion_load))))
-        assert max(-p.min(), -gap.min(), balance.max(initial=0.0)) <= (told[-1] + 1e-15) * terms
+        assert max(-p.min(), -gap.min(), balance.max(initial=0.0)) <= (record[-1] + 1e-15) * terms
     assert of(whole, "objective")[-1] == pytest.approx(0, abs=1e-10)
     assert of(whole, "infeasibility")[-1] <= clarabel.TOLERANCES[-1]
 
@@ -138,48 +138,48 @@ def test_objective_of_qp3_is_that_of_the_point(k):
 def test_units_of_wide_gaps_are_taken_back(k):
     """One gap of 1e7 drowns the pressures, so that QP3 is solved in units of that gap; the objective then is far off.
 
-    What is told is that of the point in the usual units all the same, 1e12 times that in the units of the gap.
+    The reported residual is that of the point in the usual units, 1e12 times that in the units of the gap.
     """
     problem = random_contact(5, N, k)
     problem = replace(problem, initial_gap=problem.initial_gap + 1e7 * np.eye(N)[0])
     small = scaled(problem)
     work = qp3.objective(small, np.diag(small.weights))
-    found = qp3.solve(problem, SolveOptions(polish=False))
-    assert counted(found) == 2 * [*range(found.iterations + 1)]
-    p, a = scaled_point(problem, found.pressure, found.rigid_amplitudes)
+    result = qp3.solve(problem, SolveOptions(polish=False))
+    assert counted(result) == 2 * [*range(result.iterations + 1)]
+    p, a = scaled_point(problem, result.pressure, result.rigid_amplitudes)
     assert work.value(p, a) > 1.0
-    assert of(found, "objective")[-1] == pytest.approx(work.value(p, a), rel=1e-6)
+    assert of(result, "objective")[-1] == pytest.approx(work.value(p, a), rel=1e-6)
 
 
 @pytest.mark.parametrize("k", [0, 1, 3])
 def test_residual_of_the_active_set_ends_at_that_of_the_solution(k):
     problem = random_contact(6, 15, k)
-    found = complementarity.solve(problem)
-    (trace,) = found.history
-    assert (trace.quantity, trace.first, len(trace.values)) == ("residual", 1, found.iterations)
+    result = complementarity.solve(problem)
+    (trace,) = result.history
+    assert (trace.quantity, trace.first, len(trace.values)) == ("residual", 1, result.iterations)
     assert trace.values[-1] <= ACCEPTED < trace.values[0]
-    p, a = scaled_point(problem, found.pressure, found.rigid_amplitudes)
+    p, a = scaled_point(problem, result.pressure, result.rigid_amplitudes)
     assert scaled(problem).residual(p, a) == pytest.approx(trace.values[-1], abs=1e-15)
 
 
 def test_lemke_takes_over_in_the_history():
     """Active set, pivots down to z0 = 0, and one step from there, numbered on."""
-    found = complementarity.solve(CYCLE)
-    first, path, last = found.history
-    assert [trace.quantity for trace in found.history] == ["residual", "infeasibility", "residual"]
-    assert counted(found) == [*range(1, found.iterations + 1)]
+    result = complementarity.solve(CYCLE)
+    first, path, last = result.history
+    assert [trace.quantity for trace in result.history] == ["residual", "infeasibility", "residual"]
+    assert counted(result) == [*range(1, result.iterations + 1)]
     assert min(first.values) > ACCEPTED
     assert path.values[-1] == 0.0
     assert len(last.values) == 1
     assert last.values[0] <= ACCEPTED
 
 
-def test_ray_of_lemke_is_told():
+def test_the_ray_of_lemke_is_reported():
     """With M = -1, q = -1 z0 enters at 1/2, which is 1 over |M| + |q|, and stays there: a ray is no pivot."""
-    found = complementarity.solve(CondensedContact.from_compliance([[-1.0]], [-1.0]))
-    assert found.status is Status.INFEASIBLE
-    assert counted(found) == [*range(1, found.iterations + 1)]
-    assert of(found, "infeasibility").tolist() == [0.5]
+    result = complementarity.solve(CondensedContact.from_compliance([[-1.0]], [-1.0]))
+    assert result.status is Status.INFEASIBLE
+    assert counted(result) == [*range(1, result.iterations + 1)]
+    assert of(result, "infeasibility").tolist() == [0.5]
 
 
 @pytest.mark.parametrize("name", FORMULATIONS)

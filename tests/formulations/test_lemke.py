@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bemcontact.contact.solution import Status
-from bemcontact.formulations.lemke import lemke
+from bemcontact.formulations.complementarity import lemke
 
 
 def is_p_matrix(M: np.ndarray) -> bool:
@@ -52,7 +52,7 @@ def test_p_matrices_against_all_active_sets(seed):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_cover_is_told_after_each_pivot(seed):
+def test_the_artificial_variable_is_reported_after_each_pivot(seed):
     """It enters at the least value that makes q + d z0 >= 0, and leaves at zero."""
     rng = np.random.default_rng(seed)
     M, q, d = p_matrix(rng, 5), rng.standard_normal(5), rng.uniform(0.5, 1.5, 5)

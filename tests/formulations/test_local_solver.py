@@ -94,7 +94,7 @@ def first_order_values(H, c, A, cl, cu, bl, bu):
         [2] if a == b else [0] + [-1] * bool(np.isfinite(a)) + [1] * bool(np.isfinite(b))
         for a, b in zip(low, high, strict=True)
     ]
-    found = []
+    computed = []
     for sides in product(*choices):
         sides = np.array(sides)
         W = sides != 0
@@ -104,8 +104,8 @@ def first_order_values(H, c, A, cl, cu, bl, bu):
         K = np.block([[H, G[W].T], [G[W], np.zeros((W.sum(), W.sum()))]])
         x = np.linalg.lstsq(K, np.concatenate([-c, right]), rcond=1e-11)[0][: c.size]
         if np.all(G @ x >= low - 1e-8) and np.all(G @ x <= high + 1e-8):
-            found.append(float(c @ x + 0.5 * x @ H @ x))
-    return np.array(found)
+            computed.append(float(c @ x + 0.5 * x @ H @ x))
+    return np.array(computed)
 
 
 @settings(max_examples=300, deadline=None)
@@ -381,7 +381,7 @@ def test_no_iteration_is_needed_to_know_an_optimal_start():
 
 @pytest.mark.parametrize("coupling", [4e-3, 0.0])
 @pytest.mark.parametrize("curvature", [2e-6, 2e-10, 2e-12, 2e-16, 2e-24])
-def test_a_small_curvature_is_told_from_none_by_its_own_terms(coupling, curvature):
+def test_a_small_curvature_is_distinguished_from_zero_by_its_own_terms(coupling, curvature):
     """½ x'Hx + c'x at (0, t) is curvature (t²/2 - 5e10 t), least at t = 5e10; the multiplier of x1 is coupling t."""
     H = np.array([[2.0, coupling], [coupling, curvature]])
     result = minimize_qp(H, np.array([0.0, -5e10 * curvature]), bl=np.zeros(2))

@@ -17,7 +17,7 @@ from bemcontact import CondensedContact, QPResult, QPStatus, Status, minimize_qp
 from bemcontact.arrays import Array
 from bemcontact.formulations import FORMULATIONS, complementarity, qp3
 from bemcontact.formulations.scaling import scaled
-from bemcontact.formulations.start import draw_starts
+from bemcontact.formulations.search import draw_starts
 from bemcontact.options import SolveOptions
 
 CYLINDER = Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml"
@@ -174,8 +174,8 @@ def by_hand(statement: str, problem: CondensedContact) -> QPResult:
     return minimize_qp(H + 2 * E.T @ E, c - 2 * E.T @ r, A=balance, cl=-load, cu=-load, bl=lower)
 
 
-def assert_right(found: Array, truth: Array) -> None:
-    assert np.abs(found - truth).max() <= RIGHT * np.abs(truth).max()
+def assert_right(result: Array, truth: Array) -> None:
+    assert np.abs(result - truth).max() <= RIGHT * np.abs(truth).max()
 
 
 on_all = [
@@ -201,10 +201,10 @@ def test_written_by_hand_in_scaled_numbers(statement, body, mesh, modulus, units
         condensed = body(n, modulus, units, mesh)
         truth = complementarity.solve(condensed)
         problem = without_units(condensed)
-        found = by_hand(statement, problem)
-        assert found.status is QPStatus.LOCAL_MINIMIZER
-        gap = (problem.initial_gap + found.x[:n]) * condensed.scales.displacement
-        assert_right(found.x[n:] * condensed.scales.pressure, truth.pressure)
+        result = by_hand(statement, problem)
+        assert result.status is QPStatus.LOCAL_MINIMIZER
+        gap = (problem.initial_gap + result.x[:n]) * condensed.scales.displacement
+        assert_right(result.x[n:] * condensed.scales.pressure, truth.pressure)
         assert_right(gap - condensed.initial_gap, truth.displacement)
 
 
@@ -215,10 +215,10 @@ def test_formulations_in_raw_units(formulation, body, mesh, modulus, units):
     for n in (*SIZES, 81):
         condensed = body(n, modulus, units, mesh)
         truth = complementarity.solve(condensed)
-        found = FORMULATIONS[formulation](condensed, SolveOptions.of(formulation, polish=False))
-        assert found.status is Status.SOLVED
-        assert_right(found.pressure, truth.pressure)
-        assert_right(found.displacement, truth.displacement)
+        result = FORMULATIONS[formulation](condensed, SolveOptions.of(formulation, polish=False))
+        assert result.status is Status.SOLVED
+        assert_right(result.pressure, truth.pressure)
+        assert_right(result.displacement, truth.displacement)
 
 
 @everywhere
@@ -255,9 +255,9 @@ def test_cylinder_from_random_starts(formulation):
     """The shipped Hertz problem of a body that contact alone holds: each of ten searches, unpolished."""
     condensed = bemcontact.condense(bemcontact.load(CYLINDER))
     truth = complementarity.solve(condensed)
-    found = bemcontact.random_starts(condensed, formulation, count=10)
-    assert found.solved == 10
-    for end in found.ends:
+    result = bemcontact.random_starts(condensed, formulation, count=10)
+    assert result.solved == 10
+    for end in result.ends:
         assert_right(end.solution.pressure, truth.pressure)
         assert_right(end.solution.displacement, truth.displacement)
 
@@ -271,7 +271,7 @@ def test_slender_beam_from_random_starts(formulation, n, condition):
     assert np.linalg.cond(condensed.compliance) > condition
     assert np.linalg.eigvalsh(weighted + weighted.T)[0] > 0
     for start in (None, *draw_starts(condensed, 135)[100:]):  # from three of these a phase one once gave up
-        found = FORMULATIONS[formulation](condensed, SolveOptions.of(formulation, polish=False, start=start))
-        assert found.status is Status.SOLVED
-        assert_right(found.pressure, np.ones(n))
-        assert_right(found.displacement, -condensed.offset)
+        result = FORMULATIONS[formulation](condensed, SolveOptions.of(formulation, polish=False, start=start))
+        assert result.status is Status.SOLVED
+        assert_right(result.pressure, np.ones(n))
+        assert_right(result.displacement, -condensed.offset)

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from bemcontact.formulations.local_solver.factorizations import orthogonal
-from bemcontact.formulations.local_solver.reduced_hessian import ReducedHessian
+from bemcontact.formulations.local_solver.phase_two import ReducedHessian
 from bemcontact.formulations.local_solver.statement import Statement
 from bemcontact.formulations.local_solver.working_set import TEMPORARY, WorkingSet
 
@@ -92,10 +92,10 @@ def test_multipliers_are_those_of_least_squares(seed):
     sides[[1, 4, 13, 15, 20]] = [-1, 1, 1, -1, 2]
     working, _ = start(data, sides)
     g = np.random.default_rng(seed).standard_normal(12)
-    found = working.multipliers(g)
+    result = working.multipliers(g)
     expected = np.linalg.lstsq(working.W[:, working.free > 0].T, g[working.free > 0], rcond=None)[0]
-    assert_allclose(found[12:], expected, atol=1e-12)
-    assert_allclose(found[:12], g - working.W.T @ expected, atol=1e-12)
+    assert_allclose(result[12:], expected, atol=1e-12)
+    assert_allclose(result[:12], g - working.W.T @ expected, atol=1e-12)
     assert_allclose(working.signs[[1, 4]], [-1.0, 1.0])
     assert sorted(working.signs[12:]) == [-1.0, 0.0, 1.0]
 

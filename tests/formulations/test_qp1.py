@@ -13,7 +13,7 @@ from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import FORMULATIONS, complementarity, qp1, qp3
 from bemcontact.formulations.scaling import scaled, scaled_point
-from bemcontact.formulations.start import Start
+from bemcontact.formulations.search import Start
 from bemcontact.options import Rows, SolveOptions, Weights
 
 ROWS = [*Rows]
@@ -21,15 +21,15 @@ NOT_POLISHED = SolveOptions.of("qp1", polish=False)
 
 
 def contact_sets(problem: CondensedContact) -> list[np.ndarray]:
-    """The pressures that solve a held problem, found among all 2ⁿ contact sets."""
-    found = []
+    """The pressures that solve a held problem, by a search of all 2ⁿ contact sets."""
+    result = []
     for bits in itertools.product([False, True], repeat=problem.size):
         A = np.flatnonzero(bits)
         p = np.zeros(problem.size)
         p[A] = np.linalg.solve(problem.compliance[np.ix_(A, A)], -problem.offset[A])
         if min(p.min(), problem.gap(p, np.zeros(0)).min()) >= -1e-12:
-            found.append(p)
-    return found
+            result.append(p)
+    return result
 
 
 def in_equilibrium(problem, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -124,7 +124,7 @@ def test_against_all_contact_sets(formulation, n, seed):
     np.testing.assert_allclose(solution.pressure, truth, atol=1e-11)
 
 
-def test_search_is_told():
+def test_the_search_is_reported():
     """[[0, J], [J, 0]] with J > 0 has as many positive as negative eigenvalues; the limit is QP3's eigenvalue."""
     problem = random_contact(3, 10, 1)
     solution = qp1.solve(problem, SolveOptions.of("qp1", rows=Rows.COMPLIANCE))

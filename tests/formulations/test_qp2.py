@@ -13,8 +13,7 @@ from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError, ProblemError
 from bemcontact.formulations import complementarity, qp2
 from bemcontact.formulations.multistart import multistart
-from bemcontact.formulations.search import contact_residual
-from bemcontact.formulations.start import Start, draw_starts
+from bemcontact.formulations.search import Start, contact_residual, draw_starts
 from bemcontact.options import Equilibrium, Rows, SolveOptions, Weights
 
 PENALIZED = SolveOptions.of("qp2", equilibrium=Equilibrium.PENALTY)
@@ -80,7 +79,7 @@ def test_limit_of_convexity(k, rows):
         assert (values[0] >= -1e-13 * values[-1]) == convex
 
 
-def test_penalty_and_its_limit_are_told():
+def test_the_penalty_and_its_limit_are_reported():
     problem = random_contact(6, 7, 1)
     options = SolveOptions.of("qp2", penalty=0.5)
     search = qp2.solve(problem, options).search
@@ -119,9 +118,9 @@ def test_all_stationary_points_are_the_contact_state(k):
     direct = complementarity.solve(problem)
     for penalty in (0.01, 1.0, 1e3):
         for start in draw_starts(problem, 10, seed=1):
-            found = qp2.solve(problem, SolveOptions.of("qp2", penalty=penalty, start=start, polish=False))
-            assert found.status is Status.SOLVED
-            np.testing.assert_allclose(found.pressure, direct.pressure, atol=1e-9 * direct.pressure.max())
+            computed = qp2.solve(problem, SolveOptions.of("qp2", penalty=penalty, start=start, polish=False))
+            assert computed.status is Status.SOLVED
+            np.testing.assert_allclose(computed.pressure, direct.pressure, atol=1e-9 * direct.pressure.max())
 
 
 def negative_corner() -> CondensedContact:
@@ -160,7 +159,7 @@ def test_consistent_weights_above_their_limit_are_refused():
 
 
 def test_consistent_weights_below_their_limit_miss_the_contact_state():
-    """QP2 trades equations for work below zero, in proportion to μ: told by the residual, and left as it is."""
+    """QP2 trades equations for work below zero, in proportion to μ, as the residual shows; nothing is polished."""
     problem = negative_corner()
     residuals = []
     for penalty in (1e-3, 1e-2):
@@ -171,8 +170,8 @@ def test_consistent_weights_below_their_limit_miss_the_contact_state():
         assert "an objective of 0 certifies nothing" in solution.notes[0]
         residuals.append(contact_residual(problem, solution))
     assert residuals[1] == pytest.approx(10 * residuals[0], rel=0.01)
-    found = multistart(problem, SolveOptions.of("qp2", "consistent", penalty=1e-3, starts=5))
-    assert found.solved == 0
+    computed = multistart(problem, SolveOptions.of("qp2", "consistent", penalty=1e-3, starts=5))
+    assert computed.solved == 0
 
 
 def test_a_lifted_body_is_stationary_but_not_the_solution():
@@ -226,13 +225,13 @@ def test_no_penalty_costs_digits(penalty):
     equations, M + Mᵀ, which is positive definite. With μ large that of the product pᵀJδ, n positive and n negative.
     """
     problem = slender()
-    found = qp2.solve(problem, SolveOptions.of("qp2", penalty=penalty, polish=False))
-    assert found.status is Status.SOLVED
-    np.testing.assert_allclose(found.pressure, 1, atol=1e-8)
+    computed = qp2.solve(problem, SolveOptions.of("qp2", penalty=penalty, polish=False))
+    assert computed.status is Status.SOLVED
+    np.testing.assert_allclose(computed.pressure, 1, atol=1e-8)
     if penalty <= 1e-8:
-        assert found.search.inertia == (40, 0, 0)
+        assert computed.search.inertia == (40, 0, 0)
     if penalty >= 1e8:
-        assert found.search.inertia == (20, 0, 20)
+        assert computed.search.inertia == (20, 0, 20)
 
 
 def test_stiffness_rows_of_a_slender_body_do_not():
@@ -251,7 +250,7 @@ def test_penalised_equilibrium_finds_the_solution_from_near_it():
     np.testing.assert_allclose(solution.pressure, direct.pressure, atol=1e-10 * direct.pressure.max())
 
 
-def test_penalised_equilibrium_of_a_held_body_is_told_to_be_nothing():
+def test_a_note_says_that_penalized_equilibrium_of_a_held_body_has_no_effect():
     solution = qp2.solve(random_contact(0, 5, 0), PENALIZED)
     assert solution.status is Status.SOLVED
     assert "no equilibrium of a free body" in solution.notes[0]

@@ -15,7 +15,7 @@ from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError
 from bemcontact.formulations import complementarity, qp1
 from bemcontact.formulations.multistart import multistart
-from bemcontact.formulations.start import Start, draw_starts
+from bemcontact.formulations.search import Start, draw_starts
 from bemcontact.options import Equilibrium, SolveOptions
 
 P_MATRIX = np.array([[1.0, -3.0, 0.0], [0.0, 1.0, -3.0], [0.0, 0.0, 1.0]])
@@ -38,9 +38,9 @@ def test_random_points_are_repeatable_and_free_of_units():
 @pytest.mark.parametrize("formulation", ["qp1", "qp2"])
 def test_a_strictly_monotone_problem_has_one_end(formulation):
     problem = resting()
-    found = multistart(problem, SolveOptions.of(formulation, starts=25))
-    (end,) = found.ends
-    assert (found.solved, end.count, end.first_start) == (25, 25, 0)
+    computed = multistart(problem, SolveOptions.of(formulation, starts=25))
+    (end,) = computed.ends
+    assert (computed.solved, end.count, end.first_start) == (25, 25, 0)
     assert end.residual < 1e-10
     assert end.objective == pytest.approx(0, abs=1e-10)
     direct = complementarity.solve(problem)
@@ -49,15 +49,15 @@ def test_a_strictly_monotone_problem_has_one_end(formulation):
 
 def test_penalised_equilibrium_has_a_second_end():
     """The lifted body: one end wherever it is lifted to, F2 > 0, counted apart and put last."""
-    found = multistart(resting(), SolveOptions.of("qp2", equilibrium=Equilibrium.PENALTY, starts=60))
-    best, lifted = found.ends
+    computed = multistart(resting(), SolveOptions.of("qp2", equilibrium=Equilibrium.PENALTY, starts=60))
+    best, lifted = computed.ends
     assert best.solution.status is Status.SOLVED
     assert lifted.solution.status is Status.LOCAL_MINIMUM
     assert not lifted.solution.pressure.any()
     assert lifted.objective > 0.1
     assert best.count + lifted.count == 60
     assert lifted.count > 0
-    assert str(found).startswith(f"{best.count} of 60 random starts (seed 0) end at the contact state\n")
+    assert str(computed).startswith(f"{best.count} of 60 random starts (seed 0) end at the contact state\n")
 
 
 @pytest.mark.parametrize("formulation", ["qp1", "qp2"])
@@ -66,10 +66,10 @@ def test_a_p_matrix_has_one_end(formulation):
     rng = np.random.default_rng(0)
     for _ in range(3):
         problem = CondensedContact.from_compliance(P_MATRIX, rng.standard_normal(3))
-        found = multistart(problem, SolveOptions.of(formulation, starts=15))
-        assert [end.solution.status for end in found.ends] == [Status.SOLVED]
+        computed = multistart(problem, SolveOptions.of(formulation, starts=15))
+        assert [end.solution.status for end in computed.ends] == [Status.SOLVED]
         truth = complementarity.solve(problem).pressure
-        np.testing.assert_allclose(found.ends[0].solution.pressure, truth, atol=1e-9)
+        np.testing.assert_allclose(computed.ends[0].solution.pressure, truth, atol=1e-9)
 
 
 def test_a_matrix_that_is_not_p_has_all_its_ends_named():
@@ -83,24 +83,24 @@ def test_a_matrix_that_is_not_p_has_all_its_ends_named():
         if min(p.min(), (q + M @ p).min()) >= 0:
             truths.append(p)
     assert len(truths) == 3
-    found = multistart(CondensedContact.from_compliance(M, q), SolveOptions.of("qp1", starts=40))
-    assert len(found.ends) > 1
-    for end in found.ends:
+    computed = multistart(CondensedContact.from_compliance(M, q), SolveOptions.of("qp1", starts=40))
+    assert len(computed.ends) > 1
+    for end in computed.ends:
         assert end.solution.status is Status.SOLVED
         assert any(np.abs(end.solution.pressure - truth).max() < 1e-10 for truth in truths)
 
 
 def test_the_library_function_and_the_option_agree():
     problem = resting()
-    found = bemcontact.random_starts(problem, "qp2", count=10, seed=2, equilibrium="penalty")
+    computed = bemcontact.random_starts(problem, "qp2", count=10, seed=2, equilibrium="penalty")
     result = bemcontact.solve(problem, "qp2", equilibrium="penalty", start="random", seed=2, starts=10)
     assert result.certified
     assert result.starts is not None
-    assert [end.count for end in result.starts.ends] == [end.count for end in found.ends]
+    assert [end.count for end in result.starts.ends] == [end.count for end in computed.ends]
     data = json.loads(result.to_json())
-    assert data["starts"]["solved"] == found.solved
+    assert data["starts"]["solved"] == computed.solved
     assert sum(end["count"] for end in data["starts"]["ends"]) == 10
-    assert data["search"]["start"] == f"random point {found.ends[0].first_start}, seed 2"
+    assert data["search"]["start"] == f"random point {computed.ends[0].first_start}, seed 2"
 
 
 def test_one_random_start_is_the_first_of_many():
@@ -172,9 +172,9 @@ def test_a_seed_or_a_number_means_random_starts(asked, starts):
 
 
 def test_a_limit_of_iterations_reaches_every_search():
-    found = bemcontact.random_starts(resting(), "qp1", count=3, max_iterations=2)
-    assert {end.solution.status for end in found.ends} == {Status.ITERATION_LIMIT}
-    assert max(end.iterations[1] for end in found.ends) <= 2
+    computed = bemcontact.random_starts(resting(), "qp1", count=3, max_iterations=2)
+    assert {end.solution.status for end in computed.ends} == {Status.ITERATION_LIMIT}
+    assert max(end.iterations[1] for end in computed.ends) <= 2
     result = bemcontact.solve(resting(), "qp1", max_iterations=2)
     assert result.solution.status is Status.ITERATION_LIMIT
     assert "--max-iterations; 2 were done" in result.certificate.words
@@ -189,20 +189,20 @@ def test_progress_counts_what_is_done():
 
 def test_all_infeasible_ends_are_one():
     """M = -1, q = -1 has no contact state; where the search saw that means nothing, nor does the objective there."""
-    found = multistart(CondensedContact.from_compliance([[-1.0]], [-1.0]), SolveOptions.of("qp1", starts=12))
-    (end,) = found.ends
-    assert (end.count, end.objective, found.solved) == (12, None, 0)
+    computed = multistart(CondensedContact.from_compliance([[-1.0]], [-1.0]), SolveOptions.of("qp1", starts=12))
+    (end,) = computed.ends
+    assert (end.count, end.objective, computed.solved) == (12, None, 0)
     assert re.fullmatch(r"12 x infeasible, (\d+ to )?\d+ iterations?", str(end))
-    assert json.loads(json.dumps(found.to_dict(), allow_nan=False))["ends"][0]["objective"] is None
+    assert json.loads(json.dumps(computed.to_dict(), allow_nan=False))["ends"][0]["objective"] is None
 
 
 def test_all_unbounded_ends_are_one():
     """On δ = 1 + p both grow along p = (1, 1), where pᵀJδ falls as -2p² for J = [[1, -2], [-2, 1]]."""
     J = np.array([[1.0, -2.0], [-2.0, 1.0]])
     problem = replace(CondensedContact.from_compliance(np.eye(2), [1.0, 1.0]), consistent_weights=J)
-    found = multistart(problem, SolveOptions.of("qp1", "consistent", starts=12))
-    assert [end.solution.status for end in found.ends] == [Status.UNBOUNDED]
-    assert found.ends[0].count == 12
+    computed = multistart(problem, SolveOptions.of("qp1", "consistent", starts=12))
+    assert [end.solution.status for end in computed.ends] == [Status.UNBOUNDED]
+    assert computed.ends[0].count == 12
 
 
 @pytest.mark.parametrize(
@@ -221,5 +221,5 @@ def test_random_starts_are_for_local_solvers():
 
 def test_nothing_is_polished():
     """A polish would turn the lifted body into the solution."""
-    found = multistart(resting(), SolveOptions.of("qp1", polish=True, starts=2))
-    assert not any(end.solution.polished for end in found.ends)
+    computed = multistart(resting(), SolveOptions.of("qp1", polish=True, starts=2))
+    assert not any(end.solution.polished for end in computed.ends)

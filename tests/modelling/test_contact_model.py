@@ -20,11 +20,11 @@ CONTACTS = {f"{n} points, {k} motions": random_contact(n + k, n, k) for n, k in 
 CONTACTS |= {"tools": tool_contact(), "resting": resting()}
 
 
-def same_pressure(found, contact: CondensedContact, within: float = 1e-10) -> None:
+def same_pressure(computed, contact: CondensedContact, within: float = 1e-10) -> None:
     """Against the direct solver; the compliance is positive definite on the equilibrium space, so there is one."""
     direct = complementarity.solve(contact)
     assert direct.status is Status.SOLVED
-    np.testing.assert_allclose(found, direct.pressure, atol=within * direct.pressure.max())
+    np.testing.assert_allclose(computed, direct.pressure, atol=within * direct.pressure.max())
 
 
 @pytest.mark.parametrize("contact", CONTACTS.values(), ids=CONTACTS)
@@ -107,9 +107,9 @@ def test_parameters_are_the_data_of_the_problem():
     model.tool_position.value = model.tool_position.value + moves + unused
     model.tool_force.value = model.tool_force.value + forces + unused[::-1]
     moved = loaded.with_tools(position, force)
-    found = model.solve()
-    same_pressure(found.pressure, moved)
-    np.testing.assert_allclose(found.tool_displacement[0], position[0], atol=1e-14)
+    computed = model.solve()
+    same_pressure(computed.pressure, moved)
+    np.testing.assert_allclose(computed.tool_displacement[0], position[0], atol=1e-14)
     step = 0.1 * np.random.default_rng(1).standard_normal(contact.size)
     model.initial_gap.value = model.initial_gap.value + step
     relieved = replace(moved, initial_gap=moved.initial_gap + step)
@@ -140,29 +140,29 @@ def test_units_do_not_matter(length, stress):
     first, second = bemcontact.model(one).solve(), bemcontact.model(other).solve()
     np.testing.assert_allclose(second.pressure / stress, first.pressure, atol=1e-12 * first.pressure.max())
     limit = 0.8 * first.pressure.max()
-    found = []
+    computed = []
     for contact, L, S in ((one, 1.0, 1.0), (other, length, stress)):
         model = bemcontact.model(contact)
         lift = cp.Variable(nonneg=True)
         cut = model.solve(0.1 * S * L * cp.sum(model.gap) + lift * S * L, [model.pressure <= limit * S + lift * S / L])
         assert cut.status is Status.SOLVED
-        found.append((cut.pressure / S, cut.objective / (S * L**2), lift.value / L))
-    for one, other in zip(*found, strict=True):
+        computed.append((cut.pressure / S, cut.objective / (S * L**2), lift.value / L))
+    for one, other in zip(*computed, strict=True):
         np.testing.assert_allclose(other, one, atol=1e-6 * limit)
 
 
-def test_an_addition_may_break_contact_and_is_told():
+def test_an_addition_that_breaks_contact_is_reported():
     """A bound on the pressure below the peak: all constraints hold, complementarity fails, the sentence says so."""
     model = bemcontact.model(random_contact(4, 12, 1))
     free = model.solve()
     p_max = 0.7 * free.pressure.max()
-    found = model.solve(extra_constraints=[model.pressure <= p_max])
-    assert found.status is Status.SOLVED
-    assert found.pressure.max() <= p_max * (1 + 1e-9)
-    assert not found.contact_state
-    assert "optimum of your model, not a contact state" in found.words
-    assert found.residuals.complementarity > 1e-2
-    assert f"{found.residuals.complementarity:.1e}" in found.words
+    computed = model.solve(extra_constraints=[model.pressure <= p_max])
+    assert computed.status is Status.SOLVED
+    assert computed.pressure.max() <= p_max * (1 + 1e-9)
+    assert not computed.contact_state
+    assert "optimum of your model, not a contact state" in computed.words
+    assert computed.residuals.complementarity > 1e-2
+    assert f"{computed.residuals.complementarity:.1e}" in computed.words
     idle = model.solve(extra_constraints=[model.pressure <= 2 * free.pressure.max()])
     assert idle.contact_state
     assert "leaves a contact state" in idle.words
@@ -238,9 +238,9 @@ def test_a_design_variable_composes_with_the_gap():
     assert "not a contact state" in designed.words  # at the gap that is not shifted
     np.testing.assert_allclose(designed.pressure, force / contact.weights.sum(), rtol=1e-7)
     model.initial_gap.value = model.initial_gap.value + h.value
-    found = model.solve()
-    assert found.contact_state
-    np.testing.assert_allclose(found.pressure, designed.pressure, rtol=1e-6)
+    computed = model.solve()
+    assert computed.contact_state
+    np.testing.assert_allclose(computed.pressure, designed.pressure, rtol=1e-6)
 
 
 def test_solving_again_starts_from_the_last_solution():
@@ -252,21 +252,21 @@ def test_solving_again_starts_from_the_last_solution():
     assert same.solution.solver == "primal-dual active set"
     same_pressure(same.pressure, contact)
     model.initial_gap.value = contact.initial_gap + 0.01 * np.random.default_rng(0).standard_normal(40)
-    found = model.solve()
-    assert found.solution.solver == "primal-dual active set"
-    same_pressure(found.pressure, model.contact)
-    np.testing.assert_allclose(model.pressure.value, found.pressure, rtol=1e-13)
-    np.testing.assert_allclose(model.motions.value, found.motions, rtol=1e-13)
+    computed = model.solve()
+    assert computed.solution.solver == "primal-dual active set"
+    same_pressure(computed.pressure, model.contact)
+    np.testing.assert_allclose(model.pressure.value, computed.pressure, rtol=1e-13)
+    np.testing.assert_allclose(model.motions.value, computed.motions, rtol=1e-13)
 
 
-def test_a_slightly_indefinite_objective_is_told_and_polished():
+def test_a_slightly_indefinite_objective_is_reported_and_polished():
     """sym(M) = [[1, 1.01], [1.01, 1]] has eigenvalues 2.01 and -0.01: half a hundredth, left out of F3."""
     contact = CondensedContact.from_compliance([[1.0, 2.02], [0.0, 1.0]], [-1.0, -1.0])
     model = bemcontact.model(contact)
     assert "not convex on this mesh" in model.notes[0]
-    found = model.solve()
-    assert found.contact_state
-    same_pressure(found.pressure, contact)
+    computed = model.solve()
+    assert computed.contact_state
+    same_pressure(computed.pressure, contact)
 
 
 @pytest.mark.parametrize("contact", CONTACTS.values(), ids=CONTACTS)
@@ -276,10 +276,10 @@ def test_a_problem_solved_the_way_of_cvxpy_is_the_contact_state(contact):
     problem = model.problem()
     problem.solve()
     assert problem.solver_stats.solver_name == "CLARABEL"
-    found = model.result(problem)
-    assert found.contact_state
-    assert found.certificate.certified
-    same_pressure(found.pressure, contact)
+    computed = model.result(problem)
+    assert computed.contact_state
+    assert computed.certificate.certified
+    same_pressure(computed.pressure, contact)
 
 
 def test_loads_of_two_cases_that_balance_each_other_may_act_together():

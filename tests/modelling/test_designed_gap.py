@@ -85,16 +85,16 @@ def test_words_and_numbers():
     assert "The largest pressure goes from" in design.words
     assert "Whether another profile does better is not proved" in design.words
     assert "Solved again with the profile and certified" in design.words
-    told = json.loads(design.to_json())
-    assert told["profile"] == design.profile[design.points].tolist()
-    assert told["after"][0]["peak"]["pressure"] == design.peak
-    assert told["verified"] is True
-    assert told["lower_bound"] <= told["value"] < told["value_before"]
+    record = json.loads(design.to_json())
+    assert record["profile"] == design.profile[design.points].tolist()
+    assert record["after"][0]["peak"]["pressure"] == design.peak
+    assert record["verified"] is True
+    assert record["lower_bound"] <= record["value"] < record["value_before"]
     assert repr(design).startswith("<GapDesign on 'punch': peak 7653.22 -> ")
 
 
-def test_a_pressure_that_is_not_as_designed_is_told():
-    """A pressure off by a hundredth of the peak, as a broken solver would have found it."""
+def test_a_pressure_that_is_not_as_designed_is_reported():
+    """A pressure off by a hundredth of the peak, as a broken solver would compute it."""
     design = relieved_punch()
     wrong = replace(design, designed=design.designed + 0.01 * design.peak)
     assert not wrong.verified

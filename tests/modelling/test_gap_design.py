@@ -152,7 +152,7 @@ def exhaustive(contact: CondensedContact, low: float, high: float) -> float:
     for touching in product((False, True), repeat=n):
         A = np.array(touching)
         bounds = [(None, None), *[(low, high)] * n, *((0, None if on else 0) for on in A), *[(None, None)] * k]
-        found = linprog(
+        result = linprog(
             np.append(1.0, np.zeros(2 * n + k)),
             A_ub=np.vstack([below_peak, -gap[~A]]),
             b_ub=np.append(np.zeros(n), contact.offset[~A]),
@@ -160,12 +160,12 @@ def exhaustive(contact: CondensedContact, low: float, high: float) -> float:
             b_eq=np.append(-contact.offset[A], -contact.motion_load),
             bounds=bounds,
         )
-        best = min(best, found.fun if found.success else np.inf)
+        best = min(best, result.fun if result.success else np.inf)
     return best
 
 
 @pytest.mark.parametrize("seed", range(9))
-def test_the_best_of_all_contact_sets_is_found(seed):
+def test_the_design_is_the_best_of_all_contact_sets(seed):
     contact = random_contact(seed, 6, seed % 3)
     design = design_gap(contact, Relief(lower=-0.3, upper=0.5))
     best = exhaustive(contact, -0.3, 0.5)
@@ -224,11 +224,11 @@ def test_load_cases_are_load_states():
 
 @pytest.mark.parametrize(("length", "stress"), [(1e6, 1e-3), (1e-9, 1e6)])
 def test_units_do_not_matter(length, stress):
-    found = []
+    result = []
     for L, S in ((1.0, 1.0), (length, stress)):
         contact = tool_contact(units=(L, S))
-        found.append(design_gap(contact, Relief(lower=0, upper=0.2 * L, slope=0.5)).value / S)
-    assert found[1] == pytest.approx(found[0], rel=1e-6)
+        result.append(design_gap(contact, Relief(lower=0, upper=0.2 * L, slope=0.5)).value / S)
+    assert result[1] == pytest.approx(result[0], rel=1e-6)
 
 
 def test_what_is_no_design_is_refused():
@@ -248,13 +248,13 @@ def test_what_is_no_design_is_refused():
         design_gap(contact, Relief(lower=(0, 5, 0, 0, 0, 0), upper=(1, 6, 1, 1, 1, 1), slope=0.1))
 
 
-@pytest.mark.parametrize(("arc", "told"), [((1.0, 2.0), True), ((0.0, 2.0), False)])
-def test_a_peak_outside_of_the_interval_is_told(arc, told):
+@pytest.mark.parametrize(("arc", "outside"), [((1.0, 2.0), True), ((0.0, 2.0), False)])
+def test_a_peak_outside_of_the_interval_is_reported(arc, outside):
     """Three springs by themselves, the first compressed by 3 and out of reach of the profile, or not."""
     contact = CondensedContact.from_compliance(np.eye(3), [-3.0, -1.0, -1.0])
     design = design_gap(contact, Relief(lower=0, upper=1.5), arc=arc)
-    assert design.peak == pytest.approx(3.0 if told else 1.5)
-    assert ("outside of the interval" in design.words) is told
+    assert design.peak == pytest.approx(3.0 if outside else 1.5)
+    assert ("outside of the interval" in design.words) is outside
 
 
 def uniform_program(

@@ -61,8 +61,8 @@ def test_interval_and_shapes():
 def test_the_profile_that_is_next_to_none():
     """The least of the largest values between 1 and 2 or from -3 up to -0.5 is 1."""
     profiles = Profiles.of(contact(), Relief(lower=(-3.0, 1.0), upper=(-0.5, 2.0)), "toe")
-    found = profiles.shapes @ profiles.nearest_to_none()
-    assert np.abs(found).max() == pytest.approx(1, rel=1e-9)
+    result = profiles.shapes @ profiles.nearest_to_none()
+    assert np.abs(result).max() == pytest.approx(1, rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Contact states and their derivatives found by trying all sets of points: slow, and independent of every method."""
+"""Contact states and their derivatives by a trial of all sets of points: slow, and independent of every method."""
 
 from collections.abc import Iterator
 from itertools import chain, combinations

@@ -10,7 +10,7 @@ from bemcontact.contact.load_cases import Change
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
-from bemcontact.parametric.derivative import Tangent, is_monotone
+from bemcontact.parametric.pivoting import Tangent, is_monotone
 
 
 def tangent_of(contact: CondensedContact) -> Tangent:

@@ -22,18 +22,18 @@ def crossing(start: float, end: float) -> ParameterPath:
 
 
 def test_states_are_breakpoints_and_three_between_each_two():
-    found = pressed_parabola()
-    breakpoints = [state.breakpoint for state in found.states]
-    assert breakpoints == [True, *([False] * len(BETWEEN) + [True]) * (len(found.breakpoints) - 1)]
-    np.testing.assert_allclose([state.value for state in found.breakpoints], -8 * found.path.parameter, atol=1e-14)
-    assert found.certified
+    result = pressed_parabola()
+    breakpoints = [state.breakpoint for state in result.states]
+    assert breakpoints == [True, *([False] * len(BETWEEN) + [True]) * (len(result.breakpoints) - 1)]
+    np.testing.assert_allclose([state.value for state in result.breakpoints], -8 * result.path.parameter, atol=1e-14)
+    assert result.certified
 
 
 def test_peaks_between_breakpoints_are_those_of_the_line():
     """Pressures are linear between breakpoints, and here the middle bears the peak: so is the peak."""
-    found = pressed_parabola()
-    values, peaks = ([getattr(state, name) for state in found.breakpoints] for name in ("value", "peak"))
-    for state in found.states:
+    result = pressed_parabola()
+    values, peaks = ([getattr(state, name) for state in result.breakpoints] for name in ("value", "peak"))
+    for state in result.states:
         assert state.peak == pytest.approx(np.interp(-state.value, -np.array(values), peaks), abs=1e-13)
 
 
@@ -44,29 +44,29 @@ def test_resultant_is_the_load():
 
 
 def test_table_has_a_row_for_each_state():
-    found = pressed_parabola()
-    head, *rows = csv.reader(io.StringIO(found.to_csv()))
+    result = pressed_parabola()
+    head, *rows = csv.reader(io.StringIO(result.to_csv()))
     assert head == [
         "load", "breakpoint", "enter", "leave", "peak", "peak x", "peak y", "contact resultant x",
         "contact resultant y", "contact starts", "contact ends", "nodes in contact",
     ]  # fmt: skip
-    assert [float(row[0]) for row in rows] == [state.value for state in found.states]
+    assert [float(row[0]) for row in rows] == [state.value for state in result.states]
     last = rows[-1]
     assert last[5:7] == ["10.0", "0.0"]
-    assert [int(i) for i in last[-1].split()] == list(found.states[-1].touching)
+    assert [int(i) for i in last[-1].split()] == list(result.states[-1].touching)
     assert float(last[10]) + float(last[9]) == pytest.approx(20, abs=1e-9)  # symmetry about point 10
     entering = next(row for row in rows if row[2])
     assert entering[2] == "9 11"
 
 
 def test_numbers_are_json():
-    told = json.loads(crossing(-0.5, 1.5).to_json())
-    assert not told["certified"]
-    assert told["reaches"] == pytest.approx([-0.5, 1.0])
-    assert told["notes"][0].startswith(
+    record = json.loads(crossing(-0.5, 1.5).to_json())
+    assert not record["certified"]
+    assert record["reaches"] == pytest.approx([-0.5, 1.0])
+    assert record["notes"][0].startswith(
         "the path exists up to 1; beyond that, the load carries the body off its support"
     )
-    assert [state["left"] for state in told["states"] if state["breakpoint"]] == [[], [0], [], []]
+    assert [state["left"] for state in record["states"] if state["breakpoint"]] == [[], [0], [], []]
 
 
 def test_round_off_of_a_parameter_is_zero():

@@ -47,10 +47,10 @@ def apart(path: LoadPath, count: int) -> float:
     """The largest difference to independent solves at random t, of the pressure over its peak and of the gap over U."""
     worst = 0.0
     for t in np.random.default_rng(7).uniform(path.begins_at, path.ends_at, count):
-        found, expected = path.at(t), complementarity.solve(path.contact(t))
+        result, expected = path.at(t), complementarity.solve(path.contact(t))
         assert expected.status is bemcontact.Status.SOLVED
-        worst = max(worst, np.abs(found.pressure - expected.pressure).max() / (expected.pressure.max() or 1.0))
-        gaps = np.abs(found.displacement - expected.displacement).max()
+        worst = max(worst, np.abs(result.pressure - expected.pressure).max() / (expected.pressure.max() or 1.0))
+        gaps = np.abs(result.displacement - expected.displacement).max()
         worst = max(worst, gaps / path.end.scales.displacement)
     return worst
 
@@ -132,7 +132,7 @@ def test_degenerate_paths_are_those_of_exhaustive_search(made):
 
 @pytest.mark.parametrize("what", ["case", "position", "force"])
 def test_load_factors_positions_and_forces_of_tools(what: str):
-    """Problems made at each t by `with_factors` and `with_tools`, solved independently, and where the tool is told."""
+    """Problems made at each t by `with_factors` and `with_tools`, solved independently, and the place of the tool."""
     contact = between_tools()
 
     def at(t: float) -> CondensedContact:
@@ -148,12 +148,12 @@ def test_load_factors_positions_and_forces_of_tools(what: str):
     assert path.complete
     assert path.pivots >= 2
     for t in np.random.default_rng(1).uniform(0, 1, 50):
-        stated, found, made = at(t), path.at(t), path.contact(t)
+        stated, result, made = at(t), path.at(t), path.contact(t)
         expected = complementarity.solve(stated)
-        np.testing.assert_allclose(found.pressure, expected.pressure, atol=1e-9 * expected.pressure.max())
+        np.testing.assert_allclose(result.pressure, expected.pressure, atol=1e-9 * expected.pressure.max())
         np.testing.assert_allclose(made.cases.factors, stated.cases.factors, atol=1e-14)
         np.testing.assert_allclose(
-            made.tools.displacement(found.rigid_amplitudes),
+            made.tools.displacement(result.rigid_amplitudes),
             stated.tools.displacement(expected.rigid_amplitudes),
             atol=1e-9,
         )
@@ -372,6 +372,6 @@ def test_path_in_words_and_numbers():
     assert repr(path).startswith(
         "<LoadPath of 'unnamed': 4 breakpoints from 0 to 0.75, 2 pivots; the path exists up to 0.75; "
     )
-    told = path.to_dict()
-    assert (told["complete"], told["pivots"], told["left"]) == (False, 2, [[], [0], [], []])
-    assert told["notes"] == list(path.notes)
+    record = path.to_dict()
+    assert (record["complete"], record["pivots"], record["left"]) == (False, 2, [[], [0], [], []])
+    assert record["notes"] == list(path.notes)

@@ -45,16 +45,16 @@ def difference(after: CondensedContact, before: CondensedContact, width: float) 
 def assert_same(rates: Rates, expected: dict[str, np.ndarray], width: float, *names: str) -> None:
     """Agree to 1e-6 relative, as is asked for, beside the round-off of the difference."""
     for name in names or expected:
-        found = np.array(getattr(rates, name), float)
+        result = np.array(getattr(rates, name), float)
         size = np.abs(expected[name]).max(initial=0.0)
-        np.testing.assert_allclose(found, expected[name], rtol=0, atol=1e-6 * size + ROUND_OFF / width, err_msg=name)
+        np.testing.assert_allclose(result, expected[name], rtol=0, atol=1e-6 * size + ROUND_OFF / width, err_msg=name)
 
 
 def test_tools_and_load_cases_against_central_differences():
     """States are piecewise linear: a central difference is exact but for 1e-15 / 1e-4, and for δ^(2/3) in the ends."""
     contact, step = between_tools(), 1e-4
-    found = sensitivities(contact)
-    assert set(found) == {
+    result = sensitivities(contact)
+    assert set(result) == {
         "load_cases.wind", "tools.punch.displacement.x", "tools.punch.force.y", "tools.punch.displacement.rotation",
     }  # fmt: skip
     sides = {}
@@ -66,7 +66,7 @@ def test_tools_and_load_cases_against_central_differences():
             "tools.punch.force.y": contact.with_tools(force=force + np.array([0, side, 0])),
             "tools.punch.displacement.rotation": contact.with_tools(position=position + np.array([0, 0, side])),
         }
-    for key, sensitivity in found.each.items():
+    for key, sensitivity in result.each.items():
         assert not sensitivity.one_sided
         assert_same(sensitivity.rising, difference(sides[step][key], sides[-step][key], 2 * step), step)
 
@@ -140,10 +140,10 @@ def test_weakly_active_points_give_two_sides(seed: int):
     """One-sided differences over 1e-5 are exact to 1e-10 on each side as long as no other point enters or leaves."""
     contact, _, _ = degenerate(seed, n=9, k=seed % 3, weak=2)
     change, step = random_change(seed, contact), 1e-5
-    found = sensitivities(contact, {"both": change})
-    assert len(found.weak) == 2
-    assert "touch without pressure" in found.notes[0]
-    sensitivity = found["both"]
+    result = sensitivities(contact, {"both": change})
+    assert len(result.weak) == 2
+    assert "touch without pressure" in result.notes[0]
+    sensitivity = result["both"]
     assert sensitivity.one_sided
     names = ("pressure", "gap", "rigid_amplitudes", "resultant", "peak")
     assert_same(sensitivity.rising, difference(changed(contact, change, step), contact, step), step, *names)
@@ -155,18 +155,18 @@ def test_ends_beside_a_weakly_active_point_have_no_derivative():
     """The parabola in contact at points 18 to 22 of 41, and 23 about to join: beyond it the end is read anew."""
     path = bemcontact.parametric.path.load_path(half_plane(41, 0.0), half_plane(41, 0.2))
     entering = next(i for i, points in enumerate(path.entered) if 23 in points)
-    found = sensitivities(path.contact(path.parameter[entering]), {"load": Change(np.zeros(41), np.array([-1.0]))})
-    assert found.weak == (17, 23)
-    assert found["load"].rising.interval_ends == ((None, None),)
-    assert "points 17 at (17, 0), 23 at (23, 0) touch without pressure" in found.notes[0]
+    result = sensitivities(path.contact(path.parameter[entering]), {"load": Change(np.zeros(41), np.array([-1.0]))})
+    assert result.weak == (17, 23)
+    assert result["load"].rising.interval_ends == ((None, None),)
+    assert "points 17 at (17, 0), 23 at (23, 0) touch without pressure" in result.notes[0]
 
 
 def test_peak_that_two_points_share_has_two_sides():
     """A load between two supports; as it moves to the right, the right one bears more, as to the left, the left one."""
     contact = rocker(-0.5)
-    found = sensitivities(contact, {"moved": Change(np.zeros(3), np.array([0.0, -1.0]))})
-    assert (found["moved"].rising.peak, found["moved"].falling.peak) == pytest.approx((1.0, -1.0), abs=1e-13)
-    assert "points 0 at (0, 0), 1 at (1, 0) share the peak pressure" in found.notes[0]
+    result = sensitivities(contact, {"moved": Change(np.zeros(3), np.array([0.0, -1.0]))})
+    assert (result["moved"].rising.peak, result["moved"].falling.peak) == pytest.approx((1.0, -1.0), abs=1e-13)
+    assert "points 0 at (0, 0), 1 at (1, 0) share the peak pressure" in result.notes[0]
 
 
 def test_no_derivative_where_the_body_is_not_held():
@@ -204,10 +204,10 @@ def test_units_change_nothing():
 
 
 def test_words_and_numbers():
-    found: Sensitivities = sensitivities(between_tools())
-    assert repr(found).startswith("<Sensitivities to load_cases.wind, tools.punch.displacement.x")
-    assert repr(found["load_cases.wind"]).startswith("<Sensitivity to load_cases.wind: peak ")
-    told = json.loads(found.to_json())
-    assert [item["key"] for item in told["sensitivities"]] == list(found)
+    result: Sensitivities = sensitivities(between_tools())
+    assert repr(result).startswith("<Sensitivities to load_cases.wind, tools.punch.displacement.x")
+    assert repr(result["load_cases.wind"]).startswith("<Sensitivity to load_cases.wind: peak ")
+    record = json.loads(result.to_json())
+    assert [item["key"] for item in record["sensitivities"]] == list(result)
     with pytest.raises(ProblemError, match=r"no sensitivity to 'wind'; there are: load_cases\.wind"):
-        found["wind"]
+        result["wind"]

@@ -2,7 +2,7 @@
 
 A first-order point of a quadratic program is a local minimizer exactly if H is copositive on its critical cone
 {d : E d = 0, W d >= 0}, E the equalities and the constraints with a nonzero multiplier, W the other active ones
-(Majthay, Math. Programming 1 (1971) 359-365; Contesse, Numer. Math. 34 (1980) 331-332). Deciding this is co-NP-hard in
+(Majthay, Math. Programming 1 (1971) 359-365; Contesse, Numer. Math. 34 (1980) 331-332). To decide this is co-NP-hard in
 general (Murty and Kabadi 1987), so the search is bounded and may end undecided.
 """
 
@@ -31,12 +31,9 @@ class CriticalCone:
 
     Parameters
     ----------
-    free : (f,) int array
-        Variables that no bound with a multiplier fixes.
-    equal : (e, f) array
-        E, full rank not required.
-    weak : (w, f) array
-        W, signed so that feasible means >= 0.
+    free : (f,) variables that no bound with a multiplier fixes
+    equal : (e, f) E, full rank not required
+    weak : (w, f) W, signed so that feasible means >= 0
     """
 
     free: NDArray[np.intp]
@@ -46,14 +43,9 @@ class CriticalCone:
 
 @dataclass(frozen=True, kw_only=True)
 class Curvature:
-    """What the search found.
+    """Whether H is copositive on the cone, and if not, a unit direction (n,) of the cone with negative curvature.
 
-    Parameters
-    ----------
-    copositive : bool or None
-        Whether H is copositive on the cone; None if the bound of the search came first.
-    direction : (n,) array or None
-        A direction of the cone with negative curvature, of length one.
+    `copositive` is None if the bound of the search came first.
     """
 
     copositive: bool | None
@@ -74,15 +66,15 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     if _positive_semidefinite(reduced):
         return Curvature(copositive=True)
     weak = unit_rows(cone.weak * units)[0] @ N
-    copositive, found = _search_faces(reduced, weak, min(faces, FEW))
+    copositive, falling = _search_faces(reduced, weak, min(faces, FEW))
     if copositive is None:
-        found = _probe(reduced, weak)
-    if copositive is None and found is None:
-        copositive, found = _search_faces(reduced, weak, faces)
-    if found is None:
+        falling = _probe(reduced, weak)
+    if copositive is None and falling is None:
+        copositive, falling = _search_faces(reduced, weak, faces)
+    if falling is None:
         return Curvature(copositive=copositive)
     direction = np.zeros(H.shape[0])
-    direction[cone.free] = units * (N @ found)
+    direction[cone.free] = units * (N @ falling)
     return Curvature(copositive=False, direction=direction / np.linalg.norm(direction))
 
 
@@ -174,14 +166,10 @@ class FirstOrder:
 
     Parameters
     ----------
-    holds : bool
-        Feasible, stationary, multipliers of the right sign and only on active constraints, all within tolerance.
-    strong, weak : bool arrays (n + m,)
-        Active constraints: equalities and those with a multiplier, and the others.
-    sides : (n + m,) int8 array
-        Which bound each active constraint is at (2: equality).
-    size : (n + m,) array
-        Absolute multipliers.
+    holds : feasible, stationary, multipliers of the right sign and only on active constraints, all within tolerance
+    strong, weak : (n + m,) active constraints: equalities and those with a multiplier, and the others
+    sides : (n + m,) bound that each active constraint is at (2: equality)
+    size : (n + m,) absolute multipliers
     """
 
     holds: bool
@@ -202,9 +190,9 @@ class FirstOrder:
         return CriticalCone(free=free, equal=statement.A[self.strong[n:]][:, free], weak=inwards[:, None] * normals)
 
     def stricter(self, along: Array, blocking: int) -> "FirstOrder":
-        """With a direction shut out on which the objective does not fall as far as it leads.
+        """The conditions without a direction on which the objective does not fall as far as it leads.
 
-        Small multipliers that make it rise count; if none does, the constraint that blocks it at once is active too.
+        Small multipliers that make it rise count. If none does, the constraint that blocks it at once is active too.
         """
         leaving = self.weak & (self.sides * along < 0.0) & (self.size > 0.0)
         sides, weak = self.sides.copy(), self.weak & ~leaving

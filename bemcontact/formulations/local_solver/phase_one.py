@@ -9,30 +9,24 @@ from math import sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.pivoting import INFINITY, Block, nearest, side_reached, wrong_sign
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.statement import Sides, Statement
-from bemcontact.formulations.local_solver.working_set import WorkingSet
+from bemcontact.formulations.local_solver.working_set import (
+    INFINITY,
+    Block,
+    WorkingSet,
+    nearest,
+    side_reached,
+    wrong_sign,
+)
 
 
 def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tuple[WorkingSet, Array | None]:
-    """Walk to a feasible point.
+    """Walk to a feasible point from a working set (n + m,).
 
-    Parameters
-    ----------
-    progress : Progress
-        The point.
-    sides : (n + m,) int8 array
-        Working set to begin with.
-    fineness : float
-        Part of the optimality tolerance that counts; less where a certificate was refused before.
-
-    Returns
-    -------
-    working : WorkingSet
-        The constraints held at the end; where the point is feasible, with all equalities and the null space.
-    certificate : (n + m,) array or None
-        Multipliers of infeasibility in scaled units where the sum cannot be reduced; to be verified.
+    `fineness` is the part of the optimality tolerance that counts; it is less where a certificate was refused before.
+    The result is the working set at the end, with all equalities and the null space where the point is feasible, and
+    Farkas multipliers (n + m,) in scaled units where the sum cannot be reduced; they are to be verified.
     """
     statement, n = progress.statement, progress.x.size
     if not np.count_nonzero(violated_signs(progress)):
@@ -65,20 +59,20 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
 
 
 def _with_equalities(statement: Statement, sides: Sides) -> WorkingSet:
-    """Phase one ends within the tolerance; equalities are to be met as exactly as the arithmetic allows."""
+    """A working set with all equalities, which are met as exactly as the arithmetic allows."""
     sides = sides.copy()
     sides[statement.equality] = 2
     return WorkingSet(statement, sides)
 
 
 def violated_signs(progress: Progress) -> Array:
-    """+1 above the upper, -1 below the lower bound, 0 within tolerance."""
+    """+1 above the upper, -1 below the lower bound, 0 within tolerance (n + m,)."""
     values = progress.values
     return np.subtract(values > progress.highest, values < progress.lowest, dtype=float)
 
 
 def _signs_of_others(progress: Progress, working: WorkingSet) -> Array:
-    """The same, but for what is held: that is on its bound, up to rounding."""
+    """`violated_signs` of all that is not held; what is held is on its bound, up to rounding."""
     signs = violated_signs(progress)
     signs[working.held] = 0.0
     return signs
@@ -94,7 +88,7 @@ def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array
 
 
 def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Array, dropped: int | None) -> bool:
-    """Move along the direction to the constraint that ends the step and hold that; whether there is one."""
+    """Move along the direction to the constraint that ends the step, and hold it; False if there is none."""
     length = sqrt(direction.dot(direction))
     along = progress.statement.values(direction)
     wall = nearest(progress, along, length, working.held | signs.astype(bool), working)
@@ -111,7 +105,7 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
 
 
 def _breakpoint(progress: Progress, signs: Array, along: Array, length: float, furthest: float) -> Block | None:
-    """Where the sum of infeasibilities stops falling, no further than that: the violated constraint that turns it."""
+    """The violated constraint at which the sum of infeasibilities stops falling, within a furthest step."""
     statement, falling = progress.statement, -signs * along
     towards = (falling > 1e-10 * length).nonzero()[0]
     near, speed = statement.violation(progress.values)[towards], falling[towards]

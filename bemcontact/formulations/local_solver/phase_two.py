@@ -1,6 +1,13 @@
 """Phase two: from a feasible point to a stationary one, the reduced Hessian never with two non-positive eigenvalues.
 
-Gill, Murray, Saunders and Wright, SIAM Review 33 (1991) 1-36; Gill and Wong, Math. Prog. Comp. 7 (2015) 71-112.
+The reduced Hessian is that on the null space of the working set. A conjugate basis Z of this space is kept, and at most
+one direction d of no positive curvature, which is called pending:
+
+    Zᵀ H Z = I,   Zᵀ H d = 0,   dᵀ H d <= 0.
+
+Any rotation of the columns of Z keeps this, so that a reflection lets a constraint enter. A direction that becomes free
+is made conjugate to the others. No other direction is let in while one is pending (Gill, Murray, Saunders and Wright,
+SIAM Review 33 (1991) 1-36; Gill and Wong, Math. Prog. Comp. 7 (2015) 71-112).
 """
 
 from dataclasses import dataclass
@@ -10,10 +17,109 @@ from math import sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.pivoting import Block, nearest, wrong_sign
+from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, pivoted_cholesky
 from bemcontact.formulations.local_solver.progress import Progress
-from bemcontact.formulations.local_solver.reduced_hessian import ReducedHessian
-from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, WorkingSet
+from bemcontact.formulations.local_solver.statement import EPS, Statement
+from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, Block, WorkingSet, nearest, wrong_sign
+
+
+class ReducedHessian:
+    """A conjugate basis of the null space, changed in place by `enter` and `leave`.
+
+    Attributes
+    ----------
+    Z : (n, k) conjugate basis
+    left_over : (n, t) orthonormal directions of the start in which the Hessian is not positive definite; to be fixed
+    pending : (n,) unit direction of no positive curvature, or None
+    curvature : dᵀHd of the pending direction; exactly zero where it is rounding
+    """
+
+    def __init__(self, statement: Statement, null_space: Array) -> None:
+        n, k = null_space.shape
+        self.statement = statement
+        self._top = float(statement.absolute[0].max())
+        self._columns = np.zeros((n, n), order="F")
+        self.left_over = null_space[:, :0]
+        self._resize(0)
+        self.pending: Array | None = None
+        self.curvature = 0.0
+        if k:
+            reduced = null_space.T @ statement.H @ null_space
+            zero = 10.0 * max(10, n) * EPS * self._top
+            factor, order, rank = pivoted_cholesky(reduced, zero)
+            ordered = null_space[:, order]
+            self.left_over = ordered[:, rank:]
+            self._resize(rank)
+            self.Z[:] = ordered[:, :rank] @ inverse_triangle(factor)
+
+    def _resize(self, size: int) -> None:
+        """Look at the leading columns."""
+        self.size, self.Z = size, self._columns[:, :size]
+
+    def newton(self, gradient: Array) -> Array:
+        """-Z Zᵀg: to the minimizer on the working set."""
+        return -self.Z.dot(gradient.dot(self.Z))
+
+    def is_stationary(self, gradient: Array, zero: float) -> bool:
+        """Whether the reduced gradient is below `zero`, by |gᵀZ|² |ZᵀHZ|: quick, and never true of one that is not."""
+        if self.size == 0:
+            return True
+        slopes = gradient.dot(self.Z)
+        return float(slopes.dot(slopes)) * self._top * gradient.size <= zero**2
+
+    def enter(self, direction: Array) -> None:
+        """A direction of length one joins the null space: Z gains it, or it is pending: O(n²)."""
+        d, H, Z = direction, self.statement.H, self.Z
+        product = H.dot(d)
+        curvature = float(d.dot(product))
+        length = 1.0
+        for _ in range(2 if self.size else 0):
+            d = d - Z.dot(product.dot(Z))
+            product = H.dot(d)
+            before, curvature = curvature, float(d.dot(product))
+            if abs(curvature) > 0.01 * abs(before):
+                break  # no digits were lost that a second turn would bring back
+        if self.size:
+            length = float(d.dot(d))
+        clear = curvature == 0.0 or abs(curvature) > 1e-8 * self._top * length
+        rounding = 0.0 if clear else self.statement.rounding(d)
+        if curvature > rounding:
+            self._columns[:, self.size] = d / sqrt(curvature)
+            self._resize(self.size + 1)
+        else:
+            self.pending = d if length == 1.0 else d / sqrt(length)
+            self.curvature = curvature / length if curvature < -rounding else 0.0
+
+    def leave(self, normal: Array) -> None:
+        """A constraint joins the working set: the part of the null space along its normal goes: O(n²)."""
+        pending, self.pending = self.pending, None
+        if self.size == 0:
+            return
+        if self.size == 1 and pending is None:
+            self._resize(0)
+            return
+        along = normal.dot(self.Z)
+        length = sqrt(along.dot(along))
+        if length == 0.0:
+            return
+        last = self._reflect(along, length)
+        if pending is not None:
+            rest = length * pending - float(normal.dot(pending)) * last
+            self.enter(rest / sqrt(rest.dot(rest)))
+
+    def _reflect(self, along: Array, length: float) -> Array:
+        """Turn Z so that the normal meets its last column alone, and take that out; normalᵀ column = length."""
+        sign = -1.0 if along[-1] > 0.0 else 1.0
+        along[-1] -= sign * length
+        add_rank_one(self.Z, -2.0 / float(along.dot(along)), self.Z.dot(along), along)
+        self._resize(self.size - 1)
+        return sign * self._columns[:, self.size]
+
+    def clear(self, variable: int) -> None:
+        """A fixed variable has no part in any direction, not even by rounding."""
+        self.Z[variable] = 0.0
+        if self.pending is not None:
+            self.pending[variable] = 0.0
 
 
 class Ending(Enum):
@@ -27,38 +133,25 @@ class Ending(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """How phase two stopped; the ray if the objective seems to fall without end."""
+    """How phase two stopped; the ray (n,) if the objective seems to fall without end."""
 
     ending: Ending
     ray: Array | None = None
 
 
 class Descent:
-    """Phase two from a feasible point.
-
-    Parameters
-    ----------
-    progress : Progress
-        The point; it is put on the bounds of the working set.
-    working : WorkingSet
-        The constraints held.
+    """Phase two from a feasible point, which is put on the bounds of the working set.
 
     Attributes
     ----------
-    hessian : ReducedHessian
-        The Hessian on what they leave free.
-    value : float
-        The scaled objective.
-    dropped : int or None
-        The constraint released for the next step.
-    changed : bool
-        Whether the working set has changed since the last whole Newton step.
-    broken : bool
-        Whether a constraint ended a step that by its normal cannot: the factors have lost too many digits.
-    whole, idle : int
-        Whole Newton steps in a row; releases since the last step.
-    multipliers, zero : (n + r,) and (n,) arrays
-        At a stationary end: those of the working set, and the size of each component of the gradient that is zero.
+    hessian : Hessian on what the constraints leave free
+    value : scaled objective
+    dropped : the constraint released for the next step, or None
+    changed : whether the working set has changed since the last whole Newton step
+    broken : whether a constraint ended a step that by its normal cannot: the factors have lost too many digits
+    whole, idle : whole Newton steps in a row; releases since the last step
+    multipliers, zero : (n + r,) and (n,), at a stationary end: multipliers of the working set, and the size of each
+        component of the gradient that counts as zero
     """
 
     def __init__(self, progress: Progress, working: WorkingSet) -> None:
@@ -77,7 +170,7 @@ class Descent:
         self.value = progress.objective
 
     def run(self) -> Outcome:
-        """Walk until no constraint can be dropped with profit, or for ever."""
+        """Walk until no constraint can be dropped with profit, or without end."""
         progress, working, hessian = self.progress, self.working, self.hessian
         while not self.broken:
             if hessian.pending is None and self._settled():
@@ -97,7 +190,7 @@ class Descent:
         return Outcome(ending=Ending.INACCURATE)
 
     def _settled(self) -> bool:
-        """Whether there is no Newton step to take, as far as that can be seen without multipliers."""
+        """Whether there is no Newton step to take, as far as this shows without multipliers."""
         return not self.changed or self.hessian.is_stationary(self.progress.gradient, 0.1 * self.progress.zero)
 
     def _release(self, place: int) -> None:
@@ -142,13 +235,13 @@ class Descent:
         self.zero = progress.fine_zero(self.multipliers[x.size :], working.W, working.N)
 
     def _allowed(self, multipliers: Array) -> Array:
-        """Without those of refused constraints."""
+        """Multipliers (n + r,), zero for refused constraints."""
         if not self._refused:
             return multipliers
         return np.where(np.isin(self.working.numbers, list(self._refused)), 0.0, multipliers)
 
     def _newton_step(self) -> None:
-        """Towards the minimizer on the working set, as far as the constraints allow."""
+        """Step towards the minimizer on the working set, as far as the constraints allow."""
         progress, working = self.progress, self.working
         direction = self.hessian.newton(progress.gradient)
         along = progress.statement.values(direction)
@@ -162,7 +255,7 @@ class Descent:
             self._advance(along, length, step, step * (1.0 - 0.5 * step) * slope, block)
 
     def _follow_curvature(self, direction: Array) -> Outcome | None:
-        """Along the direction of non-positive curvature downhill to the next constraint; None if phase two goes on."""
+        """Step along the pending direction downhill to the next constraint; None if phase two goes on."""
         progress, working = self.progress, self.working
         slope, curvature = float(progress.gradient.dot(direction)), self.hessian.curvature
         level = abs(slope) <= progress.zero and abs(slope) <= self._fine_slope(direction)
@@ -184,7 +277,7 @@ class Descent:
         return None
 
     def _refuse(self, block: Block | None, step: float) -> None:
-        """A constraint that stops the step of its own release has no multiplier to speak of until the point moves."""
+        """Refuse a constraint that stops the step of its own release: its multiplier is noise until the point moves."""
         if step > 0.0:
             self._refused.clear()
         elif block is not None and block.constraint == self.dropped:
@@ -219,5 +312,5 @@ class Descent:
 
 
 def _change(block: Block, slope: float, curvature: float) -> float:
-    """Of the objective, from here to where the step ends."""
+    """Change of the objective up to the end of the step."""
     return block.step * (slope + 0.5 * block.step * curvature)

@@ -1,4 +1,4 @@
-"""The travelling point: where it is, what it may still spend, and what it has written down."""
+"""The point of a run: its place, the iterations that are left, and its log."""
 
 from dataclasses import dataclass, field
 from math import sqrt
@@ -28,24 +28,13 @@ class Progress:
 
     Parameters
     ----------
-    statement : Statement
-        The scaled problem.
-    options : QPOptions
-        Tolerances, limit and log.
-    unit : float
-        The scaled objective over that of the data.
-    long : float
-        Length of a step on which the products that count as none may violate a constraint.
-    x, values, gradient : arrays
-        The point, [x; A x], and H x + c.
-    slack : (n + m,) array
-        Tolerance of each constraint: relative to its smaller bound, and no less than the rounding of A x.
-    lowest, highest : (n + m,) arrays
-        The bounds with their tolerances added.
-    far : float
-        No less than the largest distance from zero so far.
-    zero : float
-        Size of a gradient or multiplier that counts as zero: relative to the terms that make it up.
+    unit : scaled objective over that of the data
+    long : length of a step on which the products that count as none may violate a constraint
+    x, values, gradient : the point (n,), [x; A x] (n + m,), and H x + c (n,)
+    slack : (n + m,) tolerance of each constraint: relative to its smaller bound, and no less than the rounding of A x
+    lowest, highest : (n + m,) bounds with their tolerances added
+    far : no less than the largest distance from zero so far
+    zero : size of a gradient or multiplier that counts as zero: relative to its terms
     """
 
     statement: Statement
@@ -78,18 +67,18 @@ class Progress:
 
     @property
     def travelled(self) -> Array:
-        """The largest size of each component so far (n,): what its digits were lost against."""
+        """The largest size of each component so far (n,), which limits its digits."""
         if self._passed:
             self._take_in()
         return self._travelled
 
     def _take_in(self) -> None:
-        """The points passed since the last time."""
+        """Take in the points passed since the last time."""
         self._travelled = np.maximum.reduce(np.abs([self._travelled, *self._passed]))
         self._passed.clear()
 
     def forget(self) -> None:
-        """Lose sight of far points: what is here is exact but for the rounding of its own size, or of one."""
+        """Forget far points: the point is exact but for the rounding of its own size, or of one."""
         size = np.maximum(np.abs(self.x), 1.0)
         self._travelled = np.minimum(self.travelled, size)
         self.far = min(self.far, sqrt(size.dot(size)))
@@ -101,15 +90,11 @@ class Progress:
         return 0.5 * float(self.x.dot(self.gradient + self.statement.c))
 
     def fine_zero(self, of_rows: Array, rows: Array, inverse: Array) -> Array:
-        """For each component of the gradient the size that counts as zero, relative to its own terms (n,).
+        """Size of each component of the gradient that counts as zero, relative to its own terms (n,).
 
-        Where variables differ in size by many orders, small ones are not to be judged by the terms of large ones. What
-        rounding has left in one component reaches others through the multipliers of the rows.
-
-        Parameters
-        ----------
-        of_rows, rows, inverse : (r,), (r, n) and (n, r) arrays
-            Multipliers of rows, the rows, and their right inverse.
+        Where variables differ in size by many orders, small ones must not be assessed by the terms of large ones.
+        Rounding in one component reaches others through the multipliers of the rows (r,), the rows (r, n) and their
+        right inverse (n, r).
         """
         H, c, _ = self.statement.absolute
         W, terms = np.abs(rows), H.dot(np.abs(self.x)) + c
@@ -137,14 +122,14 @@ class Progress:
         return self.stalled > STALLED
 
     def correct(self, x: Array) -> None:
-        """Move without a step; know the gradient there."""
+        """Move without a step, and compute the gradient there."""
         if np.count_nonzero(x != self.x):
             self.place(x)
         else:
             self.look()
 
     def place(self, x: Array) -> None:
-        """Be at a point, and know all of it anew."""
+        """Move to a point, and compute everything anew."""
         self.x, self.values = x, self.statement.values(x)
         size = np.abs(x)
         self.far = max(self.far, sqrt(size.dot(size)))
@@ -162,7 +147,7 @@ class Progress:
             self.x = self.values[: self.x.size]
 
     def look(self) -> None:
-        """The gradient at the point, unless it is known."""
+        """Compute the gradient at the point, unless it is known."""
         x, statement = self.x, self.statement
         if self._seen is x:
             return

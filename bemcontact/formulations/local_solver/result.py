@@ -1,4 +1,4 @@
-"""What `minimize_qp` is told and what it answers: options, status, lines of the log, result."""
+"""Options of `minimize_qp`, its status, the lines of its log, and its result."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -16,8 +16,8 @@ from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 class QPStatus(StrEnum):
     """How a run ended; the value is the text to print.
 
-    A numerical failure is an end that failed its own check again and again with fresh factors: the data lie too near to
-    the limits of double precision for any claim.
+    A numerical failure is an end that failed its own check repeatedly with fresh factors: the data are too near to the
+    limits of double precision for any claim.
     """
 
     LOCAL_MINIMIZER = "local minimizer"
@@ -33,20 +33,13 @@ class LogLine(NamedTuple):
 
     Parameters
     ----------
-    phase : int
-        1 (sum of infeasibilities) or 2 (objective).
-    iteration : int
-        Number of the iteration, both phases counted together.
-    value : float
-        Sum of infeasibilities in scaled units (phase 1), or the objective in the units of the data (phase 2).
-    step : float
-        Length of the step along the direction.
-    added, dropped : int or None
-        Constraints, variables first, then rows; None if there was none, or a temporary one.
-    working : int
-        Size of the working set, temporary constraints included.
-    nonpositive : int
-        Non-positive eigenvalues of the reduced Hessian: 0 or 1; 0 in phase 1.
+    phase : 1 (sum of infeasibilities) or 2 (objective)
+    iteration : number of the iteration, both phases counted together
+    value : sum of infeasibilities in scaled units (phase 1), or the objective in the units of the data (phase 2)
+    step : length of the step along the direction
+    added, dropped : constraints, variables first, then rows; None if there was none, or a temporary one
+    working : size of the working set, temporary constraints included
+    nonpositive : non-positive eigenvalues of the reduced Hessian: 0 or 1; 0 in phase 1
     """
 
     phase: int
@@ -74,19 +67,14 @@ class QPOptions:
 
     Parameters
     ----------
-    max_iterations : int or None
-        Bound on the iterations of both phases; None means 1000 + 20 (n + m).
-    feasibility_tolerance : float
-        A constraint counts as satisfied within this, relative to max(1, its bound) in scaled units.
-    optimality_tolerance : float
-        A gradient or multiplier counts as zero within this, relative to the largest of the gradient's terms in scaled
-        units, and in the end within a thousandth of it relative to the terms of its own component.
-    scale : bool
-        Equilibrate rows and variables by powers of two, which changes no digit of the data.
-    search : int
-        Most faces of the critical cone that are examined behind zero multipliers before "undecided" is said.
-    log : callable or None
-        Called with each `LogLine` as it is made.
+    max_iterations : limit on the iterations of both phases; None means 1000 + 20 (n + m)
+    feasibility_tolerance : a constraint counts as satisfied within this, relative to max(1, its bound) in scaled units
+    optimality_tolerance : a gradient or multiplier counts as zero within this, relative to the largest of the
+        gradient's terms in scaled units, and in the end within a thousandth of it relative to the terms of its own
+        component
+    scale : equilibrate rows and variables by powers of two, which changes no digit of the data
+    search : most faces of the critical cone that are examined behind zero multipliers before the status is undecided
+    log : called with each `LogLine`
     """
 
     max_iterations: int | None = None
@@ -99,40 +87,28 @@ class QPOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class QPResult:
-    """What `minimize_qp` found, in the units of the data; of the log only the objective is.
+    """Result of `minimize_qp`, in the units of the data; of the log only the objective is.
 
     Parameters
     ----------
-    x : (n,) array
-        The last point.
-    status : QPStatus
-        What is claimed of it.
-    objective : float
-        cᵀx + xᵀHx/2.
-    bound_multipliers, constraint_multipliers : (n,) and (m,) arrays
-        H x + c = bound_multipliers + Aᵀ constraint_multipliers; >= 0 at a lower, <= 0 at an upper bound.
-    working_set : (n + m,) int8 array
-        0 free, -1 at lower, +1 at upper, 2 equality; variables first, then rows.
-    phase_one_iterations, phase_two_iterations : int
-        Iterations of each phase.
-    working_set_changes : int
-        Constraints added and dropped, temporary ones included.
-    hessian : (n, n) array
-        H; its `inertia` is found when it is asked for.
-    reduced_inertia_start, reduced_inertia_end : (int, int, int)
-        Positive, zero and negative eigenvalues of ZᵀHZ on the null space of the working set, at the start and at the
-        end of phase 2.
-    weakly_active : int array
-        Active inequalities whose multiplier is about zero, numbered as in `working_set`.
-    ray : (n,) array or None
-        If unbounded: x + t ray is feasible for all t >= 0 and the objective falls to -inf on it.
-    certificate : (n + m,) array or None
-        If infeasible: y with [I; A]ᵀy = 0 and Σ_{y>0} y lower + Σ_{y<0} y upper > 0 (Farkas); variables first. The
-        first holds up to rounding, where an entry of A counts as rounding beside one 1e15 times as large in its column.
-    violation : float
-        Largest violation of a constraint at x.
-    log : tuple of LogLine
-        Each iteration.
+    x : (n,) last point
+    status : what is claimed of it
+    objective : cᵀx + xᵀHx/2
+    bound_multipliers, constraint_multipliers : (n,) and (m,), H x + c = bound_multipliers + Aᵀ constraint_multipliers;
+        >= 0 at a lower, <= 0 at an upper bound
+    working_set : (n + m,) 0 free, -1 at lower, +1 at upper, 2 equality; variables first, then rows
+    phase_one_iterations, phase_two_iterations : iterations of each phase
+    working_set_changes : constraints added and dropped, temporary ones included
+    hessian : (n, n) H
+    reduced_inertia_start, reduced_inertia_end : positive, zero and negative eigenvalues of ZᵀHZ on the null space of
+        the working set, at the start and at the end of phase 2
+    weakly_active : active inequalities whose multiplier is about zero, numbered as in `working_set`
+    ray : (n,) if unbounded: x + t ray is feasible for all t >= 0 and the objective falls to -inf on it
+    certificate : (n + m,) if infeasible: y with [I; A]ᵀy = 0 and Σ_{y>0} y lower + Σ_{y<0} y upper > 0 (Farkas);
+        variables first. The first holds up to rounding, where an entry of A counts as rounding if one in its column is
+        1e15 times as large.
+    violation : largest violation of a constraint at x
+    log : each iteration
     """
 
     x: Array

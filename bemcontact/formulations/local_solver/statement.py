@@ -1,4 +1,4 @@
-"""The quadratic program as stated, checked on entry, and its equilibration."""
+"""The quadratic program as given, checked on entry, and its equilibration."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -35,14 +35,10 @@ class Statement:
 
     Parameters
     ----------
-    H : (n, n) array
-        Symmetric, of any inertia.
-    c : (n,) array
-        Linear term.
-    A : (m, n) array
-        Rows.
-    lower, upper : (n + m,) arrays
-        Bounds of the variables, then of the rows; infinite where there is none.
+    H : (n, n) symmetric, of any inertia
+    c : (n,)
+    A : (m, n)
+    lower, upper : (n + m,) of the variables, then of the rows; infinite where there is none
     """
 
     H: Array
@@ -58,7 +54,7 @@ class Statement:
 
     @cached_property
     def absolute(self) -> tuple[Array, Array, Array]:
-        """|H|, |c|, |A|: what rounding is measured by."""
+        """|H|, |c|, |A|, which rounding is measured by."""
         return np.abs(self.H), np.abs(self.c), np.abs(self.A)
 
     @property
@@ -116,7 +112,7 @@ class Statement:
         return sides
 
     def rounding(self, d: Array) -> float:
-        """What dᵀHd could be by rounding alone, of its terms and of the components of d, which are no better than d."""
+        """The rounding in dᵀHd, from its terms and from the components of d."""
         size = np.abs(d)
         product = self.absolute[0].dot(size)
         return 10.0 * sqrt(d.size) * EPS * float(size.dot(product) + largest(size) * largest(product * (size > 0.0)))
@@ -197,25 +193,19 @@ def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
 
 
 def _near_power(factor: float) -> float:
-    """The nearest power of two; of numbers near the limits one within them."""
+    """The nearest power of two; within the limits of double precision."""
     return ldexp(1.0, min(max(frexp(factor * sqrt(0.5))[1], -1000), 1000))
 
 
 def _power_of_two(factors: Array) -> Array:
-    """The same of an array."""
+    """The nearest power of two of each factor."""
     return np.ldexp(1.0, np.frexp(factors.clip(LEAST, 1.0 / LEAST) * sqrt(0.5))[1])
 
 
 def read(
     H: Any, c: ArrayLike, A: Any, cl: ArrayLike | None, cu: ArrayLike | None, bl: ArrayLike | None, bu: ArrayLike | None
 ) -> Statement:
-    """Check what was given and put it in one form.
-
-    Raises
-    ------
-    ProblemError
-        A shape, a NaN, an unsymmetric H, or a lower bound above its upper bound: what, where, and the way out.
-    """
+    """Check the data and put them in one form; `ProblemError` says what is wrong with them."""
     linear = numbers("c", c, None)
     n = linear.size
     if n == 0:
@@ -241,13 +231,7 @@ def read(
 
 
 def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
-    """Read a finite vector.
-
-    Raises
-    ------
-    ProblemError
-        Not a vector of `size` finite numbers.
-    """
+    """Read a vector of `size` finite numbers; `ProblemError` if it is none."""
     vector = _floats(name, given)
     if vector.ndim != 1 or (size is not None and vector.size != size):
         expected = "one-dimensional" if size is None else f"of shape ({size},)"
@@ -258,7 +242,7 @@ def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
 
 
 def _floats(name: str, given: Any) -> Array:
-    """An array of numbers of our own."""
+    """A new array of numbers."""
     try:
         if getattr(given, "dtype", None) != np.float64 and np.iscomplexobj(given):
             raise TypeError("it is complex")
@@ -289,7 +273,7 @@ def _bound(name: str, given: ArrayLike | None, size: int, absent: float) -> Arra
 
 
 def _complain(lower: Array, upper: Array, n: int) -> None:
-    """Refuse a bound that is no number, an infinite one in the wrong direction, and a lower one above its upper one."""
+    """Refuse a bound that is not a number, an infinite one in the wrong direction, and crossed bounds."""
     for low, high, part in (("bl", "bu", slice(n)), ("cl", "cu", slice(n, None))):
         for name, bound, absent in ((low, lower[part], -np.inf), (high, upper[part], np.inf)):
             wrong = np.isnan(bound) | (bound == -absent)

@@ -1,69 +1,60 @@
-"""The working set, with the shortest right inverse of its rows, updated when it changes by one constraint.
+"""The working set, and the constraints that leave it (pricing) and enter it (ratio test).
 
-Bounds of the working set fix their variables; only rows need algebra. With W the rows on the variables that are free,
+The shortest right inverse of its rows is updated when it changes by one constraint. Bounds of the working set fix their
+variables; only rows need algebra. With W the rows on the variables that are free,
 
     W N = I,   N = Wᵀ(WWᵀ)⁻¹:
 
 Nᵀg are the multipliers of the rows in the least-squares sense, and g - Wᵀ Nᵀg holds the multipliers of the fixed
-variables beside the reduced gradient of the free ones. When a constraint enters or leaves, N changes by a matrix of
-rank one (Greville, SIAM Review 2 (1960) 15-22).
+variables and the reduced gradient of the free ones. When a constraint enters or leaves, N changes by a matrix of rank
+one (Greville, SIAM Review 2 (1960) 15-22).
 """
 
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, orthogonal, unit_rows
+from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, Progress
 from bemcontact.formulations.local_solver.statement import Sides, Statement
 
 EQUALITY = 2
 TEMPORARY, FLAT = -1, -2
-"""Numbers of rows that only fix a direction; FLAT once both its slope and its curvature were found zero."""
+"""Numbers of rows that only fix a direction; FLAT if both its slope and its curvature are zero."""
 
 DEPENDENT = 1e-9
 """A normal whose part outside the span of the others is a smaller part of it counts as dependent."""
 
 ALIKE = 1e-12
-"""The same for one that enters later, against a step that it has ended."""
+"""`DEPENDENT` for a constraint that enters later, after a step that it has ended."""
 
 SHARP, WEAR = 1e-12, 1e-8
 """Relative size of a refinement above which refinements are needed, and above which N is made anew."""
+INFINITY = float("inf")
+FAINT = 1e-14
+"""`PARALLEL` on a long step: only rounding is below."""
 
 
 class WorkingSet:
     """The constraints that are held, changed in place by `add` and `drop`.
 
-    Parameters
-    ----------
-    statement : Statement
-        The scaled problem.
-    sides : (n + m,) int8 array
-        Wanted working set: 0 free, -1 lower, +1 upper, 2 equality. Dependent rows are left out.
+    It starts from the wanted `sides` (n + m,): 0 free, -1 lower, +1 upper, 2 equality. Dependent rows are left out.
 
     Attributes
     ----------
-    sides : (n + m,) int8 array
-        What is held.
-    held : (n + m,) bool array
-        The same without sides.
-    free : (n,) array
-        1 for a variable that is not fixed by a bound, else 0.
-    number : int
-        How many constraints are held, temporary ones included.
-    N, W : (n, r) and (r, n) arrays
-        Right inverse, zero in the rows of fixed variables; normals of the rows held, on all variables.
-    null_space : (n, k) array
-        Orthonormal directions that change nothing held at the start; later changes of the set leave them alone.
-    ids : (r,) int array
-        Constraint of each row of W; `TEMPORARY` or `FLAT` for one that is none.
-    signs : (n + r,) array
-        -1 for a variable or row at its lower bound, +1 at its upper, 0 for any other.
-    temporary : int
-        How many rows of W are no constraints.
-    sharp : bool
-        Whether N still has all its digits.
+    sides, held : (n + m,) sides that are held, and whether each is
+    free : (n,) 1 for a variable that is not fixed by a bound, else 0
+    number : how many constraints are held, temporary ones included
+    N, W : (n, r) and (r, n), right inverse, zero in the rows of fixed variables; normals of the rows held, on all
+        variables
+    null_space : (n, k) orthonormal directions that change nothing held at the start; later changes leave them alone
+    ids : (r,) constraint of each row of W; `TEMPORARY` or `FLAT` for one that is none
+    signs : (n + r,) -1 for a variable or row at its lower bound, +1 at its upper, 0 for any other
+    temporary : how many rows of W are no constraints
+    sharp : whether N still has all its digits
     """
 
     def __init__(self, statement: Statement, sides: Sides) -> None:
@@ -95,7 +86,7 @@ class WorkingSet:
         self._resize(r)
 
     def _resize(self, rows: int) -> None:
-        """Look at the leading columns of N and rows of W."""
+        """Set the views on the leading columns of N and rows of W."""
         self.size = rows
         self.N, self.W, self.ids = self._N[:, :rows], self._W[:rows], self._ids[:rows]
         self.signs = self._signs[: self.free.size + rows]
@@ -113,7 +104,7 @@ class WorkingSet:
         return self.ids[real], self.W[real], self.N[:, real]
 
     def multipliers(self, gradient: Array, *, refined: bool = False) -> Array:
-        """Of the fixed variables, beside the reduced gradient of the free ones, and of the rows (n + r,).
+        """Multipliers (n + r,) of the fixed variables, with the reduced gradient of the free ones, then of the rows.
 
         They are refined with the data if N has lost digits, or if that is asked for.
         """
@@ -123,21 +114,21 @@ class WorkingSet:
         if refined or not self.sharp:
             of_rows = self._refined(of_rows, gradient)
         n = gradient.size
-        found = np.empty(n + self.size)
-        np.subtract(gradient, of_rows.dot(self.W), found[:n])
-        found[n:] = of_rows
-        return found
+        multipliers = np.empty(n + self.size)
+        np.subtract(gradient, of_rows.dot(self.W), multipliers[:n])
+        multipliers[n:] = of_rows
+        return multipliers
 
     def of_all(self, multipliers: Array) -> Array:
-        """Those of all constraints (n + m,) from those of the working set, as `multipliers` has them."""
+        """Multipliers of all constraints (n + m,) from those of the working set, as `multipliers` has them."""
         n, real = self.free.size, self.ids >= 0
-        found = np.zeros(self.held.size)
-        found[:n] = multipliers[:n] * self.held[:n]
-        found[self.ids[real]] = multipliers[n:][real]
-        return found
+        of_all = np.zeros(self.held.size)
+        of_all[:n] = multipliers[:n] * self.held[:n]
+        of_all[self.ids[real]] = multipliers[n:][real]
+        return of_all
 
     def _refined(self, of_rows: Array, gradient: Array) -> Array:
-        """Multipliers of the rows after a refinement; from a new N if there was too much to mend."""
+        """Multipliers of the rows after a refinement; from a new N if the correction is too large."""
         correction = (gradient - of_rows.dot(self.W)).dot(self.N)
         if correction.dot(correction) > WEAR**2 * of_rows.dot(of_rows):
             self._renew()
@@ -146,7 +137,7 @@ class WorkingSet:
         return of_rows + correction
 
     def _renew(self) -> None:
-        """N from the rows anew, once rounding has piled up in it: O(n³)."""
+        """Compute N from the rows anew, which removes accumulated rounding: O(n³)."""
         free = np.flatnonzero(self.free)
         Y, _, T, order = orthogonal(self.W[:, free], 0.0)
         if order.size == self.size:
@@ -154,7 +145,7 @@ class WorkingSet:
             self.sharp = True
 
     def add(self, constraint: int, side: int) -> Array | None:
-        """One constraint enters; returns its normal, or None if that is in the span of the others: O(n²)."""
+        """Add a constraint; return its normal, or None if that is in the span of the others: O(n²)."""
         normal = self.statement.normal(constraint)
         sign = side if side != EQUALITY else 0
         if constraint >= normal.size:
@@ -181,7 +172,7 @@ class WorkingSet:
         return float(outside.dot(outside)) <= ALIKE**2 * float(normal.dot(normal))
 
     def fix(self, direction: Array, kind: int) -> None:
-        """A temporary row enters, with a direction of the null space as its normal."""
+        """Add a temporary row, with a direction of the null space as its normal."""
         inverse = self._hold(direction, direction.dot(self.N))
         if inverse is not None:
             self._append(direction, kind, 0, inverse)
@@ -189,7 +180,7 @@ class WorkingSet:
             self.temporary += 1
 
     def _hold(self, normal: Array, along: Array) -> Array | None:
-        """N loses what it has along the normal; the new column, or None if the normal is in the span."""
+        """Remove from N its part along the normal; the new column, or None if the normal is in the span."""
         outside = (normal - along.dot(self.W)) * self.free
         again, size = outside.dot(self.N), float(outside.dot(normal))
         if again.dot(again) > SHARP**2 * size:
@@ -203,15 +194,15 @@ class WorkingSet:
         return inverse
 
     def _append(self, normal: Array, constraint: int, sign: int, inverse: Array) -> None:
-        """One more row of W and column of N."""
+        """Append a row of W and a column of N."""
         r, n = self.size, self.free.size
         self._N[:, r], self._W[r], self._ids[r], self._signs[n + r] = inverse, normal, constraint, sign
         self._resize(r + 1)
 
     def drop(self, place: int) -> tuple[int, Array]:
-        """A fixed variable (place < n) or the row at place - n leaves; its number and the direction that is free now.
+        """Drop a fixed variable (place < n) or the row at place - n; return its number and the unit direction now free.
 
-        The direction has length one, and the shortest of those that change no other constraint: O(n²).
+        The direction is the shortest of those that change no other constraint: O(n²).
         """
         n = self.free.size
         if place < n:
@@ -230,7 +221,7 @@ class WorkingSet:
         return constraint, direction
 
     def within(self, direction: Array) -> Array:
-        """A direction without what rounding has left in it along the rows."""
+        """A direction without the rounding in it along the rows."""
         return direction - self.N.dot(self.W.dot(direction)) if self.size else direction
 
     def _along_variable(self, variable: int) -> Array:
@@ -240,7 +231,7 @@ class WorkingSet:
         return direction
 
     def _forget(self, row: int) -> int:
-        """The last row takes the place of this one."""
+        """Put the last row in the place of this one."""
         constraint, n, last = int(self._ids[row]), self.free.size, self.size - 1
         self._N[:, row], self._W[row], self._ids[row] = self._N[:, last], self._W[last], self._ids[last]
         self._signs[n + row] = self._signs[n + last]
@@ -257,3 +248,81 @@ class WorkingSet:
             return x
         ids, W, N = self.constraints()
         return x + N.dot(targets[ids] - W.dot(x))
+
+
+class Block(NamedTuple):
+    """The constraint that ends a step: its number, the side reached (-1 lower, +1 upper, 2 equality), and the step."""
+
+    constraint: int
+    side: int
+    step: float
+
+
+def nearest(
+    progress: Progress, along: Array, length: float, held: BoolArray, working: WorkingSet | None = None
+) -> Block | None:
+    """The first constraint met, those held aside, by Harris' two passes; None if the direction meets none.
+
+    The first pass finds the longest step at which nothing is violated beyond its tolerance; the second takes, among the
+    constraints met until then, the one that is met most steeply (Harris, Math. Programming 5 (1973) 1-28). A run that
+    has stalled takes the lowest number among the ties. A constraint in the span of a working set is not met within it.
+    """
+    speed = np.abs(along)
+    away = held | (speed <= PARALLEL * length)
+    block = _first(progress, along, speed, away)
+    if block is None or block.step * length > progress.long:
+        nearly_all = held | (speed <= FAINT * length)
+        if np.count_nonzero(nearly_all) < np.count_nonzero(away):
+            block = _first(progress, along, speed, nearly_all)
+            while working is not None and block is not None and working.spans(block.constraint):
+                nearly_all[block.constraint] = True  # what moves it is rounding
+                block = _first(progress, along, speed, nearly_all)
+    return block
+
+
+def _first(progress: Progress, along: Array, speed: Array, away: BoolArray) -> Block | None:
+    """The first constraint met, apart from those marked in `away` (n + m,)."""
+    statement, values = progress.statement, progress.values
+    # the bound ahead has the quotient that is not negative
+    steps = np.maximum((statement.upper - values) / along, (statement.lower - values) / along)
+    steps[away] = INFINITY
+    late = steps + progress.slack / speed
+    furthest = late.item(late.argmin())
+    if not furthest < INFINITY:  # nor is there one where the values have overflowed
+        return None
+    if progress.stalled <= STALLED:
+        met = (steps <= furthest).nonzero()[0]
+        constraint = met.item(speed[met].argmax())
+    else:
+        least = steps.item(steps.argmin())
+        constraint = int((steps <= least + 1e-13 * max(1.0, least)).argmax())
+    return Block(constraint, side_reached(progress, constraint, along), max(steps.item(constraint), 0.0))
+
+
+def side_reached(progress: Progress, constraint: int, along: Array) -> int:
+    """Which bound the movement reaches; 2 for an equality."""
+    if progress.statement.equality[constraint]:
+        return 2
+    return -1 if along.item(constraint) < 0.0 else 1
+
+
+def wrong_sign(working: WorkingSet, multipliers: Array, zero: float | Array, *, least_index: bool) -> int | None:
+    """The place of the constraint to drop; None if all signs are right.
+
+    `zero` is the size of a multiplier that counts as zero, one for all or (n + r,). With `least_index` the constraint
+    of the lowest number among those with a wrong sign is taken (Bland 1977).
+    """
+    wrong = working.signs * multipliers
+    if working.temporary:
+        n, ids = working.free.size, working.ids
+        of_temporary = np.where(ids == TEMPORARY, np.inf, np.abs(multipliers[n:]))
+        wrong[n:] = np.where(ids < 0, of_temporary, wrong[n:])
+    if not isinstance(zero, float):
+        wrong = np.where(wrong > zero, wrong, -np.inf)
+        zero = 0.0
+    place = int(wrong.argmax())
+    if wrong.item(place) <= zero:
+        return None
+    if least_index:
+        return int(np.where(wrong > zero, working.numbers, working.held.size).argmin())
+    return place

@@ -43,7 +43,7 @@ class Piece:
     pressures : (loads, n) [p]
     touching : (loads, n) the contact sets
     turns : pairs (load, point) that lie on the edge of the contact set, the most promising ones first
-    promising : how many of these the multipliers speak for
+    promising : number of these whose multipliers promise a gain
     """
 
     value: float
@@ -68,14 +68,13 @@ class Relaxation(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SharedProfile:
-    """Load states that share a profile, scaled alike.
+    """Load states that share a profile, scaled alike, and the goal that is minimized.
 
     Parameters
     ----------
     states : scaled, without profile
     profiles : to choose from
     scales : displacement [L] and pressure [p]
-    goal : to be made small
     """
 
     states: tuple[ScaledContact, ...]
@@ -106,7 +105,7 @@ class SharedProfile:
         return rows
 
     def _stated(self) -> "_Program":
-        """Variables, expressions, and all constraints but those that contact sets make."""
+        """Variables, expressions, and all constraints except those of contact sets."""
         U, profiles = self.scales.displacement, self.profiles
         c, top = cp.Variable(profiles.shapes.shape[1]), cp.Variable()
         relief, rows = profiles.shapes @ c, profiles.rows @ c
@@ -128,12 +127,7 @@ class SharedProfile:
         return _Program(c, top, relief, pressures, motions, gaps, constraints)
 
     def best_with(self, touching: BoolArray) -> Piece | None:
-        """Find the best profile with which the contact sets are those given; None if none is found.
-
-        Parameters
-        ----------
-        touching : (loads, n)
-        """
+        """The best profile with given contact sets (loads, n); None if no solution is computed."""
         program = self._stated()
         sets = program.with_contact(touching)
         problem = cp.Problem(cp.Minimize(program.top), [*program.constraints, *sets.constraints])
@@ -146,14 +140,7 @@ class SharedProfile:
     def gentlest(self, piece: Piece) -> Piece:
         """Find, among profiles with these contact sets that are as good, that of the least mean square.
 
-        Parameters
-        ----------
-        piece : the best with its contact sets
-
-        Returns
-        -------
-        Piece
-            The same one if no gentler one is found.
+        The piece itself is returned if no gentler one is computed.
         """
         program = self._stated()
         sets = program.with_contact(piece.touching)
@@ -182,15 +169,11 @@ class SharedProfile:
         )
 
     def relaxed(self, best: float) -> Relaxation:
-        """Find a value [p] below which the goal cannot be.
+        """Compute a value [p] below which the goal cannot be; `best` [p] is a value that is reached.
 
-        Complementarity is dropped but for what is convex in it: F3 at the designed gap is zero, and in it p·g is at
-        least what McCormick's two planes say (Math. Programming 10, 1976, 147-175) for g within its range and, where
+        Complementarity is dropped except for its convex consequences: F3 at the designed gap is zero, and in it p·g is
+        at least what McCormick's two planes say (Math. Programming 10, 1976, 147-175) for g within its range and, where
         the peak is minimized, p up to the best peak that is known.
-
-        Parameters
-        ----------
-        best : a value of the goal that is reached [p]
         """
         U, T = self.scales
         program = self._stated()
@@ -228,7 +211,7 @@ class SharedProfile:
 
 
 class _Side(NamedTuple):
-    """Points (j,) of a load state on one side: what is zero there (j,), and what is not negative."""
+    """Points (j,) of a load state on one side: the equation there (j,), and the expression that is not negative."""
 
     load: int
     points: IntArray

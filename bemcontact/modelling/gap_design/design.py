@@ -6,6 +6,7 @@ problem.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from operator import attrgetter
 
 import numpy as np
 
@@ -46,10 +47,10 @@ def design_gap(
     Parameters
     ----------
     contact : the problem, or several load states of one body on the same surfaces, of which the worst counts
-    relief : what the profile may be
-    zone, arc : where it is: a contact zone, which may be left out if it is the only one, and the least and largest arc
+    relief : the bounds on the profile
+    zone, arc : its interval: a contact zone, which may be left out if it is the only one, and the least and largest arc
         position on it [L], the whole zone if left out
-    cases : factors of load cases, one mapping for each load state, as of `CondensedContact.with_factors`
+    cases : factors of load cases, one mapping for each load state, as in `CondensedContact.with_factors`
     goal : a `Goal` or its name: "peak" (the largest pressure anywhere) or "uniform" (the mean square deviation of the
         pressure on the interval from its mean there)
 
@@ -62,9 +63,9 @@ def design_gap(
     Raises
     ------
     ProblemError
-        If bounds exclude each other, states are not those of one body, or a state has no contact state.
+        Bounds exclude each other, states are not those of one body, or a state has no contact state.
     SolverError
-        If Clarabel breaks down.
+        Clarabel breaks down.
     """
     states, goal = _states(contact, cases), _goal(goal)
     profiles = Profiles.of(states[0], relief, zone, arc)
@@ -74,7 +75,7 @@ def design_gap(
     bound, coefficients, sets = shared.relaxed(best.value * shared.scales.pressure)
     if best.value * shared.scales.pressure > bound * (1 + MET):
         others = (_descended(shared, some) for some in (sets, _state(states, profiles.shapes @ coefficients)[1]))
-        best = min((piece for piece in (best, *others) if piece is not None), key=_value)
+        best = min((piece for piece in (best, *others) if piece is not None), key=attrgetter("value"))
     best, gentlest = _gently_descended(shared, best)
     gentle = _carried_out(shared, states, before, gentlest, bound)
     return gentle if gentle.verified else _carried_out(shared, states, before, best, bound)
@@ -139,7 +140,7 @@ def _goal(goal: Goal | str) -> Goal:
 
 
 def _solved(contact: CondensedContact, profile: Array) -> LoadState:
-    """Solve and judge the contact problem with a profile (n,)."""
+    """Solve and assess the contact problem with a profile (n,)."""
     there = relieved(contact, profile)
     solution = complementarity.solve(there)
     if solution.status is not Status.SOLVED:
@@ -165,13 +166,13 @@ def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> Piece:
             ends.append(end)
     if not ends:
         raise SolverError("no convex program of the design had an optimum; look in the mesh for very short elements")
-    return min(ends, key=_value)
+    return min(ends, key=attrgetter("value"))
 
 
 def _starts(shared: SharedProfile, states: Sequence[CondensedContact]) -> Iterator[BoolArray]:
-    """Contact sets (loads, n): the whole interval, and those of profiles.
+    """Contact sets (loads, n) of the whole interval and of profiles.
 
-    These are next to none, extreme in mean value, tilt and crown, and the best of random ones.
+    The profiles are next to zero, extreme in mean value, tilt and crown, and the best of random ones.
     """
     profiles, rng = shared.profiles, np.random.default_rng(0)
     yield np.tile(np.isin(np.arange(states[0].size), profiles.points), (len(states), 1))
@@ -202,12 +203,8 @@ def _state(states: Sequence[CondensedContact], profile: Array) -> tuple[list[Arr
     return [solution.pressure for solution in solutions], np.array(sets)
 
 
-def _value(piece: Piece) -> float:
-    return piece.value
-
-
 def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:
-    """Turn points on the edge of contact as long as that makes the goal smaller."""
+    """Turn points on the edge of contact as long as the goal gets smaller."""
     piece = shared.best_with(touching)
     for _ in range(STEPS if piece is not None else 0):
         assert piece is not None
@@ -219,7 +216,7 @@ def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:
 
 
 def _gently_descended(shared: SharedProfile, best: Piece) -> tuple[Piece, Piece]:
-    """Go on from the gentlest of equally good profiles: others may lie off an edge of contact that leads on."""
+    """Continue from the gentlest of equally good profiles: others may not be on an edge of contact that leads on."""
     gentlest = shared.gentlest(best)
     for _ in range(STEPS):
         better = _next(shared, gentlest)

@@ -1,8 +1,7 @@
-"""A designed gap: the profile, the contact states without and with it, and what is proved of it."""
+"""A designed gap: the profile, the contact states without and with it, and the proof of optimality."""
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
 from bemcontact.problem.rigid_surface import Polyline, Spline
-from bemcontact.serialization import Pairs, Record, Vector, json_text
+from bemcontact.serialization import Pairs, Record, Recorded, Vector
 
 AGREED = 1e-6
 """Difference of the designed pressure from that of the contact state, over the peak, up to which they agree."""
@@ -79,13 +78,7 @@ class GapDesignRecord(Record):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LoadState:
-    """A contact state, solved by the direct solver and judged.
-
-    Parameters
-    ----------
-    contact : the problem
-    solution, residuals, certificate, footprint : of it
-    """
+    """A contact state, solved by the direct solver and assessed."""
 
     contact: CondensedContact
     solution: ContactSolution
@@ -104,7 +97,7 @@ class LoadState:
         return self.contact.peak(self.pressure)
 
     def record(self) -> LoadStateRecord:
-        """Return what JSON holds of it."""
+        """Return the JSON form of the state."""
         return LoadStateRecord(
             pressure=self.pressure,
             **dict(footprint_record(self.footprint)),
@@ -114,7 +107,7 @@ class LoadState:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class GapDesign:
+class GapDesign(Recorded):
     """The best computed profile, with the contact states of all load states without and with it.
 
     Parameters
@@ -210,21 +203,16 @@ class GapDesign:
         """Make a rigid surface of the zone's own and the profile, through the feet of all its contact points.
 
         Its normals are tilted by the slope of the profile, which a contact problem on it sees as a relative change of
-        pressure by about that slope.
+        pressure by about that slope. Tools are at their undisplaced place.
 
         Parameters
         ----------
         kind : "spline" or "polyline"
 
-        Returns
-        -------
-        Spline or Polyline
-            Where no tool is displaced.
-
         Raises
         ------
         ProblemError
-            If the kind is unknown, the zone has several pieces or goes round, or the surface would fold.
+            The kind is unknown, the zone has several pieces or goes round, or the surface would fold.
         """
         if kind not in SURFACES:
             raise ProblemError(f"there is no surface of kind {kind!r} to write; there are: {', '.join(SURFACES)}")
@@ -243,21 +231,12 @@ class GapDesign:
         return SURFACES[kind](points=tuple((float(x), float(y)) for x, y in feet))
 
     def to_yaml(self, kind: str = "spline") -> str:
-        """Write the surface as it stands in a spec, to go below a contact zone's ``edges``.
-
-        Parameters
-        ----------
-        kind : "spline" or "polyline"
-
-        Returns
-        -------
-        str
-        """
+        """Write the `surface` of a kind as YAML, to go below the ``edges`` of a contact zone in a spec."""
         points = "".join(f"    - [{_number(x)}, {_number(y)}]\n" for x, y in self.surface(kind).points)
         return f"surface:\n  kind: {kind}\n  points:\n{points}"
 
     def record(self) -> GapDesignRecord:
-        """Return what JSON holds of it."""
+        """Return the JSON form of the design."""
         contact = self.before[0].contact
         return GapDesignRecord(
             goal=self.goal,
@@ -277,22 +256,9 @@ class GapDesign:
             words=self.words,
         )
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON."""
-        return self.record().to_dict()
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)
-
 
 def relieved(contact: CondensedContact, profile: Array) -> CondensedContact:
-    """Add a profile (n,) [L] to the initial gap.
-
-    Parameters
-    ----------
-    profile : (n,) g [L]
-    """
+    """Add a profile (n,) [L] to the initial gap."""
     return replace(contact, initial_gap=contact.initial_gap + profile)
 
 

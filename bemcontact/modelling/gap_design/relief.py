@@ -30,7 +30,7 @@ class Bounds(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Relief:
-    """Bounds on a profile g that is added to the initial gap: g > 0 takes material away. All given bounds hold at once.
+    """Bounds on a profile g that is added to the initial gap: g > 0 removes material. All given bounds hold at once.
 
     Parameters
     ----------
@@ -84,19 +84,10 @@ class Profiles:
     def of(
         cls, contact: CondensedContact, relief: Relief, zone: str | None = None, arc: tuple[float, float] | None = None
     ) -> Self:
-        """Write bounds as rows, and check that some profile keeps them all.
+        """Write bounds as rows, on the whole zone or on an interval of arc positions [L].
 
-        Parameters
-        ----------
-        relief : the bounds
-        zone : name of the contact zone, which may be left out if there is one only
-        arc : least and largest arc position of the interval [L], the whole zone if left out
-
-        Raises
-        ------
-        ProblemError
-            If there is no such zone or no point on the interval, shapes do not fit, the profile is not bounded, or
-            bounds exclude each other.
+        The zone may be left out if there is one only. `ProblemError` if there is no such zone or no point on the
+        interval, shapes do not fit, the profile is not bounded, or bounds exclude each other.
         """
         points = _interval(contact, zone, arc)
         position, run = contact.arc_position[points], contact.run[points]
@@ -144,7 +135,7 @@ class Profiles:
         return self._unit * optimum.x[:-1]
 
     def kept(self, coefficients: Array) -> Array:
-        """Move coefficients (s,) [L] that keep the bounds to a solver's tolerance inwards to the exact bounds."""
+        """Move coefficients (s,) [L] that keep the bounds to the tolerance of a solver inwards to the exact bounds."""
         inner, now = self.rows @ self._innermost, self.rows @ coefficients
         over = np.stack([now - self.high, self.low - now])
         ways = np.stack([now - inner, inner - now])
@@ -272,7 +263,10 @@ def _families(relief: Relief, shapes: Array, sizes: Array, position: Array, run:
     if relief.coefficients is not None:
         low, high = _limits(relief.coefficients, len(sizes), "coefficients")
         families["coefficients"] = Bounds(np.eye(len(sizes)), low * sizes, high * sizes)
-    return {name: bounds for name, bounds in families.items() if len(bounds.low)} or _nothing_bounded()
+    families = {name: bounds for name, bounds in families.items() if len(bounds.low)}
+    if not families:
+        raise ProblemError("nothing bounds the profile; give lower and upper values, or shapes with coefficients")
+    return families
 
 
 def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int, what: str) -> tuple[Array, Array]:
@@ -290,8 +284,3 @@ def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int, what: s
     if not (low <= high).all():  # false also for what is not a number
         raise ProblemError(f"the lower bound on {what} is above the upper one, or no number; exchange them")
     return low, high
-
-
-def _nothing_bounded() -> dict[str, Bounds]:
-    """Refuse a relief without bounds."""
-    raise ProblemError("nothing bounds the profile; give lower and upper values, or shapes with coefficients")
