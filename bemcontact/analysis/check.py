@@ -1,4 +1,4 @@
-"""What a problem is before it is solved: its mesh, its loads, and what holds the body."""
+"""A problem before it is solved: its mesh, its loads, and what holds the body."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,7 @@ class CheckedProblem:
 
 
 def check(problem: Problem) -> CheckedProblem:
-    """Mesh a problem and find what holds the body; `ProblemError` if its load pulls it off its supports in any case."""
+    """Mesh a problem and list what holds the body; `ProblemError` if the load of any case pulls it off its supports."""
     body = body_of(problem)
     for acting in each_case(body):
         ensure_held(acting)
@@ -49,13 +49,7 @@ def check(problem: Problem) -> CheckedProblem:
 
 
 def contours(problem: Problem, mesh: Mesh) -> dict[str, tuple[Array, Array]]:
-    """Find the rigid surfaces that are deflected contours of the body.
-
-    Returns
-    -------
-    dict
-        Contact zone -> points (N, 2) [L] of the rigid surface opposite to all nodes, and its unit normals (N, 2).
-    """
+    """Deflected contours: zone -> points (N, 2) [L] of the surface opposite to all nodes, and unit normals (N, 2)."""
     surfaces = {}
     for name, displacement in deflections(problem, mesh).items():
         surface = problem.contact_zones[name].surface

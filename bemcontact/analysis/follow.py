@@ -1,4 +1,4 @@
-"""How the answer to a problem responds to its parameters: paths and sensitivities, by the key paths of a spec."""
+"""Paths and sensitivities of a problem by the key paths of a spec."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -98,7 +98,7 @@ def sensitivities(
 
 
 def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:
-    """What something else than load cases and tools does to gap and load, per unit."""
+    """Change of gap and load per unit of a key that is neither a load case nor a tool component."""
     path = parsed_path(key)
     if path[0] == "initial_gap" and isinstance(path[-1], int) and path[-1] < contact.size and len(path) == 2:
         return Change(np.eye(contact.size)[path[-1]], np.zeros(contact.free_motions))
@@ -116,10 +116,7 @@ def _change(contact: CondensedContact, problem: Problem | None, key: str, pressu
 
 
 def stated_value(problem: Problem, key: str) -> float:
-    """The number at a key path, the constant of a field that is one, or the factor by which a load case acts.
-
-    `ProblemError` if there is none of these.
-    """
+    """Number at a key path, the value of a constant field, or the factor of a load case; else `ProblemError`."""
     if (case := _case_of(problem, key)) is not None:
         return problem.factors().get(case, 0.0)
     data: Any = problem.model_dump()
@@ -141,23 +138,11 @@ def stated_value(problem: Problem, key: str) -> float:
 
 
 def between(problem: Problem, key: str, start: float, end: float) -> tuple[CondensedContact, CondensedContact]:
-    """Condense a problem at two values of a key, and make sure that it changes linearly from one to the other.
+    """Condense a problem at two values of a key, and check that gaps and loads change linearly between them.
 
-    Parameters
-    ----------
-    problem : whose mesh is not to be fitted any more
-    key : path to the value
-    start, end : its values. At one of them the load may pull the body off its support, or not press it on; this end is
-        then found from the other one and what is on the way
-
-    Returns
-    -------
-    first, last : CondensedContact
-
-    Raises
-    ------
-    ProblemError
-        If neither end can be condensed, more than gaps and loads depend on the value, or these not linearly.
+    At one of the two values the load may fail to press the body onto its support. The contact problem at this value is
+    extrapolated. `ProblemError` if neither value can be condensed, more than gaps and loads depends on the key, or the
+    dependence is not linear. The mesh of the problem must not be one to be fitted.
     """
     if parsed_path(key)[0] in BODY:
         raise ProblemError(Issue(path=parsed_path(key), message=f"the compliance depends on it; {EXACT}"))
@@ -205,10 +190,7 @@ def _with_step(contact: CondensedContact, path: KeyPath, value: float, step: flo
 
 
 def _farthest(problem: Problem, key: str, start: float, end: float) -> tuple[float, CondensedContact]:
-    """The largest of `SHARES` of the way to the end at which something presses the body onto its support, and that.
-
-    `ProblemError` as of half of the way if there is none.
-    """
+    """Largest of `SHARES` at which the problem can be condensed, and this contact problem; else `ProblemError`."""
     refused: list[ProblemError] = []
     for share in SHARES:
         found = _attempted(problem, key, start + share * (end - start))
@@ -269,7 +251,7 @@ def _differs(one: Array, other: Array) -> bool:
 
 
 def _extended(problem: Problem, key: str, first: CondensedContact, start: float, end: float) -> CondensedContact:
-    """The problem at an end at which nothing presses the body onto its support, from the start and the way there."""
+    """The contact problem at an end where nothing presses the body onto its support, extrapolated from the start."""
     reached, there = _farthest(problem, key, start, end)
     share, middle = _farthest(problem, key, start, start + reached * (end - start))
     _ensure_linear(key, first, middle, there, share)

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from typing import Any, Unpack
 
 from bemcontact.analysis.result import Result, ResultRecord
-from bemcontact.analysis.solve import assessed, condensation_of, ensure_kind, solve_with
-from bemcontact.analysis.stopwatch import Progress, Stopwatch
+from bemcontact.analysis.solve import Progress, Stopwatch, assessed, condensation_of, ensure_kind, solve_with
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.start import with_start_read

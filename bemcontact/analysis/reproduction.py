@@ -1,25 +1,28 @@
-"""The paper's problems solved again: a study of each, and quantities to compare with the paper's statements."""
+"""The paper's problems, shipped with the package and solved again, and quantities to compare with its statements."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from importlib.resources import files
 from typing import Any
 
 import numpy as np
 
 from bemcontact import spec
 from bemcontact.analysis import compare as comparing
-from bemcontact.analysis import shipped_models as shipped
-from bemcontact.analysis.stopwatch import Progress
+from bemcontact.analysis.solve import Progress
 from bemcontact.analysis.study import LevelRecord, MeshLevel, Study, versions
 from bemcontact.arrays import Array
 from bemcontact.contact.record import UnitsRecord
+from bemcontact.errors import SpecError
 from bemcontact.options import ComparisonOptions, FormulationName
 from bemcontact.problem import Problem, Table, Units, Values
 from bemcontact.reference.paper import PROBLEMS, PaperProblem, Quantity, Statement
 from bemcontact.reference.positions import coordinates
 from bemcontact.serialization import Record, Vector, json_text
 
+FOLDER = "models"
+"""Stands in the installed package, and beside the package in a source tree."""
 Reading = tuple[float, ...]
 """A number, the smallest and the largest of several, or nothing where there is none."""
 LEVEL = 1e-9
@@ -256,23 +259,9 @@ class Reproduction:
 def reproduce(
     refine: Sequence[int] = (1, 4), progress: Progress | None = None, problems: Sequence[PaperProblem] = PROBLEMS
 ) -> Reproduction:
-    """Solve the problems of the paper by all formulations and by the direct one, on their meshes and refined ones.
+    """Solve the problems of the paper, with each element cut into `refine` parts, and their variants.
 
-    Parameters
-    ----------
-    refine : parts into which the elements of the problems are cut, for each mesh; variants are not refined
-    progress : called with the name of each problem as it begins, and how far it has come
-    problems : of the paper
-
-    Returns
-    -------
-    Reproduction
-        Check `reproduced`.
-
-    Raises
-    ------
-    OptionError
-        No mesh, one that is there twice, or a refinement that is not a whole number.
+    Variants are not refined. `OptionError` as of `bemcontact.analysis.compare.study`.
     """
     plan = ComparisonOptions()
     studies = []
@@ -298,7 +287,17 @@ def _below(progress: Progress | None, name: str) -> Progress:
 
 def _problem(paper: PaperProblem, variant: str | None) -> Problem:
     """Read a problem, or a variant of it."""
-    return spec.loads(shipped.model(paper.model), f"models/{paper.model}.yaml", variant=variant)
+    return spec.loads(shipped_model(paper.model), f"models/{paper.model}.yaml", variant=variant)
+
+
+def shipped_model(name: str) -> str:
+    """YAML text of a shipped problem such as ``cylinder_on_plane``; `SpecError` if there is none of this name."""
+    package = files("bemcontact")
+    for folder in (package.joinpath(FOLDER), package.joinpath("..", FOLDER)):
+        file = folder.joinpath(f"{name}.yaml")
+        if file.is_file():
+            return file.read_text(encoding="utf-8")
+    raise SpecError(f"models/{name}.yaml is not where bemcontact is installed; install the package anew")
 
 
 def _mesh_name(parts: int) -> str:

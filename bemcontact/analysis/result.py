@@ -1,4 +1,4 @@
-"""The result of a contact problem: its solution, and all that is recomputed of it."""
+"""The result of a contact problem: its solution and all quantities recomputed from it."""
 
 from dataclasses import dataclass
 from typing import Any

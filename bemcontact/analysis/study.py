@@ -1,4 +1,4 @@
-"""A problem compared on one mesh or several: what a report is written from."""
+"""A comparison on one mesh or several, the content of a report."""
 
 import platform
 from dataclasses import dataclass, replace

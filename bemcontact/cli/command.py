@@ -1,4 +1,4 @@
-"""What the commands have in common: arguments, a check of outputs, work with progress, results, and the exit status."""
+"""Common parts of all commands: arguments, checks of outputs, progress, results, exit status."""
 
 import inspect
 import json
@@ -193,17 +193,7 @@ def run(
     kind: str = "report",
     json_file: Path | None = None,
 ) -> NoReturn:
-    """Run a command: check outputs, work with progress, write and print results, end with the exit status.
-
-    Parameters
-    ----------
-    stage : what the command does first, in a word
-    work : the command itself, which reports its stages
-    source : what it reads
-    files : by option, what it writes
-    folder, kind : that --out names, and what is written there, a key of `report.folder.KINDS`
-    json_file : for all results
-    """
+    """Run a command: check outputs, do the work with progress, write and print results, exit with the status."""
     files = {**(files or {}), "--json": None if json_file == STANDARD_OUTPUT else json_file}
     with reported(source, (folder, *files.values())), stages() as report:
         check_outputs(source, files)

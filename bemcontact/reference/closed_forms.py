@@ -1,4 +1,4 @@
-"""Closed forms of frictionless line contact, as the textbooks have them; forces are per thickness."""
+"""Closed forms of frictionless line contact from textbooks; forces are per thickness."""
 
 from dataclasses import dataclass
 from math import copysign, pi, sqrt

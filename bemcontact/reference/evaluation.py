@@ -1,4 +1,4 @@
-"""From the references of a spec to numbers at its contact points."""
+"""Values that the references of a spec expect at the contact points."""
 
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -127,22 +127,10 @@ class Expected(Leaf):
 
 
 def expected(problem: Problem, contact: CondensedContact) -> tuple[Expected, ...]:
-    """Evaluate all references of a problem at its contact points.
+    """Evaluate the references of a problem at the contact points of any of its meshes, in the order of the spec.
 
-    Parameters
-    ----------
-    problem : Problem
-    contact : condensed from it, on any mesh
-
-    Returns
-    -------
-    tuple of Expected
-        In the order of the spec; empty if it has no reference. Those of load cases that do not act are left out.
-
-    Raises
-    ------
-    ProblemError
-        If the contact points are those of another problem.
+    References of load cases that do not act are left out. `ProblemError` if the contact points are those of another
+    problem.
     """
     if contact.zone_names != tuple(problem.contact_zones):
         raise ProblemError(

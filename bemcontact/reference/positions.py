@@ -1,4 +1,4 @@
-"""Where contact points are: from the middle of the contact, along a coordinate that a reference uses, in the body."""
+"""Positions of contact points: distance from the middle of contact, and coordinates that references use."""
 
 from typing import NamedTuple, Self
 

@@ -40,20 +40,7 @@ class Score(Leaf):
 def score(
     expected: Sequence[Expected], contact: CondensedContact, footprint: Footprint, pressure: Array
 ) -> tuple[Score, ...]:
-    """Compare an answer with what references expect of it.
-
-    Parameters
-    ----------
-    expected : what `expected` found for the same contact points
-    contact : CondensedContact
-    footprint : of the answer
-    pressure : (n,) of the answer [p]
-
-    Returns
-    -------
-    tuple of Score
-        Reference by reference; nothing for quantities of which a reference says nothing.
-    """
+    """Compare an answer, its pressure (n,) [p] and footprint, with the values that references expect."""
     return tuple(one for item in expected for one in _scores(item, contact, footprint, np.asarray(pressure, float)))
 
 

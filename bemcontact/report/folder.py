@@ -1,4 +1,4 @@
-"""The folders that studies, reproductions and paths are written to: page, numbers, pictures and more, all or none."""
+"""Folders of studies, reproductions and paths; a folder is written completely or not at all."""
 
 import json
 import re
@@ -71,17 +71,9 @@ KINDS = {kind.title: kind for kind in (REPORT, REPRODUCTION, PATH)}
 
 
 def ensure_folder_writable(folder: Path, contents: Contents = REPORT) -> None:
-    """Find out, before any work is done, whether a folder can be written without loss of foreign files.
+    """Check that a folder is new, empty, or holds only an earlier output of the same kind, which is replaced.
 
-    Parameters
-    ----------
-    folder : that does not exist, is empty, or holds an earlier one of its kind and nothing else, which will be replaced
-    contents : its kind
-
-    Raises
-    ------
-    OSError
-        With a sentence that says why not, and what to do.
+    `OSError` with the reason if not.
     """
     output.ensure_folder_place(folder)
     present = [*folder.iterdir()] if folder.is_dir() else []
@@ -98,20 +90,7 @@ def ensure_folder_writable(folder: Path, contents: Contents = REPORT) -> None:
 
 
 def save(study: Study, folder: Path, spec: str | None = None) -> None:
-    """Write a study.
-
-    Parameters
-    ----------
-    study : on one mesh or several
-    folder : that appears, or is replaced, as a whole: report.html, report.json, figures/*.svg, contact.npz (condensed
-        problem on the finest mesh) and, if it is given, spec.yaml
-    spec : text of the spec as run
-
-    Raises
-    ------
-    OSError
-        As of `ensure_folder_writable`; nothing is changed then.
-    """
+    """Write a study as a folder: page, numbers, pictures, condensed problem on the finest mesh, and spec if given."""
     ensure_folder_writable(folder)
     pictures = {name: vector_graphic(figure) for name, figure in figures_of(study).items()}
     text = page.render(study.to_dict(), pictures, spec)
@@ -122,18 +101,7 @@ def save(study: Study, folder: Path, spec: str | None = None) -> None:
 
 
 def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
-    """Write the problems of the paper.
-
-    Parameters
-    ----------
-    reproduction : of any of them
-    folder : that appears, or is replaced, as a whole: page.html, numbers.json, figures/*.svg
-
-    Raises
-    ------
-    OSError
-        As of `ensure_folder_writable`; nothing is changed then.
-    """
+    """Write the problems of the paper as a folder: page, numbers, pictures."""
     ensure_folder_writable(folder, REPRODUCTION)
     pictures = {name: vector_graphic(figure) for name, figure in figures_of_reproduction(reproduction).items()}
     text = paper_page.render(reproduction.to_dict(), pictures)
@@ -142,18 +110,7 @@ def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
 
 
 def save_path(found: ParameterPath, folder: Path) -> None:
-    """Write a load path.
-
-    Parameters
-    ----------
-    found : the path, in values of its parameter
-    folder : that appears, or is replaced, as a whole: path.svg, path.csv, path.json
-
-    Raises
-    ------
-    OSError
-        As of `ensure_folder_writable`; nothing is changed then.
-    """
+    """Write a load path as a folder: picture, table and numbers."""
     ensure_folder_writable(folder, PATH)
     picture = vector_graphic(figure_of_path(found)).decode()
     with _written(folder, PATH, picture, found.to_json(), {}) as temporary:
@@ -164,7 +121,7 @@ def save_path(found: ParameterPath, folder: Path) -> None:
 def _written(
     folder: Path, contents: Contents, text: str, numbers: str, pictures: Mapping[str, bytes]
 ) -> Iterator[Path]:
-    """Write page, numbers and pictures, and give the temporary folder for what else belongs there."""
+    """Write page, numbers and pictures into a temporary folder; yield it for further files."""
     with output.whole_folder(folder) as temporary:
         if pictures:
             (temporary / PICTURES).mkdir()
@@ -177,7 +134,7 @@ def _written(
 
 
 def _foreign(folder: Path, contents: Contents) -> Iterator[Path]:
-    """Name what a folder of a kind has not."""
+    """List what does not belong into a folder of a kind."""
     if not folder.is_dir():
         return
     for path in sorted(folder.iterdir()):

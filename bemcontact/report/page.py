@@ -1,14 +1,26 @@
-"""The page that a study is read on: one self-contained HTML file, from `Study.to_dict` and pictures alone."""
+"""HTML pages: templates with their filters, embedded pictures, and the page of a study."""
 
+import re
+from base64 import b64encode
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from bemcontact.assessment.verdict import OUTCOMES, Outcome
 from bemcontact.problem import Units
-from bemcontact.report.facts import NOTHING, Record, facts, scores_in_words, small
-from bemcontact.report.formatting import number, penalty_unit, sentence_case, with_unit
-from bemcontact.report.markup import Picture, picture, statement, template
+from bemcontact.report.facts import NOTHING, Record, facts, percent, scores_in_words, small
+from bemcontact.report.formatting import (
+    number,
+    penalty_unit,
+    plural,
+    seconds_in_words,
+    sentence_case,
+    vector,
+    with_unit,
+)
 
 MANY = 5
 """Contenders from which on they are counted and no longer listed at the head of the page."""
@@ -17,19 +29,84 @@ HISTORY = "history-"
 """What the names of the pictures of solvers begin with."""
 
 
+FORMULATIONS = {"qp1": "QP1", "qp2": "QP2", "qp3": "QP3"}
+WIDE = 500.0
+"""Points from which on a picture is wide."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """A picture in the page."""
+
+    source: str
+    """The picture itself, as a data address."""
+    alternative: str
+    """What it shows, for those who do not see it."""
+    caption: str
+    """The line above it."""
+    wide: bool
+    """Whether it needs the whole width of the page."""
+
+
+def template(name: str, **more: Callable[..., Any]) -> Template:
+    """Return the template of a page, a file in ``templates``; `more` are further filters."""
+    environment = Environment(
+        loader=PackageLoader("bemcontact.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(
+        number=_number, small=small, percent=percent, seconds=seconds_in_words, vector=vector, unit=with_unit,
+        plural=plural, plain=_plain, capital=sentence_case, statement=statement, inertia=_inertia, **more,
+    )  # fmt: skip
+    return environment.get_template(name)
+
+
+def picture(svg: bytes, caption: str, alternative: str) -> Picture:
+    """Embed an SVG with a caption and a text alternative."""
+    return Picture(
+        source=f"data:image/svg+xml;base64,{b64encode(svg).decode('ascii')}",
+        alternative=alternative,
+        caption=caption,
+        wide=_width(svg) > WIDE,
+    )
+
+
+def _number(value: float | None) -> str:
+    """Write a number with five figures."""
+    return NOTHING if value is None else number(value)
+
+
+def _plain(text: str) -> str:
+    """Write a name of the code in words: local_minimum, element_length."""
+    return text.replace("_", " ")
+
+
+def statement(name: str) -> str:
+    """Printed name of a formulation."""
+    return FORMULATIONS.get(name, name)
+
+
+def _inertia(inertia: Sequence[int] | None) -> str:
+    """Write how many eigenvalues are positive, zero and negative."""
+    if inertia is None:
+        return NOTHING
+    return f"({', '.join(map(str, inertia))})"
+
+
+def _width(svg: bytes) -> float:
+    """Width in points that a picture states; 0 if it states none."""
+    stated = re.search(rb'<svg[^>]* width="([\d.]+)pt"', svg)
+    return float(stated[1]) if stated else 0.0
+
+
 def render(report: Record, pictures: Mapping[str, bytes], spec: str | None) -> str:
-    """Write the page.
+    """Write the page of a study as HTML that needs no other file.
 
-    Parameters
-    ----------
-    report : what `Study.to_dict` gives, or report.json holds
-    pictures : name -> SVG, the names as of `bemcontact.report.figures.figures_of`; sections go without missing ones
-    spec : text of the spec as run, if there is one
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
+    `report` is the content of report.json, `pictures` are SVG files by name as of `figures.figures_of`, and `spec` is
+    the text of the spec as run. A missing picture is left out.
     """
     contents = _contents(report)
     return template("report.html", quality=_quality).render(
@@ -41,7 +118,7 @@ def render(report: Record, pictures: Mapping[str, bytes], spec: str | None) -> s
 
 
 def _contents(report: Record) -> dict[str, Any]:
-    """What the page says, by the names that the template has for it; the finest mesh gives the answer."""
+    """Variables of the template; the finest mesh gives the answer."""
     level = report["levels"][-1]
     compared = level["comparison"]
     contenders, reference = compared["contenders"], compared["reference"]
@@ -69,12 +146,12 @@ def _contents(report: Record) -> dict[str, Any]:
 
 
 def _quality(outcome: str) -> str:
-    """How good an outcome is: good, fair or bad."""
+    """Quality of an outcome: good, fair or bad."""
     return OUTCOMES[Outcome(outcome)].quality
 
 
 def _headline(report: Record, compared: Record) -> str:
-    """What the report shows; of many contenders, how many of them."""
+    """Verdict of the comparison; of many contenders, the number with each outcome."""
     if len(compared["contenders"]) < MANY:
         return report["verdict"]
     outcomes = Counter(item["verdict"]["outcome"] for item in compared["contenders"])
@@ -94,7 +171,7 @@ def _facts(level: Record, units: Units) -> list[tuple[str, str]]:
 
 
 def _certificate(answer: Record | None, units: Units) -> str:
-    """What is proved of the direct solution, in two sentences for an engineer."""
+    """What is proved of the direct solution, in sentences for an engineer."""
     if answer is None:
         return "The direct solver has no answer. So there is nothing to certify."
     proved, left = answer["certificate"], answer["residuals"]
@@ -126,7 +203,7 @@ def _certificate(answer: Record | None, units: Units) -> str:
 
 
 def _bound(bound: float | None, peak: Record | None, units: Units) -> str:
-    """How far round-off may have moved the pressure."""
+    """Bound of the effect of round-off on the pressure."""
     if bound is None or peak is None:
         return ""
     size = with_unit(small(bound), units.stress)
@@ -134,7 +211,7 @@ def _bound(bound: float | None, peak: Record | None, units: Units) -> str:
 
 
 def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
-    """The penalty of QP2, free of units and in the user's, up to where QP2 is convex, and whether it is there."""
+    """Penalty of QP2 and the largest one for which QP2 is convex, in both units."""
     search = (contender["answer"] or {}).get("search")
     penalty = search and search["penalty"]
     if not penalty:
@@ -149,7 +226,7 @@ def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
 
 
 def _picture(name: str, svg: bytes, level: Record) -> Picture:
-    """A picture with what it shows, in words."""
+    """A picture with its caption and text alternative."""
     caption = CAPTIONS.get(name)
     if caption is None:
         solver, _, weights = name.removeprefix(HISTORY).partition("-")

@@ -10,8 +10,8 @@ from rich.text import Text
 from bemcontact.problem import Units
 from bemcontact.report.facts import NOTHING, QUALITIES, Record, score_verdict, scores_in_words, small
 from bemcontact.report.formatting import number, seconds_in_words, sentence_case, with_unit
-from bemcontact.report.markup import picture, statement, template
-from bemcontact.report.tables import table_of, verdict_text
+from bemcontact.report.page import picture, statement, template
+from bemcontact.report.text import table_of, verdict_text
 
 FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
 """In the order of the table of iterations."""
@@ -20,17 +20,10 @@ TINY = 1e-4
 
 
 def render(record: Record, pictures: Mapping[str, bytes]) -> str:
-    """Write the page.
+    """Write the page of the paper's problems as HTML that needs no other file.
 
-    Parameters
-    ----------
-    record : what `Reproduction.to_dict` gives, or numbers.json holds
-    pictures : name -> SVG, the names as of `bemcontact.report.figures.figures_of_reproduction`; some may be missing
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
+    `record` is the content of numbers.json, and `pictures` are SVG files by name as of
+    `figures.figures_of_reproduction`.
     """
     problems = [_contents(item, pictures) for item in record["problems"]]
     counted = [statement(name) for item in record["problems"] for name in item["iterations"]]
@@ -40,7 +33,7 @@ def render(record: Record, pictures: Mapping[str, bytes]) -> str:
 
 
 def reproduction_summary(record: Record) -> RenderableType:
-    """List for the terminal the paper's statements, the same quantities on each mesh, and whether all is certified."""
+    """List the paper's statements, the computed quantities on each mesh, and the certificates."""
     parts = list[RenderableType]()
     for item in record["problems"]:
         proved = "certified" if item["certified"] else "NOT certified"
@@ -104,12 +97,12 @@ def _quantity(name: str, unit: str) -> str:
 
 
 def _values(values: Sequence[float]) -> str:
-    """Write a number, the smallest and the largest, or that there is none; round-off briefly."""
+    """Write a number, or the smallest and the largest; round-off with two figures."""
     return " to ".join(number(value) if abs(value) > TINY else small(value) for value in values) or "no contact"
 
 
 def _counts(item: Record) -> Iterator[dict[str, Any]]:
-    """Iterations of one problem, those that the paper prints first, by the names that the template has for them."""
+    """Iterations of one problem, those that the paper prints first, by the names in the template."""
     if item["iterations"]:
         printed = [str(item["iterations"].get(name, NOTHING)) for name in FORMULATIONS]
         yield {"label": "QPSOL, the paper", "printed": True, "cells": [NOTHING, *printed]}
@@ -121,7 +114,7 @@ def _counts(item: Record) -> Iterator[dict[str, Any]]:
 
 
 def _contents(item: Record, pictures: Mapping[str, bytes]) -> dict[str, Any]:
-    """What the page says of one problem, by the names that the template has for it."""
+    """Variables of the template for one problem."""
     anchor, units = item["model"].replace("_", "-"), Units(**item["units"])
     finest = item["runs"][-1]
     compared = finest["level"]["comparison"]

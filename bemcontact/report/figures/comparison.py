@@ -1,4 +1,4 @@
-"""The pictures of a comparison along the contact zones: pressures, gaps, differences of all contenders."""
+"""Pictures of a comparison along the contact zones: pressures, gaps and differences of all contenders."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,9 +14,19 @@ from bemcontact.assessment.comparison import SAME, Contender
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import FormulationName
-from bemcontact.report.figures.course import COLOURS, legend_below, show_decades
-from bemcontact.report.figures.page import BLACK, GREY, PURPLE, labelled, plain, shortened
-from bemcontact.report.figures.pieces import Piece, pieces_of
+from bemcontact.report.figures.page import (
+    BLACK,
+    COLOURS,
+    GREY,
+    PURPLE,
+    Piece,
+    labelled,
+    legend_below,
+    pieces_of,
+    plain,
+    shortened,
+    show_decades,
+)
 from bemcontact.report.figures.result import tell_closed
 from bemcontact.report.formatting import number, units_of, with_unit
 
@@ -58,10 +68,10 @@ class Curve:
 
 
 def draw_pressures(axes: Axes, level: MeshLevel) -> None:
-    """Draw the pressures of all contenders along the contact zones, the direct solution, and what references expect.
+    """Draw the pressures of all contenders, the direct solution and the references along the contact zones.
 
-    Equal curves lie in each other, the direct solution's as a wide band below. A reference that is out of its range is
-    grey. What goes far beyond the direct solution is cut off, and named.
+    The direct solution is a wide band below the other curves. A reference out of its range is gray. Curves far above
+    the direct solution are cut off, and their peaks are written above the frame.
     """
     contact, unit = level.answer.contact, units_of(level.answer.contact).stress
     along, curves = _Along(contact=contact), _curves(level)
@@ -103,7 +113,7 @@ def draw_gaps(axes: Axes, level: MeshLevel) -> None:
 
 
 def draw_differences(axes: Axes, level: MeshLevel) -> None:
-    """Draw |p - p'| over the peak, p' the direct solution, of every contender; where it is zero nothing is drawn."""
+    """Draw |p - p'| over the peak for each contender, with p' the direct solution; zero is not drawn."""
     along, direct = _Along(contact=level.answer.contact), level.answer.solution.pressure
     peak = float(direct.max(initial=0.0)) or level.answer.contact.scales.pressure
     for curve in _curves(level, merged=False):
@@ -183,10 +193,7 @@ class _Along:
 
 
 def _curves(level: MeshLevel, *, merged: bool = True) -> list[Curve]:
-    """The direct solution, then all that have a pressure, each thinner than the one before.
-
-    Those of one formulation that cannot be told apart are merged to one curve.
-    """
+    """Curves from the direct solution on, each thinner than the one before; equal ones of a formulation are merged."""
     compared = level.comparison
     everyone = [item for item in (compared.reference, *compared.contenders) if item.assessment is not None]
     groups = list[list[Contender]]()
@@ -216,7 +223,7 @@ def _alike(one: Contender, other: Contender, level: MeshLevel) -> bool:
 
 
 def _cut_off(axes: Axes, found: dict[str, float], top: float, unit: str) -> None:
-    """Keep the frame to what can be compared, and say what is outside."""
+    """Limit the frame to values up to `top`, and write the larger ones above it."""
     beyond = [f"{label} up to {with_unit(number(value), plain(unit))}" for label, value in found.items() if value > top]
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
     if beyond:

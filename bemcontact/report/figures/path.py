@@ -8,8 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.report.figures.course import CYCLE
-from bemcontact.report.figures.page import BLACK, labelled, new_page, plain, shortened
+from bemcontact.report.figures.page import BLACK, CYCLE, labelled, new_page, plain, shortened
 from bemcontact.report.formatting import per_thickness, units_of
 
 WIDTH, HEIGHT = 5.6, 2.5
@@ -19,17 +18,7 @@ SHADE = 0.15
 
 
 def figure_of_path(found: ParameterPath) -> Figure:
-    """Make a page of pictures one below the other, over the same parameter.
-
-    Parameters
-    ----------
-    found : ParameterPath
-
-    Returns
-    -------
-    Figure
-        Peak pressure, resultants of all zones, and for each zone the ends of contact; dots are breakpoints.
-    """
+    """Draw peak pressure, resultants and ends of contact of each zone over the parameter; dots are breakpoints."""
     zones = found.contact.zone_names
     figure = new_page(WIDTH, HEIGHT * (2 + len(zones)))
     peaks, forces, *ends = figure.subplots(2 + len(zones), 1, sharex=True)
@@ -82,7 +71,7 @@ def _draw_line(axes: Axes, found: ParameterPath, heights: list[float], colour: s
 
 
 def _bands(states: tuple[PathState, ...], zone: str) -> Iterator[tuple[list[float], list[float], list[float]]]:
-    """Values, starts and ends of each interval of a zone for as long as their number stays the same."""
+    """Values, starts and ends of each interval of a zone while the number of intervals stays the same."""
     for count, group in groupby(states, key=lambda state: len(state.ends(zone)[0])):
         together = [*group]
         for i in range(count):
