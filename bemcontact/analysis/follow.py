@@ -26,7 +26,7 @@ MODULUS = "material.young_modulus"
 BODY = ("material", "boundary", "mesh")
 """Parts of a spec that make the body, so that more than gaps and loads depends on them."""
 SHARES = tuple(0.5**k for k in range(1, 11))
-"""Of the way between two values, at which one looks whether gaps and loads change linearly."""
+"""Shares of the way between two values, at which gaps and loads are checked for linear change."""
 NOTHING = 1e-13
 """Part of the largest entry that is the round-off of an entry that should be zero."""
 
@@ -129,10 +129,10 @@ def stated_value(problem: Problem, key: str) -> float:
     if isinstance(data, Mapping) and "constant" in data and not any(data[name] for name in data if name != "constant"):
         data = data["constant"]
     if not isinstance(data, Real) or isinstance(data, bool):
-        found = "it is left out; state it, or give the value to begin with"
+        reason = "it is left out; state it, or give the start value"
         if data is not None:
-            found = f"it is {described(data)}; give a path to a number, or the value to begin with"
-        message = f"there is no number to vary, {found}"
+            reason = f"it is {described(data)}; give a path to a number, or the start value"
+        message = f"there is no number to vary: {reason}"
         raise ProblemError(Issue(path=path, message=message))
     return float(data)
 
@@ -193,10 +193,10 @@ def _farthest(problem: Problem, key: str, start: float, end: float) -> tuple[flo
     """Largest of `SHARES` at which the problem can be condensed, and this contact problem; else `ProblemError`."""
     refused: list[ProblemError] = []
     for share in SHARES:
-        found = _attempted(problem, key, start + share * (end - start))
-        if isinstance(found, CondensedContact):
-            return share, found
-        refused.append(found)
+        contact = _attempted(problem, key, start + share * (end - start))
+        if isinstance(contact, CondensedContact):
+            return share, contact
+        refused.append(contact)
     raise refused[0]
 
 
@@ -229,8 +229,8 @@ def _ensure_linear(
         try:
             ensure_same_body(middle, end)
         except ProblemError:
-            found = next(what for name, what in COMMON.items() if _differs(getattr(middle, name), getattr(end, name)))
-            message = f"the {found} depends on it; {EXACT}"
+            part = next(what for name, what in COMMON.items() if _differs(getattr(middle, name), getattr(end, name)))
+            message = f"the {part} depends on it; {EXACT}"
             raise ProblemError(Issue(path=parsed_path(key), message=message)) from None
     displacement, pressure = np.max([first.scales, last.scales], axis=0)
     least = {"offset": displacement, "motion_load": pressure * np.abs(middle.equilibrium).sum(axis=0)}
@@ -238,12 +238,12 @@ def _ensure_linear(
         one, inner, other = (getattr(item, name) for item in (first, middle, last))
         size = np.maximum(np.abs([one, other]).max(axis=0), least[name])
         if (bend := float((np.abs(inner - (1 - share) * one - share * other) / size).max(initial=0.0))) > SAME:
-            message = f"the {what} does not change in proportion to it, it bends by {bend:.2g}; {LINEAR}"
+            message = f"the {what} depends on it nonlinearly, by {bend:.2g} relatively; {LINEAR}"
             raise ProblemError(Issue(path=parsed_path(key), message=message))
 
 
-EXACT = "a path is exact only for loads, gaps and tools"
-LINEAR = "a path is exact only for what enters gaps and loads linearly, as forces, pressures and displacements do"
+EXACT = "only loads, gaps and tools can be varied"
+LINEAR = "only values can be varied that gaps and loads depend on linearly, such as forces and displacements"
 
 
 def _differs(one: Array, other: Array) -> bool:
@@ -257,8 +257,8 @@ def _extended(problem: Problem, key: str, first: CondensedContact, start: float,
     _ensure_linear(key, first, middle, there, share)
 
     def beyond(one: Array, other: Array) -> Array:
-        found = one + (other - one) / reached
-        return np.where(np.abs(found) <= NOTHING / reached * np.abs(one).max(initial=0.0), 0.0, found)
+        value = one + (other - one) / reached
+        return np.where(np.abs(value) <= NOTHING / reached * np.abs(one).max(initial=0.0), 0.0, value)
 
     tools, cases = first.tools, first.cases
     return replace(

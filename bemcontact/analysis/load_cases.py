@@ -64,7 +64,7 @@ class CaseResults:
         return max(peaks, key=lambda name: peaks[name], default=None)
 
     def record(self) -> CasesRecord:
-        """Return what JSON holds of it."""
+        """Return the record that is written as JSON."""
         return CasesRecord(
             name=self.name,
             version=__version__,

@@ -24,7 +24,7 @@ from bemcontact.serialization import Record, Vector, json_text
 FOLDER = "models"
 """Stands in the installed package, and beside the package in a source tree."""
 Reading = tuple[float, ...]
-"""A number, the smallest and the largest of several, or nothing where there is none."""
+"""One number, the smallest and the largest of several, or none."""
 LEVEL = 1e-9
 """Part of an extent, or of a scale, below which a difference is round-off."""
 
@@ -34,12 +34,12 @@ class StatementRecord(Record):
 
     what: str
     """The quantity."""
-    said: str
+    statement: str
     """The paper's statement, in words."""
     unit: str
-    """Label of the unit of what is found."""
-    found: list[Reading]
-    """Computed by each run: a number, the smallest and the largest, or none."""
+    """Label of the unit of the computed values."""
+    computed: list[Reading]
+    """Value of each run: a number, the smallest and the largest, or none."""
 
 
 class RunRecord(Record):
@@ -99,7 +99,7 @@ class ReproductionRecord(Record):
     """
 
     reproduced: bool
-    """Whether all is certified and every reference that is in its range is met."""
+    """Whether all solutions are certified and agree with every reference in its range."""
     refine: tuple[int, ...]
     """Number of parts into which each stated element is cut, on each mesh of a problem as stated."""
     problems: list[PaperRecord]
@@ -124,14 +124,14 @@ class Run:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PaperStudy:
-    """A problem of the paper: the study of it as stated, and one of each variant."""
+    """A problem of the paper: a study of the problem as stated, and one of each variant."""
 
     paper: PaperProblem
-    """What the paper says."""
+    """The paper's statements."""
     study: Study
     """The problem as its file states it, on all meshes."""
     variants: Mapping[str, Study]
-    """Variants of the file by name, which are certified but not judged: references are for the problem as stated."""
+    """Studies of the variants by name; references are for the problem as stated and do not judge them."""
 
     @property
     def problem(self) -> Problem:
@@ -181,7 +181,7 @@ class PaperStudy:
         return self.certified and all(self.judged)
 
     def record(self) -> PaperRecord:
-        """Return what JSON holds of it."""
+        """Return the record that is written as JSON."""
         problem, paper, axis, runs = self.problem, self.paper, self.axis, self.runs
         return PaperRecord(
             model=paper.model,
@@ -197,9 +197,9 @@ class PaperStudy:
             statements=[
                 StatementRecord(
                     what=item.what,
-                    said=item.said,
+                    statement=item.said,
                     unit=unit_of(item, axis, problem.units),
-                    found=[reading(item, run.level, axis) for run in runs],
+                    computed=[reading(item, run.level, axis) for run in runs],
                 )
                 for item in paper.statements
             ],
@@ -224,7 +224,7 @@ class Reproduction:
     """The problems of the paper, solved again."""
 
     problems: tuple[PaperStudy, ...]
-    """In the order of the paper."""
+    """Problems in the order of the paper."""
 
     def __repr__(self) -> str:
         """One line: how many of them are reproduced."""
@@ -248,7 +248,7 @@ class Reproduction:
         ).to_dict()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON: what stands in numbers.json."""
+        """Return all of it as numbers, lists and texts: the content of numbers.json."""
         return self._record
 
     def to_json(self, indent: int | None = 2) -> str:
@@ -332,7 +332,7 @@ def extent(level: MeshLevel, axis: Values | Table) -> Reading:
 
 
 def reading(statement: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
-    """Read the quantity of a statement off a comparison; empty where there is none, such as the ends of no contact."""
+    """Quantity of a statement in a comparison; empty where it does not exist, such as the ends of no contact."""
     return READERS[statement.quantity](statement, level, axis)
 
 
@@ -351,7 +351,7 @@ def unit_of(statement: Statement, axis: Values | Table, units: Units) -> str:
 
 
 def _pressure(statement: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
-    """The smallest and the largest pressure of a range; one number if they are of one point."""
+    """Smallest and largest pressure in a range; one number for one point."""
     here, pressure = positions(level, axis), level.answer.solution.pressure
     if statement.between is not None:
         slack = LEVEL * float(np.ptp(here))
@@ -396,4 +396,4 @@ READERS: dict[Quantity, Callable[[Statement, MeshLevel, Values | Table], Reading
     Quantity.FORCE: _force,
     Quantity.DIFFERENCE: _difference,
 }
-"""Quantity -> how it is read off."""
+"""Quantity -> function that computes it."""

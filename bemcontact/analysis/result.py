@@ -44,7 +44,7 @@ class BoundaryRecord(Record):
 
 
 class HeadRecord(Record):
-    """What a result begins with."""
+    """First fields of a result."""
 
     name: str
     """Name of the problem."""
@@ -63,7 +63,7 @@ class HeadRecord(Record):
 
 
 class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
-    """Solution of a contact problem and what is recomputed of it; lists go contact point by contact point."""
+    """Solution of a contact problem and all quantities recomputed from it; lists have one entry for each contact point."""
 
     mesh_fit: MeshFit | None
     """How the mesh was fitted to the ends of contact, or null."""
@@ -78,7 +78,7 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     equilibrium_slack: float | None
     """Imbalance of the discrete equations relative to the loads; null for a condensed problem."""
     certificate: Certificate
-    """What is proved."""
+    """Certificate of the solution."""
     boundary: BoundaryRecord | None
     """State of the whole boundary; null for a condensed problem."""
     seconds: dict[str, float]
@@ -87,7 +87,7 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Result:
-    """A solution of a contact problem, and all that is recomputed of it."""
+    """A solution of a contact problem and all quantities recomputed from it."""
 
     problem: Problem | None
     """The problem, with the element ends of a fitted mesh; None if a condensed problem was solved."""
@@ -102,7 +102,7 @@ class Result:
     residuals: Residuals
     """Residuals of the contact conditions and equations, recomputed from the condensed problem."""
     certificate: Certificate
-    """What is proved."""
+    """Certificate of the solution."""
     footprint: Footprint
     """Contact intervals, peak pressure and resultant."""
     boundary: BoundaryState | None
@@ -164,7 +164,7 @@ class Result:
         return pressure, gap
 
     def record(self) -> ResultRecord:
-        """Return what JSON holds of it."""
+        """Return the record that is written as JSON."""
         boundary = self.boundary
         return ResultRecord(
             name=self.contact.name,

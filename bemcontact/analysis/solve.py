@@ -98,7 +98,9 @@ def ensure_acting(problem: Problem | CondensedContact) -> None:
     """Refuse what is no problem, and one with load cases of which none acts, with a `ProblemError`."""
     ensure_kind(problem)
     if isinstance(problem, Problem) and problem.load_cases and problem.case is None:
-        message = f"say which one acts, by case or --case: {', '.join(problem.case_names)}; or solve all of them"
+        message = (
+            f"choose the one that acts, with case or --case: {', '.join(problem.case_names)}; or solve all of them"
+        )
         raise ProblemError(Issue(path=("load_cases",), message=message))
 
 

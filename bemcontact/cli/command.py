@@ -165,16 +165,7 @@ def several(text: str, option: str, kind: str, read: Callable[[str], Number]) ->
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What a command has to show at its end.
-
-    Parameters
-    ----------
-    summary : makes what is printed
-    json : makes what --json writes
-    holds : whether the exit status is 0
-    verdict : why not, for standard error where standard output is JSON
-    claim : what the verdict denies
-    """
+    """Output of a command: table, JSON, exit status, and the reason of a status that is not 0."""
 
     summary: Callable[[], RenderableType]
     json: Callable[[], str] = str
@@ -256,7 +247,7 @@ def _ensure_possible(option: str, path: Path) -> None:
 
             vtk.ensure_possible(path)
         case "--out" if path.suffix != ".npz":
-            raise ValueError(f"{path}: a condensed problem is written as .npz; end the file name in it")
+            raise ValueError(f"{path}: the file name of a condensed problem must end in .npz")
 
 
 def write_json(text: str) -> None:

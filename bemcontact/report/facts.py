@@ -9,15 +9,15 @@ from bemcontact.problem import Units
 from bemcontact.report.formatting import number, per_thickness, settled, vector, with_unit
 
 Record = Mapping[str, Any]
-"""A part of a result: what stands between braces in its JSON."""
+"""A JSON object of a result."""
 RESIDUALS = ("penetration", "tension", "complementarity", "equilibrium", "force_balance")
-"""Residuals that are listed for a person."""
+"""Residuals that are listed."""
 QUALITIES = {"holds": "good", "does not hold": "bad", "not judged": "fair"}
-"""What is said of a quantity beside a reference -> how good that is."""
+"""Verdict on a quantity of a reference -> quality."""
 NOTHING = "–"
-"""Stands where there is no number."""
+"""Text for a missing number."""
 PLAIN = 0.01, 1000.0
-"""Sizes of numbers that are read more easily without a power of ten."""
+"""Range of numbers that are written without a power of ten."""
 ROUND_OFF = 1e-9
 """Relative difference that is written as zero."""
 
@@ -42,8 +42,8 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     for tool in record["tools"]:
         yield "Tool", _tool(tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
-    told = (f"{name.replace('_', ' ')} {value + 0.0:.1e}" for name, value in residuals if value is not None)
-    yield "Residuals", ", ".join(told)
+    written = (f"{name.replace('_', ' ')} {value + 0.0:.1e}" for name, value in residuals if value is not None)
+    yield "Residuals", ", ".join(written)
 
 
 def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units) -> str:
@@ -99,7 +99,7 @@ def zone_forces(record: Record, units: Units) -> Iterator[str]:
 
 
 def scores_in_words(scores: Sequence[Record], references: Sequence[Record], units: Units) -> Iterator[dict[str, str]]:
-    """Write each computed quantity beside what a reference expects."""
+    """Write each computed quantity, the expected value and the verdict."""
     by_name = {item["name"]: item for item in references}
     for score in scores:
         unit = _unit_of(score["quantity"], by_name[score["reference"]], units)
@@ -108,7 +108,7 @@ def scores_in_words(scores: Sequence[Record], references: Sequence[Record], unit
             "reference": score["reference"],
             "quantity": score["quantity"],
             "unit": unit,
-            "found": NOTHING if score["found"] is None else with_unit(number(score["found"]), unit),
+            "computed": NOTHING if score["computed"] is None else with_unit(number(score["computed"]), unit),
             "expected": with_unit(number(score["expected"]), unit),
             "difference": percent(score["difference"]),
             "tolerance": f"{100 * score['tolerance']:.3g} %",

@@ -16,21 +16,12 @@ from bemcontact.report import reproduction as paper_page
 from bemcontact.report.figures import figure_of_path, figures_of, figures_of_reproduction, vector_graphic
 
 PICTURES = "figures"
-"""Folder of the pictures."""
+"""Name of the folder of pictures."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Contents:
-    """What stands in a folder of ours, and by which it is known again.
-
-    Parameters
-    ----------
-    title : what a folder of this kind is
-    page, numbers : names of the page, and of its numbers as JSON
-    others : names of further files
-    picture : what the pictures are called
-    keys : that the numbers have
-    """
+    """Files of a kind of folder: title, names of page, JSON numbers, others and pictures, and keys of the numbers."""
 
     title: str
     page: str
@@ -48,7 +39,7 @@ REPORT = Contents(
     picture=re.compile(r"(problem|pressure|gap|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"),
     keys=frozenset({"settings", "levels", "convergence", "versions"}),
 )
-"""Of a study."""
+"""Folder of a study."""
 REPRODUCTION = Contents(
     title="reproduction",
     page="page.html",
@@ -56,7 +47,7 @@ REPRODUCTION = Contents(
     picture=re.compile(r"[a-z-]+-(problem|pressure)\.svg"),
     keys=frozenset({"reproduced", "refine", "problems", "versions"}),
 )
-"""Of the problems of the paper."""
+"""Folder of the problems of the paper."""
 PATH = Contents(
     title="path",
     page="path.svg",
@@ -65,9 +56,9 @@ PATH = Contents(
     picture=re.compile(r"(?!)"),
     keys=frozenset({"key", "start", "end", "states"}),
 )
-"""Of a load path; its page is a picture."""
+"""Folder of a load path; its page is a picture."""
 KINDS = {kind.title: kind for kind in (REPORT, REPRODUCTION, PATH)}
-"""By their titles."""
+"""Title -> kind of folder."""
 
 
 def ensure_folder_writable(folder: Path, contents: Contents = REPORT) -> None:
@@ -80,12 +71,12 @@ def ensure_folder_writable(folder: Path, contents: Contents = REPORT) -> None:
     foreign = [*_foreign(folder, contents)]
     if foreign:
         raise FileExistsError(
-            f"{folder} holds {foreign[0]}, which no {contents.title} of ours has; name a new folder, or an empty one"
+            f"{folder} holds {foreign[0]}, which is not part of a {contents.title}; name a new or an empty folder"
         )
     if present and not _is_ours(folder / contents.numbers, contents):
         raise FileExistsError(
-            f"{folder} is not empty and has no {contents.numbers} of ours; name a new folder, or one with an earlier "
-            f"{contents.title}"
+            f"{folder} is not empty and has no {contents.numbers} of bemcontact; name a new folder, or one with an "
+            f"earlier {contents.title}"
         )
 
 
@@ -109,12 +100,12 @@ def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
         pass
 
 
-def save_path(found: ParameterPath, folder: Path) -> None:
+def save_path(path: ParameterPath, folder: Path) -> None:
     """Write a load path as a folder: picture, table and numbers."""
     ensure_folder_writable(folder, PATH)
-    picture = vector_graphic(figure_of_path(found)).decode()
-    with _written(folder, PATH, picture, found.to_json(), {}) as temporary:
-        (temporary / "path.csv").write_text(found.to_csv(), encoding="utf-8", newline="\n")
+    picture = vector_graphic(figure_of_path(path)).decode()
+    with _written(folder, PATH, picture, path.to_json(), {}) as temporary:
+        (temporary / "path.csv").write_text(path.to_csv(), encoding="utf-8", newline="\n")
 
 
 @contextmanager
@@ -149,7 +140,7 @@ def _foreign(folder: Path, contents: Contents) -> Iterator[Path]:
 
 
 def _is_ours(path: Path, contents: Contents) -> bool:
-    """Whether a file holds the numbers of a folder that was written here."""
+    """Whether a file holds the numbers of a folder of this kind."""
     try:
         numbers = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):

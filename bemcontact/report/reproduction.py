@@ -14,9 +14,9 @@ from bemcontact.report.page import picture, statement, template
 from bemcontact.report.text import table_of, verdict_text
 
 FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
-"""In the order of the table of iterations."""
+"""Columns of the table of iterations."""
 TINY = 1e-4
-"""Below this the size of a number is all that matters."""
+"""Smaller numbers are written with two figures."""
 
 
 def render(record: Record, pictures: Mapping[str, bytes]) -> str:
@@ -39,9 +39,13 @@ def reproduction_summary(record: Record) -> RenderableType:
         proved = "certified" if item["certified"] else "NOT certified"
         held = f"{item['held']} of {item['judged']} reference quantities hold"
         title = Text.assemble((sentence_case(item["name"]), "bold"), f" ({item['figure']}): ")
-        parts += [title.append(f"{proved}, {held}", "green" if _good(item) else "red"), _statement_table(item), ""]
+        parts += [
+            title.append(f"{proved}, {held}", "green" if _reproduced(item) else "red"),
+            _statement_table(item),
+            "",
+        ]
     word = "reproduced" if record["reproduced"] else "NOT reproduced"
-    took = f"All of it took {seconds_in_words(record['seconds'])}."
+    took = f"All runs took {seconds_in_words(record['seconds'])}."
     end = verdict_text(word, record["reproduced"], f"{reproduction_sentence(record)} {took}")
     return Group(*parts, _iteration_table(record), "", end)
 
@@ -52,7 +56,7 @@ def reproduction_sentence(record: Record) -> str:
     runs = [run for item in problems for run in item["runs"]]
     certified = [solver["certified"] for run in runs for solver in _solvers(run)]
     judged, held = (sum(item[key] for item in problems) for key in ("judged", "held"))
-    missed = [item["figure"] for item in problems if not _good(item)]
+    missed = [item["figure"] for item in problems if not _reproduced(item)]
     where = f" See {', '.join(missed)}." if missed else ""
     return (
         f"{sum(certified)} of {len(certified)} answers, by four solvers on {len(runs)} meshes, are proved to be the "
@@ -60,7 +64,7 @@ def reproduction_sentence(record: Record) -> str:
     )
 
 
-def _good(item: Record) -> bool:
+def _reproduced(item: Record) -> bool:
     """Whether a problem is certified and meets its references."""
     return item["certified"] and item["held"] == item["judged"]
 
@@ -72,11 +76,13 @@ def _solvers(run: Record) -> list[Record]:
 
 
 def _statement_table(item: Record) -> Table:
-    """List what the paper says beside what is computed."""
+    """List the paper's statements and the computed values."""
     labels = [run["label"] for run in item["runs"]]
     table = table_of("", "the paper", *labels, right=frozenset(labels))
     for row in item["statements"]:
-        table.add_row(*map(Text, (_quantity(row["what"], row["unit"]), row["said"], *map(_values, row["found"]))))
+        table.add_row(
+            *map(Text, (_quantity(row["what"], row["unit"]), row["statement"], *map(_values, row["computed"])))
+        )
     return table
 
 
@@ -126,19 +132,19 @@ def _contents(item: Record, pictures: Mapping[str, bytes]) -> dict[str, Any]:
         "contact": with_unit(_values(finest["contact"]), item["coordinate_unit"] * bool(peak)),
         "peak": with_unit(number(peak["pressure"]), units.stress) if peak else "no contact",
         "points": compared["contact"]["contact_nodes"],
-        "rows": [{**row, "found": [_values(values) for values in row["found"]]} for row in item["statements"]],
+        "rows": [{**row, "computed": [_values(values) for values in row["computed"]]} for row in item["statements"]],
         "meshes": [run["label"] for run in meshes],
         "references": finest["level"]["references"],
-        "known": [*_known([run["level"] for run in meshes], units)],
+        "scores": [*_scores([run["level"] for run in meshes], units)],
         "counts": [*_counts(item)],
-        "told": " ".join(item["description"].split()),
-        "pressure": _picture(pictures, f"{anchor}-pressure", f"{item['figure']} of the paper, drawn anew", item),
+        "description": " ".join(item["description"].split()),
+        "pressure": _picture(pictures, f"{anchor}-pressure", f"{item['figure']} of the paper, drawn again", item),
         "problem": _picture(pictures, f"{anchor}-problem", "The body, its mesh, and the rigid surface", item),
     }
 
 
 def _in_words(count: int) -> str:
-    """Write a small number as a word."""
+    """Write a number up to five as a word."""
     words = ("no", "one", "two", "three", "four", "five")
     return words[count] if count < len(words) else str(count)
 
@@ -148,8 +154,8 @@ def _picture(pictures: Mapping[str, bytes], name: str, caption: str, item: Recor
     return picture(pictures[name], caption, f"{item['name']}: {caption}") if name in pictures else None
 
 
-def _known(levels: list[Record], units: Units) -> Iterator[dict[str, Any]]:
-    """The quantities of the references, mesh by mesh; all else is that of the finest mesh."""
+def _scores(levels: list[Record], units: Units) -> Iterator[dict[str, Any]]:
+    """Quantities of the references on all meshes; differences are those of the finest mesh."""
     finest = levels[-1]
     rows = scores_in_words(finest["scores"], finest["references"], units)
     for row, scores in zip(rows, zip(*(level["scores"] for level in levels), strict=True), strict=True):
@@ -158,7 +164,7 @@ def _known(levels: list[Record], units: Units) -> Iterator[dict[str, Any]]:
             **row,
             "quantity": _quantity(row["quantity"], row["unit"]),
             "expected": number(scores[-1]["expected"]),
-            "found": [NOTHING if score["found"] is None else number(score["found"]) for score in scores],
+            "computed": [NOTHING if score["computed"] is None else number(score["computed"]) for score in scores],
             "verdict": word,
             "colour": QUALITIES[word],
         }

@@ -1,4 +1,4 @@
-"""What the terminal shows of a problem and of its results.
+"""Text in the terminal on a problem, its results and comparisons.
 
 The functions return a renderable for `rich`, no wider than 100 columns where the names are not. All text of a user goes
 into them as plain text, never as markup.
@@ -56,7 +56,7 @@ MANY = 4
 
 
 def problem_summary(checked: CheckedProblem) -> RenderableType:
-    """List edges, zones, mesh, loads, what holds the body, and remarks."""
+    """List edges, zones, mesh, loads, supports and notes of a problem."""
     problem, mesh = checked.problem, checked.mesh
     material, units = problem.material, problem.units
     modulus = with_unit(number(material.young_modulus), units.stress)
@@ -80,8 +80,12 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
         action = tool_in_words(problem.tool_action(name), units)
         add(shown, "Tool", f"{name}, the surface of {' and '.join(tool.zones)}: {action}")
     total = vector(checked.total_load, per_thickness(units), scale=checked.load_magnitude)
-    add(shown, "Total load", f"{total}, reactions not counted")
-    add(shown, "Held by conditions", "all but those below" if checked.free_motions else "all rigid motions")
+    add(shown, "Total load", f"{total}, without reactions")
+    add(
+        shown,
+        "Held by conditions",
+        "all rigid motions except those below" if checked.free_motions else "all rigid motions",
+    )
     for motion in checked.held_by_contact:
         add(shown, "Held by contact", motion)
     for name, case in problem.load_cases.items():
@@ -99,7 +103,7 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
 
 
 def result_summary(result: Result) -> RenderableType:
-    """List the facts of a result, and what is proved of it."""
+    """List the facts of a result and its certificate."""
     solution, shown = result.solution, list_of_facts()
     for name, value in facts(result.to_dict(), units_of(result.contact)):
         add(shown, name, value)
@@ -132,7 +136,7 @@ def condensed_summary(contact: CondensedContact, path: Path) -> RenderableType:
 
 
 def cases_summary(cases: CaseResults) -> RenderableType:
-    """List of each load case and combination how hard and where the body touches, and whether that is certified."""
+    """List peak, resultant, contact and certificate of each load case and combination."""
     table, shown = table_of("load case", "verdict", "peak", "at", "resultant", "contact"), list_of_facts()
     for name, result in cases.results.items():
         record, units = result.to_dict(), units_of(result.contact)
@@ -161,14 +165,14 @@ def cases_summary(cases: CaseResults) -> RenderableType:
 
 
 def uncertified(results: Result | CaseResults) -> str:
-    """Say of a result, or of each load case, that is not certified why."""
+    """Why a result, or each load case that is not certified, is not."""
     if isinstance(results, Result):
         return certificate_sentence(results.solution, results.certificate)
     return " ".join(f"{name}: {uncertified(item)}" for name, item in results.results.items() if not item.certified)
 
 
 def _places(record: Record, contact: CondensedContact) -> Iterator[str]:
-    """Where the body touches; of several zones along what length alone, so that the table is no wider than a page."""
+    """Intervals of contact; only their lengths for several zones, so that the table is no wider than a page."""
     units = units_of(contact)
     for interval in record["intervals"]:
         start, end = interval["arc"]
@@ -219,11 +223,11 @@ def path_summary(path: ParameterPath) -> RenderableType:
 
 
 def path_sentence(path: ParameterPath) -> str:
-    """Say how far a path can be trusted."""
+    """Certificate of a path in sentences."""
     first, last = map(number, path.reaches)
-    exact = f"Natural residual {path.residual:.0e} at the worst breakpoint."
+    exact = f"The largest natural residual at a breakpoint is {path.residual:.0e}."
     if path.certified:
-        return f"Every state from {first} to {last} is the contact state, the only one. {exact}"
+        return f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
     return " ".join((*(f"{sentence_case(note)}." for note in path.notes), exact))
 
 
@@ -248,8 +252,8 @@ def _place(contact: CondensedContact, i: int) -> str:
 
 
 RIGHT = frozenset({
-    "length", "elements", "points", "objective", "unpolished", "off direct", "iterations", "seconds", "found",
-    "expected", "difference", "allowed", "in contact",
+    "length", "elements", "points", "objective", "unpolished", "difference", "iterations", "seconds", "computed",
+    "expected", "allowed", "in contact",
 })  # fmt: skip
 """Columns of numbers."""
 
@@ -329,7 +333,7 @@ def _contender_table(compared: Comparison) -> Table:
     """List the formulations, the direct solution last."""
     searched = any(item.attempt.starts for item in compared.contenders)
     table = table_of(
-        "", "verdict", "objective", "unpolished", "off direct", "iterations", "seconds", *["starts"] * searched
+        "", "verdict", "objective", "unpolished", "difference", "iterations", "seconds", *["starts"] * searched
     )
     for item in compared.everyone:
         difference = compared.difference(item.label)
@@ -351,7 +355,7 @@ def _contender_table(compared: Comparison) -> Table:
 
 def _curvature_table(compared: Comparison) -> Table:
     """List how many eigenvalues are positive, zero and negative where a local solver searched."""
-    table = table_of("eigenvalues + 0 -", "whole Hessian", "free at start", "free at end", "convex in equilibrium")
+    table = table_of("eigenvalues + 0 -", "whole Hessian", "reduced, start", "reduced, end", "convex in equilibrium")
     for item in compared.contenders:
         search = item.solution.search if item.solution else None
         if search is None:
@@ -364,8 +368,8 @@ def _curvature_table(compared: Comparison) -> Table:
 
 def _score_table(level: MeshLevel, units: Units) -> Table:
     """List the references and the differences from them."""
-    table = table_of("reference", "quantity", "found", "expected", "difference", "allowed", "")
-    keys = ("reference", "quantity", "found", "expected", "difference", "tolerance", "verdict")
+    table = table_of("reference", "quantity", "computed", "expected", "difference", "allowed", "")
+    keys = ("reference", "quantity", "computed", "expected", "difference", "tolerance", "verdict")
     scores, references = ([item.to_dict() for item in items] for items in (level.scores, level.expected))
     for row in scores_in_words(scores, references, units):
         table.add_row(*(Text(row[key]) for key in keys), style="red" if row["colour"] == "bad" else "")
@@ -390,7 +394,7 @@ def _mesh_table(study: Study) -> Table:
 
 
 def _compared_how(study: Study) -> str:
-    """Say what was compared, on what."""
+    """Size and time of a comparison."""
     level = study.finest
     freedom = (
         "" if level.answer.degrees_of_freedom is None else f"{level.answer.degrees_of_freedom} degrees of freedom, "

@@ -1,4 +1,4 @@
-"""The boundary of a result as a file for ParaView and its like; the only room that knows meshio.
+"""The boundary of a result as a file for ParaView; only this module uses meshio.
 
 Points are written once for each element, so that tractions may jump from one element to the next.
 """
@@ -19,7 +19,7 @@ FORMATS = {".vtu": "vtu", ".vtk": "vtk"}
 def ensure_possible(path: Path) -> None:
     """Check the format of a file and that meshio is installed; `ValueError` or `ModuleNotFoundError` if not."""
     if path.suffix.lower() not in FORMATS:
-        raise ValueError(f"{path}: a boundary is written as {', '.join(FORMATS)}; end the file name in one of them")
+        raise ValueError(f"{path}: the file name of a boundary must end in {' or '.join(FORMATS)}")
     if find_spec("meshio") is None:
         raise ModuleNotFoundError(f"{path} needs meshio, which is not installed; pip install 'bemcontact[vtk]'")
 

@@ -45,7 +45,7 @@ CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY)
 def ensure_known_format(path: Path) -> None:
     """Raise `ValueError` unless the file name ends in one of `FORMATS`."""
     if path.suffix.lower() not in FORMATS:
-        raise ValueError(f"{path}: a picture is written as {', '.join(FORMATS)}; end the file name in one of them")
+        raise ValueError(f"{path}: the file name of a picture must end in {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
 
 
 def save(figure: Figure, path: Path) -> None:
