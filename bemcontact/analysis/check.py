@@ -15,7 +15,7 @@ class CheckedProblem:
     problem: Problem
     """The problem."""
     mesh: Mesh
-    """Its boundary elements."""
+    """Boundary elements."""
     gaps: dict[str, Array]
     """Initial gap of the contact points of each contact zone [L]."""
     free_motions: int
@@ -23,11 +23,11 @@ class CheckedProblem:
     held_by_contact: tuple[str, ...]
     """Descriptions of the free motions of body and tools that contact holds."""
     total_load: tuple[float, float]
-    """Resultant (x, y) of all that acts on the body, without reactions, per thickness [p L]."""
+    """Resultant (x, y) of all loads on the body, without reactions, per thickness [p L]."""
     load_magnitude: float
-    """Sum of the magnitudes of all that acts [p L]."""
+    """Sum of the magnitudes of all loads [p L]."""
     notes: tuple[str, ...]
-    """Remarks on the problem and its mesh."""
+    """Notes on the problem and its mesh."""
 
 
 def check(problem: Problem) -> CheckedProblem:

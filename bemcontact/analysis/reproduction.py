@@ -85,7 +85,7 @@ class PaperRecord(Record):
     statements: list[StatementRecord]
     """Statements of the paper."""
     differs: tuple[str, ...]
-    """Where the paper and these results differ, and why."""
+    """Differences between the paper and these results, with the reasons."""
     iterations: dict[FormulationName, int]
     """Iterations of QPSOL that the paper prints."""
     runs: list[RunRecord]
@@ -197,7 +197,7 @@ class PaperStudy:
             statements=[
                 StatementRecord(
                     what=item.what,
-                    statement=item.said,
+                    statement=item.says,
                     unit=unit_of(item, axis, problem.units),
                     computed=[reading(item, run.level, axis) for run in runs],
                 )

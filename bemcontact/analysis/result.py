@@ -59,14 +59,14 @@ class HeadRecord(Record):
     dof: int | None
     """Number of unknowns of the boundary elements, two for each node; null for a condensed problem."""
     notes: tuple[str, ...]
-    """Remarks on the problem, its mesh and the solver."""
+    """Notes on the problem, its mesh and the solver."""
 
 
 class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
-    """Solution of a contact problem and all quantities recomputed from it; lists have one entry for each contact point."""
+    """Solution of a contact problem and all quantities recomputed from it; lists are by contact point."""
 
     mesh_fit: MeshFit | None
-    """How the mesh was fitted to the ends of contact, or null."""
+    """Fit of the mesh to the ends of contact; null without one."""
     weights: Weights
     """Weights of the objective."""
     objective: float
@@ -110,13 +110,13 @@ class Result:
     degrees_of_freedom: int | None
     """Two for each node of the mesh; None for a condensed problem."""
     notes: tuple[str, ...]
-    """Remarks on the condensation, the mesh and the solver."""
+    """Notes on the condensation, the mesh and the solver."""
     seconds: dict[str, float]
     """Time of each stage."""
     starts: RandomStarts | None = None
     """Searches from random starts, if any were asked for."""
     mesh_fit: MeshFit | None = None
-    """How the mesh was fitted to the ends of contact, if that was asked for."""
+    """Fit of the mesh to the ends of contact; None without one."""
 
     def __repr__(self) -> str:
         """One line: name, formulation, verdict, peak."""
@@ -131,7 +131,7 @@ class Result:
 
     @property
     def touching(self) -> NDArray[np.bool_]:
-        """Which contact points (n,) are in contact, by `CondensedContact.touching`."""
+        """Whether each contact point (n,) is in contact, by `CondensedContact.touching`."""
         return self.contact.touching(self.solution.pressure, self.solution.displacement)
 
     @property

@@ -56,7 +56,7 @@ class LevelRecord(Record):
     equilibrium_slack: float | None
     """Imbalance of the discrete equations relative to the loads; null without a boundary."""
     mesh_fit: MeshFit | None
-    """How the mesh was fitted to the ends of contact, or null."""
+    """Fit of the mesh to the ends of contact; null without one."""
     comparison: ComparisonRecord
     """The formulations side by side."""
     references: tuple[Expected, ...]

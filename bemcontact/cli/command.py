@@ -256,7 +256,7 @@ def write_json(text: str) -> None:
 
 
 def refuse(message: str) -> NoReturn:
-    """Say what is wrong with the input and end."""
+    """Print an error of the input and end."""
     tell("error: ", message)
     raise typer.Exit(BAD_INPUT)
 

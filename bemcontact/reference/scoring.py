@@ -1,4 +1,4 @@
-"""Differences between an answer and its references."""
+"""Differences between a solution and its references."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -16,23 +16,23 @@ from bemcontact.serialization import Leaf
 
 @dataclass(frozen=True, kw_only=True)
 class Score(Leaf):
-    """One quantity as computed and as a reference expects it."""
+    """Computed and expected value of one quantity of a reference."""
 
     reference: str
     """Name of the reference in the problem."""
     quantity: str
     """Name of the quantity, such as peak, half-width, start of contact or pressure (largest difference)."""
     computed: float | None
-    """Computed value, [p], [L], [p L] or degrees; null where nothing touches, so that there are no ends."""
+    """Computed value, [p], [L], [p L] or degrees; null without contact, which has no ends."""
     expected: float
-    """Expected value in the same unit; 0 where the quantity is itself a difference of pressures."""
+    """Expected value in the same unit; 0 if the quantity is a difference of pressures."""
     difference: float | None
     """Relative difference: over the expected value, over the extent of contact for its ends, and over the largest or
     mean-square expected pressure for differences of pressure."""
     tolerance: float
     """Relative difference that the reference allows."""
     judged: bool
-    """Whether the answer is judged by it; false where the reference is out of its range."""
+    """Whether the solution is judged by it; false if the reference is out of its range."""
     holds: bool
     """Whether the difference is within the tolerance."""
 

@@ -23,15 +23,15 @@ from bemcontact.report.formatting import (
 )
 
 MANY = 5
-"""Contenders from which on they are counted and no longer listed at the head of the page."""
+"""Number of contenders from which the head of the page counts them instead of listing them."""
 
 HISTORY = "history-"
-"""What the names of the pictures of solvers begin with."""
+"""Start of the names of the pictures of solvers."""
 
 
 FORMULATIONS = {"qp1": "QP1", "qp2": "QP2", "qp3": "QP3"}
 WIDE = 500.0
-"""Points from which on a picture is wide."""
+"""Width in points from which a picture gets the whole width of the page."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,9 +39,9 @@ class Picture:
     """A picture in the page."""
 
     source: str
-    """The picture itself, as a data address."""
+    """The picture as a data URL."""
     alternative: str
-    """What it shows, for those who do not see it."""
+    """Text alternative."""
     caption: str
     """The line above it."""
     wide: bool
@@ -112,7 +112,7 @@ def render(report: Record, pictures: Mapping[str, bytes], spec: str | None) -> s
     return template("report.html", quality=_quality).render(
         **contents,
         pictures={name: _picture(name, svg, contents["level"]) for name, svg in pictures.items()},
-        courses=[name for name in pictures if name.startswith(HISTORY)],
+        histories=[name for name in pictures if name.startswith(HISTORY)],
         spec=spec,
     )
 
@@ -128,7 +128,7 @@ def _contents(report: Record) -> dict[str, Any]:
         "level": level,
         "compared": compared,
         "everyone": [*contenders, reference],
-        "apart": {item["one"]: item for item in compared["differences"] if item["other"] == reference["label"]},
+        "differences": {item["one"]: item for item in compared["differences"] if item["other"] == reference["label"]},
         "answer": reference["answer"],
         "units": {"p": units.stress, "L": units.length, "1": ""},
         "verdict": _headline(report, compared),
@@ -173,33 +173,31 @@ def _facts(level: Record, units: Units) -> list[tuple[str, str]]:
 def _certificate(answer: Record | None, units: Units) -> str:
     """What is proved of the direct solution, in sentences for an engineer."""
     if answer is None:
-        return "The direct solver has no answer. So there is nothing to certify."
+        return "The direct solver has no solution, so there is nothing to certify."
     proved, left = answer["certificate"], answer["residuals"]
     eigenvalue, kind = proved["smallest_eigenvalue"], proved["kind"]
     if kind == "not a solution":
-        return f"{proved['words']} So this is not an answer to rely on."
-    names = ("penetration", "tension", "complementarity", "equilibrium")
+        return f"{proved['words']} Do not rely on this result."
+    largest = small(max(left[name] for name in ("penetration", "tension", "complementarity", "equilibrium")))
     holds = (
-        "The pressure was put back into the equations of the body: it presses nowhere into a rigid surface, pulls at "
-        "none, keeps the body in equilibrium, and is zero wherever there is a gap, and no more than "
-        f"{small(max(left[name] for name in names))} of its scale is left of any of these conditions."
+        "All contact conditions were recomputed from the pressure: it penetrates no rigid surface, pulls at none, "
+        "keeps the body in equilibrium, and is zero wherever there is a gap. "
+        f"The largest residual of these conditions, relative to its scale, is {largest}."
     )
     if kind == "left open by round-off":
-        return f"{holds} But in floating-point numbers this pressure cannot be told from others that are far from it."
+        return f"{holds} Because of round-off, very different pressures cannot be ruled out."
     if kind != "unique":
         return (
-            f"{holds} But a second contact state cannot be ruled out, because the smallest eigenvalue of the "
-            f"compliance ({small(eigenvalue)}) is not positive, so that this is proved to be a solution, but not "
-            "the only one."
+            f"{holds} A second contact state cannot be ruled out, because the smallest eigenvalue of the compliance "
+            f"({small(eigenvalue)}) is not positive. This is proved to be a solution, but not the only one."
         )
     why = (
-        "Equilibrium alone fixes the pressure, so that there is no other"
+        "Equilibrium alone determines the pressure, so there is no other solution."
         if eigenvalue is None
-        else "Two different contact states would differ by a pressure that stores no elastic energy, and none does "
-        f"here (the smallest eigenvalue of the compliance is {small(eigenvalue)}, and positive), so that there is no "
-        "other"
+        else f"The compliance is positive definite (its smallest eigenvalue is {small(eigenvalue)}), so there is no "
+        "other solution."
     )
-    return f"{holds} {why}{_bound(proved['error_bound'], answer['peak'], units)}."
+    return f"{holds} {why}{_bound(proved['error_bound'], answer['peak'], units)}"
 
 
 def _bound(bound: float | None, peak: Record | None, units: Units) -> str:
@@ -207,7 +205,7 @@ def _bound(bound: float | None, peak: Record | None, units: Units) -> str:
     if bound is None or peak is None:
         return ""
     size = with_unit(small(bound), units.stress)
-    return f", and round-off moves no pressure by more than {size}, {small(bound / peak['pressure'])} of the peak"
+    return f" Round-off changes no pressure by more than {size}, {small(bound / peak['pressure'])} of the peak."
 
 
 def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
@@ -235,16 +233,16 @@ def _picture(name: str, svg: bytes, level: Record) -> Picture:
     answer = level["comparison"]["reference"]["answer"]
     peak = answer and answer["peak"]
     extent = f"; the peak is {number(peak['pressure'])}" if name == "pressure" and peak else ""
-    course = ": course of the search, iteration by iteration" if name.startswith(HISTORY) else ""
-    return picture(svg, caption, f"{caption}{course}{extent}")
+    shown = ": objective, infeasibility and residual over the iterations" if name.startswith(HISTORY) else ""
+    return picture(svg, caption, f"{caption}{shown}{extent}")
 
 
 CAPTIONS = {
-    "problem": "The body with its mesh, what is prescribed on it, and the rigid surfaces that it may touch",
-    "pressure": "Contact pressure of all formulations, one inside the other where they agree",
+    "problem": "The body with its mesh and conditions, and the rigid surfaces",
+    "pressure": "Contact pressure of all formulations; where they agree, one curve lies inside the other",
     "gap": "Gap between the body and the rigid surfaces",
-    "deformed": "Deformed shape, by the direct solution",
-    "difference": "How far each pressure is from the direct solution",
-    "convergence": "What is left of each quantity, mesh by mesh",
+    "deformed": "Deformed shape of the direct solution",
+    "difference": "Difference of each pressure from the direct solution",
+    "convergence": "Distance of each quantity from its limit, mesh by mesh",
 }
-"""Name of a picture -> the line below it."""
+"""Name of a picture -> its caption."""

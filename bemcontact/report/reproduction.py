@@ -51,7 +51,7 @@ def reproduction_summary(record: Record) -> RenderableType:
 
 
 def reproduction_sentence(record: Record) -> str:
-    """Say in two sentences how much of the paper is reproduced."""
+    """Result of the reproduction in two sentences."""
     problems = record["problems"]
     runs = [run for item in problems for run in item["runs"]]
     certified = [solver["certified"] for run in runs for solver in _solvers(run)]

@@ -17,7 +17,7 @@ from bemcontact.analysis import solve as analysis
 from bemcontact.bem import mesh
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report import figures
-from bemcontact.report.figures.marks import draw_ground
+from bemcontact.report.figures.symbols import draw_ground
 
 
 def line(name: str, start: list[float], elements: int) -> dict:

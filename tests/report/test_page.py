@@ -97,11 +97,11 @@ def test_sections_go_without_what_there_is_not():
     alone = read(render(report_of(without_a_body()), {"pressure": SVG}, None)).text
     assert "Mesh convergence" not in alone
     assert "Reference values" not in alone
-    assert "Course of each solver" not in alone
+    assert "Iterations of each solver" not in alone
     assert "The problem as run" not in alone
     whole = read(render(report_of(on_three_meshes()), PICTURES, "name: x")).text
     assert "Mesh convergence" in whole
-    assert "Course of each solver" in whole
+    assert "Iterations of each solver" in whole
     assert "The problem as run" in whole
 
 

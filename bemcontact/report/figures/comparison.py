@@ -27,22 +27,22 @@ from bemcontact.report.figures.page import (
     shortened,
     show_decades,
 )
-from bemcontact.report.figures.result import tell_closed
+from bemcontact.report.figures.result import label_closed
 from bemcontact.report.formatting import number, units_of, with_unit
 
 DASHES = ("solid", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
-"""Of the contenders of one formulation, in turn."""
+"""Line styles of the contenders of one formulation, in turn."""
 WIDEST, THINNEST = 8.0, 1.1
-"""Line widths: the direct solution lies under all others, and each one shows beside the next."""
+"""Line widths: the direct solution is the widest curve, below all others."""
 SPACE = 0.08
 """Space between two pieces of the contact zones, over the length of all of them."""
 BEYOND = 1.3
-"""Multiple of the direct solution's peak at which the frame cuts off what is far from it."""
+"""Height of the frame over the peak of the direct solution."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Curve:
-    """How contenders that cannot be told apart are drawn."""
+    """Curve of contenders with visibly equal values."""
 
     contenders: tuple[Contender, ...]
     width: float
@@ -50,18 +50,18 @@ class Curve:
 
     @property
     def colour(self) -> str:
-        """Its formulation's."""
+        """Colour of the formulation."""
         return COLOURS[self.contenders[0].attempt.options.formulation]
 
     @property
     def label(self) -> str:
-        """What the legend calls it."""
+        """Label in the legend."""
         more = len(self.contenders) - 1
         return plain(self.contenders[0].label) + (f" and {more} more" if more else "")
 
     @property
     def solution(self) -> ContactSolution:
-        """Of the first of them."""
+        """Solution of the first contender."""
         assessment = self.contenders[0].assessment
         assert assessment is not None  # nothing else is made a curve of
         return assessment.solution
@@ -88,8 +88,8 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
                 item.peak, color=colour, linewidth=1.2, linestyle="dotted", label=shortened(f"{label}: peak", 40)
             )
             known.append(item.peak)
-    found = {curve.label: float(curve.solution.pressure.max(initial=0.0)) for curve in curves}
-    _cut_off(axes, found, BEYOND * max(known), unit)
+    maxima = {curve.label: float(curve.solution.pressure.max(initial=0.0)) for curve in curves}
+    _cut_off(axes, maxima, BEYOND * max(known), unit)
     axes.set_ylabel(labelled("pressure", unit) + "\nper undeformed length")
     along.finish(axes)
 
@@ -97,19 +97,19 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
 def draw_gaps(axes: Axes, level: MeshLevel) -> None:
     """Draw the gaps of all contenders along the contact zones, and the initial gap."""
     contact, unit = level.answer.contact, units_of(level.answer.contact).length
-    along, found = _Along(contact=contact), dict[str, float]()
+    along, maxima = _Along(contact=contact), dict[str, float]()
     for curve in _curves(level):
         gap = contact.initial_gap + curve.solution.displacement
         along.plot(axes, gap, curve)
-        found[curve.label] = float(gap.max())
+        maxima[curve.label] = float(gap.max())
     along.line(axes, contact.initial_gap, BLACK, "initial gap")
     answer = contact.initial_gap + level.answer.solution.displacement
     largest = max(float(contact.initial_gap.max()), float(answer.max()), contact.scales.displacement)
-    _cut_off(axes, found, BEYOND * largest, unit)
+    _cut_off(axes, maxima, BEYOND * largest, unit)
     axes.set_ylabel(labelled("gap", unit))
     along.finish(axes)
-    widest = max(float(np.abs(contact.initial_gap).max(initial=0.0)), *map(abs, found.values()))
-    tell_closed(axes, widest, contact.scales.displacement)
+    widest = max(float(np.abs(contact.initial_gap).max(initial=0.0)), *map(abs, maxima.values()))
+    label_closed(axes, widest, contact.scales.displacement)
 
 
 def draw_differences(axes: Axes, level: MeshLevel) -> None:
@@ -133,12 +133,12 @@ class _Along:
 
     @cached_property
     def pieces(self) -> list[Piece]:
-        """In the order of the contact points."""
+        """Pieces in the order of the contact points."""
         return [*pieces_of(self.contact)]
 
     @cached_property
     def shifts(self) -> list[float]:
-        """What each piece is moved by along the axis."""
+        """Shift of each piece along the axis [L]."""
         arcs = [self.contact.arc_position[piece.index] for piece in self.pieces]
         lengths = [float(np.ptp(arc)) for arc in arcs]
         starts = np.cumsum([0.0, *(length + SPACE * sum(lengths) for length in lengths)])
@@ -179,7 +179,7 @@ class _Along:
         legend_below(axes)
 
     def _name_pieces(self, axes: Axes) -> None:
-        """Count the distance on each piece from its own beginning."""
+        """Label each piece, with distances from its own start."""
         ticks, labels = [], []
         for piece, shift in zip(self.pieces, self.shifts, strict=True):
             s = self.contact.arc_position[piece.index]
@@ -222,9 +222,11 @@ def _alike(one: Contender, other: Contender, level: MeshLevel) -> bool:
     return one.attempt.options.formulation is other.attempt.options.formulation and apart <= SAME * peak
 
 
-def _cut_off(axes: Axes, found: dict[str, float], top: float, unit: str) -> None:
+def _cut_off(axes: Axes, maxima: dict[str, float], top: float, unit: str) -> None:
     """Limit the frame to values up to `top`, and write the larger ones above it."""
-    beyond = [f"{label} up to {with_unit(number(value), plain(unit))}" for label, value in found.items() if value > top]
+    beyond = [
+        f"{label} up to {with_unit(number(value), plain(unit))}" for label, value in maxima.items() if value > top
+    ]
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
     if beyond:
         axes.set_ylim(-0.1 * top, top)

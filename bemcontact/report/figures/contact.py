@@ -15,7 +15,6 @@ from bemcontact.arrays import Array
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.mesh import element_curves
 from bemcontact.problem import DeflectedContour, Problem
-from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, place_names
 from bemcontact.report.figures.page import (
     BLACK,
     BODY,
@@ -27,6 +26,7 @@ from bemcontact.report.figures.page import (
     without_glyph_warnings,
 )
 from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
+from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names
 from bemcontact.report.formatting import number, units_of, with_unit
 
 VISIBLE = 0.005
@@ -99,10 +99,10 @@ def draw_contact(axes: Axes, result: Result) -> None:
     size = float(np.hypot(width, height))
     reach = size if part else OVERHANG * size
     grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in _surfaces(result, problem, reach)]
-    marks = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
+    covered = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
     if not part:
         displacement = _displacement(state)
-        marks += [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
+        covered += [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
     scale = min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans)) if fans else 1.0
     length = max(TALL * float(np.sqrt(width * height)), LEAST * size)
     length = min([length, *(CROSSING * fan.longest(scale) for fan in fans)])
@@ -111,7 +111,7 @@ def draw_contact(axes: Axes, result: Result) -> None:
         tips.append(fan.feet - length * np.minimum(fan.pressure / scale, 1.0)[:, None] * fan.normals)
         _draw_fan(axes, fan, tips[-1], 0.03 * size)
         names.append(_label(fan, tips[-1], units.stress, cut=fan.peak > scale * (1 + LEVEL)))
-    drawn = np.concatenate([window, *tips] if part else [window, *tips, *marks])
+    drawn = np.concatenate([window, *tips] if part else [window, *tips, *covered])
     frame_plan(axes, drawn, units.length)
     with without_glyph_warnings():
         place_names(axes, names, drawn, loops)

@@ -110,7 +110,7 @@ PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 
 @dataclass(frozen=True, kw_only=True)
 class Piece:
-    """An unbroken piece of boundary in one contact zone: its points in order, and how it is drawn."""
+    """An unbroken piece of boundary in one contact zone, with its points in order."""
 
     label: str
     order: int
@@ -118,12 +118,12 @@ class Piece:
 
     @property
     def colour(self) -> str:
-        """Its colour; there are six."""
+        """Colour of the piece, one of six."""
         return PIECE_COLOURS[self.order % len(PIECE_COLOURS)]
 
     @property
     def dashes(self) -> str:
-        """Its line style: an unbroken line is never drawn over another."""
+        """Line style; only the first piece has a solid line."""
         return "dashed" if self.order else "solid"
 
 
@@ -139,7 +139,7 @@ def pieces_of(contact: CondensedContact) -> Iterator[Piece]:
 
 
 INK = "#e8eaed"
-"""What is black on paper, on a dark page."""
+"""Colour on a dark page of what is black on paper."""
 
 IN_THE_DARK = {
     "#000000": INK,

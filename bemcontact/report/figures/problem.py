@@ -28,7 +28,6 @@ from bemcontact.problem import (
     Problem,
     Spline,
 )
-from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
 from bemcontact.report.figures.page import (
     BLACK,
     BLUE,
@@ -42,17 +41,18 @@ from bemcontact.report.figures.page import (
     without_glyph_warnings,
     wrapped,
 )
+from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
 from bemcontact.report.formatting import prescribed, tool_in_words, volume_loads
 
 Displacement = Callable[[Array], Array]
 """Points (k, 2) of the undeformed boundary -> how far (k, 2) they are displaced."""
 
 ROLES = {"may touch": VERMILION, "held": BLUE, "loaded": GREEN, "free": BLACK}
-"""What an edge is for, and its colour."""
+"""Role of an edge -> colour."""
 ALONG = 0.3
 """Largest share of a traction across the edge with which it is drawn as one along the edge."""
 FREE = Condition(traction=AxisFields(x=Field(constant=0.0)))
-"""What an edge without a condition means."""
+"""Condition of an edge without a stated one."""
 FLUSH = 1e-6
 """Gap over the body's size between a plane and an edge that lies in it."""
 SHORT = 0.2
@@ -76,9 +76,9 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     _fill_body(axes, problem)
     _draw_mesh(axes, problem, mesh)
     outline = [edge.points(np.linspace(0, 1, 60)) for edge in problem.boundary.edges]
-    marks = [*draw_supports(axes, problem), *draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
+    symbols = [*draw_supports(axes, problem), *draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
     tools = [*draw_tools(axes, problem)]
-    drawn = np.concatenate([*outline, *marks, *(covered for covered, _ in tools)])
+    drawn = np.concatenate([*outline, *symbols, *(covered for covered, _ in tools)])
     frame_plan(axes, drawn, problem.units.length)
     _draw_legend(axes, problem)
     names = [_name(problem, edge) for edge in problem.boundary.edges]
@@ -342,7 +342,7 @@ def draw_tools(axes: Axes, problem: Problem) -> Iterator[tuple[Array, Name]]:
 
 
 def _place(problem: Problem, tool: str) -> tuple[Array, Array]:
-    """Where the force on a tool is drawn, and the normal of its surface from there into the body."""
+    """Position (2,) of the force on a tool, and the normal (2,) of its surface into the body."""
     stated = problem.tools[tool]
     zone = problem.contact_zones[stated.zones[0]]
     facing = np.concatenate([problem.edge(name).points(np.linspace(0, 1, 61)) for name in zone.edges])

@@ -23,11 +23,11 @@ from bemcontact.report.figures.study import WIDTH, plan_of
 from bemcontact.report.formatting import number
 
 MESHES = (BLUE, VERMILION, GREEN)
-"""Of the problem as stated, the coarsest first, in turn."""
-MARKS = ("s", "D", "^")
-"""Of the variants, in turn."""
+"""Colours of the meshes of the problem as stated, the coarsest first."""
+MARKERS = ("s", "D", "^")
+"""Markers of the variants."""
 SINGLE = ("dotted", (0, (5, 2)), (0, (6, 1.5, 1.5, 1.5)), (0, (9, 2)))
-"""Of places and sizes that references state, in turn."""
+"""Line styles of single values of references."""
 ABOVE = 1.12
 """Height of the frame over the largest pressure in it."""
 WINDOW_HEIGHT = 2.6
@@ -70,7 +70,7 @@ def draw_against(axes: Axes, item: PaperStudy) -> None:
     """Draw pressure over the paper's coordinate: variants as markers, meshes as lines, references in purple or gray."""
     for order, run in enumerate(run for run in item.variant_runs if run.level.answer.footprint.intervals):
         axes.plot(
-            *_curve(run, item), linestyle="none", marker=MARKS[order % len(MARKS)], markersize=5.5,
+            *_curve(run, item), linestyle="none", marker=MARKERS[order % len(MARKERS)], markersize=5.5,
             markerfacecolor="none", markeredgecolor=(GREEN, ORANGE)[order % 2], label=run.label, zorder=3,
         )  # fmt: skip
     for order, run in enumerate(item.meshes):
@@ -112,8 +112,8 @@ def _draw_reference(axes: Axes, known: Expected, item: PaperStudy, singles: int)
         label = f"{known.name}{beyond}"
         axes.plot(here[order], known.pressure[order], color=colour, linewidth=1.4, linestyle=(0, (2.5, 2)), label=label)
     else:
-        told = ((known.peak, "peak", axes.axhline), (known.start, "start", axes.axvline))
-        for value, what, draw in told:
+        single_values = ((known.peak, "peak", axes.axhline), (known.start, "start", axes.axvline))
+        for value, what, draw in single_values:
             if value is not None:
                 label = f"{known.name}: {what} {number(value)}"
                 draw(value, color=colour, linewidth=1.3, linestyle=SINGLE[singles % len(SINGLE)], label=label)

@@ -74,10 +74,10 @@ def draw_gap(axes: Axes, result: Result) -> None:
     gap, scale = _gap(result), result.contact.scales.displacement
     _draw_along(axes, result, gap)
     axes.set_ylabel(labelled("gap", units_of(result.contact).length))
-    tell_closed(axes, float(np.abs(gap).max(initial=0.0)), scale)
+    label_closed(axes, float(np.abs(gap).max(initial=0.0)), scale)
 
 
-def tell_closed(axes: Axes, widest: float, scale: float) -> None:
+def label_closed(axes: Axes, widest: float, scale: float) -> None:
     """Write that all gaps are closed, and leave room, where the widest is round-off beside the scale."""
     if widest <= CLOSED * scale:
         axes.set_ylim(-0.1 * scale, scale)
@@ -119,29 +119,29 @@ DASHES = ("solid", "dashed", "dotted", "dashdot")
 """Line styles of unbroken pieces of boundary."""
 
 
-def figure_of(found: Result | CaseResults) -> Figure:
+def figure_of(results: Result | CaseResults) -> Figure:
     """Compose the page of a result, or of the results of all load cases."""
-    return figure_of_result(found) if isinstance(found, Result) else figure_of_cases(found)
+    return figure_of_result(results) if isinstance(results, Result) else figure_of_cases(results)
 
 
-def figure_of_cases(found: CaseResults) -> Figure:
+def figure_of_cases(cases: CaseResults) -> Figure:
     """Compose a page with the pressures and the peak pressures of all load cases."""
     figure = new_page(INCHES, 6)
     above, below = figure.subplots(2, 1, height_ratios=(3, 1))
     for axes in (above, below):
         axes.spines[["top", "right"]].set_visible(False)
-    draw_case_pressures(above, found)
-    draw_case_peaks(below, found)
-    verdict = "all certified" if found.certified else "NOT all certified"
-    title = f"{wrapped(found.name, 6 * INCHES)}: {verdict}"
-    figure.suptitle(title, x=0.01, ha="left", fontweight="bold", color=BLACK if found.certified else VERMILION)
+    draw_case_pressures(above, cases)
+    draw_case_peaks(below, cases)
+    verdict = "all certified" if cases.certified else "NOT all certified"
+    title = f"{wrapped(cases.name, 6 * INCHES)}: {verdict}"
+    figure.suptitle(title, x=0.01, ha="left", fontweight="bold", color=BLACK if cases.certified else VERMILION)
     return figure
 
 
-def draw_case_pressures(axes: Axes, found: CaseResults) -> None:
+def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
     """Draw the contact pressure of each load case, per undeformed length, over the distance along each piece."""
-    first = next(iter(found.results.values()))
-    for order, (name, result) in enumerate(found.results.items()):
+    first = next(iter(cases.results.values()))
+    for order, (name, result) in enumerate(cases.results.items()):
         contact, colour = result.contact, PIECE_COLOURS[order % len(PIECE_COLOURS)]
         width = 2.2 if order < len(PIECE_COLOURS) else 1.2
         for piece in pieces_of(contact):
@@ -157,12 +157,12 @@ def draw_case_pressures(axes: Axes, found: CaseResults) -> None:
     axes.legend(frameon=False, fontsize=8.5)
 
 
-def draw_case_peaks(axes: Axes, found: CaseResults) -> None:
+def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
     """Draw a bar for the peak pressure of each load case."""
-    first = next(iter(found.results.values()))
-    peaks = [result.footprint.peak.pressure if result.footprint.peak else 0.0 for result in found.results.values()]
+    first = next(iter(cases.results.values()))
+    peaks = [result.footprint.peak.pressure if result.footprint.peak else 0.0 for result in cases.results.values()]
     colours = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
-    bars = axes.barh([shortened(name, 30) for name in found.results], peaks, color=colours)
+    bars = axes.barh([shortened(name, 30) for name in cases.results], peaks, color=colours)
     axes.bar_label(bars, fmt="%.5g", padding=3)
     axes.margins(x=0.12)
     axes.invert_yaxis()

@@ -111,10 +111,10 @@ def draw_history(axes: Axes, contenders: Sequence[Contender]) -> None:
     The objective is zero at the contact state (nearly so with other weights than tributary ones). Markers show where it
     is negative. Contenders without a history are left out.
     """
-    told = [item for item in contenders if item.assessment is not None and item.assessment.solution.history]
+    recorded = [item for item in contenders if item.assessment is not None and item.assessment.solution.history]
     below_zero = False
-    for order, contender in enumerate(told):
-        alone = COLOURS[contender.attempt.options.formulation] if len(told) == 1 else None
+    for order, contender in enumerate(recorded):
+        alone = COLOURS[contender.attempt.options.formulation] if len(recorded) == 1 else None
         colour = alone or CYCLE[order % len(CYCLE)]
         for trace in contender.assessment.solution.history if contender.assessment else ():
             label = trace.quantity if alone else plain(f"{contender.label}: {trace.quantity}")
@@ -149,9 +149,9 @@ def draw_convergence(axes: Axes, convergence: Convergence) -> None:
         distance = np.abs(np.array(item.values) - item.limit) / (abs(item.limit) or 1.0)
         distance = np.where(distance > 0, distance, np.nan)
         q = next((q for q in reversed(item.orders) if q is not None), None)
-        told = "" if q is None else f", order {q:.2g}"
+        order_text = "" if q is None else f", order {q:.2g}"
         colour = CYCLE[order % len(CYCLE)]
-        label = shortened(f"{item.name}{told}", 48)
+        label = shortened(f"{item.name}{order_text}", 48)
         axes.plot(refine, distance, color=colour, marker="o", markersize=5, linewidth=1.5, label=label)
     axes.set_xscale("log")
     show_decades(axes)
