@@ -75,6 +75,22 @@ class Record(BaseModel):
         return self.model_dump(mode="json")
 
 
+class Recorded:
+    """Base of a result whose JSON is that of its record."""
+
+    def record(self) -> Record:
+        """Return the record that is written as JSON."""
+        raise NotImplementedError
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as numbers, lists and texts, ready for JSON."""
+        return self.record().to_dict()
+
+    def to_json(self, indent: int | None = 2) -> str:
+        """Return `to_dict` as JSON; every number in it is finite."""
+        return json_text(self.to_dict(), indent)
+
+
 def json_text(record: dict[str, Any], indent: int | None = 2) -> str:
     """Write numbers, lists and texts as JSON; `ValueError` for a number that is not finite."""
     return json.dumps(record, indent=indent, allow_nan=False, ensure_ascii=False)

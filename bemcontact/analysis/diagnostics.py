@@ -46,9 +46,8 @@ def few_points(contact: CondensedContact, touching: NDArray[np.bool_], where: Fo
         if 0 < carrying < FEW_POINTS:
             start, end = (f"({x:.5g}, {y:.5g})" for x, y in (interval.start, interval.end))
             yield (
-                f"only {carrying} contact point{'s' if carrying > 1 else ''} from {start} to {end} in {interval.zone} "
-                f"carr{'y' if carrying > 1 else 'ies'} pressure: the mesh is too coarse there to resolve the "
-                "distribution; shorten the elements"
+                f"pressure acts on only {carrying} contact point{'s' if carrying > 1 else ''} from {start} to {end} in "
+                f"{interval.zone}: the mesh is too coarse there to resolve its distribution; shorten the elements"
             )
 
 

@@ -2,9 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from importlib.resources import files
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +17,7 @@ from bemcontact.options import ComparisonOptions, FormulationName
 from bemcontact.problem import Problem, Table, Units, Values
 from bemcontact.reference.paper import PROBLEMS, PaperProblem, Quantity, Statement
 from bemcontact.reference.positions import coordinates
-from bemcontact.serialization import Record, Vector, json_text
+from bemcontact.serialization import Record, Recorded, Vector
 
 FOLDER = "models"
 """Stands in the installed package, and beside the package in a source tree."""
@@ -220,7 +218,7 @@ class PaperStudy:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Reproduction:
+class Reproduction(Recorded):
     """The problems of the paper, solved again."""
 
     problems: tuple[PaperStudy, ...]
@@ -236,8 +234,8 @@ class Reproduction:
         """Whether all is certified and every judged reference holds."""
         return all(item.reproduced for item in self.problems)
 
-    @cached_property
-    def _record(self) -> dict[str, Any]:
+    def record(self) -> ReproductionRecord:
+        """Return the record that is written as numbers.json."""
         studies = [study for item in self.problems for study in (item.study, *item.variants.values())]
         return ReproductionRecord(
             reproduced=self.reproduced,
@@ -245,15 +243,7 @@ class Reproduction:
             problems=[item.record() for item in self.problems],
             versions=versions(),
             seconds=sum(study.seconds for study in studies),
-        ).to_dict()
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts: the content of numbers.json."""
-        return self._record
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)
+        )
 
 
 def reproduce(

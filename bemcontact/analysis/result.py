@@ -1,7 +1,6 @@
 """The result of a contact problem: its solution and all quantities recomputed from it."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +25,7 @@ from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
-from bemcontact.serialization import PairTables, Record, json_text
+from bemcontact.serialization import PairTables, Record, Recorded
 from bemcontact.version import __version__
 
 
@@ -86,7 +85,7 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Result:
+class Result(Recorded):
     """A solution of a contact problem and all quantities recomputed from it."""
 
     problem: Problem | None
@@ -194,11 +193,3 @@ class Result:
             ),
             seconds=self.seconds,
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON."""
-        return self.record().to_dict()
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)

@@ -4,7 +4,6 @@ import platform
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any
 
 from bemcontact.adaptivity.mesh_fit import MeshFit
 from bemcontact.analysis.result import Result
@@ -14,17 +13,17 @@ from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
 from bemcontact.reference import Expected, Score, expected, score
-from bemcontact.serialization import Record, json_text
+from bemcontact.serialization import Record, Recorded
 from bemcontact.version import __version__
 
-ALTERED = "this reference belongs to the problem before the change with --set: shown, not judged"
+ALTERED = "the problem was changed (--set), but this reference was not: shown, not judged"
 """Remark on a reference that belongs to the problem before it was changed."""
 VERSIONS = ("numpy", "scipy", "cvxpy", "clarabel", "matplotlib", "jinja2")
 """Packages whose versions a report states."""
 
 
 class Settings(Record):
-    """Formulations, weights, penalties and starts that are compared."""
+    """Settings of a comparison."""
 
     formulations: tuple[FormulationName, ...]
     """Formulations beside the direct solution."""
@@ -137,7 +136,7 @@ class MeshLevel:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Study:
+class Study(Recorded):
     """A problem compared on one mesh or several."""
 
     settings: Settings
@@ -200,14 +199,6 @@ class Study:
             versions=versions(),
             seconds=self.seconds,
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON."""
-        return self.record().to_dict()
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)
 
 
 def _outdated(expected: Expected) -> Expected:

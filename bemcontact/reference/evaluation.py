@@ -219,8 +219,9 @@ def _flat_punch(silent: Expected, stated: FlatPunch, problem: Problem, contact: 
     x = frame.distances(contact.points)
     pressure = _within(contact, stated, form.pressure(x))
     size = reach(problem, frame) / stated.half_width
-    remark = f"the punch needs a half-plane; here the body ends {size:.2g} half-widths away from its middle"
-    in_range = size >= HALF_PLANE * (1 - 1e-9)
+    remark = ""
+    if size < HALF_PLANE * (1 - 1e-9):
+        remark = _shown(f"the punch needs a half-plane; here the body ends {size:.2g} half-widths away from its middle")
     return replace(
         silent,
         pressure=pressure,
@@ -229,8 +230,8 @@ def _flat_punch(silent: Expected, stated: FlatPunch, problem: Problem, contact: 
         contact_length=2 * form.touching_half_width if form.lifts_off else None,
         center=_point(frame),
         resultant=stated.load / (2 if stated.half else 1),
-        in_range=in_range,
-        remark="" if in_range else _shown(remark),
+        in_range=not remark,
+        remark=remark,
     )
 
 
@@ -258,18 +259,17 @@ def _crack(silent: Expected, stated: Crack, problem: Problem, contact: Condensed
     x = frame.distances(contact.points)
     pressure = _within(contact, stated, form.pressure(x))
     size = reach(problem, frame) / stated.half_length
-    remark = (
-        f"the crack needs an infinite panel; here it ends {size:.2g} half-lengths away from the middle of the opening"
-    )
-    in_range = size >= INFINITE_PANEL * (1 - 1e-9)
+    remark = ""
+    if size < INFINITE_PANEL * (1 - 1e-9):
+        remark = _shown(f"the crack needs an infinite panel; here it ends {size:.2g} half-lengths away from its middle")
     return replace(
         silent,
         pressure=pressure,
         compared=np.isfinite(pressure) & (np.abs(x) <= INTERIOR * stated.half_length),
         half_width=stated.half_length,
         center=stated.center,
-        in_range=in_range,
-        remark="" if in_range else _shown(remark),
+        in_range=not remark,
+        remark=remark,
     )
 
 

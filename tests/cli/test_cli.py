@@ -396,7 +396,7 @@ def test_a_file_that_cannot_be_written_is_found_out_before_any_work(
 
 
 def test_an_unknown_figure_format_lists_the_known_ones(block: Path):
-    assert_refused(run("solve", block, "--figure", block.with_suffix(".bmp")), r"\.png, \.svg, \.pdf")
+    assert_refused(run("solve", block, "--figure", block.with_suffix(".bmp")), r"\.png, \.svg or \.pdf")
 
 
 def test_no_file_overwrites_another(block: Path):

@@ -24,7 +24,7 @@ def test_table_says_where_points_enter_and_how_the_peak_goes():
     assert answer.exit_code == 0, answer.stderr
     assert "conditions.top.traction.y from 0 to -3.6; 18 breakpoints, 16 pivots" in answer.stdout
     assert re.search(r"-0\.288\d+ +20 at \(50, 0\)", answer.stdout)
-    assert "certified. Every state from 0 to -3.6 is the contact state, the only one." in answer.stdout
+    assert "certified. Each state from 0 to -3.6 is proved to be the only contact state." in answer.stdout
     assert max(map(len, answer.stdout.splitlines())) <= 100
     assert answer.stderr == ""
 

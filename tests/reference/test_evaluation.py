@@ -38,7 +38,10 @@ def test_hertz_of_half_a_cylinder():
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (("reference.Hertz.load=810",), "Hertz needs b/R << 1; here b/R = 0.34, where the error of its peak is about 2.7 %:"),
+        (
+            ("reference.Hertz.load=810",),
+            "Hertz needs b/R << 1; here b/R = 0.34, where the error of its peak is about 2.7 %:",
+        ),
         (("reference.Hertz.load=81000",), "Hertz needs b/R << 1; here b/R = 3.4: shown, not judged"),
         (
             ("reference.Hertz.radius=800", "reference.Hertz.load=10"),

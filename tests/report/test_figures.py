@@ -331,6 +331,6 @@ def test_saved_in_the_format_of_the_ending(problem: Problem, tmp_path: Path, end
 
 
 def test_unknown_format_is_refused(tmp_path: Path):
-    with pytest.raises(ValueError, match=r"\.png, \.svg, \.pdf"):
+    with pytest.raises(ValueError, match=r"\.png, \.svg or \.pdf"):
         figures.save(Figure(), tmp_path / "figure.gif")
     assert [*tmp_path.iterdir()] == []

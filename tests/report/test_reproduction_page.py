@@ -43,7 +43,7 @@ def test_the_page_is_whole_and_needs_nothing_else():
     assert len(pictures) == 10
     assert all(picture["alt"] for picture in pictures)
     assert "The paper's five problems" in reader.text
-    assert "Certified, and every reference is met." in reader.text
+    assert "Certified and in agreement with every reference." in reader.text
 
 
 def test_each_problem_stands_there_with_what_the_paper_says():
@@ -91,7 +91,7 @@ def test_what_fails_is_named():
     failed = json.loads(with_coarse_mesh_judged().to_json())
     text = read(render(failed, {})).text
     assert "The paper's two problems" in text
-    assert "Not all of it holds." in text
+    assert "Not reproduced." in text
     assert "See Fig. 5." in text
     assert "does not hold" in text
     assert "NOT reproduced" in table(failed)
