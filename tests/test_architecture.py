@@ -58,12 +58,12 @@ HOME = {
     "typer": ("bemcontact.cli",),
     "numba": ("bemcontact.bem.compiled",),
     "meshio": ("bemcontact.report.vtk",),
-    "jinja2": ("bemcontact.report.markup",),
+    "jinja2": ("bemcontact.report.page",),
     "rich": (
         "bemcontact.cli.terminal",
-        "bemcontact.report.tables",
         "bemcontact.report.text",
-        "bemcontact.report.study_text",
+        "bemcontact.report.text",
+        "bemcontact.report.text",
         "bemcontact.report.reproduction",
     ),
 }

@@ -1,1 +1,1 @@
-"""From a problem to a judged answer: condense, solve, compare, follow, reproduce."""
+"""From a problem to an assessed result: condense, solve, compare, follow, reproduce."""

@@ -1,4 +1,4 @@
-"""What a problem is before it is solved: its mesh, its loads, and what holds the body."""
+"""A problem before it is solved: its mesh, its loads, and what holds the body."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ class CheckedProblem:
     problem: Problem
     """The problem."""
     mesh: Mesh
-    """Its boundary elements."""
+    """Boundary elements."""
     gaps: dict[str, Array]
     """Initial gap of the contact points of each contact zone [L]."""
     free_motions: int
@@ -23,15 +23,15 @@ class CheckedProblem:
     held_by_contact: tuple[str, ...]
     """Descriptions of the free motions of body and tools that contact holds."""
     total_load: tuple[float, float]
-    """Resultant (x, y) of all that acts on the body, without reactions, per thickness [p L]."""
+    """Resultant (x, y) of all loads on the body, without reactions, per thickness [p L]."""
     load_magnitude: float
-    """Sum of the magnitudes of all that acts [p L]."""
+    """Sum of the magnitudes of all loads [p L]."""
     notes: tuple[str, ...]
-    """Remarks on the problem and its mesh."""
+    """Notes on the problem and its mesh."""
 
 
 def check(problem: Problem) -> CheckedProblem:
-    """Mesh a problem and find what holds the body; `ProblemError` if its load pulls it off its supports in any case."""
+    """Mesh a problem and list what holds the body; `ProblemError` if the load of any case pulls it off its supports."""
     body = body_of(problem)
     for acting in each_case(body):
         ensure_held(acting)
@@ -49,13 +49,7 @@ def check(problem: Problem) -> CheckedProblem:
 
 
 def contours(problem: Problem, mesh: Mesh) -> dict[str, tuple[Array, Array]]:
-    """Find the rigid surfaces that are deflected contours of the body.
-
-    Returns
-    -------
-    dict
-        Contact zone -> points (N, 2) [L] of the rigid surface opposite to all nodes, and its unit normals (N, 2).
-    """
+    """Deflected contours: zone -> points (N, 2) [L] of the surface opposite to all nodes, and unit normals (N, 2)."""
     surfaces = {}
     for name, displacement in deflections(problem, mesh).items():
         surface = problem.contact_zones[name].surface

@@ -1,4 +1,4 @@
-"""From a problem to formulations side by side, on one mesh or several."""
+"""Comparison of formulations on one mesh or several."""
 
 import time
 from collections.abc import Sequence
@@ -6,8 +6,7 @@ from dataclasses import replace
 from typing import Unpack
 
 from bemcontact.adaptivity.mesh_fit import MeshFit
-from bemcontact.analysis.solve import assessed, condensation_of, fitted_to_contact
-from bemcontact.analysis.stopwatch import Progress, Stopwatch
+from bemcontact.analysis.solve import Progress, Stopwatch, assessed, condensation_of, fitted_to_contact
 from bemcontact.analysis.study import MeshLevel, Settings, Study
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
@@ -81,22 +80,10 @@ def study(
     progress: Progress | None = None,
     changes: Sequence[str] = (),
 ) -> Study:
-    """Compare formulations, as `compare` does, on one mesh or several.
+    """Compare formulations, as `compare` does, on one mesh for each number of parts in `refine`.
 
-    A mesh that is to be fitted to the ends of contact is fitted once, and then refined.
-
-    Parameters
-    ----------
-    options : what to compare
-    problem : Problem or CondensedContact
-    refine : number of parts of each element, for each mesh
-    progress : as of `compare`
-    changes : made to the problem after it was read, such as ``material.young_modulus=2e6``
-
-    Raises
-    ------
-    OptionError
-        No mesh, one that is there twice, or a refinement of a condensed problem, which has no mesh.
+    A mesh that is fitted to the ends of contact is fitted once and then refined. `changes` are those made to the spec
+    with --set. `OptionError` if `refine` is empty, repeats a number, or refines a condensed problem, which has no mesh.
     """
     if not refine or len({*refine}) < len(refine):
         listed = ", ".join(map(str, refine)) or "none"
@@ -118,7 +105,7 @@ def study(
 
 
 def outdated(problem: Problem | CondensedContact, changes: Sequence[str]) -> frozenset[str]:
-    """Names of the references of a problem that stay although changes, such as ``case=wind``, alter its answer."""
+    """Names of the references that still hold values of the problem before changes such as ``case=wind``."""
     paths = [parsed_path(change.partition("=")[0].strip()) for change in changes]
     if isinstance(problem, CondensedContact) or not any(map(_alters, paths)):
         return frozenset()
@@ -132,7 +119,7 @@ def _alters(path: KeyPath) -> bool:
 
 
 def _prefixed(progress: Progress, prefix: str) -> Progress:
-    """Report stages with the mesh before their names."""
+    """Progress that writes the mesh before the name of each stage."""
     return lambda stage, now: progress(prefix + stage, now)
 
 

@@ -17,7 +17,7 @@ FEW_POINTS = 5
 SMOOTH = 0.2
 """Angle in radians by which the boundary may turn at the end of a zone and still go on smoothly."""
 UNBOUNDED = "the pressure there is infinite in theory, and its values at the last nodes depend on the mesh"
-"""What holds at an end of contact where the stresses are singular."""
+"""Note on an end of contact where the stresses are singular."""
 LONG_NEIGHBOR = 4.0
 """Length of the element beyond the end of a zone over that inside, above which pressure at that end suffers."""
 LARGE_PRESSURE = 0.5
@@ -27,7 +27,7 @@ LARGE_PRESSURE = 0.5
 def diagnostics(
     contact: CondensedContact, solution: ContactSolution, where: Footprint, body: Body | None
 ) -> Iterator[str]:
-    """Notes on a solution; without a body, there are none on its mesh and its size."""
+    """Notes on a solution; those on mesh and size need a body."""
     touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
     yield from few_points(contact, touching, where)
     if body is not None:
@@ -37,27 +37,25 @@ def diagnostics(
 
 
 def few_points(contact: CondensedContact, touching: NDArray[np.bool_], where: Footprint) -> Iterator[str]:
-    """Note each interval of contact where too few points carry pressure to show its course."""
+    """Note each interval of contact where too few points carry pressure to resolve it."""
     for interval in where.intervals:
         same = SAME * interval.end_arc
-        beyond = (
-            contact.arc_position - interval.start_arc + same
-        ) % interval.perimeter  # of its start, if need be round
-        inside = (contact.run == interval.run) & (beyond <= interval.end_arc - interval.start_arc + 2 * same)
+        past_start = (contact.arc_position - interval.start_arc + same) % interval.perimeter
+        inside = (contact.run == interval.run) & (past_start <= interval.end_arc - interval.start_arc + 2 * same)
         carrying = int(np.count_nonzero(touching & inside))
         if 0 < carrying < FEW_POINTS:
             start, end = (f"({x:.5g}, {y:.5g})" for x, y in (interval.start, interval.end))
             yield (
-                f"pressure acts on {carrying} contact point{'s' if carrying > 1 else ''} only from {start} to {end} in "
-                f"{interval.zone}: the mesh is too coarse there to tell how it is distributed; shorten the elements"
+                f"pressure acts on only {carrying} contact point{'s' if carrying > 1 else ''} from {start} to {end} in "
+                f"{interval.zone}: the mesh is too coarse there to resolve its distribution; shorten the elements"
             )
 
 
 def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Note where contact reaches the end of a zone: the zone should be longer, or the pressure has no bound there.
+    """Note where contact reaches the end of a zone: the zone is too short, or the pressure is singular.
 
-    On a smooth boundary both are possible. At a corner that is free beyond the zone the pressure is bounded up to a
-    right angle: with its mirror image in the rigid surface the body is a wedge, and then no notch (Williams 1952).
+    On a smooth boundary both are possible. At a corner with a free edge beyond the zone the pressure is bounded if the
+    angle is at most a right one: the body and its mirror image in the rigid surface then form no notch (Williams 1952).
     """
     mesh, points, angles = body.mesh, body.points, body.mesh.inner_angles
     in_zone = np.isin(np.arange(len(mesh.elements)), points.element)
@@ -89,7 +87,7 @@ def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
             yield (
                 f"pressure acts at ({x:.5g}, {y:.5g}), the end of the zone '{_zone(body, i)}', beyond which an element "
                 f"of '{mesh.edge_names[mesh.edge[outside]]}' is {times:.2g} times as long as that in the zone: the "
-                "pressure there is less exact for it; grade that edge towards the zone"
+                "pressure there is less accurate; grade that edge towards the zone"
             )
 
 
@@ -98,8 +96,8 @@ def large_pressure(body: Body, where: Footprint) -> Iterator[str]:
     modulus = body.problem.material.young_modulus
     if where.peak is not None and where.peak.pressure > LARGE_PRESSURE * modulus:
         yield (
-            f"the peak pressure is {where.peak.pressure / modulus:.2g} times Young's modulus: displacements are not "
-            "small, and the linear answer means little"
+            f"the peak pressure is {where.peak.pressure / modulus:.2g} times Young's modulus: displacements are "
+            "not small, so that the linear theory does not hold"
         )
 
 

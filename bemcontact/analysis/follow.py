@@ -1,4 +1,4 @@
-"""How the answer to a problem responds to its parameters: paths and sensitivities, by the key paths of a spec."""
+"""Paths and sensitivities of a problem by the key paths of a spec."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -26,7 +26,7 @@ MODULUS = "material.young_modulus"
 BODY = ("material", "boundary", "mesh")
 """Parts of a spec that make the body, so that more than gaps and loads depends on them."""
 SHARES = tuple(0.5**k for k in range(1, 11))
-"""Of the way between two values, at which one looks whether gaps and loads change linearly."""
+"""Shares of the way between two values, at which gaps and loads are checked for linear change."""
 NOTHING = 1e-13
 """Part of the largest entry that is the round-off of an entry that should be zero."""
 
@@ -98,7 +98,7 @@ def sensitivities(
 
 
 def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:
-    """What something else than load cases and tools does to gap and load, per unit."""
+    """Change of gap and load per unit of a key that is neither a load case nor a tool component."""
     path = parsed_path(key)
     if path[0] == "initial_gap" and isinstance(path[-1], int) and path[-1] < contact.size and len(path) == 2:
         return Change(np.eye(contact.size)[path[-1]], np.zeros(contact.free_motions))
@@ -116,10 +116,7 @@ def _change(contact: CondensedContact, problem: Problem | None, key: str, pressu
 
 
 def stated_value(problem: Problem, key: str) -> float:
-    """The number at a key path, the constant of a field that is one, or the factor by which a load case acts.
-
-    `ProblemError` if there is none of these.
-    """
+    """Number at a key path, the value of a constant field, or the factor of a load case; else `ProblemError`."""
     if (case := _case_of(problem, key)) is not None:
         return problem.factors().get(case, 0.0)
     data: Any = problem.model_dump()
@@ -132,32 +129,20 @@ def stated_value(problem: Problem, key: str) -> float:
     if isinstance(data, Mapping) and "constant" in data and not any(data[name] for name in data if name != "constant"):
         data = data["constant"]
     if not isinstance(data, Real) or isinstance(data, bool):
-        found = "it is left out; state it, or give the value to begin with"
+        reason = "it is left out; state it, or give the start value"
         if data is not None:
-            found = f"it is {described(data)}; give a path to a number, or the value to begin with"
-        message = f"there is no number to vary, {found}"
+            reason = f"it is {described(data)}; give a path to a number, or the start value"
+        message = f"there is no number to vary: {reason}"
         raise ProblemError(Issue(path=path, message=message))
     return float(data)
 
 
 def between(problem: Problem, key: str, start: float, end: float) -> tuple[CondensedContact, CondensedContact]:
-    """Condense a problem at two values of a key, and make sure that it changes linearly from one to the other.
+    """Condense a problem at two values of a key, and check that gaps and loads change linearly between them.
 
-    Parameters
-    ----------
-    problem : whose mesh is not to be fitted any more
-    key : path to the value
-    start, end : its values. At one of them the load may pull the body off its support, or not press it on; this end is
-        then found from the other one and what is on the way
-
-    Returns
-    -------
-    first, last : CondensedContact
-
-    Raises
-    ------
-    ProblemError
-        If neither end can be condensed, more than gaps and loads depend on the value, or these not linearly.
+    At one of the two values the load may fail to press the body onto its support. The contact problem at this value is
+    extrapolated. `ProblemError` if neither value can be condensed, more than gaps and loads depends on the key, or the
+    dependence is not linear. The mesh of the problem must not be one to be fitted.
     """
     if parsed_path(key)[0] in BODY:
         raise ProblemError(Issue(path=parsed_path(key), message=f"the compliance depends on it; {EXACT}"))
@@ -205,16 +190,13 @@ def _with_step(contact: CondensedContact, path: KeyPath, value: float, step: flo
 
 
 def _farthest(problem: Problem, key: str, start: float, end: float) -> tuple[float, CondensedContact]:
-    """The largest of `SHARES` of the way to the end at which something presses the body onto its support, and that.
-
-    `ProblemError` as of half of the way if there is none.
-    """
+    """Largest of `SHARES` at which the problem can be condensed, and this contact problem; else `ProblemError`."""
     refused: list[ProblemError] = []
     for share in SHARES:
-        found = _attempted(problem, key, start + share * (end - start))
-        if isinstance(found, CondensedContact):
-            return share, found
-        refused.append(found)
+        contact = _attempted(problem, key, start + share * (end - start))
+        if isinstance(contact, CondensedContact):
+            return share, contact
+        refused.append(contact)
     raise refused[0]
 
 
@@ -247,8 +229,8 @@ def _ensure_linear(
         try:
             ensure_same_body(middle, end)
         except ProblemError:
-            found = next(what for name, what in COMMON.items() if _differs(getattr(middle, name), getattr(end, name)))
-            message = f"the {found} depends on it; {EXACT}"
+            part = next(what for name, what in COMMON.items() if _differs(getattr(middle, name), getattr(end, name)))
+            message = f"the {part} depends on it; {EXACT}"
             raise ProblemError(Issue(path=parsed_path(key), message=message)) from None
     displacement, pressure = np.max([first.scales, last.scales], axis=0)
     least = {"offset": displacement, "motion_load": pressure * np.abs(middle.equilibrium).sum(axis=0)}
@@ -256,12 +238,12 @@ def _ensure_linear(
         one, inner, other = (getattr(item, name) for item in (first, middle, last))
         size = np.maximum(np.abs([one, other]).max(axis=0), least[name])
         if (bend := float((np.abs(inner - (1 - share) * one - share * other) / size).max(initial=0.0))) > SAME:
-            message = f"the {what} does not change in proportion to it, it bends by {bend:.2g}; {LINEAR}"
+            message = f"the {what} depends on it nonlinearly, by {bend:.2g} relatively; {LINEAR}"
             raise ProblemError(Issue(path=parsed_path(key), message=message))
 
 
-EXACT = "a path is exact only for loads, gaps and tools"
-LINEAR = "a path is exact only for what enters gaps and loads linearly, as forces, pressures and displacements do"
+EXACT = "only loads, gaps and tools can be varied"
+LINEAR = "only values can be varied that gaps and loads depend on linearly, such as forces and displacements"
 
 
 def _differs(one: Array, other: Array) -> bool:
@@ -269,14 +251,14 @@ def _differs(one: Array, other: Array) -> bool:
 
 
 def _extended(problem: Problem, key: str, first: CondensedContact, start: float, end: float) -> CondensedContact:
-    """The problem at an end at which nothing presses the body onto its support, from the start and the way there."""
+    """The contact problem at an end where nothing presses the body onto its support, extrapolated from the start."""
     reached, there = _farthest(problem, key, start, end)
     share, middle = _farthest(problem, key, start, start + reached * (end - start))
     _ensure_linear(key, first, middle, there, share)
 
     def beyond(one: Array, other: Array) -> Array:
-        found = one + (other - one) / reached
-        return np.where(np.abs(found) <= NOTHING / reached * np.abs(one).max(initial=0.0), 0.0, found)
+        value = one + (other - one) / reached
+        return np.where(np.abs(value) <= NOTHING / reached * np.abs(one).max(initial=0.0), 0.0, value)
 
     tools, cases = first.tools, first.cases
     return replace(

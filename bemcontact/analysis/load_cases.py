@@ -1,17 +1,16 @@
 """All load cases and combinations of a problem, solved on one condensation and assessed."""
 
 from dataclasses import dataclass
-from typing import Any, Unpack
+from typing import Unpack
 
 from bemcontact.analysis.result import Result, ResultRecord
-from bemcontact.analysis.solve import assessed, condensation_of, ensure_kind, solve_with
-from bemcontact.analysis.stopwatch import Progress, Stopwatch
+from bemcontact.analysis.solve import Progress, Stopwatch, assessed, condensation_of, ensure_kind, solve_with
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.search import with_start_read
 from bemcontact.options import FormulationName, SolveKeywords, SolveOptions, Weights
 from bemcontact.problem.problem import Problem
-from bemcontact.serialization import Record, json_text
+from bemcontact.serialization import Record, Recorded
 from bemcontact.version import __version__
 
 
@@ -33,7 +32,7 @@ class CasesRecord(Record):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class CaseResults:
+class CaseResults(Recorded):
     """The results of all load cases and combinations of a problem.
 
     Parameters
@@ -65,7 +64,7 @@ class CaseResults:
         return max(peaks, key=lambda name: peaks[name], default=None)
 
     def record(self) -> CasesRecord:
-        """Return what JSON holds of it."""
+        """Return the record that is written as JSON."""
         return CasesRecord(
             name=self.name,
             version=__version__,
@@ -74,14 +73,6 @@ class CaseResults:
             cases={name: result.record() for name, result in self.results.items()},
             seconds=self.seconds,
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON."""
-        return self.record().to_dict()
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)
 
 
 def solve_cases(

@@ -1,27 +1,28 @@
-"""The paper's problems solved again: a study of each, and quantities to compare with the paper's statements."""
+"""The paper's problems, shipped with the package and solved again, and quantities to compare with its statements."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from importlib.resources import files
 
 import numpy as np
 
 from bemcontact import spec
 from bemcontact.analysis import compare as comparing
-from bemcontact.analysis import shipped_models as shipped
-from bemcontact.analysis.stopwatch import Progress
+from bemcontact.analysis.solve import Progress
 from bemcontact.analysis.study import LevelRecord, MeshLevel, Study, versions
 from bemcontact.arrays import Array
 from bemcontact.contact.record import UnitsRecord
+from bemcontact.errors import SpecError
 from bemcontact.options import ComparisonOptions, FormulationName
 from bemcontact.problem import Problem, Table, Units, Values
 from bemcontact.reference.paper import PROBLEMS, PaperProblem, Quantity, Statement
 from bemcontact.reference.positions import coordinates
-from bemcontact.serialization import Record, Vector, json_text
+from bemcontact.serialization import Record, Recorded, Vector
 
+FOLDER = "models"
+"""Stands in the installed package, and beside the package in a source tree."""
 Reading = tuple[float, ...]
-"""A number, the smallest and the largest of several, or nothing where there is none."""
+"""One number, the smallest and the largest of several, or none."""
 LEVEL = 1e-9
 """Part of an extent, or of a scale, below which a difference is round-off."""
 
@@ -31,12 +32,12 @@ class StatementRecord(Record):
 
     what: str
     """The quantity."""
-    said: str
+    statement: str
     """The paper's statement, in words."""
     unit: str
-    """Label of the unit of what is found."""
-    found: list[Reading]
-    """Computed by each run: a number, the smallest and the largest, or none."""
+    """Label of the unit of the computed values."""
+    computed: list[Reading]
+    """Value of each run: a number, the smallest and the largest, or none."""
 
 
 class RunRecord(Record):
@@ -82,7 +83,7 @@ class PaperRecord(Record):
     statements: list[StatementRecord]
     """Statements of the paper."""
     differs: tuple[str, ...]
-    """Where the paper and these results differ, and why."""
+    """Differences between the paper and these results, with the reasons."""
     iterations: dict[FormulationName, int]
     """Iterations of QPSOL that the paper prints."""
     runs: list[RunRecord]
@@ -96,7 +97,7 @@ class ReproductionRecord(Record):
     """
 
     reproduced: bool
-    """Whether all is certified and every reference that is in its range is met."""
+    """Whether all solutions are certified and agree with every reference in its range."""
     refine: tuple[int, ...]
     """Number of parts into which each stated element is cut, on each mesh of a problem as stated."""
     problems: list[PaperRecord]
@@ -121,14 +122,14 @@ class Run:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PaperStudy:
-    """A problem of the paper: the study of it as stated, and one of each variant."""
+    """A problem of the paper: a study of the problem as stated, and one of each variant."""
 
     paper: PaperProblem
-    """What the paper says."""
+    """The paper's statements."""
     study: Study
     """The problem as its file states it, on all meshes."""
     variants: Mapping[str, Study]
-    """Variants of the file by name, which are certified but not judged: references are for the problem as stated."""
+    """Studies of the variants by name; references are for the problem as stated and do not judge them."""
 
     @property
     def problem(self) -> Problem:
@@ -178,7 +179,7 @@ class PaperStudy:
         return self.certified and all(self.judged)
 
     def record(self) -> PaperRecord:
-        """Return what JSON holds of it."""
+        """Return the record that is written as JSON."""
         problem, paper, axis, runs = self.problem, self.paper, self.axis, self.runs
         return PaperRecord(
             model=paper.model,
@@ -194,9 +195,9 @@ class PaperStudy:
             statements=[
                 StatementRecord(
                     what=item.what,
-                    said=item.said,
+                    statement=item.says,
                     unit=unit_of(item, axis, problem.units),
-                    found=[reading(item, run.level, axis) for run in runs],
+                    computed=[reading(item, run.level, axis) for run in runs],
                 )
                 for item in paper.statements
             ],
@@ -217,11 +218,11 @@ class PaperStudy:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Reproduction:
+class Reproduction(Recorded):
     """The problems of the paper, solved again."""
 
     problems: tuple[PaperStudy, ...]
-    """In the order of the paper."""
+    """Problems in the order of the paper."""
 
     def __repr__(self) -> str:
         """One line: how many of them are reproduced."""
@@ -233,8 +234,8 @@ class Reproduction:
         """Whether all is certified and every judged reference holds."""
         return all(item.reproduced for item in self.problems)
 
-    @cached_property
-    def _record(self) -> dict[str, Any]:
+    def record(self) -> ReproductionRecord:
+        """Return the record that is written as numbers.json."""
         studies = [study for item in self.problems for study in (item.study, *item.variants.values())]
         return ReproductionRecord(
             reproduced=self.reproduced,
@@ -242,37 +243,15 @@ class Reproduction:
             problems=[item.record() for item in self.problems],
             versions=versions(),
             seconds=sum(study.seconds for study in studies),
-        ).to_dict()
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON: what stands in numbers.json."""
-        return self._record
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)
+        )
 
 
 def reproduce(
     refine: Sequence[int] = (1, 4), progress: Progress | None = None, problems: Sequence[PaperProblem] = PROBLEMS
 ) -> Reproduction:
-    """Solve the problems of the paper by all formulations and by the direct one, on their meshes and refined ones.
+    """Solve the problems of the paper, with each element cut into `refine` parts, and their variants.
 
-    Parameters
-    ----------
-    refine : parts into which the elements of the problems are cut, for each mesh; variants are not refined
-    progress : called with the name of each problem as it begins, and how far it has come
-    problems : of the paper
-
-    Returns
-    -------
-    Reproduction
-        Check `reproduced`.
-
-    Raises
-    ------
-    OptionError
-        No mesh, one that is there twice, or a refinement that is not a whole number.
+    Variants are not refined. `OptionError` as of `bemcontact.analysis.compare.study`.
     """
     plan = ComparisonOptions()
     studies = []
@@ -298,7 +277,17 @@ def _below(progress: Progress | None, name: str) -> Progress:
 
 def _problem(paper: PaperProblem, variant: str | None) -> Problem:
     """Read a problem, or a variant of it."""
-    return spec.loads(shipped.model(paper.model), f"models/{paper.model}.yaml", variant=variant)
+    return spec.loads(shipped_model(paper.model), f"models/{paper.model}.yaml", variant=variant)
+
+
+def shipped_model(name: str) -> str:
+    """YAML text of a shipped problem such as ``cylinder_on_plane``; `SpecError` if there is none of this name."""
+    package = files("bemcontact")
+    for folder in (package.joinpath(FOLDER), package.joinpath("..", FOLDER)):
+        file = folder.joinpath(f"{name}.yaml")
+        if file.is_file():
+            return file.read_text(encoding="utf-8")
+    raise SpecError(f"models/{name}.yaml is not where bemcontact is installed; install the package anew")
 
 
 def _mesh_name(parts: int) -> str:
@@ -333,7 +322,7 @@ def extent(level: MeshLevel, axis: Values | Table) -> Reading:
 
 
 def reading(statement: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
-    """Read the quantity of a statement off a comparison; empty where there is none, such as the ends of no contact."""
+    """Quantity of a statement in a comparison; empty where it does not exist, such as the ends of no contact."""
     return READERS[statement.quantity](statement, level, axis)
 
 
@@ -352,7 +341,7 @@ def unit_of(statement: Statement, axis: Values | Table, units: Units) -> str:
 
 
 def _pressure(statement: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
-    """The smallest and the largest pressure of a range; one number if they are of one point."""
+    """Smallest and largest pressure in a range; one number for one point."""
     here, pressure = positions(level, axis), level.answer.solution.pressure
     if statement.between is not None:
         slack = LEVEL * float(np.ptp(here))
@@ -397,4 +386,4 @@ READERS: dict[Quantity, Callable[[Statement, MeshLevel, Values | Table], Reading
     Quantity.FORCE: _force,
     Quantity.DIFFERENCE: _difference,
 }
-"""Quantity -> how it is read off."""
+"""Quantity -> function that computes it."""

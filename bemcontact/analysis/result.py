@@ -1,7 +1,6 @@
-"""The result of a contact problem: its solution, and all that is recomputed of it."""
+"""The result of a contact problem: its solution and all quantities recomputed from it."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +25,7 @@ from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
-from bemcontact.serialization import PairTables, Record, json_text
+from bemcontact.serialization import PairTables, Record, Recorded
 from bemcontact.version import __version__
 
 
@@ -44,7 +43,7 @@ class BoundaryRecord(Record):
 
 
 class HeadRecord(Record):
-    """What a result begins with."""
+    """First fields of a result."""
 
     name: str
     """Name of the problem."""
@@ -59,14 +58,14 @@ class HeadRecord(Record):
     dof: int | None
     """Number of unknowns of the boundary elements, two for each node; null for a condensed problem."""
     notes: tuple[str, ...]
-    """Remarks on the problem, its mesh and the solver."""
+    """Notes on the problem, its mesh and the solver."""
 
 
 class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
-    """Solution of a contact problem and what is recomputed of it; lists go contact point by contact point."""
+    """Solution of a contact problem and all quantities recomputed from it; lists are by contact point."""
 
     mesh_fit: MeshFit | None
-    """How the mesh was fitted to the ends of contact, or null."""
+    """Fit of the mesh to the ends of contact; null without one."""
     weights: Weights
     """Weights of the objective."""
     objective: float
@@ -78,7 +77,7 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     equilibrium_slack: float | None
     """Imbalance of the discrete equations relative to the loads; null for a condensed problem."""
     certificate: Certificate
-    """What is proved."""
+    """Certificate of the solution."""
     boundary: BoundaryRecord | None
     """State of the whole boundary; null for a condensed problem."""
     seconds: dict[str, float]
@@ -86,8 +85,8 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Result:
-    """A solution of a contact problem, and all that is recomputed of it."""
+class Result(Recorded):
+    """A solution of a contact problem and all quantities recomputed from it."""
 
     problem: Problem | None
     """The problem, with the element ends of a fitted mesh; None if a condensed problem was solved."""
@@ -102,7 +101,7 @@ class Result:
     residuals: Residuals
     """Residuals of the contact conditions and equations, recomputed from the condensed problem."""
     certificate: Certificate
-    """What is proved."""
+    """Certificate of the solution."""
     footprint: Footprint
     """Contact intervals, peak pressure and resultant."""
     boundary: BoundaryState | None
@@ -110,13 +109,13 @@ class Result:
     degrees_of_freedom: int | None
     """Two for each node of the mesh; None for a condensed problem."""
     notes: tuple[str, ...]
-    """Remarks on the condensation, the mesh and the solver."""
+    """Notes on the condensation, the mesh and the solver."""
     seconds: dict[str, float]
     """Time of each stage."""
     starts: RandomStarts | None = None
     """Searches from random starts, if any were asked for."""
     mesh_fit: MeshFit | None = None
-    """How the mesh was fitted to the ends of contact, if that was asked for."""
+    """Fit of the mesh to the ends of contact; None without one."""
 
     def __repr__(self) -> str:
         """One line: name, formulation, verdict, peak."""
@@ -131,7 +130,7 @@ class Result:
 
     @property
     def touching(self) -> NDArray[np.bool_]:
-        """Which contact points (n,) are in contact, by `CondensedContact.touching`."""
+        """Whether each contact point (n,) is in contact, by `CondensedContact.touching`."""
         return self.contact.touching(self.solution.pressure, self.solution.displacement)
 
     @property
@@ -164,7 +163,7 @@ class Result:
         return pressure, gap
 
     def record(self) -> ResultRecord:
-        """Return what JSON holds of it."""
+        """Return the record that is written as JSON."""
         boundary = self.boundary
         return ResultRecord(
             name=self.contact.name,
@@ -194,11 +193,3 @@ class Result:
             ),
             seconds=self.seconds,
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON."""
-        return self.record().to_dict()
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)

@@ -1,14 +1,15 @@
-"""From a problem to an assessed result: condense, solve, assess, recover."""
+"""From a problem to an assessed result: condense, solve, recover and assess, with the time of each stage."""
 
-from collections.abc import Callable
-from dataclasses import replace
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 from typing import Unpack
 
 from bemcontact.adaptivity.fitting import fitted
 from bemcontact.adaptivity.mesh_fit import MeshFit
 from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.result import Result
-from bemcontact.analysis.stopwatch import Stopwatch
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
@@ -31,6 +32,30 @@ from bemcontact.options import (
     ensure_whole,
 )
 from bemcontact.problem.problem import Problem
+
+Progress = Callable[[str, str], object]
+"""Takes the name of a stage and how far it has come; the latter is empty when the stage begins."""
+
+
+@dataclass(kw_only=True)
+class Stopwatch:
+    """Times stages, and reports them while they run."""
+
+    progress: Progress | None = None
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[Callable[[str], None]]:
+        """Time a stage, which may report how far it has come; a stage that comes again adds to its seconds."""
+        self._report(name, "")
+        begin = time.perf_counter()
+        yield lambda now: self._report(name, now)
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - begin
+
+    def _report(self, name: str, now: str) -> None:
+        """Report a stage, if somebody listens."""
+        if self.progress:
+            self.progress(name, now)
 
 
 def condense(problem: Problem) -> CondensedContact:
@@ -73,7 +98,9 @@ def ensure_acting(problem: Problem | CondensedContact) -> None:
     """Refuse what is no problem, and one with load cases of which none acts, with a `ProblemError`."""
     ensure_kind(problem)
     if isinstance(problem, Problem) and problem.load_cases and problem.case is None:
-        message = f"say which one acts, by case or --case: {', '.join(problem.case_names)}; or solve all of them"
+        message = (
+            f"choose the one that acts, with case or --case: {', '.join(problem.case_names)}; or solve all of them"
+        )
         raise ProblemError(Issue(path=("load_cases",), message=message))
 
 
@@ -128,10 +155,7 @@ def solve_with(
 def fitted_to_contact(
     problem: Problem | CondensedContact, watch: Stopwatch
 ) -> tuple[Problem | CondensedContact, MeshFit | None]:
-    """Fit the mesh to the ends of contact where the problem asks for it, as `fitting.fitted` does.
-
-    Refuses a problem with load cases of which none acts, with a `ProblemError`.
-    """
+    """Fit the mesh to the ends of contact if the problem asks for it; `ProblemError` if no load case acts."""
     ensure_acting(problem)
     if isinstance(problem, CondensedContact) or not problem.mesh.fit_contact_edges:
         return problem, None
@@ -163,17 +187,7 @@ def assessed(
     searches: RandomStarts | None = None,
     fit: MeshFit | None = None,
 ) -> Result:
-    """Recover the boundary behind a solution, and assess both.
-
-    Parameters
-    ----------
-    problem, condensation, contact : the problem as it was given, and as `condensation_of` returns it
-    solution : of the problem
-    weights : of the objective
-    watch : with the stages so far
-    searches : from random starts, if there were several
-    fit : of the mesh, if it was fitted
-    """
+    """Recover the boundary of a solution of `contact`, condensed from `problem`, and assess both."""
     boundary = None
     if condensation is not None:
         with watch.stage("recovery"):

@@ -1,10 +1,9 @@
-"""A problem compared on one mesh or several: what a report is written from."""
+"""A comparison on one mesh or several, the content of a report."""
 
 import platform
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any
 
 from bemcontact.adaptivity.mesh_fit import MeshFit
 from bemcontact.analysis.result import Result
@@ -14,17 +13,17 @@ from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
 from bemcontact.reference import Expected, Score, expected, score
-from bemcontact.serialization import Record, json_text
+from bemcontact.serialization import Record, Recorded
 from bemcontact.version import __version__
 
 ALTERED = "the problem was changed (--set), but this reference was not: shown, not judged"
-"""Remark on a reference of another problem."""
+"""Remark on a reference that belongs to the problem before it was changed."""
 VERSIONS = ("numpy", "scipy", "cvxpy", "clarabel", "matplotlib", "jinja2")
 """Packages whose versions a report states."""
 
 
 class Settings(Record):
-    """What is compared."""
+    """Settings of a comparison."""
 
     formulations: tuple[FormulationName, ...]
     """Formulations beside the direct solution."""
@@ -56,11 +55,11 @@ class LevelRecord(Record):
     equilibrium_slack: float | None
     """Imbalance of the discrete equations relative to the loads; null without a boundary."""
     mesh_fit: MeshFit | None
-    """How the mesh was fitted to the ends of contact, or null."""
+    """Fit of the mesh to the ends of contact; null without one."""
     comparison: ComparisonRecord
     """The formulations side by side."""
     references: tuple[Expected, ...]
-    """What the references of the problem expect at these contact points."""
+    """Values that the references of the problem expect at these contact points."""
     scores: tuple[Score, ...]
     """Differences between the direct solution and the references."""
 
@@ -78,7 +77,7 @@ class StudyRecord(Record):
     certified: bool
     """Whether all solutions on all meshes are proved to be the contact state."""
     verdict: str
-    """What the comparison on the finest mesh shows, in sentences."""
+    """Result of the comparison on the finest mesh, in sentences."""
     units: UnitsRecord
     """Labels of the units."""
     settings: Settings
@@ -104,23 +103,23 @@ class MeshLevel:
     answer: Result
     """The direct solution, with the boundary behind it."""
     outdated: frozenset[str] = frozenset()
-    """Names of references that are of another problem, because this one was changed without them."""
+    """Names of references that belong to the problem before it was changed."""
 
     @cached_property
     def expected(self) -> tuple[Expected, ...]:
-        """What the references of the problem say at the contact points."""
+        """Values that the references of the problem expect at the contact points."""
         problem = self.answer.problem
-        found = () if problem is None else expected(problem, self.answer.contact)
-        return tuple(_outdated(item) if item.name in self.outdated else item for item in found)
+        items = () if problem is None else expected(problem, self.answer.contact)
+        return tuple(_outdated(item) if item.name in self.outdated else item for item in items)
 
     @cached_property
     def scores(self) -> tuple[Score, ...]:
-        """How the answer stands beside the references."""
+        """Differences between the direct solution and the references."""
         answer = self.answer
         return score(self.expected, answer.contact, answer.footprint, answer.solution.pressure)
 
     def record(self) -> LevelRecord:
-        """Return what JSON holds of it."""
+        """Return the record that is written as JSON."""
         answer = self.answer
         return LevelRecord(
             refine=self.refine,
@@ -137,11 +136,11 @@ class MeshLevel:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Study:
+class Study(Recorded):
     """A problem compared on one mesh or several."""
 
     settings: Settings
-    """What is compared."""
+    """Formulations, weights, penalties and starts that are compared."""
     levels: tuple[MeshLevel, ...]
     """Comparison on each mesh, the coarsest first."""
 
@@ -156,22 +155,22 @@ class Study:
 
     @property
     def name(self) -> str:
-        """Of the problem."""
+        """Name of the problem."""
         return self.finest.comparison.contact.name
 
     @property
     def problem(self) -> Problem | None:
-        """What was asked, on the finest mesh; None if a condensed problem was."""
+        """The problem on the finest mesh; None if a condensed problem was given."""
         return self.finest.answer.problem
 
     @property
     def certified(self) -> bool:
-        """Whether all contenders on all meshes are proved to be the solution."""
+        """Whether all solutions on all meshes are proved to be the contact state."""
         return all(level.comparison.certified for level in self.levels)
 
     @cached_property
     def convergence(self) -> Convergence | None:
-        """What changes with the mesh; None on a single one."""
+        """Change of the solution with the mesh; None on a single one."""
         if len(self.levels) == 1:
             return None
         return convergence(
@@ -182,11 +181,11 @@ class Study:
 
     @property
     def seconds(self) -> float:
-        """Of all stages on all meshes."""
+        """Time of all stages on all meshes [s]."""
         return sum(sum(level.answer.seconds.values()) for level in self.levels)
 
     def record(self) -> StudyRecord:
-        """Return what JSON holds of it, which is report.json."""
+        """Return the record that is written as report.json."""
         problem = self.problem
         return StudyRecord(
             name=self.name,
@@ -201,27 +200,19 @@ class Study:
             seconds=self.seconds,
         )
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it as numbers, lists and texts, ready for JSON."""
-        return self.record().to_dict()
-
-    def to_json(self, indent: int | None = 2) -> str:
-        """Return `to_dict` as JSON; every number in it is finite."""
-        return json_text(self.to_dict(), indent)
-
 
 def _outdated(expected: Expected) -> Expected:
-    """A reference of another problem."""
+    """A reference that belongs to the problem before it was changed."""
     remark = f"{expected.remark}; {ALTERED}" if expected.remark else ALTERED
     return replace(expected, in_range=False, remark=remark)
 
 
 def versions() -> dict[str, str]:
-    """Of the package, of Python and of what did the work."""
-    found = {"bemcontact": __version__, "python": platform.python_version()}
+    """Versions of bemcontact, Python and the packages of `VERSIONS`, by name."""
+    numbers = {"bemcontact": __version__, "python": platform.python_version()}
     for name in VERSIONS:
         try:
-            found[name] = version(name)
+            numbers[name] = version(name)
         except PackageNotFoundError:
-            found[name] = "unknown"
-    return found
+            numbers[name] = "unknown"
+    return numbers

@@ -46,9 +46,9 @@ def bemcontact(
 ) -> None:
     """Frictionless contact of an elastic body with rigid surfaces: plane boundary elements, quadratic programming.
 
-    Write the problem as a YAML file (see models/), look at it with check, solve it with solve.
+    Write the problem as a YAML file (see models/), check it with check, and solve it with solve.
 
-    Exit status: 0 certified solution, 1 a result that is not one, 2 bad input.
+    Exit status: 0 certified solution, 1 result that is not certified, 2 bad input.
 
     [bold]Examples[/bold]
       bemcontact check models/cylinder_on_plane.yaml --figure problem.png

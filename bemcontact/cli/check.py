@@ -11,10 +11,10 @@ from bemcontact.cli.terminal import Report
 
 
 def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1) -> None:
-    """Validate a spec and show what it states: edges, contact zones, mesh, loads, and what holds the body.
+    """Validate a spec and show its edges, contact zones, mesh, loads and supports.
 
-    No contact is solved. A body that nothing holds, or that its load pulls off its support, is refused, in each of its
-    load cases.
+    No contact is solved. It is an error if nothing holds the body, or if the load of any load case pulls it off its
+    supports.
 
     [bold]Examples[/bold]
       bemcontact check models/cylinder_on_plane.yaml
@@ -72,7 +72,7 @@ def schema(
         bool, typer.Option("--reproduction", help="The schema of numbers.json, which reproduce writes.")
     ] = False,
 ) -> None:
-    """Print the JSON Schema of a spec, which editors use to check and complete, or that of a result.
+    """Print the JSON Schema of a spec, for completion and checks in editors, or the schema of a result.
 
     [bold]Examples[/bold]
       bemcontact schema > bemcontact.schema.json

@@ -1,4 +1,4 @@
-"""What the commands have in common: arguments, a check of outputs, work with progress, results, and the exit status."""
+"""Common parts of all commands: arguments, checks of outputs, progress, results, exit status."""
 
 import inspect
 import json
@@ -165,16 +165,7 @@ def several(text: str, option: str, kind: str, read: Callable[[str], Number]) ->
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What a command has to show at its end.
-
-    Parameters
-    ----------
-    summary : makes what is printed
-    json : makes what --json writes
-    holds : whether the exit status is 0
-    verdict : why not, for standard error where standard output is JSON
-    claim : what the verdict denies
-    """
+    """Output of a command: table, JSON, exit status, and the reason of a status that is not 0."""
 
     summary: Callable[[], RenderableType]
     json: Callable[[], str] = str
@@ -193,17 +184,7 @@ def run(
     kind: str = "report",
     json_file: Path | None = None,
 ) -> NoReturn:
-    """Run a command: check outputs, work with progress, write and print results, end with the exit status.
-
-    Parameters
-    ----------
-    stage : what the command does first, in a word
-    work : the command itself, which reports its stages
-    source : what it reads
-    files : by option, what it writes
-    folder, kind : that --out names, and what is written there, a key of `report.folder.KINDS`
-    json_file : for all results
-    """
+    """Run a command: check outputs, do the work with progress, write and print results, exit with the status."""
     files = {**(files or {}), "--json": None if json_file == STANDARD_OUTPUT else json_file}
     with reported(source, (folder, *files.values())), stages() as report:
         check_outputs(source, files)
@@ -266,7 +247,7 @@ def _ensure_possible(option: str, path: Path) -> None:
 
             vtk.ensure_possible(path)
         case "--out" if path.suffix != ".npz":
-            raise ValueError(f"{path}: a condensed problem is written as .npz; end the file name in it")
+            raise ValueError(f"{path}: the file name of a condensed problem must end in .npz")
 
 
 def write_json(text: str) -> None:
@@ -275,7 +256,7 @@ def write_json(text: str) -> None:
 
 
 def refuse(message: str) -> NoReturn:
-    """Say what is wrong with the input and end."""
+    """Print an error of the input and end."""
     tell("error: ", message)
     raise typer.Exit(BAD_INPUT)
 

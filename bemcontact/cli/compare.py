@@ -48,7 +48,7 @@ def compare(
 
     def work(report: Report) -> Outcome:
         from bemcontact.analysis import compare as comparing
-        from bemcontact.report import study_text
+        from bemcontact.report import text
 
         parts = several(refine, "--refine", "whole number", int)
         penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
@@ -60,7 +60,7 @@ def compare(
 
             folder.save(study, out, source.as_run())
         return Outcome(
-            summary=lambda: study_text.study_summary(study),
+            summary=lambda: text.study_summary(study),
             json=study.to_json,
             holds=study.certified,
             verdict=study.finest.comparison.verdict,

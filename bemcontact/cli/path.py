@@ -26,15 +26,16 @@ def path(
     ] = None,
     json_file: JsonOption = None,
 ) -> None:
-    """Follow the contact state from one value of a parameter to another, with each point that enters or leaves contact.
+    """Follow the contact state from one value of a parameter to another, and list points that enter or leave contact.
 
-    Between two breakpoints pressure and gap are linear in the parameter, so that the path is exact and has no steps.
-    Only gaps and loads may depend on the parameter, and linearly: a pressure, a traction, a prescribed displacement,
-    gravity, the position of a rigid surface, the force on a tool, the factor of a load case (load_cases.NAME). The exit
-    status is 0 only if the path reaches its end and each state on it is proved to be the only one.
+    Between two breakpoints pressure and gap are linear in the parameter, so the path is exact and has no steps. Only
+    gaps and loads may depend on the parameter, and only linearly. Examples are a pressure, a traction, a prescribed
+    displacement, gravity, the position of a rigid surface, the force on a tool, the factor of a load case
+    (load_cases.NAME). The exit status is 0 only if the path reaches its end and each state on it is proved to be the
+    only one.
 
-    FOLDER gets a picture of peak, resultants and ends of contact over the parameter (path.svg), the same as a table
-    with three rows between each two breakpoints (path.csv), and all of it (path.json). An earlier path is replaced.
+    FOLDER gets a picture of peak, resultants and ends of contact over the parameter (path.svg), a table of them with
+    three rows between two breakpoints (path.csv), and all results (path.json). An earlier path is replaced.
 
     [bold]Examples[/bold]
       bemcontact path models/cylinder_on_plane.yaml --vary conditions.top.pressure --from 0 --to 50.625

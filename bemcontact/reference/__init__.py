@@ -1,4 +1,4 @@
-"""The answer beside what is known of it: closed forms and published values, evaluated, and how far they are off."""
+"""Closed forms and published values, and the differences of an answer from them."""
 
 from bemcontact.reference.evaluation import Expected, expected
 from bemcontact.reference.scoring import Score, score

@@ -1,4 +1,4 @@
-"""Closed forms of frictionless line contact, as the textbooks have them; forces are per thickness."""
+"""Closed forms of frictionless line contact from textbooks; forces are per thickness."""
 
 from dataclasses import dataclass
 from math import copysign, pi, sqrt
@@ -49,7 +49,7 @@ class HertzContact:
 
     @staticmethod
     def error(ratio: float) -> float:
-        """How far the peak is off, relatively, at b/R."""
+        """Relative error of the peak at b/R."""
         return 0.23 * ratio**2
 
 
@@ -75,7 +75,7 @@ class PunchOnHalfPlane:
 
     @property
     def lifts_off(self) -> bool:
-        """Whether one edge does."""
+        """Whether one edge of the punch lifts off."""
         return abs(self.eccentricity) > self.half_width / 2
 
     @property
@@ -208,7 +208,7 @@ class BeamOverProp:
 
     @property
     def sag(self) -> float:
-        """How far w [L] the middle sinks without the prop."""
+        """Displacement w [L] of the middle without the prop."""
         return self.load * self.span * (5 / 8 * self._bending + self._shear / 2)
 
     @property

@@ -1,4 +1,4 @@
-"""From the references of a spec to numbers at its contact points."""
+"""Values that the references of a spec expect at the contact points."""
 
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -33,20 +33,20 @@ from bemcontact.reference.positions import Frame, coordinates, in_zone, reach, s
 from bemcontact.serialization import Flags, Internal, Leaf, Pair
 
 HERTZ_RANGE = 0.1
-"""Largest b/R for which Hertz is held against an answer; its peak is off by 0.23 % then."""
+"""Largest b/R for which Hertz judges a solution; the error of its peak is 0.23 % then."""
 MEASURED = 0.4
-"""Largest b/R of which it is known how far the peak is off."""
+"""Largest b/R for which the error of the peak is known."""
 INTERIOR = 0.9
 """Part of a contact within which pressures are compared: not at edges and tips, which no mesh resolves, nor at the end
 of Hertz's curve, where an error of b is magnified by 1 / sqrt(2 (1 - x/b))."""
 HALF_PLANE = 10.0
-"""How far a body goes that counts as a half-plane, in half-widths of contact; Hertz and punch are off by 0.5 % then."""
+"""Least size of a half-plane, in half-widths of contact; the error of Hertz and punch is 0.5 % then."""
 INFINITE_PANEL = 20.0
-"""How far a panel goes that counts as infinite, in half-lengths a of the crack; it is off by 3.4 (a/size)², 0.9 %."""
+"""Least size of an infinite panel, in half-lengths a of the crack; the error is 3.4 (a/size)², 0.9 %."""
 SLENDER = 10.0
 """Least span of a beam, in heights."""
 PRESSING = 0.25
-"""Least part of the free sag of a beam that its prop takes back; what is uncertain of the sag grows by 1 over it."""
+"""Least part of the free sag of a beam that its prop takes back; the error of the sag is divided by it."""
 
 SOURCES: dict[type[Reference], str] = {
     Hertz: "Hertz; Johnson 1985, section 4.2",
@@ -56,19 +56,19 @@ SOURCES: dict[type[Reference], str] = {
     Crack: "elliptical opening in an infinite panel, by superposition",
     ProppedBeam: "beam theory with Timoshenko's shear",
 }
-"""Kind of closed form -> where it comes from."""
+"""Kind of closed form -> source."""
 
 TOLERANCES: dict[type[Reference], tuple[float, str]] = {
-    Hertz: (0.01, "Hertz is off by up to 0.5 % in its range, the rest is for the mesh"),
-    FlatPunch: (0.02, "the smallest body in its range is off by 0.5 %, the rest is for the mesh"),
-    ShrinkFit: (0.01, "exact in the linear theory; all is for the mesh"),
-    Uniform: (0.01, "exact in the linear theory; all is for the mesh"),
-    Crack: (0.02, "the smallest panel in its range is off by 0.9 %, the rest is for the mesh"),
-    ProppedBeam: (0.02, "beam theory is off by up to 1.3 % in its range, the rest is for the mesh"),
+    Hertz: (0.01, "the error of Hertz in its range is up to 0.5 %, the rest is for the mesh"),
+    FlatPunch: (0.02, "the error for the smallest body in its range is 0.5 %, the rest is for the mesh"),
+    ShrinkFit: (0.01, "exact in the linear theory; the tolerance is for the mesh"),
+    Uniform: (0.01, "exact in the linear theory; the tolerance is for the mesh"),
+    Crack: (0.02, "the error for the smallest panel in its range is 0.9 %, the rest is for the mesh"),
+    ProppedBeam: (0.02, "the error of beam theory in its range is up to 1.3 %, the rest is for the mesh"),
     Values: (0.01, "printed values of three digits, and the mesh"),
-    Table: (0.05, "points are read off a figure to some per cent of its height"),
+    Table: (0.05, "points read from a figure have errors of some per cent of its height"),
 }
-"""Kind -> relative difference that is allowed if the spec states none, and why."""
+"""Kind -> relative difference that is allowed if the spec states none, and the reason."""
 
 
 def _known(pressure: Array) -> list[float | None]:
@@ -78,22 +78,22 @@ def _known(pressure: Array) -> list[float | None]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Expected(Leaf):
-    """Values that a reference expects of the answer; null where it says nothing."""
+    """Values that a reference expects of the solution; null for quantities without one."""
 
     name: str
     """Name of the reference in the problem."""
     source: str
-    """Where the values come from."""
+    """Source of the values."""
     closed_form: bool
-    """Whether it is a formula, and not a list of values."""
+    """Whether it is a formula instead of a list of values."""
     zone: str | None
-    """Name of the contact zone that it is about; null for all."""
+    """Name of the contact zone; null for all zones."""
     pressure: Annotated[Array, PlainSerializer(_known, return_type=list[float | None])]
     """Pressure (n,) at each contact point per undeformed length [p]; null where it is unknown."""
     compared: Flags
     """Whether the pressure at each contact point (n,) is compared: not at singular ends."""
     tolerance: float
-    """Relative difference up to which the answer agrees."""
+    """Relative difference that is allowed."""
     reason: str
     """Reason for this tolerance."""
     peak: float | None = None
@@ -115,9 +115,9 @@ class Expected(Leaf):
     resultant: float | None = None
     """Magnitude of the contact force on what is modelled, per thickness [p L]."""
     in_range: bool = True
-    """Whether the reference is valid for this problem, so that the answer is judged by it."""
+    """Whether the reference is valid for this problem, so that the solution is judged by it."""
     remark: str = ""
-    """Why it is not valid, or empty."""
+    """Reason why the reference is not valid, or empty."""
 
     @computed_field
     @property
@@ -127,22 +127,10 @@ class Expected(Leaf):
 
 
 def expected(problem: Problem, contact: CondensedContact) -> tuple[Expected, ...]:
-    """Evaluate all references of a problem at its contact points.
+    """Evaluate the references of a problem at the contact points of any of its meshes, in the order of the spec.
 
-    Parameters
-    ----------
-    problem : Problem
-    contact : condensed from it, on any mesh
-
-    Returns
-    -------
-    tuple of Expected
-        In the order of the spec; empty if it has no reference. Those of load cases that do not act are left out.
-
-    Raises
-    ------
-    ProblemError
-        If the contact points are those of another problem.
+    References of load cases that do not act are left out. `ProblemError` if the contact points are those of another
+    problem.
     """
     if contact.zone_names != tuple(problem.contact_zones):
         raise ProblemError(
@@ -157,7 +145,7 @@ def _expected(name: str, stated: Reference, problem: Problem, contact: Condensed
     """Evaluate one reference."""
     tolerance, reason = TOLERANCES[type(stated)]
     if stated.tolerance is not None:
-        tolerance, reason = stated.tolerance, stated.reason or "as the spec has it"
+        tolerance, reason = stated.tolerance, stated.reason or "stated in the spec"
     silent = Expected(
         name=name,
         source=stated.source if isinstance(stated, Values | Table) else SOURCES[type(stated)],
@@ -213,16 +201,14 @@ def _hertz(silent: Expected, stated: Hertz, problem: Problem, contact: Condensed
 
 
 def _beyond_hertz(stated: Hertz, form: HertzContact, size: float) -> str:
-    """Why Hertz is out of its range, for a body that goes so far [L]; nothing if it is not."""
+    """Reason why Hertz is out of its range for a body of this size [L]; empty if it is in range."""
     b = form.half_width
     ratio = b / min(abs(stated.radius), abs(stated.surface_radius or np.inf))
     if ratio > HERTZ_RANGE:
-        off = f", where its peak is off by about {100 * form.error(ratio):.2g} %" if ratio <= MEASURED else ""
+        off = f", where the error of its peak is about {100 * form.error(ratio):.2g} %" if ratio <= MEASURED else ""
         return _shown(f"Hertz needs b/R << 1; here b/R = {ratio:.2g}{off}")
     if size < HALF_PLANE * b * (1 - 1e-9):
-        return _shown(
-            f"Hertz needs a body that is thick; here it ends {size / b:.2g} half-widths away from the contact"
-        )
+        return _shown(f"Hertz needs a thick body; here the body ends {size / b:.2g} half-widths away from the contact")
     return ""
 
 
@@ -233,8 +219,9 @@ def _flat_punch(silent: Expected, stated: FlatPunch, problem: Problem, contact: 
     x = frame.distances(contact.points)
     pressure = _within(contact, stated, form.pressure(x))
     size = reach(problem, frame) / stated.half_width
-    remark = f"the punch is on a half-plane; here the body ends {size:.2g} half-widths away from its middle"
-    in_range = size >= HALF_PLANE * (1 - 1e-9)
+    remark = ""
+    if size < HALF_PLANE * (1 - 1e-9):
+        remark = _shown(f"the punch needs a half-plane; here the body ends {size:.2g} half-widths away from its middle")
     return replace(
         silent,
         pressure=pressure,
@@ -243,13 +230,13 @@ def _flat_punch(silent: Expected, stated: FlatPunch, problem: Problem, contact: 
         contact_length=2 * form.touching_half_width if form.lifts_off else None,
         center=_point(frame),
         resultant=stated.load / (2 if stated.half else 1),
-        in_range=in_range,
-        remark="" if in_range else _shown(remark),
+        in_range=not remark,
+        remark=remark,
     )
 
 
 def _off_the_ends(form: PunchOnHalfPlane, x: Array) -> BoolArray:
-    """Which places (k,) are not near an end of contact; beyond an edge that lifts off they are."""
+    """Whether each position (k,) is away from the ends of contact; positions beyond an edge that lifts off are."""
     away = (x - form.middle) / form.touching_half_width
     if not form.lifts_off:
         return np.abs(away) <= INTERIOR
@@ -272,16 +259,17 @@ def _crack(silent: Expected, stated: Crack, problem: Problem, contact: Condensed
     x = frame.distances(contact.points)
     pressure = _within(contact, stated, form.pressure(x))
     size = reach(problem, frame) / stated.half_length
-    remark = f"the panel is infinite; here it ends {size:.2g} half-lengths away from the middle of the opening"
-    in_range = size >= INFINITE_PANEL * (1 - 1e-9)
+    remark = ""
+    if size < INFINITE_PANEL * (1 - 1e-9):
+        remark = _shown(f"the crack needs an infinite panel; here it ends {size:.2g} half-lengths away from its middle")
     return replace(
         silent,
         pressure=pressure,
         compared=np.isfinite(pressure) & (np.abs(x) <= INTERIOR * stated.half_length),
         half_width=stated.half_length,
         center=stated.center,
-        in_range=in_range,
-        remark="" if in_range else _shown(remark),
+        in_range=not remark,
+        remark=remark,
     )
 
 
@@ -303,13 +291,13 @@ def _propped_beam(silent: Expected, stated: ProppedBeam, problem: Problem) -> Ex
 
 
 def _beyond_beam(stated: ProppedBeam, form: BeamOverProp) -> str:
-    """Why beam theory is out of its range; nothing if it is not."""
+    """Reason why beam theory is out of its range; empty if it is in range."""
     slenderness = stated.span / stated.height
     if slenderness < SLENDER * (1 - 1e-9):
         return _shown(f"beam theory needs a slender beam; this one is {slenderness:.2g} heights long")
     if 0 < form.sag - stated.gap < PRESSING * form.sag * (1 - 1e-9):
         part = 1 - stated.gap / form.sag
-        return _shown(f"the beam barely reaches its prop, by {100 * part:.2g} % of its sag")
+        return _shown(f"the beam presses on its prop by {100 * part:.2g} % of its sag only")
     return ""
 
 
@@ -322,7 +310,7 @@ def _shrink_fit(stated: ShrinkFit, problem: Problem) -> float:
 
 
 def _uniform(silent: Expected, value: float, contact: CondensedContact) -> Expected:
-    """The same pressure at all points of the zone."""
+    """A uniform pressure at all points of the zone."""
     within = in_zone(contact, silent.zone)
     return replace(silent, pressure=np.where(within, value, np.nan), compared=within, peak=value)
 
@@ -359,7 +347,7 @@ def _table(silent: Expected, stated: Table, contact: CondensedContact) -> Expect
 
 
 def _within(contact: CondensedContact, stated: Reference, pressure: Array) -> Array:
-    """Say nothing (n,) of contact points in other zones."""
+    """Pressure (n,), not a number in other zones."""
     return np.where(in_zone(contact, stated.zone), pressure, np.nan)
 
 

@@ -1,4 +1,4 @@
-"""Statements of [SS92] on its five problems; what can be a reference stands in the files of the problems.
+"""Statements of [SS92] on its five problems; reference values are in the files of the problems.
 
 Pressures are in kN/cm², lengths in cm, as in the paper.
 """
@@ -12,22 +12,22 @@ from bemcontact.options import FormulationName
 
 
 class Quantity(Enum):
-    """A quantity of an answer that stands beside a statement of the paper."""
+    """A quantity that is compared with a statement of the paper."""
 
     PRESSURE = auto()
     """Smallest and largest pressure, within a range of the coordinate if one is given."""
     PEAK = auto()
     """The largest pressure."""
     CONTACT = auto()
-    """From where to where there is contact, by the coordinate."""
+    """Smallest and largest coordinate of contact."""
     OPEN_POINTS = auto()
-    """How many contact points are open."""
+    """Number of open contact points."""
     LEAST_GAP = auto()
     """The smallest gap."""
     FORCE = auto()
-    """Size of the force that contact carries, in a direction."""
+    """Magnitude of the contact force in a direction."""
     DIFFERENCE = auto()
-    """Largest difference of a pressure from the direct solution over its peak, as the solvers left it by themselves."""
+    """Largest difference of an unpolished pressure from the direct solution, over the peak."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,11 +35,11 @@ class Statement:
     """A statement of the paper."""
 
     what: str
-    """The quantity, in words."""
-    said: str
-    """What the paper says of it."""
+    """Name of the quantity."""
+    says: str
+    """The paper's statement, in words."""
     quantity: Quantity
-    """What is read off our answers."""
+    """Quantity that is computed."""
     between: tuple[float, float] | None = None
     """Range of the coordinate, of a pressure."""
     direction: tuple[float, float] = (0.0, 1.0)
@@ -65,7 +65,7 @@ class PaperProblem:
     iterations: Mapping[FormulationName, int] = field(default_factory=lambda: MappingProxyType({}))
     """Iterations of QPSOL that the paper prints."""
     differs: tuple[str, ...]
-    """Where the paper and we differ, and why."""
+    """Differences between the paper and these results, with the reasons."""
 
 
 CURVED = PaperProblem(
@@ -75,21 +75,21 @@ CURVED = PaperProblem(
     frame=(49.99, 50.01),
     statements=(
         Statement(
-            what="pressure from x = 40 to 95", said="50 ± 0.01", quantity=Quantity.PRESSURE, between=(40.0, 95.0)
+            what="pressure from x = 40 to 95", says="50 ± 0.01", quantity=Quantity.PRESSURE, between=(40.0, 95.0)
         ),
-        Statement(what="pressure, all along", said="uniform, 50", quantity=Quantity.PRESSURE),
+        Statement(what="pressure, all along", says="uniform, 50", quantity=Quantity.PRESSURE),
         Statement(
-            what="the three formulations apart, over the peak", said="nearly identical", quantity=Quantity.DIFFERENCE
+            what="the three formulations apart, over the peak", says="nearly identical", quantity=Quantity.DIFFERENCE
         ),
     ),
     iterations=MappingProxyType({FormulationName.QP1: 63, FormulationName.QP2: 47, FormulationName.QP3: 70}),
     differs=(
-        "Away from the clamp the paper is right, within the 0.01 of its axis. Of the two readings of its mesh "
-        "only the one with ten elements along is that good; with five the error that the clamp makes reaches "
-        "further.",
-        "Near the clamp p cannot be 50: a clamp that holds u and v carries some of the load itself, so that p "
-        "falls towards 0 there, after a peak. The axis of the paper's figure leaves it out. Were the clamp to "
-        "hold v at one corner only, p would be 50 everywhere.",
+        "Away from the clamp the results agree with the paper within 0.01, the range of its axis. Of the two readings "
+        "of its mesh only the one with ten elements along the beam is that accurate. With five elements the error "
+        "from the clamp reaches farther.",
+        "Near the clamp p cannot be 50. A clamp that holds u and v carries part of the load, so p has a peak and then "
+        "falls towards 0 there. The axis of the paper's figure does not show this. If the clamp held v at one corner "
+        "only, p would be 50 everywhere.",
     ),
 )
 
@@ -98,16 +98,16 @@ CYLINDER = PaperProblem(
     figure="Fig. 3",
     variants=MappingProxyType({"paper": "paper's mesh"}),
     statements=(
-        Statement(what="contact", said="good correlation with Hertz", quantity=Quantity.CONTACT),
-        Statement(what="largest pressure", said="good correlation with Hertz", quantity=Quantity.PEAK),
-        Statement(what="force on the half", said="810/2 = 405, the load", quantity=Quantity.FORCE),
+        Statement(what="contact", says="good correlation with Hertz", quantity=Quantity.CONTACT),
+        Statement(what="largest pressure", says="good correlation with Hertz", quantity=Quantity.PEAK),
+        Statement(what="force on the half", says="810/2 = 405, the load", quantity=Quantity.FORCE),
     ),
     differs=(
-        "Hertz is not the solution of this problem: his formula needs a contact that is narrow beside the radius, "
-        "and here its half-width is a third of it. So the right answer differs from his by some per cent, and is "
-        "held against finite elements instead.",
-        "Nothing but contact holds the cylinder up. The paper used QP1 for it, and could not have used QP3, whose "
-        "(35)-(38) need a body that conditions hold; here QP3 has the free motion as an unknown, and finds the same.",
+        "Hertz is not the solution of this problem. His formula needs a contact that is narrow beside the radius, but "
+        "here the half-width is a third of the radius. The solution differs from Hertz by some per cent, so it is "
+        "compared with finite elements instead.",
+        "Only contact holds the cylinder up. The paper used QP1 for it. It could not use QP3, because (35)-(38) need "
+        "a body that is held by conditions. Here QP3 has the free motion as an unknown, and its solution is the same.",
     ),
 )
 
@@ -116,19 +116,19 @@ CRACK = PaperProblem(
     figure="Fig. 4",
     variants=MappingProxyType({"paper": "paper's mesh", "paper, finer crack": "finer crack"}),
     statements=(
-        Statement(what="nodes left open, next to the tip", said="2", quantity=Quantity.OPEN_POINTS),
+        Statement(what="nodes left open, next to the tip", says="2", quantity=Quantity.OPEN_POINTS),
         Statement(
-            what="pressure in the middle", said="in the figure only", quantity=Quantity.PRESSURE, between=(0.0, 0.0)
+            what="pressure in the middle", says="in the figure only", quantity=Quantity.PRESSURE, between=(0.0, 0.0)
         ),
-        Statement(what="largest pressure", said="the two meshes agree closely", quantity=Quantity.PEAK),
+        Statement(what="largest pressure", says="the two meshes agree closely", quantity=Quantity.PEAK),
     ),
     differs=(
-        "The open nodes at the tip are an effect of the mesh: on the paper's meshes one is open, moving to the tip "
-        "as the elements there become shorter, and none is where they are shorter than half of the tip's radius on "
-        "both sides. The crack closes to its tip. Kikuchi and Oden had open nodes too, but the paper's mesh was "
-        "graded as theirs.",
-        "The closed form of an infinite panel lies lower, because this panel is not large beside the crack: it is "
-        "shown, not judged.",
+        "The open nodes at the tip are an effect of the mesh. On the paper's meshes one node is open. It moves to the "
+        "tip as the elements there become shorter. No node is open if the elements on both sides are shorter than "
+        "half of the tip's radius: the crack closes to its tip. Kikuchi and Oden had open nodes too, but on a mesh "
+        "with the same grading.",
+        "The closed form of an infinite panel gives a lower pressure, because this panel is not large beside the "
+        "crack. It is shown, not judged.",
     ),
 )
 
@@ -138,16 +138,16 @@ BOLT = PaperProblem(
     symbol="θ",
     variants=MappingProxyType({"paper": "paper's mesh", "paper, doubled": "doubled"}),
     statements=(
-        Statement(what="contact", said="in the figure only", quantity=Quantity.CONTACT),
-        Statement(what="largest pressure", said="the two meshes agree", quantity=Quantity.PEAK),
-        Statement(what="force along x", said="25 · 3 = 75, the pull", quantity=Quantity.FORCE, direction=(1.0, 0.0)),
+        Statement(what="contact", says="in the figure only", quantity=Quantity.CONTACT),
+        Statement(what="largest pressure", says="the two meshes agree", quantity=Quantity.PEAK),
+        Statement(what="force along x", says="25 · 3 = 75, the pull", quantity=Quantity.FORCE, direction=(1.0, 0.0)),
     ),
     differs=(
-        "The source of the problem is not at hand and the text is ambiguous, so that this is one reading of it: a "
-        "is half the length of the plate, h its height, and the bolt touches the left side of the hole.",
-        "The paper's 14 elements are too few above the hole and in the ligament, not in the contact. Its pressure "
-        "is off by some per cent for that, and doubling the mesh mends it.",
-        "Contact alone holds the plate along x, as it holds the cylinder, and QP3 finds the same here too.",
+        "The source of the problem was not available, and the text is ambiguous. This is one reading of it: a is half "
+        "the length of the plate, h is its height, and the bolt touches the left side of the hole.",
+        "The paper's 14 elements are too few above the hole and in the ligament, not in the contact. The error of the "
+        "pressure is some per cent. The doubled mesh removes it.",
+        "Only contact holds the plate along x, as with the cylinder. QP3 has the same solution here too.",
     ),
 )
 
@@ -156,18 +156,18 @@ FLAT = PaperProblem(
     figure="Fig. 6",
     variants=MappingProxyType({"printed modulus": "printed E", "paper": "paper's mesh"}),
     statements=(
-        Statement(what="contact", said="from 42.5; ABAQUS 42; beam theory 45.7", quantity=Quantity.CONTACT),
-        Statement(what="largest pressure", said="in the figure only", quantity=Quantity.PEAK),
-        Statement(what="smallest gap", said="0, there is contact", quantity=Quantity.LEAST_GAP),
+        Statement(what="contact", says="from 42.5; ABAQUS 42; beam theory 45.7", quantity=Quantity.CONTACT),
+        Statement(what="largest pressure", says="in the figure only", quantity=Quantity.PEAK),
+        Statement(what="smallest gap", says="0, there is contact", quantity=Quantity.LEAST_GAP),
     ),
     differs=(
-        "The printed E = 2e6 kN/cm² cannot be meant: the beam is so stiff that its tip does not come down to the "
-        "plane, and nothing touches. The paper's own beam theory, (43), gives its 45.7 for E = 2.1e4, and 45.2 "
-        "for E = 2e4. So 2e4 is taken here, a slip of 100 in the unit assumed.",
-        "With it contact starts where the paper has it, to half of its node spacing. Beam theory, which lays the "
-        "beam down flat and knows no shear, starts later, as the paper says itself.",
+        "The printed E = 2e6 kN/cm² must be a misprint: the beam is so stiff that its tip does not reach the plane, "
+        "and nothing touches. The paper's own beam theory, (43), gives 45.7 for E = 2.1e4, and 45.2 for E = 2e4. So E "
+        "= 2e4 is used here. The assumed misprint is a factor of 100 in the unit.",
+        "With this modulus contact starts where the paper states it, within half of its node spacing. In beam theory, "
+        "which neglects shear, contact starts later, as the paper says.",
     ),
 )
 
 PROBLEMS = (CURVED, CYLINDER, CRACK, BOLT, FLAT)
-"""All of them, in the order of the paper."""
+"""Problems in the order of the paper."""

@@ -1,4 +1,4 @@
-"""Where contact points are: from the middle of the contact, along a coordinate that a reference uses, in the body."""
+"""Positions of contact points: distance from the middle of contact, and coordinates that references use."""
 
 from typing import NamedTuple, Self
 
@@ -10,11 +10,11 @@ from bemcontact.problem import Problem, Table, Values
 from bemcontact.serialization import Pair
 
 LEVEL = 1e-9
-"""Part of the size of the contact below which two places are the same."""
+"""Distance over the size of the contact below which two positions are equal."""
 
 
 def in_zone(contact: CondensedContact, zone: str | None) -> BoolArray:
-    """Which contact points (n,) belong to a zone; all, if none is named."""
+    """Whether each contact point (n,) belongs to a zone; all do if no zone is named."""
     if zone is None:
         return np.ones(contact.size, bool)
     return contact.zone == contact.zone_names.index(zone)
@@ -47,9 +47,9 @@ class Frame(NamedTuple):
 
 
 def foot(contact: CondensedContact, zone: str | None) -> Pair:
-    """Where the initial gap of a zone is smallest: the vertex of the parabola around its lowest point.
+    """Point with the smallest initial gap of a zone: the vertex of the parabola around the lowest point.
 
-    The lowest point itself, if it is the end of a run; the middle, if several are equally low.
+    At the end of a run it is the lowest point itself; of several equally low points it is the middle.
     """
     index = np.flatnonzero(in_zone(contact, zone))
     gap, size = contact.initial_gap[index], np.ptp(contact.points[index], axis=0).max()
@@ -96,9 +96,9 @@ def spacing(contact: CondensedContact) -> Array:
 
 
 def reach(problem: Problem, frame: Frame) -> float:
-    """How far [L] the body goes from the middle of a contact before it ends: to the left, to the right, and inwards.
+    """Least extent [L] of the body from the middle of a contact: to the left, to the right, and inwards.
 
-    A side on which nothing is left is beyond a line of symmetry and does not count; holes are not seen.
+    A side without material is beyond a line of symmetry and does not count. Holes are ignored.
     """
     outline = np.concatenate([edge.polyline() for edge in problem.boundary.loops[0]])
     along, inward = frame.distances(outline), frame.heights(outline)

@@ -1,4 +1,4 @@
-"""Differences between an answer and its references."""
+"""Differences between a solution and its references."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -16,23 +16,23 @@ from bemcontact.serialization import Leaf
 
 @dataclass(frozen=True, kw_only=True)
 class Score(Leaf):
-    """One quantity as computed and as a reference expects it."""
+    """Computed and expected value of one quantity of a reference."""
 
     reference: str
     """Name of the reference in the problem."""
     quantity: str
     """Name of the quantity, such as peak, half-width, start of contact or pressure (largest difference)."""
-    found: float | None
-    """Computed value, [p], [L], [p L] or degrees; null where nothing touches, so that there are no ends."""
+    computed: float | None
+    """Computed value, [p], [L], [p L] or degrees; null without contact, which has no ends."""
     expected: float
-    """Expected value in the same unit; 0 where the quantity is itself a difference of pressures."""
+    """Expected value in the same unit; 0 if the quantity is a difference of pressures."""
     difference: float | None
     """Relative difference: over the expected value, over the extent of contact for its ends, and over the largest or
     mean-square expected pressure for differences of pressure."""
     tolerance: float
     """Relative difference that the reference allows."""
     judged: bool
-    """Whether the answer is judged by it; false where the reference is out of its range."""
+    """Whether the solution is judged by it; false if the reference is out of its range."""
     holds: bool
     """Whether the difference is within the tolerance."""
 
@@ -40,25 +40,12 @@ class Score(Leaf):
 def score(
     expected: Sequence[Expected], contact: CondensedContact, footprint: Footprint, pressure: Array
 ) -> tuple[Score, ...]:
-    """Compare an answer with what references expect of it.
-
-    Parameters
-    ----------
-    expected : what `expected` found for the same contact points
-    contact : CondensedContact
-    footprint : of the answer
-    pressure : (n,) of the answer [p]
-
-    Returns
-    -------
-    tuple of Score
-        Reference by reference; nothing for quantities of which a reference says nothing.
-    """
+    """Compare an answer, its pressure (n,) [p] and footprint, with the values that references expect."""
     return tuple(one for item in expected for one in _scores(item, contact, footprint, np.asarray(pressure, float)))
 
 
 def _scores(expected: Expected, contact: CondensedContact, footprint: Footprint, pressure: Array) -> Iterator[Score]:
-    """All quantities that one reference speaks of."""
+    """Scores of all quantities that one reference gives."""
     here = in_zone(contact, expected.zone)
     intervals = [item for item in footprint.intervals if expected.zone in (None, item.zone)]
     if expected.peak is not None:
@@ -77,16 +64,16 @@ def _scores(expected: Expected, contact: CondensedContact, footprint: Footprint,
         yield from _pressure_scores(expected, contact, pressure)
 
 
-def _relative(expected: Expected, quantity: str, found: float, value: float) -> Score:
+def _relative(expected: Expected, quantity: str, computed: float, value: float) -> Score:
     """A quantity relative to itself."""
-    return _score(expected, quantity, found, value, (found - value) / value)
+    return _score(expected, quantity, computed, value, (computed - value) / value)
 
 
-def _score(expected: Expected, quantity: str, found: float | None, value: float, difference: float | None) -> Score:
+def _score(expected: Expected, quantity: str, computed: float | None, value: float, difference: float | None) -> Score:
     return Score(
         reference=expected.name,
         quantity=quantity,
-        found=found,
+        computed=computed,
         expected=value,
         difference=difference,
         tolerance=expected.tolerance,
@@ -101,22 +88,24 @@ def _end_scores(
     """Smallest and largest coordinate of contact, relative to its extent."""
     if expected.along is None:
         return
-    courses = [_course(expected.along, contact, interval, touching) for interval in intervals]
-    here = np.concatenate(courses) if courses else np.zeros(0)
+    coordinates_of = [_coordinates_along(expected.along, contact, interval, touching) for interval in intervals]
+    here = np.concatenate(coordinates_of) if coordinates_of else np.zeros(0)
     size = 360.0 if expected.along.against == "angle" else float(np.ptp(contact.points, axis=0).max())
     extent = float(np.ptp(here)) if len(here) else 0.0
     for quantity, value, pick in (("start", expected.start, np.min), ("end", expected.end, np.max)):
         if value is None:
             continue
-        found = float(pick(here)) if len(here) else None
-        if found is not None and expected.along.against == "angle":
-            found += 360.0 * round((value - found) / 360.0)
-        difference = (found - value) / extent if found is not None and extent > LEVEL * size else None
-        yield _score(expected, f"{quantity} of contact", found, value, difference)
+        computed = float(pick(here)) if len(here) else None
+        if computed is not None and expected.along.against == "angle":
+            computed += 360.0 * round((value - computed) / 360.0)
+        difference = (computed - value) / extent if computed is not None and extent > LEVEL * size else None
+        yield _score(expected, f"{quantity} of contact", computed, value, difference)
 
 
-def _course(along: Values | Table, contact: CondensedContact, interval: ContactInterval, touching: BoolArray) -> Array:
-    """The coordinate (k,) from one end of an interval to the other, an angle without jumps."""
+def _coordinates_along(
+    along: Values | Table, contact: CondensedContact, interval: ContactInterval, touching: BoolArray
+) -> Array:
+    """Coordinate (k,) of the contact points of an interval and its ends, an angle without jumps."""
     index = np.flatnonzero(touching & (contact.run == interval.run))
     arc = contact.arc_position[index]
     if np.isfinite(interval.perimeter):
@@ -124,8 +113,8 @@ def _course(along: Values | Table, contact: CondensedContact, interval: ContactI
     inside = np.flatnonzero((arc >= interval.start_arc) & (arc <= interval.end_arc))
     inside = inside[np.argsort(arc[inside])]
     points = np.vstack([interval.start, contact.points[index[inside]], interval.end])
-    course = coordinates(along, points, np.hstack([interval.start_arc, arc[inside], interval.end_arc]))
-    return np.unwrap(course, period=360.0) if along.against == "angle" else course
+    along_interval = coordinates(along, points, np.hstack([interval.start_arc, arc[inside], interval.end_arc]))
+    return np.unwrap(along_interval, period=360.0) if along.against == "angle" else along_interval
 
 
 def _force(contact: CondensedContact, pressure: Array, here: BoolArray) -> float:
@@ -137,13 +126,13 @@ def _force(contact: CondensedContact, pressure: Array, here: BoolArray) -> float
 def _pressure_scores(expected: Expected, contact: CondensedContact, pressure: Array) -> Iterator[Score]:
     """Largest difference over the peak of the reference, and √(Σ w (p - e)² / Σ w e²), w the tributary lengths.
 
-    Where the reference expects none at all, relative to the peak of the answer, or to T.
+    If the reference expects no pressure, the differences are relative to the peak of the answer or the pressure scale.
     """
-    known, found = expected.pressure[expected.compared], pressure[expected.compared]
+    known, computed = expected.pressure[expected.compared], pressure[expected.compared]
     weights = contact.weights[expected.compared]
-    largest = float(np.abs(found - known).max())
+    largest = float(np.abs(computed - known).max())
     own = contact.peak(pressure) or contact.scales.pressure
     peak = expected.peak or float(np.abs(known).max()) or own
     yield _score(expected, "pressure (largest difference)", largest, 0.0, largest / peak)
-    off, norm = (float(np.sqrt(weights @ value**2 / weights.sum())) for value in (found - known, known))
+    off, norm = (float(np.sqrt(weights @ value**2 / weights.sum())) for value in (computed - known, known))
     yield _score(expected, "pressure (mean square)", off, 0.0, off / (norm or own))

@@ -1,1 +1,1 @@
-"""Results for people: words and tables, pictures, files."""
+"""Results for people: text and tables, pictures, pages, files."""

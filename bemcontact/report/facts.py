@@ -1,4 +1,4 @@
-"""Facts of a result in words, from its JSON: the same list in the terminal and on a page."""
+"""Facts of a result in words, from its JSON, for the terminal and for pages."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -9,32 +9,21 @@ from bemcontact.problem import Units
 from bemcontact.report.formatting import number, per_thickness, settled, vector, with_unit
 
 Record = Mapping[str, Any]
-"""A part of a result: what stands between braces in its JSON."""
+"""A JSON object of a result."""
 RESIDUALS = ("penetration", "tension", "complementarity", "equilibrium", "force_balance")
-"""Residuals that are listed for a person."""
+"""Residuals that are listed."""
 QUALITIES = {"holds": "good", "does not hold": "bad", "not judged": "fair"}
-"""What is said of a quantity beside a reference -> how good that is."""
+"""Verdict on a quantity of a reference -> quality."""
 NOTHING = "–"
-"""Stands where there is no number."""
+"""Text for a missing number."""
 PLAIN = 0.01, 1000.0
-"""Sizes of numbers that are read more easily without a power of ten."""
+"""Range of numbers that are written without a power of ten."""
 ROUND_OFF = 1e-9
 """Relative difference that is written as zero."""
 
 
 def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
-    """List where the body touches, how hard, where it and its tools move, and the residuals.
-
-    Parameters
-    ----------
-    record : of a result, or of the contact points and an answer of a comparison together
-    units : labels
-
-    Yields
-    ------
-    tuple of str
-        Name and value.
-    """
+    """List name and value of each fact of a record: contact, peak, resultants, free motions, tools and residuals."""
     size, pressed, moves = size_of(record), pressed_by(record), record["scales"]["displacement"]
     if not record["intervals"]:
         yield "Contact", "nowhere"
@@ -53,12 +42,12 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     for tool in record["tools"]:
         yield "Tool", _tool(tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
-    told = (f"{name.replace('_', ' ')} {value + 0.0:.1e}" for name, value in residuals if value is not None)
-    yield "Residuals", ", ".join(told)
+    written = (f"{name.replace('_', ' ')} {value + 0.0:.1e}" for name, value in residuals if value is not None)
+    yield "Residuals", ", ".join(written)
 
 
 def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units) -> str:
-    """Write where a tool is, and what the body presses on it with."""
+    """Displacement of a tool, and the force and moment of the body on it."""
     moved = vector(tool["displacement"], units.length, scale=moves)
     turned = number(settled(tool["rotation"] * size, moves) / (size or 1.0))
     force = vector(tool["force_of_body"], per_thickness(units), scale=pressed)
@@ -71,12 +60,12 @@ def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units)
 
 
 def size_of(record: Record) -> float:
-    """The largest coordinate of a contact point, beside which round-off is written as zero [L]."""
+    """Largest coordinate of a contact point [L], the scale of round-off in coordinates."""
     return max((abs(x) for point in record["nodes"] for x in point), default=0.0)
 
 
 def pressed_by(record: Record) -> float:
-    """Sum of the magnitudes of all contact forces, beside which round-off is written as zero [p L]."""
+    """Sum of the magnitudes of all contact forces [p L], the scale of round-off in forces."""
     return sum(w * abs(p) for w, p in zip(record["tributary_lengths"], record["pressure"], strict=True))
 
 
@@ -86,7 +75,7 @@ def peak_in_words(peak: Record, size: float, units: Units) -> str:
 
 
 def span(interval: Record, size: float, units: Units) -> str:
-    """Write from where to where there is contact: at one point, along a stretch, or all round a closed boundary."""
+    """Ends and length of an interval of contact."""
     first, last = interval["arc"]
     length = last - first
     start, end = vector(interval["start"], scale=size), vector(interval["end"], units.length, scale=size)
@@ -110,7 +99,7 @@ def zone_forces(record: Record, units: Units) -> Iterator[str]:
 
 
 def scores_in_words(scores: Sequence[Record], references: Sequence[Record], units: Units) -> Iterator[dict[str, str]]:
-    """Write each computed quantity beside what a reference expects."""
+    """Write each computed quantity, the expected value and the verdict."""
     by_name = {item["name"]: item for item in references}
     for score in scores:
         unit = _unit_of(score["quantity"], by_name[score["reference"]], units)
@@ -119,7 +108,7 @@ def scores_in_words(scores: Sequence[Record], references: Sequence[Record], unit
             "reference": score["reference"],
             "quantity": score["quantity"],
             "unit": unit,
-            "found": NOTHING if score["found"] is None else with_unit(number(score["found"]), unit),
+            "computed": NOTHING if score["computed"] is None else with_unit(number(score["computed"]), unit),
             "expected": with_unit(number(score["expected"]), unit),
             "difference": percent(score["difference"]),
             "tolerance": f"{100 * score['tolerance']:.3g} %",
@@ -129,7 +118,7 @@ def scores_in_words(scores: Sequence[Record], references: Sequence[Record], unit
 
 
 def score_verdict(score: Record) -> str:
-    """Say whether a quantity is within the tolerance of its reference."""
+    """Whether a quantity is within the tolerance of its reference, in words."""
     return "not judged" if not score["judged"] else "holds" if score["holds"] else "does not hold"
 
 

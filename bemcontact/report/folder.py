@@ -1,4 +1,4 @@
-"""The folders that studies, reproductions and paths are written to: page, numbers, pictures and more, all or none."""
+"""Folders of studies, reproductions and paths; a folder is written completely or not at all."""
 
 import json
 import re
@@ -16,21 +16,12 @@ from bemcontact.report import reproduction as paper_page
 from bemcontact.report.figures import figure_of_path, figures_of, figures_of_reproduction, vector_graphic
 
 PICTURES = "figures"
-"""Folder of the pictures."""
+"""Name of the folder of pictures."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Contents:
-    """What stands in a folder of ours, and by which it is known again.
-
-    Parameters
-    ----------
-    title : what a folder of this kind is
-    page, numbers : names of the page, and of its numbers as JSON
-    others : names of further files
-    picture : what the pictures are called
-    keys : that the numbers have
-    """
+    """Files of a kind of folder: title, names of page, JSON numbers, others and pictures, and keys of the numbers."""
 
     title: str
     page: str
@@ -48,7 +39,7 @@ REPORT = Contents(
     picture=re.compile(r"(problem|pressure|gap|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"),
     keys=frozenset({"settings", "levels", "convergence", "versions"}),
 )
-"""Of a study."""
+"""Folder of a study."""
 REPRODUCTION = Contents(
     title="reproduction",
     page="page.html",
@@ -56,7 +47,7 @@ REPRODUCTION = Contents(
     picture=re.compile(r"[a-z-]+-(problem|pressure)\.svg"),
     keys=frozenset({"reproduced", "refine", "problems", "versions"}),
 )
-"""Of the problems of the paper."""
+"""Folder of the problems of the paper."""
 PATH = Contents(
     title="path",
     page="path.svg",
@@ -65,53 +56,32 @@ PATH = Contents(
     picture=re.compile(r"(?!)"),
     keys=frozenset({"key", "start", "end", "states"}),
 )
-"""Of a load path; its page is a picture."""
+"""Folder of a load path; its page is a picture."""
 KINDS = {kind.title: kind for kind in (REPORT, REPRODUCTION, PATH)}
-"""By their titles."""
+"""Title -> kind of folder."""
 
 
 def ensure_folder_writable(folder: Path, contents: Contents = REPORT) -> None:
-    """Find out, before any work is done, whether a folder can be written without loss of foreign files.
+    """Check that a folder is new, empty, or holds only an earlier output of the same kind, which is replaced.
 
-    Parameters
-    ----------
-    folder : that does not exist, is empty, or holds an earlier one of its kind and nothing else, which will be replaced
-    contents : its kind
-
-    Raises
-    ------
-    OSError
-        With a sentence that says why not, and what to do.
+    `OSError` with the reason if not.
     """
     output.ensure_folder_place(folder)
     present = [*folder.iterdir()] if folder.is_dir() else []
     foreign = [*_foreign(folder, contents)]
     if foreign:
         raise FileExistsError(
-            f"{folder} holds {foreign[0]}, which no {contents.title} of ours has; name a new folder, or an empty one"
+            f"{folder} holds {foreign[0]}, which is not part of a {contents.title}; name a new or an empty folder"
         )
     if present and not _is_ours(folder / contents.numbers, contents):
         raise FileExistsError(
-            f"{folder} is not empty and has no {contents.numbers} of ours; name a new folder, or one with an earlier "
-            f"{contents.title}"
+            f"{folder} is not empty and has no {contents.numbers} of bemcontact; name a new folder, or one with an "
+            f"earlier {contents.title}"
         )
 
 
 def save(study: Study, folder: Path, spec: str | None = None) -> None:
-    """Write a study.
-
-    Parameters
-    ----------
-    study : on one mesh or several
-    folder : that appears, or is replaced, as a whole: report.html, report.json, figures/*.svg, contact.npz (condensed
-        problem on the finest mesh) and, if it is given, spec.yaml
-    spec : text of the spec as run
-
-    Raises
-    ------
-    OSError
-        As of `ensure_folder_writable`; nothing is changed then.
-    """
+    """Write a study as a folder: page, numbers, pictures, condensed problem on the finest mesh, and spec if given."""
     ensure_folder_writable(folder)
     pictures = {name: vector_graphic(figure) for name, figure in figures_of(study).items()}
     text = page.render(study.to_dict(), pictures, spec)
@@ -122,18 +92,7 @@ def save(study: Study, folder: Path, spec: str | None = None) -> None:
 
 
 def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
-    """Write the problems of the paper.
-
-    Parameters
-    ----------
-    reproduction : of any of them
-    folder : that appears, or is replaced, as a whole: page.html, numbers.json, figures/*.svg
-
-    Raises
-    ------
-    OSError
-        As of `ensure_folder_writable`; nothing is changed then.
-    """
+    """Write the problems of the paper as a folder: page, numbers, pictures."""
     ensure_folder_writable(folder, REPRODUCTION)
     pictures = {name: vector_graphic(figure) for name, figure in figures_of_reproduction(reproduction).items()}
     text = paper_page.render(reproduction.to_dict(), pictures)
@@ -141,30 +100,19 @@ def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
         pass
 
 
-def save_path(found: ParameterPath, folder: Path) -> None:
-    """Write a load path.
-
-    Parameters
-    ----------
-    found : the path, in values of its parameter
-    folder : that appears, or is replaced, as a whole: path.svg, path.csv, path.json
-
-    Raises
-    ------
-    OSError
-        As of `ensure_folder_writable`; nothing is changed then.
-    """
+def save_path(path: ParameterPath, folder: Path) -> None:
+    """Write a load path as a folder: picture, table and numbers."""
     ensure_folder_writable(folder, PATH)
-    picture = vector_graphic(figure_of_path(found)).decode()
-    with _written(folder, PATH, picture, found.to_json(), {}) as temporary:
-        (temporary / "path.csv").write_text(found.to_csv(), encoding="utf-8", newline="\n")
+    picture = vector_graphic(figure_of_path(path)).decode()
+    with _written(folder, PATH, picture, path.to_json(), {}) as temporary:
+        (temporary / "path.csv").write_text(path.to_csv(), encoding="utf-8", newline="\n")
 
 
 @contextmanager
 def _written(
     folder: Path, contents: Contents, text: str, numbers: str, pictures: Mapping[str, bytes]
 ) -> Iterator[Path]:
-    """Write page, numbers and pictures, and give the temporary folder for what else belongs there."""
+    """Write page, numbers and pictures into a temporary folder; yield it for further files."""
     with output.whole_folder(folder) as temporary:
         if pictures:
             (temporary / PICTURES).mkdir()
@@ -177,7 +125,7 @@ def _written(
 
 
 def _foreign(folder: Path, contents: Contents) -> Iterator[Path]:
-    """Name what a folder of a kind has not."""
+    """List what does not belong into a folder of a kind."""
     if not folder.is_dir():
         return
     for path in sorted(folder.iterdir()):
@@ -192,7 +140,7 @@ def _foreign(folder: Path, contents: Contents) -> Iterator[Path]:
 
 
 def _is_ours(path: Path, contents: Contents) -> bool:
-    """Whether a file holds the numbers of a folder that was written here."""
+    """Whether a file holds the numbers of a folder of this kind."""
     try:
         numbers = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -77,17 +77,17 @@ def _range(values: Array) -> str:
 
 
 def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
-    """Say what an edge is told: ``u_x = 0``, ``t_y = -3.6 kN/cm²``, ``pressure 3 N/mm²``, ``may touch in foot``."""
+    """Conditions of an edge: ``u_x = 0``, ``t_y = -3.6 kN/cm²``, ``pressure 3 N/mm²``, ``may touch in foot``."""
     yield from (f"may touch in {name}" for name, zone in problem.contact_zones.items() if edge.name in zone.edges)
     if edge.name in problem.conditions:
         yield from _conditions(problem.conditions[edge.name], edge, problem.units)
     for case, factor in problem.factors().items():
         if (condition := problem.load_cases[case].conditions.get(edge.name)) is not None:
-            yield from (f"{told} ({_acting(case, factor)})" for told in _conditions(condition, edge, problem.units))
+            yield from (f"{text} ({_acting(case, factor)})" for text in _conditions(condition, edge, problem.units))
 
 
 def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]:
-    """Say what a condition prescribes on an edge."""
+    """Values that a condition prescribes on an edge."""
     for symbol, fields, unit in (
         ("u", condition.displacement, units.length),
         ("t", condition.traction, units.stress),
@@ -100,11 +100,11 @@ def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]
 
 
 def volume_loads(problem: Problem) -> Iterator[str]:
-    """Say what acts on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0) (1.5 spinning)``."""
+    """Loads on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0) (1.5 spinning)``."""
     yield from _volume_loads(problem.loads, problem)
     for case, factor in problem.factors().items():
-        told = _volume_loads(problem.load_cases[case].loads, problem)
-        yield from (f"{load} ({_acting(case, factor)})" for load in told)
+        loads = _volume_loads(problem.load_cases[case].loads, problem)
+        yield from (f"{load} ({_acting(case, factor)})" for load in loads)
 
 
 def _acting(case: str, factor: float) -> str:
@@ -113,7 +113,7 @@ def _acting(case: str, factor: float) -> str:
 
 
 def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
-    """Say what loads do to the volume of the body."""
+    """Loads on the volume of the body."""
     if loads.gravity:
         yield f"gravity {vector(loads.gravity.acceleration)}"
     if loads.centrifugal:
@@ -124,30 +124,30 @@ def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
 
 
 def tool_in_words(action: ToolAction, units: Units) -> str:
-    """Say how a tool is displaced, and what it is loaded by: ``displaced by x = 0.1 mm; loaded by y = -10 N/mm``."""
+    """Displacement and loads of a tool: ``displaced by x = 0.1 mm; loaded by y = -10 N/mm``."""
     labels = {"moment": units.force, "rotation": ""}
     ways = (
         ("displaced by", action.displacement, units.length),
         ("loaded by", action.force, per_thickness(units)),
     )
-    told = [
+    parts = [
         (
             way,
             [f"{key} = {with_unit(number(value), labels.get(key, unit))}" for key, value in part if value is not None],
         )
         for way, part, unit in ways
     ]
-    return "; ".join(f"{way} {', '.join(values)}" for way, values in told if values)
+    return "; ".join(f"{way} {', '.join(values)}" for way, values in parts if values)
 
 
 def case_in_words(case: LoadCase) -> str:
-    """Say what a load case is: what its author says of it, or else what it acts on."""
-    parts = [*case.conditions, *case.tools, *(key for key, load in case.loads if load is not None)]
-    return case.description.strip() or f"adds to {', '.join(parts)}"
+    """Description of a load case, or else the names of what it changes."""
+    changed = [*case.conditions, *case.tools, *(key for key, load in case.loads if load is not None)]
+    return case.description.strip() or f"changes {', '.join(changed)}"
 
 
 def surface_in_words(surface: RigidSurface) -> str:
-    """Say what a rigid surface is."""
+    """Description of a rigid surface."""
     match surface:
         case Plane():
             return f"plane through {vector(surface.point)}, normal {vector(surface.unit_normal)}"
@@ -161,33 +161,33 @@ def surface_in_words(surface: RigidSurface) -> str:
 
 
 def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
-    """Say what deflects a contour: ``top t_y = -50 kN/cm²``; kept conditions are not repeated."""
-    told = [
+    """Conditions and loads that deflect a contour: ``top t_y = -50 kN/cm²``."""
+    conditions = [
         f"{name} {', '.join(_conditions(condition, problem.edge(name), problem.units))}"
         for name, condition in surface.conditions.items()
     ]
-    return "; ".join([*told, *_volume_loads(surface.loads, problem)])
+    return "; ".join([*conditions, *_volume_loads(surface.loads, problem)])
 
 
 def certificate_sentence(solution: ContactSolution, certificate: Certificate) -> str:
-    """Say whether a solution is proved, and what to do if it is not."""
+    """Certificate of a solution in sentences, after the status if the solver did not succeed."""
     ending = "" if solution.status is Status.SOLVED else f"The solver: {solution.status.words}. "
     return ending + certificate.words
 
 
 def plural(noun: str, count: int) -> str:
-    """The noun as it stands after a number."""
+    """The noun in the form that belongs to a number."""
     return noun if count == 1 else f"{noun}s"
 
 
 def search_in_words(search: LocalSearch, contact: CondensedContact) -> str:
-    """Say how a local solver came to its end: from where, in how many iterations, over what curvature."""
+    """Start, iterations and curvature of the search of a local solver."""
     first, second, changes = search.phase_one_iterations, search.phase_two_iterations, search.working_set_changes
     sentences = [
         f"from the {search.start}: {first + second} {plural('iteration', first + second)} ({first} to a feasible "
         f"point, {second} from there)",
         f"{changes} {plural('change', changes)} of the working set",
-        f"eigenvalues of the whole Hessian: {_inertia(search.inertia)}; on what the working set leaves free: "
+        f"eigenvalues of the whole Hessian: {_inertia(search.inertia)}; of the reduced Hessian: "
         f"{_inertia(search.reduced_inertia_start)} at the feasible point, {_inertia(search.reduced_inertia_end)} at "
         "the end",
     ]
@@ -203,16 +203,16 @@ def _inertia(inertia: tuple[int, int, int]) -> str:
 
 
 def _penalty(penalty: Penalty, contact: CondensedContact) -> str:
-    """Write the penalty, and up to which one QP2 is convex, which equilibrium helps it to be."""
+    """Penalty, and the largest penalty for which QP2 is convex."""
     unit = penalty_unit(penalty.dimension, units_of(contact)) or "in the units of the problem"
-    told = f"penalty {number(penalty.value)} ({number(penalty.raw)} {unit})"
+    text = f"penalty {number(penalty.value)} ({number(penalty.raw)} {unit})"
     kept = " where equilibrium is kept" if contact.free_motions else ""
     if penalty.convexity_limit is None or penalty.convexity_limit_raw is None:
-        return f"{told}, convex{kept} for every penalty"
+        return f"{text}, convex{kept} for every penalty"
     if penalty.convexity_limit == 0:
-        return f"{told}, convex for no penalty"
+        return f"{text}, convex for no penalty"
     return (
-        f"{told}, convex{kept} up to {number(penalty.convexity_limit)} ({number(penalty.convexity_limit_raw)} {unit})"
+        f"{text}, convex{kept} up to {number(penalty.convexity_limit)} ({number(penalty.convexity_limit_raw)} {unit})"
     )
 
 
@@ -224,7 +224,7 @@ def penalty_unit(dimension: str, units: Units) -> str:
 
 
 def held_by(contact: CondensedContact) -> str:
-    """Say which rigid motions contact alone holds."""
+    """Rigid motions that only contact holds."""
     if not contact.free_motions:
         return "all held by conditions"
     return f"held by contact alone: {', '.join(contact.motion_names)}"
@@ -241,7 +241,7 @@ def sentence_case(text: str) -> str:
 
 
 def convexity_in_words(contender: Contender) -> str:
-    """Say whether a program is convex on what equations and equilibrium leave free, and up to which penalty it is."""
+    """Whether a program is convex subject to its equations and equilibrium, and up to which penalty."""
     search = None if contender.solution is None else contender.solution.search
     convex = "yes" if contender.convex else "no"
     if search is None or search.penalty is None:
@@ -253,7 +253,7 @@ def convexity_in_words(contender: Contender) -> str:
 
 
 def reference_in_words(reference: Reference) -> str:
-    """Say what is known of an answer, and in which load case: a closed form by its name, or where values come from."""
+    """Closed form or source of a reference, and its load case."""
     of_case = "" if reference.case is None else f", load case '{reference.case}'"
     match reference:
         case Values() | Table():

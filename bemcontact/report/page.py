@@ -1,47 +1,124 @@
-"""The page that a study is read on: one self-contained HTML file, from `Study.to_dict` and pictures alone."""
+"""HTML pages: templates with their filters, embedded pictures, and the page of a study."""
 
+import re
+from base64 import b64encode
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from bemcontact.assessment.contender import OUTCOMES, Outcome
 from bemcontact.problem import Units
-from bemcontact.report.facts import NOTHING, Record, facts, scores_in_words, small
-from bemcontact.report.formatting import number, penalty_unit, sentence_case, with_unit
-from bemcontact.report.markup import Picture, picture, statement, template
+from bemcontact.report.facts import NOTHING, Record, facts, percent, scores_in_words, small
+from bemcontact.report.formatting import (
+    number,
+    penalty_unit,
+    plural,
+    seconds_in_words,
+    sentence_case,
+    vector,
+    with_unit,
+)
 
 MANY = 5
-"""Contenders from which on they are counted and no longer listed at the head of the page."""
+"""Number of contenders from which the head of the page counts them instead of listing them."""
 
 HISTORY = "history-"
-"""What the names of the pictures of solvers begin with."""
+"""Start of the names of the pictures of solvers."""
+
+
+FORMULATIONS = {"qp1": "QP1", "qp2": "QP2", "qp3": "QP3"}
+WIDE = 500.0
+"""Width in points from which a picture gets the whole width of the page."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """A picture in the page."""
+
+    source: str
+    """The picture as a data URL."""
+    alternative: str
+    """Text alternative."""
+    caption: str
+    """The line above it."""
+    wide: bool
+    """Whether it needs the whole width of the page."""
+
+
+def template(name: str, **more: Callable[..., Any]) -> Template:
+    """Return the template of a page, a file in ``templates``; `more` are further filters."""
+    environment = Environment(
+        loader=PackageLoader("bemcontact.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(
+        number=_number, small=small, percent=percent, seconds=seconds_in_words, vector=vector, unit=with_unit,
+        plural=plural, plain=_plain, capital=sentence_case, statement=statement, inertia=_inertia, **more,
+    )  # fmt: skip
+    return environment.get_template(name)
+
+
+def picture(svg: bytes, caption: str, alternative: str) -> Picture:
+    """Embed an SVG with a caption and a text alternative."""
+    return Picture(
+        source=f"data:image/svg+xml;base64,{b64encode(svg).decode('ascii')}",
+        alternative=alternative,
+        caption=caption,
+        wide=_width(svg) > WIDE,
+    )
+
+
+def _number(value: float | None) -> str:
+    """Write a number with five figures."""
+    return NOTHING if value is None else number(value)
+
+
+def _plain(text: str) -> str:
+    """Write a name of the code in words: local_minimum, element_length."""
+    return text.replace("_", " ")
+
+
+def statement(name: str) -> str:
+    """Printed name of a formulation."""
+    return FORMULATIONS.get(name, name)
+
+
+def _inertia(inertia: Sequence[int] | None) -> str:
+    """Write how many eigenvalues are positive, zero and negative."""
+    if inertia is None:
+        return NOTHING
+    return f"({', '.join(map(str, inertia))})"
+
+
+def _width(svg: bytes) -> float:
+    """Width in points that a picture states; 0 if it states none."""
+    stated = re.search(rb'<svg[^>]* width="([\d.]+)pt"', svg)
+    return float(stated[1]) if stated else 0.0
 
 
 def render(report: Record, pictures: Mapping[str, bytes], spec: str | None) -> str:
-    """Write the page.
+    """Write the page of a study as HTML that needs no other file.
 
-    Parameters
-    ----------
-    report : what `Study.to_dict` gives, or report.json holds
-    pictures : name -> SVG, the names as of `bemcontact.report.figures.figures_of`; sections go without missing ones
-    spec : text of the spec as run, if there is one
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
+    `report` is the content of report.json, `pictures` are SVG files by name as of `figures.figures_of`, and `spec` is
+    the text of the spec as run. A missing picture is left out.
     """
     contents = _contents(report)
     return template("report.html", quality=_quality).render(
         **contents,
         pictures={name: _picture(name, svg, contents["level"]) for name, svg in pictures.items()},
-        courses=[name for name in pictures if name.startswith(HISTORY)],
+        histories=[name for name in pictures if name.startswith(HISTORY)],
         spec=spec,
     )
 
 
 def _contents(report: Record) -> dict[str, Any]:
-    """What the page says, by the names that the template has for it; the finest mesh gives the answer."""
+    """Variables of the template; the finest mesh gives the answer."""
     level = report["levels"][-1]
     compared = level["comparison"]
     contenders, reference = compared["contenders"], compared["reference"]
@@ -51,7 +128,7 @@ def _contents(report: Record) -> dict[str, Any]:
         "level": level,
         "compared": compared,
         "everyone": [*contenders, reference],
-        "apart": {item["one"]: item for item in compared["differences"] if item["other"] == reference["label"]},
+        "differences": {item["one"]: item for item in compared["differences"] if item["other"] == reference["label"]},
         "answer": reference["answer"],
         "units": {"p": units.stress, "L": units.length, "1": ""},
         "verdict": _headline(report, compared),
@@ -69,12 +146,12 @@ def _contents(report: Record) -> dict[str, Any]:
 
 
 def _quality(outcome: str) -> str:
-    """How good an outcome is: good, fair or bad."""
+    """Quality of an outcome: good, fair or bad."""
     return OUTCOMES[Outcome(outcome)].quality
 
 
 def _headline(report: Record, compared: Record) -> str:
-    """What the report shows; of many contenders, how many of them."""
+    """Verdict of the comparison; of many contenders, the number with each outcome."""
     if len(compared["contenders"]) < MANY:
         return report["verdict"]
     outcomes = Counter(item["verdict"]["outcome"] for item in compared["contenders"])
@@ -94,47 +171,45 @@ def _facts(level: Record, units: Units) -> list[tuple[str, str]]:
 
 
 def _certificate(answer: Record | None, units: Units) -> str:
-    """What is proved of the direct solution, in two sentences for an engineer."""
+    """What is proved of the direct solution, in sentences for an engineer."""
     if answer is None:
-        return "The direct solver has no answer. So there is nothing to certify."
+        return "The direct solver has no solution, so there is nothing to certify."
     proved, left = answer["certificate"], answer["residuals"]
     eigenvalue, kind = proved["smallest_eigenvalue"], proved["kind"]
     if kind == "not a solution":
-        return f"{proved['words']} So this is not an answer to rely on."
-    names = ("penetration", "tension", "complementarity", "equilibrium")
+        return f"{proved['words']} Do not rely on this result."
+    largest = small(max(left[name] for name in ("penetration", "tension", "complementarity", "equilibrium")))
     holds = (
-        "The pressure was put back into the equations of the body: it presses nowhere into a rigid surface, pulls at "
-        "none, keeps the body in equilibrium, and is zero wherever there is a gap, and no more than "
-        f"{small(max(left[name] for name in names))} of its scale is left of any of these conditions."
+        "All contact conditions were recomputed from the pressure: it penetrates no rigid surface, pulls at none, "
+        "keeps the body in equilibrium, and is zero wherever there is a gap. "
+        f"The largest residual of these conditions, relative to its scale, is {largest}."
     )
     if kind == "left open by round-off":
-        return f"{holds} But in floating-point numbers this pressure cannot be told from others that are far from it."
+        return f"{holds} Because of round-off, very different pressures cannot be ruled out."
     if kind != "unique":
         return (
-            f"{holds} But a second contact state cannot be ruled out, because the smallest eigenvalue of the "
-            f"compliance ({small(eigenvalue)}) is not positive, so that this is proved to be a solution, but not "
-            "the only one."
+            f"{holds} A second contact state cannot be ruled out, because the smallest eigenvalue of the compliance "
+            f"({small(eigenvalue)}) is not positive. This is proved to be a solution, but not the only one."
         )
     why = (
-        "Equilibrium alone fixes the pressure, so that there is no other"
+        "Equilibrium alone determines the pressure, so there is no other solution."
         if eigenvalue is None
-        else "Two different contact states would differ by a pressure that stores no elastic energy, and none does "
-        f"here (the smallest eigenvalue of the compliance is {small(eigenvalue)}, and positive), so that there is no "
-        "other"
+        else f"The compliance is positive definite (its smallest eigenvalue is {small(eigenvalue)}), so there is no "
+        "other solution."
     )
-    return f"{holds} {why}{_bound(proved['error_bound'], answer['peak'], units)}."
+    return f"{holds} {why}{_bound(proved['error_bound'], answer['peak'], units)}"
 
 
 def _bound(bound: float | None, peak: Record | None, units: Units) -> str:
-    """How far round-off may have moved the pressure."""
+    """Bound of the effect of round-off on the pressure."""
     if bound is None or peak is None:
         return ""
     size = with_unit(small(bound), units.stress)
-    return f", and round-off moves no pressure by more than {size}, {small(bound / peak['pressure'])} of the peak"
+    return f" Round-off changes no pressure by more than {size}, {small(bound / peak['pressure'])} of the peak."
 
 
 def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
-    """The penalty of QP2, free of units and in the user's, up to where QP2 is convex, and whether it is there."""
+    """Penalty of QP2 and the largest one for which QP2 is convex, in both units."""
     search = (contender["answer"] or {}).get("search")
     penalty = search and search["penalty"]
     if not penalty:
@@ -149,7 +224,7 @@ def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
 
 
 def _picture(name: str, svg: bytes, level: Record) -> Picture:
-    """A picture with what it shows, in words."""
+    """A picture with its caption and text alternative."""
     caption = CAPTIONS.get(name)
     if caption is None:
         solver, _, weights = name.removeprefix(HISTORY).partition("-")
@@ -158,16 +233,16 @@ def _picture(name: str, svg: bytes, level: Record) -> Picture:
     answer = level["comparison"]["reference"]["answer"]
     peak = answer and answer["peak"]
     extent = f"; the peak is {number(peak['pressure'])}" if name == "pressure" and peak else ""
-    course = ": course of the search, iteration by iteration" if name.startswith(HISTORY) else ""
-    return picture(svg, caption, f"{caption}{course}{extent}")
+    shown = ": objective, infeasibility and residual over the iterations" if name.startswith(HISTORY) else ""
+    return picture(svg, caption, f"{caption}{shown}{extent}")
 
 
 CAPTIONS = {
-    "problem": "The body with its mesh, what is prescribed on it, and the rigid surfaces that it may touch",
-    "pressure": "Contact pressure of all formulations, one inside the other where they agree",
+    "problem": "The body with its mesh and conditions, and the rigid surfaces",
+    "pressure": "Contact pressure of all formulations; where they agree, one curve lies inside the other",
     "gap": "Gap between the body and the rigid surfaces",
-    "deformed": "Deformed shape, by the direct solution",
-    "difference": "How far each pressure is from the direct solution",
-    "convergence": "What is left of each quantity, mesh by mesh",
+    "deformed": "Deformed shape of the direct solution",
+    "difference": "Difference of each pressure from the direct solution",
+    "convergence": "Distance of each quantity from its limit, mesh by mesh",
 }
-"""Name of a picture -> the line below it."""
+"""Name of a picture -> its caption."""

@@ -10,27 +10,20 @@ from rich.text import Text
 from bemcontact.problem import Units
 from bemcontact.report.facts import NOTHING, QUALITIES, Record, score_verdict, scores_in_words, small
 from bemcontact.report.formatting import number, seconds_in_words, sentence_case, with_unit
-from bemcontact.report.markup import picture, statement, template
-from bemcontact.report.tables import table_of, verdict_text
+from bemcontact.report.page import picture, statement, template
+from bemcontact.report.text import table_of, verdict_text
 
 FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
-"""In the order of the table of iterations."""
+"""Columns of the table of iterations."""
 TINY = 1e-4
-"""Below this the size of a number is all that matters."""
+"""Smaller numbers are written with two figures."""
 
 
 def render(record: Record, pictures: Mapping[str, bytes]) -> str:
-    """Write the page.
+    """Write the page of the paper's problems as HTML that needs no other file.
 
-    Parameters
-    ----------
-    record : what `Reproduction.to_dict` gives, or numbers.json holds
-    pictures : name -> SVG, the names as of `bemcontact.report.figures.figures_of_reproduction`; some may be missing
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
+    `record` is the content of numbers.json, and `pictures` are SVG files by name as of
+    `figures.figures_of_reproduction`.
     """
     problems = [_contents(item, pictures) for item in record["problems"]]
     counted = [statement(name) for item in record["problems"] for name in item["iterations"]]
@@ -40,26 +33,30 @@ def render(record: Record, pictures: Mapping[str, bytes]) -> str:
 
 
 def reproduction_summary(record: Record) -> RenderableType:
-    """List for the terminal the paper's statements, the same quantities on each mesh, and whether all is certified."""
+    """List the paper's statements, the computed quantities on each mesh, and the certificates."""
     parts = list[RenderableType]()
     for item in record["problems"]:
         proved = "certified" if item["certified"] else "NOT certified"
         held = f"{item['held']} of {item['judged']} reference quantities hold"
         title = Text.assemble((sentence_case(item["name"]), "bold"), f" ({item['figure']}): ")
-        parts += [title.append(f"{proved}, {held}", "green" if _good(item) else "red"), _statement_table(item), ""]
+        parts += [
+            title.append(f"{proved}, {held}", "green" if _reproduced(item) else "red"),
+            _statement_table(item),
+            "",
+        ]
     word = "reproduced" if record["reproduced"] else "NOT reproduced"
-    took = f"All of it took {seconds_in_words(record['seconds'])}."
+    took = f"All runs took {seconds_in_words(record['seconds'])}."
     end = verdict_text(word, record["reproduced"], f"{reproduction_sentence(record)} {took}")
     return Group(*parts, _iteration_table(record), "", end)
 
 
 def reproduction_sentence(record: Record) -> str:
-    """Say in two sentences how much of the paper is reproduced."""
+    """Result of the reproduction in two sentences."""
     problems = record["problems"]
     runs = [run for item in problems for run in item["runs"]]
     certified = [solver["certified"] for run in runs for solver in _solvers(run)]
     judged, held = (sum(item[key] for item in problems) for key in ("judged", "held"))
-    missed = [item["figure"] for item in problems if not _good(item)]
+    missed = [item["figure"] for item in problems if not _reproduced(item)]
     where = f" See {', '.join(missed)}." if missed else ""
     return (
         f"{sum(certified)} of {len(certified)} answers, by four solvers on {len(runs)} meshes, are proved to be the "
@@ -67,7 +64,7 @@ def reproduction_sentence(record: Record) -> str:
     )
 
 
-def _good(item: Record) -> bool:
+def _reproduced(item: Record) -> bool:
     """Whether a problem is certified and meets its references."""
     return item["certified"] and item["held"] == item["judged"]
 
@@ -79,11 +76,13 @@ def _solvers(run: Record) -> list[Record]:
 
 
 def _statement_table(item: Record) -> Table:
-    """List what the paper says beside what is computed."""
+    """List the paper's statements and the computed values."""
     labels = [run["label"] for run in item["runs"]]
     table = table_of("", "the paper", *labels, right=frozenset(labels))
     for row in item["statements"]:
-        table.add_row(*map(Text, (_quantity(row["what"], row["unit"]), row["said"], *map(_values, row["found"]))))
+        table.add_row(
+            *map(Text, (_quantity(row["what"], row["unit"]), row["statement"], *map(_values, row["computed"])))
+        )
     return table
 
 
@@ -104,12 +103,12 @@ def _quantity(name: str, unit: str) -> str:
 
 
 def _values(values: Sequence[float]) -> str:
-    """Write a number, the smallest and the largest, or that there is none; round-off briefly."""
+    """Write a number, or the smallest and the largest; round-off with two figures."""
     return " to ".join(number(value) if abs(value) > TINY else small(value) for value in values) or "no contact"
 
 
 def _counts(item: Record) -> Iterator[dict[str, Any]]:
-    """Iterations of one problem, those that the paper prints first, by the names that the template has for them."""
+    """Iterations of one problem, those that the paper prints first, by the names in the template."""
     if item["iterations"]:
         printed = [str(item["iterations"].get(name, NOTHING)) for name in FORMULATIONS]
         yield {"label": "QPSOL, the paper", "printed": True, "cells": [NOTHING, *printed]}
@@ -121,7 +120,7 @@ def _counts(item: Record) -> Iterator[dict[str, Any]]:
 
 
 def _contents(item: Record, pictures: Mapping[str, bytes]) -> dict[str, Any]:
-    """What the page says of one problem, by the names that the template has for it."""
+    """Variables of the template for one problem."""
     anchor, units = item["model"].replace("_", "-"), Units(**item["units"])
     finest = item["runs"][-1]
     compared = finest["level"]["comparison"]
@@ -133,19 +132,19 @@ def _contents(item: Record, pictures: Mapping[str, bytes]) -> dict[str, Any]:
         "contact": with_unit(_values(finest["contact"]), item["coordinate_unit"] * bool(peak)),
         "peak": with_unit(number(peak["pressure"]), units.stress) if peak else "no contact",
         "points": compared["contact"]["contact_nodes"],
-        "rows": [{**row, "found": [_values(values) for values in row["found"]]} for row in item["statements"]],
+        "rows": [{**row, "computed": [_values(values) for values in row["computed"]]} for row in item["statements"]],
         "meshes": [run["label"] for run in meshes],
         "references": finest["level"]["references"],
-        "known": [*_known([run["level"] for run in meshes], units)],
+        "scores": [*_scores([run["level"] for run in meshes], units)],
         "counts": [*_counts(item)],
-        "told": " ".join(item["description"].split()),
-        "pressure": _picture(pictures, f"{anchor}-pressure", f"{item['figure']} of the paper, drawn anew", item),
+        "description": " ".join(item["description"].split()),
+        "pressure": _picture(pictures, f"{anchor}-pressure", f"{item['figure']} of the paper, drawn again", item),
         "problem": _picture(pictures, f"{anchor}-problem", "The body, its mesh, and the rigid surface", item),
     }
 
 
 def _in_words(count: int) -> str:
-    """Write a small number as a word."""
+    """Write a number up to five as a word."""
     words = ("no", "one", "two", "three", "four", "five")
     return words[count] if count < len(words) else str(count)
 
@@ -155,8 +154,8 @@ def _picture(pictures: Mapping[str, bytes], name: str, caption: str, item: Recor
     return picture(pictures[name], caption, f"{item['name']}: {caption}") if name in pictures else None
 
 
-def _known(levels: list[Record], units: Units) -> Iterator[dict[str, Any]]:
-    """The quantities of the references, mesh by mesh; all else is that of the finest mesh."""
+def _scores(levels: list[Record], units: Units) -> Iterator[dict[str, Any]]:
+    """Quantities of the references on all meshes; differences are those of the finest mesh."""
     finest = levels[-1]
     rows = scores_in_words(finest["scores"], finest["references"], units)
     for row, scores in zip(rows, zip(*(level["scores"] for level in levels), strict=True), strict=True):
@@ -165,7 +164,7 @@ def _known(levels: list[Record], units: Units) -> Iterator[dict[str, Any]]:
             **row,
             "quantity": _quantity(row["quantity"], row["unit"]),
             "expected": number(scores[-1]["expected"]),
-            "found": [NOTHING if score["found"] is None else number(score["found"]) for score in scores],
+            "computed": [NOTHING if score["computed"] is None else number(score["computed"]) for score in scores],
             "verdict": word,
             "colour": QUALITIES[word],
         }

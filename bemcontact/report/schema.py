@@ -1,4 +1,4 @@
-"""JSON Schemas of all results that are written as JSON, for programs that read them and for the documentation."""
+"""JSON Schemas of all results that are written as JSON."""
 
 from typing import Any
 

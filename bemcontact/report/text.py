@@ -1,4 +1,4 @@
-"""What the terminal shows of a problem and of its results.
+"""Text in the terminal on a problem, its results and comparisons.
 
 The functions return a renderable for `rich`, no wider than 100 columns where the names are not. All text of a user goes
 into them as plain text, never as markup.
@@ -14,13 +14,25 @@ from rich.text import Text
 from bemcontact.analysis.check import CheckedProblem
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
+from bemcontact.analysis.study import MeshLevel, Study
+from bemcontact.assessment.comparison import Comparison
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.problem import DeflectedContour, Problem
-from bemcontact.report.facts import Record, facts, peak_in_words, pressed_by, size_of, span, zone_forces
+from bemcontact.problem import DeflectedContour, Problem, Units
+from bemcontact.report.facts import (
+    Record,
+    facts,
+    peak_in_words,
+    pressed_by,
+    scores_in_words,
+    size_of,
+    span,
+    zone_forces,
+)
 from bemcontact.report.formatting import (
     case_in_words,
     certificate_sentence,
+    convexity_in_words,
     deflected_by,
     held_by,
     number,
@@ -38,14 +50,13 @@ from bemcontact.report.formatting import (
     volume_loads,
     with_unit,
 )
-from bemcontact.report.tables import add, add_verdict, list_of_facts, table_of, verdict_text
 
 MANY = 4
 """Number of points up to which those that enter or leave together are named."""
 
 
 def problem_summary(checked: CheckedProblem) -> RenderableType:
-    """List edges, zones, mesh, loads, what holds the body, and remarks."""
+    """List edges, zones, mesh, loads, supports and notes of a problem."""
     problem, mesh = checked.problem, checked.mesh
     material, units = problem.material, problem.units
     modulus = with_unit(number(material.young_modulus), units.stress)
@@ -69,8 +80,12 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
         action = tool_in_words(problem.tool_action(name), units)
         add(shown, "Tool", f"{name}, the surface of {' and '.join(tool.zones)}: {action}")
     total = vector(checked.total_load, per_thickness(units), scale=checked.load_magnitude)
-    add(shown, "Total load", f"{total}, reactions not counted")
-    add(shown, "Held by conditions", "all but those below" if checked.free_motions else "all rigid motions")
+    add(shown, "Total load", f"{total}, without reactions")
+    add(
+        shown,
+        "Held by conditions",
+        "all rigid motions except those below" if checked.free_motions else "all rigid motions",
+    )
     for motion in checked.held_by_contact:
         add(shown, "Held by contact", motion)
     for name, case in problem.load_cases.items():
@@ -88,7 +103,7 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
 
 
 def result_summary(result: Result) -> RenderableType:
-    """List the facts of a result, and what is proved of it."""
+    """List the facts of a result and its certificate."""
     solution, shown = result.solution, list_of_facts()
     for name, value in facts(result.to_dict(), units_of(result.contact)):
         add(shown, name, value)
@@ -121,7 +136,7 @@ def condensed_summary(contact: CondensedContact, path: Path) -> RenderableType:
 
 
 def cases_summary(cases: CaseResults) -> RenderableType:
-    """List of each load case and combination how hard and where the body touches, and whether that is certified."""
+    """List peak, resultant, contact and certificate of each load case and combination."""
     table, shown = table_of("load case", "verdict", "peak", "at", "resultant", "contact"), list_of_facts()
     for name, result in cases.results.items():
         record, units = result.to_dict(), units_of(result.contact)
@@ -150,14 +165,14 @@ def cases_summary(cases: CaseResults) -> RenderableType:
 
 
 def uncertified(results: Result | CaseResults) -> str:
-    """Say of a result, or of each load case, that is not certified why."""
+    """Why a result, or each load case that is not certified, is not."""
     if isinstance(results, Result):
         return certificate_sentence(results.solution, results.certificate)
     return " ".join(f"{name}: {uncertified(item)}" for name, item in results.results.items() if not item.certified)
 
 
 def _places(record: Record, contact: CondensedContact) -> Iterator[str]:
-    """Where the body touches; of several zones along what length alone, so that the table is no wider than a page."""
+    """Intervals of contact; only their lengths for several zones, so that the table is no wider than a page."""
     units = units_of(contact)
     for interval in record["intervals"]:
         start, end = interval["arc"]
@@ -208,11 +223,11 @@ def path_summary(path: ParameterPath) -> RenderableType:
 
 
 def path_sentence(path: ParameterPath) -> str:
-    """Say how far a path can be trusted."""
+    """Certificate of a path in sentences."""
     first, last = map(number, path.reaches)
-    exact = f"Natural residual {path.residual:.0e} at the worst breakpoint."
+    exact = f"The largest natural residual at a breakpoint is {path.residual:.0e}."
     if path.certified:
-        return f"Every state from {first} to {last} is the contact state, the only one. {exact}"
+        return f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
     return " ".join((*(f"{sentence_case(note)}." for note in path.notes), exact))
 
 
@@ -234,3 +249,155 @@ def _place(contact: CondensedContact, i: int) -> str:
     """The place of a point."""
     x, y = contact.points[i].tolist()
     return vector((x, y), "", scale=float(abs(contact.points).max()))
+
+
+RIGHT = frozenset({
+    "length", "elements", "points", "objective", "unpolished", "difference", "iterations", "seconds", "computed",
+    "expected", "allowed", "in contact",
+})  # fmt: skip
+"""Columns of numbers."""
+
+
+def list_of_facts() -> Table:
+    """Make a list of facts: name and value."""
+    facts = Table.grid(padding=(0, 2))
+    facts.add_column(no_wrap=True)
+    facts.add_column(overflow="fold", max_width=76)
+    return facts
+
+
+def add(facts: Table, name: str, value: str) -> None:
+    """Add a fact to a list."""
+    facts.add_row(Text(name, "cyan"), Text(value))
+
+
+def add_verdict(facts: Table, word: str, good: bool, words: str) -> None:
+    """Add the verdict to a list: in a word, and in sentences."""
+    facts.add_row(Text("Verdict", "bold"), verdict_text(word, good, words))
+
+
+def verdict_text(word: str, good: bool, words: str) -> Text:
+    """Write a verdict: green if it is good, else red."""
+    return Text.assemble((word, "bold green" if good else "bold red"), ". ", words)
+
+
+def table_of(*columns: str, right: frozenset[str] = RIGHT) -> Table:
+    """Make a table with these columns, those of numbers at the right."""
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="cyan", pad_edge=False)
+    for column in columns:
+        numbers = column in right
+        table.add_column(column, justify="right" if numbers else "left", no_wrap=numbers, overflow="fold")
+    return table
+
+
+def study_summary(study: Study) -> RenderableType:
+    """List each formulation's verdict on the finest mesh, and how the answer changes from mesh to mesh."""
+    level = study.finest
+    compared, answer = level.comparison, level.answer
+    shown = list_of_facts()
+    for name, value in facts(answer.to_dict(), units_of(answer.contact)):
+        add(shown, name, value)
+    for name, remark in {item.name: item.remark for item in level.expected if item.remark}.items():
+        add(shown, name, remark)
+    for contender in compared.everyone:
+        if not contender.certified:
+            add(shown, contender.label, contender.verdict.words)
+    reasons = (item.verdict.reason for item in compared.contenders if item.verdict.reason)
+    for reason in dict.fromkeys(reasons):
+        add(shown, "Reason", reason)
+    if study.convergence is not None and study.convergence.remark:
+        add(shown, "Meshes", study.convergence.remark)
+    for note in answer.notes:
+        add(shown, "Note", note)
+    words = [sentence_case(compared.verdict), *_uncertified_meshes(study)]
+    add_verdict(shown, "certified" if study.certified else compared.heading, study.certified, " ".join(words))
+    scores = _score_table(level, units_of(answer.contact))
+    tables = [
+        _contender_table(compared),
+        _curvature_table(compared),
+        scores,
+        _mesh_table(study),
+    ]
+    parts = [part for table in tables if table.row_count for part in (table, "")]
+    return Group(Text(study.name, "bold"), Text(_compared_how(study), "dim"), "", *parts, shown)
+
+
+def _uncertified_meshes(study: Study) -> Iterator[str]:
+    """Name coarser meshes on which not all is certified."""
+    coarser = [f"{level.refine}" for level in study.levels[:-1] if not level.comparison.certified]
+    if coarser:
+        yield f"On the coarser mesh{'es' * (len(coarser) > 1)} (refine {', '.join(coarser)}) not all is certified."
+
+
+def _contender_table(compared: Comparison) -> Table:
+    """List the formulations, the direct solution last."""
+    searched = any(item.attempt.starts for item in compared.contenders)
+    table = table_of(
+        "", "verdict", "objective", "unpolished", "difference", "iterations", "seconds", *["starts"] * searched
+    )
+    for item in compared.everyone:
+        difference = compared.difference(item.label)
+        solution, starts = item.solution, item.attempt.starts
+        cells = [
+            item.label,
+            item.verdict.outcome,
+            "" if item.objective is None else f"{item.objective:.0e}",
+            "" if difference is None else f"{difference.unpolished:.0e}",
+            "" if difference is None else f"{difference.largest:.0e}",
+            "" if solution is None else f"{solution.iterations}",
+            "" if solution is None else f"{item.attempt.seconds:.3f}",
+        ]
+        if searched:
+            cells.append("" if starts is None else f"{starts.solved} of {starts.count}")
+        table.add_row(*map(Text, cells), style="" if item.certified else "red")
+    return table
+
+
+def _curvature_table(compared: Comparison) -> Table:
+    """List how many eigenvalues are positive, zero and negative where a local solver searched."""
+    table = table_of("eigenvalues + 0 -", "whole Hessian", "reduced, start", "reduced, end", "convex in equilibrium")
+    for item in compared.contenders:
+        search = item.solution.search if item.solution else None
+        if search is None:
+            continue
+        inertias = (search.inertia, search.reduced_inertia_start, search.reduced_inertia_end)
+        written = (" ".join(map(str, inertia)) for inertia in inertias)
+        table.add_row(*map(Text, (item.label, *written, convexity_in_words(item))))
+    return table
+
+
+def _score_table(level: MeshLevel, units: Units) -> Table:
+    """List the references and the differences from them."""
+    table = table_of("reference", "quantity", "computed", "expected", "difference", "allowed", "")
+    keys = ("reference", "quantity", "computed", "expected", "difference", "tolerance", "verdict")
+    scores, references = ([item.to_dict() for item in items] for items in (level.scores, level.expected))
+    for row in scores_in_words(scores, references, units):
+        table.add_row(*(Text(row[key]) for key in keys), style="red" if row["colour"] == "bad" else "")
+    return table
+
+
+def _mesh_table(study: Study) -> Table:
+    """List how the answer changes from mesh to mesh, with the last observed order and what it leads to."""
+    convergence = study.convergence
+    if convergence is None:
+        return table_of("")
+    table = table_of("mesh", *(f"refine {parts}" for parts in convergence.refine), "order", "limit")
+    units = units_of(study.finest.answer.contact)
+    labels = {"p": units.stress, "L": units.length, "1": ""}
+    for item in convergence.quantities:
+        order = item.orders[-1] if item.orders else None
+        unit = labels[item.dimension]
+        cells = [f"{item.name}, {unit}" if unit else item.name, *(f"{value:.6g}" for value in item.values)]
+        cells += ["" if order is None else f"{order:.1f}", "" if item.limit is None else f"{item.limit:.6g}"]
+        table.add_row(*map(Text, cells))
+    return table
+
+
+def _compared_how(study: Study) -> str:
+    """Size and time of a comparison."""
+    level = study.finest
+    freedom = (
+        "" if level.answer.degrees_of_freedom is None else f"{level.answer.degrees_of_freedom} degrees of freedom, "
+    )
+    took = seconds_in_words(study.seconds)
+    return f"compared with the direct solution; {freedom}{level.answer.contact.size} contact points, {took}"

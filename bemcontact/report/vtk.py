@@ -1,4 +1,4 @@
-"""The boundary of a result as a file for ParaView and its like; the only room that knows meshio.
+"""The boundary of a result as a file for ParaView; only this module uses meshio.
 
 Points are written once for each element, so that tractions may jump from one element to the next.
 """
@@ -17,43 +17,19 @@ FORMATS = {".vtu": "vtu", ".vtk": "vtk"}
 
 
 def ensure_possible(path: Path) -> None:
-    """Find out, before any work is done, whether `save` knows the format and has what it needs.
-
-    Parameters
-    ----------
-    path : where the file is to appear
-
-    Raises
-    ------
-    ValueError
-        If the file name does not end in one of `FORMATS`.
-    ModuleNotFoundError
-        If meshio is not installed.
-    """
+    """Check the format of a file and that meshio is installed; `ValueError` or `ModuleNotFoundError` if not."""
     if path.suffix.lower() not in FORMATS:
-        raise ValueError(f"{path}: a boundary is written as {', '.join(FORMATS)}; end the file name in one of them")
+        raise ValueError(f"{path}: the file name of a boundary must end in {' or '.join(FORMATS)}")
     if find_spec("meshio") is None:
         raise ModuleNotFoundError(f"{path} needs meshio, which is not installed; pip install 'bemcontact[vtk]'")
 
 
 def save(result: Result, path: Path) -> None:
-    """Write the undeformed boundary with its fields, whole or not at all.
+    """Write the undeformed boundary of a result as three-noded lines with fields.
 
-    Three-noded lines carry, at their points, ``displacement`` [L] and ``traction`` [p] (vectors with a third component
-    of zero, as viewers want them), ``pressure`` [p], zero off the contact points, and ``gap`` [L], not a number off
-    them; and, once for each line, ``edge``, the number of its edge in the order of the spec, from 0.
-
-    Parameters
-    ----------
-    result : of a problem, not of a condensed one
-    path : ends in one of `FORMATS`
-
-    Raises
-    ------
-    ProblemError
-        If no boundary stands behind the result.
-    ValueError, ModuleNotFoundError
-        As from `ensure_possible`.
+    Point data are ``displacement`` [L] and ``traction`` [p] (three components, the third zero), ``pressure`` [p], zero
+    off the contact points, and ``gap`` [L], not a number off them. Cell data is ``edge``, the number of the edge in the
+    spec, from 0. `ProblemError` for the result of a condensed problem; other errors as of `ensure_possible`.
     """
     ensure_possible(path)
     pressure, gap = result.contact_fields()

@@ -95,13 +95,17 @@ def test_path_of_a_factor_ends_where_the_tool_lifts_off_and_is_named_after_the_p
 @pytest.mark.parametrize(
     ("key", "to", "words"),
     [
-        ("material.young_modulus", 2e3, "young_modulus: the compliance depends on it; a path is exact only for loads"),
+        ("material.young_modulus", 2e3, "young_modulus: the compliance depends on it; only loads, gaps"),
         ("boundary.outer.top.elements", 8, "elements: the compliance depends on it"),
         ("name", 1.0, "name: there is no number to vary"),
         ("material.colour", 1.0, "there is no number to vary: unknown entry 'colour'; there are: "),
         ("conditions.tpo.pressure", 1.0, "there is no number to vary: unknown entry 'tpo'; did you mean 'top'?"),
-        ("conditions.top.traction.x", 1.0, "there is no number to vary, it is left out; state it, or give the value"),
-        ("contact_zones.foot.surface.point", 1.0, "there is no number to vary, it is a list of 2; give a path to a"),
+        (
+            "conditions.top.traction.x",
+            1.0,
+            "there is no number to vary: it is left out; state it, or give the start value",
+        ),
+        ("contact_zones.foot.surface.point", 1.0, "there is no number to vary: it is a list of 2; give a path to a"),
         ("contact_zones.foot.surface.point.1", 1.0, "a list has positions, not keys; write [1] instead of '1'"),
         (PRESSURE, 50.625, "a path needs two different finite values; found 50.625 and 50.625"),
         (PRESSURE, np.nan, "a path needs two different finite values"),

@@ -8,7 +8,7 @@ from reproductions import on_base_meshes, problem, with_coarse_mesh_judged
 
 import bemcontact
 from bemcontact import spec
-from bemcontact.analysis import shipped_models as shipped
+from bemcontact.analysis import reproduction
 from bemcontact.analysis.reproduction import PaperStudy, along, positions, reading, reproduce
 from bemcontact.reference.paper import BOLT, CRACK, PROBLEMS, Quantity
 
@@ -24,7 +24,7 @@ def test_numbers_are_those_of_a_run_of_its_own(paper):
     """By QP3 alone, which shares neither solver nor start with the direct solution that is shown."""
     item = problem(paper.model)
     for run in item.runs:
-        stated = spec.loads(shipped.model(paper.model), variant=run.variant)
+        stated = spec.loads(reproduction.shipped_model(paper.model), variant=run.variant)
         answer = bemcontact.solve(stated, "qp3")
         direct = run.level.answer
         assert direct.solution.pressure == pytest.approx(answer.solution.pressure, rel=1e-6, abs=1e-6)

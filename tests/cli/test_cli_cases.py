@@ -57,7 +57,7 @@ def test_figure_of_all_cases(tmp_path: Path):
     ("arguments", "words"),
     [
         (("solve", "--case", "raisd"), "--case raisd: case: unknown load case 'raisd'; did you mean 'raised'?"),
-        (("compare",), "load_cases: say which one acts, by case or --case: off the middle, raised,"),
+        (("compare",), "load_cases: choose the one that acts, with case or --case: off the middle, raised,"),
         (("solve", "--vtk", "it.vtu"), "--vtk writes the boundary of one load case; name it with --case"),
         (
             ("solve", "--set", "tools.press.force.y=1000"),

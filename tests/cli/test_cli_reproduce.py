@@ -61,7 +61,7 @@ def test_what_is_not_reproduced_ends_with_status_1(monkeypatch: pytest.MonkeyPat
         (("--refine", "1,x"), "--refine: expected whole numbers with commas between, found 'x'"),
         (("--refine", "0"), "the refinement must be a whole number of at least 1"),
         (("--refine", "2,2"), "the refinements must be different"),
-        (("--out", "full"), "which no reproduction of ours has; name a new folder"),
+        (("--out", "full"), "which is not part of a reproduction; name a new"),
         (("--out", "none/paper"), "there is no directory"),
         (("--out", "full", "--json", "full/n.json"), "--out full would replace full/n.json"),
         (("--json", "none/x.json"), "--json"),

@@ -38,11 +38,14 @@ def test_hertz_of_half_a_cylinder():
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (("reference.Hertz.load=810",), "Hertz needs b/R << 1; here b/R = 0.34, where its peak is off by about 2.7 %:"),
+        (
+            ("reference.Hertz.load=810",),
+            "Hertz needs b/R << 1; here b/R = 0.34, where the error of its peak is about 2.7 %:",
+        ),
         (("reference.Hertz.load=81000",), "Hertz needs b/R << 1; here b/R = 3.4: shown, not judged"),
         (
             ("reference.Hertz.radius=800", "reference.Hertz.load=10"),
-            "Hertz needs a body that is thick; here it ends 2.6",
+            "Hertz needs a thick body; here the body ends 2.6",
         ),
     ],
 )
@@ -91,7 +94,7 @@ def test_tolerance_and_its_reason_are_those_of_the_kind_or_of_the_spec():
     assert one.tolerance == 0.01
     assert "for the mesh" in one.reason
     one, _ = only(hertz(), "reference.Hertz.tolerance=0.003")
-    assert (one.tolerance, one.reason) == (0.003, "as the spec has it")
+    assert (one.tolerance, one.reason) == (0.003, "stated in the spec")
     one, _ = only(hertz(), "reference.Hertz.tolerance=0.003", "reference.Hertz.reason=a fine mesh")
     assert (one.tolerance, one.reason) == (0.003, "a fine mesh")
 
@@ -156,7 +159,7 @@ def test_supports_of_a_beam_share_its_load():
     ("span", "gap", "remark"),
     [
         (9.0, 0.5, "beam theory needs a slender beam; this one is 9 heights long: shown, not judged"),
-        (10.0, 0.8, "the beam barely reaches its prop, by 20 % of its sag: shown, not judged"),
+        (10.0, 0.8, "the beam presses on its prop by 20 % of its sag only: shown, not judged"),
     ],
 )
 def test_beam_out_of_range_is_shown_and_not_judged(span: float, gap: float, remark: str):

@@ -71,7 +71,7 @@ def test_a_change_of_units_changes_no_score():
     for key, item in here.items():
         assert there[key].difference == pytest.approx(item.difference, rel=1e-6, abs=1e-9)
         assert there[key].holds == item.holds
-    assert there["Hertz", "half-width"].found == pytest.approx(1e3 * here["Hertz", "half-width"].found, rel=1e-8)
+    assert there["Hertz", "half-width"].computed == pytest.approx(1e3 * here["Hertz", "half-width"].computed, rel=1e-8)
 
 
 @pytest.mark.parametrize(("size", "largest"), [(10.0, 6e-3), (20.0, 3e-3)])
@@ -124,10 +124,10 @@ def test_block_between_walls():
         ("table", "pressure (mean square)"),
     }
     assert found["wall", "peak"].difference == pytest.approx(-0.25)
-    assert found["values", "contact length"].found == pytest.approx(2.0)
-    assert found["values", "resultant"].found == pytest.approx(10.0)
-    assert found["values", "start of contact"].found == pytest.approx(0.0, abs=1e-12)
-    assert found["values", "end of contact"].found == pytest.approx(2.0)
+    assert found["values", "contact length"].computed == pytest.approx(2.0)
+    assert found["values", "resultant"].computed == pytest.approx(10.0)
+    assert found["values", "start of contact"].computed == pytest.approx(0.0, abs=1e-12)
+    assert found["values", "end of contact"].computed == pytest.approx(2.0)
     assert found["both", "contact length"].difference == pytest.approx(0.0, abs=1e-12)
 
 
@@ -140,8 +140,8 @@ def test_end_of_contact_in_each_coordinate(coordinate: str, end: float):
     spec = hertz()
     value = f"reference:\n  end: {{kind: values, source: Hertz, start: 0, end: {end}, against: {coordinate}}}\n"
     found = scores(bemcontact.loads(spec[: spec.index("reference:")] + value))
-    assert found["end", "start of contact"].found == pytest.approx(0.0, abs=1e-12)
-    assert found["end", "end of contact"].found == pytest.approx(end, rel=1e-3)
+    assert found["end", "start of contact"].computed == pytest.approx(0.0, abs=1e-12)
+    assert found["end", "end of contact"].computed == pytest.approx(end, rel=1e-3)
     assert abs(found["end", "end of contact"].difference) < 1e-3
 
 
@@ -157,7 +157,7 @@ def test_mean_square_is_that_of_the_tributary_lengths():
     w, x = contact.weights[foot], contact.points[foot, 0]
     assert found["pressure (mean square)"].difference == pytest.approx(np.sqrt((w @ x**2) / (w.sum() * 25)))
     assert found["pressure (largest difference)"].difference == pytest.approx(2 / 5)
-    assert found["pressure (largest difference)"].found == pytest.approx(2.0)
+    assert found["pressure (largest difference)"].computed == pytest.approx(2.0)
 
 
 def test_where_nothing_touches_nothing_holds():
@@ -167,6 +167,6 @@ def test_where_nothing_touches_nothing_holds():
     found = score(expected(problem, contact), contact, nothing, np.zeros(contact.size))
     assert not any(item.holds for item in found)
     ends = [item for item in found if "of contact" in item.quantity]
-    assert [(item.found, item.difference) for item in ends] == [(None, None)] * 2
-    assert {item.found for item in found if item.quantity in ("peak", "contact length", "resultant")} == {0.0}
+    assert [(item.computed, item.difference) for item in ends] == [(None, None)] * 2
+    assert {item.computed for item in found if item.quantity in ("peak", "contact length", "resultant")} == {0.0}
     json.dumps([item.to_dict() for item in found], allow_nan=False)

@@ -93,9 +93,9 @@ def test_check_tells_tools_cases_and_combinations():
     told = printed(text.problem_summary(check(made(HELD, **HELD_CASES))))
     assert "punch, the surface of punch: loaded by y = -40, moment = 3" in told
     assert "table, the surface of table: displaced by y = 0.002, rotation = 0.001" in told
-    assert "wind: adds to right, top" in told
-    assert "push: adds to punch, table" in told
-    assert "heat: adds to temperature" in told
+    assert "wind: changes right, top" in told
+    assert "push: changes punch, table" in told
+    assert "heat: changes temperature" in told
     assert "all: 1.5 wind + -0.5 heat + 2 settle + 4 spin + 0.7 push" in told
     assert "rotation anticlockwise about (1.5, 1) of the tool 'punch'" in told
 

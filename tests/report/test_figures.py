@@ -17,7 +17,7 @@ from bemcontact.analysis import solve as analysis
 from bemcontact.bem import mesh
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report import figures
-from bemcontact.report.figures.marks import draw_ground
+from bemcontact.report.figures.symbols import draw_ground
 
 
 def line(name: str, start: list[float], elements: int) -> dict:
@@ -331,6 +331,6 @@ def test_saved_in_the_format_of_the_ending(problem: Problem, tmp_path: Path, end
 
 
 def test_unknown_format_is_refused(tmp_path: Path):
-    with pytest.raises(ValueError, match=r"\.png, \.svg, \.pdf"):
+    with pytest.raises(ValueError, match=r"\.png, \.svg or \.pdf"):
         figures.save(Figure(), tmp_path / "figure.gif")
     assert [*tmp_path.iterdir()] == []

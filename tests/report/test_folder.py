@@ -59,7 +59,7 @@ def test_foreign_files_are_never_lost(tmp_path: Path):
     folder.save(on_one_mesh(), report)
     for name in ("notes.txt", "figures/photo.jpg", ".hidden"):
         (report / name).touch()
-        with pytest.raises(FileExistsError, match=rf"holds .*{name}.*name a new folder"):
+        with pytest.raises(FileExistsError, match=rf"holds .*{name}.*name a new"):
             folder.save(on_one_mesh(), report)
         (report / name).unlink()
     (report / "figures" / "deep.svg").mkdir()
@@ -70,10 +70,10 @@ def test_foreign_files_are_never_lost(tmp_path: Path):
 @pytest.mark.parametrize("content", ["", "[]", "{}", '{"levels": []}', "\udcff"])
 def test_a_folder_with_somebody_elses_report_is_refused(tmp_path: Path, content: str):
     (tmp_path / "report.json").write_text(content, encoding="utf-8", errors="surrogateescape")
-    with pytest.raises(FileExistsError, match=r"has no report\.json of ours"):
+    with pytest.raises(FileExistsError, match=r"has no report\.json of bemcontact"):
         folder.ensure_folder_writable(tmp_path)
     (tmp_path / "report.json").rename(tmp_path / "report.html")
-    with pytest.raises(FileExistsError, match=r"has no report\.json of ours"):
+    with pytest.raises(FileExistsError, match=r"has no report\.json of bemcontact"):
         folder.ensure_folder_writable(tmp_path)
 
 
@@ -91,12 +91,12 @@ def test_a_reproduction_is_replaced_as_a_whole(tmp_path: Path):
 def test_folders_of_two_kinds_do_not_replace_each_other(tmp_path: Path):
     folder.save_reproduction(on_base_meshes(), tmp_path / "paper")
     folder.save(on_one_mesh(), tmp_path / "report")
-    with pytest.raises(FileExistsError, match=r"which no reproduction of ours has; name a new folder"):
+    with pytest.raises(FileExistsError, match=r"which is not part of a reproduction; name a new"):
         folder.save_reproduction(on_base_meshes(), tmp_path / "report")
-    with pytest.raises(FileExistsError, match=r"which no report of ours has; name a new folder"):
+    with pytest.raises(FileExistsError, match=r"which is not part of a report; name a new"):
         folder.save(on_one_mesh(), tmp_path / "paper")
     (tmp_path / "paper" / "numbers.json").write_text("{}", encoding="utf-8")
-    with pytest.raises(FileExistsError, match=r"no numbers\.json of ours.*with an earlier reproduction"):
+    with pytest.raises(FileExistsError, match=r"no numbers\.json of bemcontact.*with an earlier reproduction"):
         folder.save_reproduction(on_base_meshes(), tmp_path / "paper")
 
 

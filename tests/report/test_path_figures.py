@@ -47,4 +47,4 @@ def test_written_twice_it_is_the_same(link: ParameterPath, tmp_path: Path):
 
 
 def test_verdict_is_a_sentence(link: ParameterPath):
-    assert text.path_sentence(link).startswith("Every state from 0 to 20 is the contact state, the only one.")
+    assert text.path_sentence(link).startswith("Each state from 0 to 20 is proved to be the only contact state.")

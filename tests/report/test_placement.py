@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bemcontact.report.placement import Box, centred, crowd, least_crowded, overlap
+from bemcontact.report.figures.symbols import Box, centred, crowd, least_crowded, overlap
 
 NOTHING = np.zeros((0, 2))
 

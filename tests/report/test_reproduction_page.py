@@ -43,13 +43,13 @@ def test_the_page_is_whole_and_needs_nothing_else():
     assert len(pictures) == 10
     assert all(picture["alt"] for picture in pictures)
     assert "The paper's five problems" in reader.text
-    assert "Certified, and every reference is met." in reader.text
+    assert "Certified and in agreement with every reference." in reader.text
 
 
 def test_each_problem_stands_there_with_what_the_paper_says():
     text = read(render(record(), {})).text
     for item in record()["problems"]:
-        for told in (item["name"][1:], *(row["said"] for row in item["statements"]), *item["differs"]):
+        for told in (item["name"][1:], *(row["statement"] for row in item["statements"]), *item["differs"]):
             assert told in text
         for run in item["runs"]:
             assert run["description"] in text
@@ -59,8 +59,8 @@ def test_numbers_come_from_the_record_alone():
     """Another finding, expectation and count in the record are others on the page and in the table."""
     changed = copy.deepcopy(record())
     curved = changed["problems"][0]
-    curved["statements"][0]["found"][0] = [12.125]
-    curved["runs"][2]["level"]["scores"][0]["found"] = 0.4375
+    curved["statements"][0]["computed"][0] = [12.125]
+    curved["runs"][2]["level"]["scores"][0]["computed"] = 0.4375
     curved["iterations"]["qp1"] = 6543
     curved["runs"][0]["level"]["comparison"]["contenders"][1]["answer"]["iterations"] = 7654
     for write, told in (
@@ -91,7 +91,7 @@ def test_what_fails_is_named():
     failed = json.loads(with_coarse_mesh_judged().to_json())
     text = read(render(failed, {})).text
     assert "The paper's two problems" in text
-    assert "Not all of it holds." in text
+    assert "Not reproduced." in text
     assert "See Fig. 5." in text
     assert "does not hold" in text
     assert "NOT reproduced" in table(failed)

@@ -81,7 +81,7 @@ def test_problem_summary_says_what_is_there():
     assert facts["Material"] == "E = 2.1e+05 N/mm², Poisson's ratio 0.3, plane strain"
     assert facts["Mesh"] == "8 elements, 16 nodes, 5 contact points"
     assert facts["Degrees of freedom"] == "32"
-    assert facts["Total load"] == "(0, -120) N/mm, reactions not counted"  # 3 N/mm² on 40 mm
+    assert facts["Total load"] == "(0, -120) N/mm, without reactions"  # 3 N/mm² on 40 mm
     assert facts["Held by contact"] == "translation along (0, 1)"
     assert any(line.split() == ["left", "line", "20", "mm", "2", "u_x", "=", "0"] for line in lines)
     assert any(line.split() == ["right", "line", "20", "mm", "2", "free"] for line in lines)
@@ -138,7 +138,7 @@ PENALTY = Penalty(value=1.0, raw=833.41, convexity_limit=13.007, convexity_limit
 def test_a_search_is_told_with_both_phases_and_all_inertias(result: analysis.Result):
     assert formatting.search_in_words(SEARCH, result.contact) == (
         "from the null vector: 136 iterations (1 to a feasible point, 135 from there); 152 changes of the working set; "
-        "eigenvalues of the whole Hessian: 89 positive, 1 negative; on what the working set leaves free: 3 positive, "
+        "eigenvalues of the whole Hessian: 89 positive, 1 negative; of the reduced Hessian: 3 positive, "
         "1 negative at the feasible point, none at the end"
     )
 

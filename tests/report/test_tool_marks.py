@@ -10,7 +10,7 @@ from tool_problems import HELD, HELD_CASES, made
 from bemcontact.bem import mesh
 from bemcontact.problem import Problem
 from bemcontact.report import figures
-from bemcontact.report.figures.tool_marks import draw_tools
+from bemcontact.report.figures.problem import draw_tools
 
 UNITS = {"units": {"length": "mm", "force": "N"}}
 

@@ -111,7 +111,7 @@ def test_the_command_line_writes_it(block: Path):
 def test_what_cannot_be_written_is_refused_before_any_work(block: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(analysis, "solve_with", None)
     answers = {
-        r"--vtk: .*\.vtu, \.vtk": solve(block, "--vtk", block.with_suffix(".stl")),
+        r"--vtk: .*\.vtu or \.vtk": solve(block, "--vtk", block.with_suffix(".stl")),
         "--vtk: .*there is no directory": solve(block, "--vtk", block.parent / "none" / "a.vtu"),
         "overwrite the file of --vtk": solve(
             block, "--json", block.with_suffix(".vtu"), "--vtk", block.with_suffix(".vtu")

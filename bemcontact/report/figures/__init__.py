@@ -3,19 +3,23 @@
 Each ``draw_...`` function draws into axes that it is given; each ``figure_of_...`` composes a page of them.
 """
 
-from bemcontact.report.figures.cases import draw_case_peaks, draw_case_pressures, figure_of, figure_of_cases
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
-from bemcontact.report.figures.contact import draw_contact
-from bemcontact.report.figures.course import draw_convergence, draw_history
+from bemcontact.report.figures.contact import draw_contact, draw_deformed
 from bemcontact.report.figures.design import draw_relief, draw_relieved_pressure, figure_of_design
-from bemcontact.report.figures.page import FORMATS, ensure_known_format, save
+from bemcontact.report.figures.page import FORMATS, ensure_known_format, save, vector_graphic
 from bemcontact.report.figures.path import draw_interval_ends, draw_peaks, draw_resultants, figure_of_path
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
 from bemcontact.report.figures.reproduction import draw_against, figures_of_reproduction
-from bemcontact.report.figures.result import draw_gap, draw_pressure, figure_of_result
-from bemcontact.report.figures.shape import draw_deformed
-from bemcontact.report.figures.study import figures_of
-from bemcontact.report.figures.vector_graphic import vector_graphic
+from bemcontact.report.figures.result import (
+    draw_case_peaks,
+    draw_case_pressures,
+    draw_gap,
+    draw_pressure,
+    figure_of,
+    figure_of_cases,
+    figure_of_result,
+)
+from bemcontact.report.figures.study import draw_convergence, draw_history, figures_of
 
 __all__ = [
     "FORMATS",

@@ -1,4 +1,4 @@
-"""The pictures of a comparison along the contact zones: pressures, gaps, differences of all contenders."""
+"""Pictures of a comparison along the contact zones: pressures, gaps and differences of all contenders."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,25 +14,35 @@ from bemcontact.assessment.comparison import SAME, Contender
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import FormulationName
-from bemcontact.report.figures.course import COLOURS, legend_below, show_decades
-from bemcontact.report.figures.page import BLACK, GREY, PURPLE, labelled, plain, shortened
-from bemcontact.report.figures.pieces import Piece, pieces_of
-from bemcontact.report.figures.result import tell_closed
+from bemcontact.report.figures.page import (
+    BLACK,
+    COLOURS,
+    GREY,
+    PURPLE,
+    Piece,
+    labelled,
+    legend_below,
+    pieces_of,
+    plain,
+    shortened,
+    show_decades,
+)
+from bemcontact.report.figures.result import label_closed
 from bemcontact.report.formatting import number, units_of, with_unit
 
 DASHES = ("solid", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
-"""Of the contenders of one formulation, in turn."""
+"""Line styles of the contenders of one formulation, in turn."""
 WIDEST, THINNEST = 8.0, 1.1
-"""Line widths: the direct solution lies under all others, and each one shows beside the next."""
+"""Line widths: the direct solution is the widest curve, below all others."""
 SPACE = 0.08
 """Space between two pieces of the contact zones, over the length of all of them."""
 BEYOND = 1.3
-"""Multiple of the direct solution's peak at which the frame cuts off what is far from it."""
+"""Height of the frame over the peak of the direct solution."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Curve:
-    """How contenders that cannot be told apart are drawn."""
+    """Curve of contenders with visibly equal values."""
 
     contenders: tuple[Contender, ...]
     width: float
@@ -40,28 +50,28 @@ class Curve:
 
     @property
     def colour(self) -> str:
-        """Its formulation's."""
+        """Colour of the formulation."""
         return COLOURS[self.contenders[0].attempt.options.formulation]
 
     @property
     def label(self) -> str:
-        """What the legend calls it."""
+        """Label in the legend."""
         more = len(self.contenders) - 1
         return plain(self.contenders[0].label) + (f" and {more} more" if more else "")
 
     @property
     def solution(self) -> ContactSolution:
-        """Of the first of them."""
+        """Solution of the first contender."""
         assessment = self.contenders[0].assessment
         assert assessment is not None  # nothing else is made a curve of
         return assessment.solution
 
 
 def draw_pressures(axes: Axes, level: MeshLevel) -> None:
-    """Draw the pressures of all contenders along the contact zones, the direct solution, and what references expect.
+    """Draw the pressures of all contenders, the direct solution and the references along the contact zones.
 
-    Equal curves lie in each other, the direct solution's as a wide band below. A reference that is out of its range is
-    grey. What goes far beyond the direct solution is cut off, and named.
+    The direct solution is a wide band below the other curves. A reference out of its range is gray. Curves far above
+    the direct solution are cut off, and their peaks are written above the frame.
     """
     contact, unit = level.answer.contact, units_of(level.answer.contact).stress
     along, curves = _Along(contact=contact), _curves(level)
@@ -78,8 +88,8 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
                 item.peak, color=colour, linewidth=1.2, linestyle="dotted", label=shortened(f"{label}: peak", 40)
             )
             known.append(item.peak)
-    found = {curve.label: float(curve.solution.pressure.max(initial=0.0)) for curve in curves}
-    _cut_off(axes, found, BEYOND * max(known), unit)
+    maxima = {curve.label: float(curve.solution.pressure.max(initial=0.0)) for curve in curves}
+    _cut_off(axes, maxima, BEYOND * max(known), unit)
     axes.set_ylabel(labelled("pressure", unit) + "\nper undeformed length")
     along.finish(axes)
 
@@ -87,23 +97,23 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
 def draw_gaps(axes: Axes, level: MeshLevel) -> None:
     """Draw the gaps of all contenders along the contact zones, and the initial gap."""
     contact, unit = level.answer.contact, units_of(level.answer.contact).length
-    along, found = _Along(contact=contact), dict[str, float]()
+    along, maxima = _Along(contact=contact), dict[str, float]()
     for curve in _curves(level):
         gap = contact.initial_gap + curve.solution.displacement
         along.plot(axes, gap, curve)
-        found[curve.label] = float(gap.max())
+        maxima[curve.label] = float(gap.max())
     along.line(axes, contact.initial_gap, BLACK, "initial gap")
     answer = contact.initial_gap + level.answer.solution.displacement
     largest = max(float(contact.initial_gap.max()), float(answer.max()), contact.scales.displacement)
-    _cut_off(axes, found, BEYOND * largest, unit)
+    _cut_off(axes, maxima, BEYOND * largest, unit)
     axes.set_ylabel(labelled("gap", unit))
     along.finish(axes)
-    widest = max(float(np.abs(contact.initial_gap).max(initial=0.0)), *map(abs, found.values()))
-    tell_closed(axes, widest, contact.scales.displacement)
+    widest = max(float(np.abs(contact.initial_gap).max(initial=0.0)), *map(abs, maxima.values()))
+    label_closed(axes, widest, contact.scales.displacement)
 
 
 def draw_differences(axes: Axes, level: MeshLevel) -> None:
-    """Draw |p - p'| over the peak, p' the direct solution, of every contender; where it is zero nothing is drawn."""
+    """Draw |p - p'| over the peak for each contender, with p' the direct solution; zero is not drawn."""
     along, direct = _Along(contact=level.answer.contact), level.answer.solution.pressure
     peak = float(direct.max(initial=0.0)) or level.answer.contact.scales.pressure
     for curve in _curves(level, merged=False):
@@ -123,12 +133,12 @@ class _Along:
 
     @cached_property
     def pieces(self) -> list[Piece]:
-        """In the order of the contact points."""
+        """Pieces in the order of the contact points."""
         return [*pieces_of(self.contact)]
 
     @cached_property
     def shifts(self) -> list[float]:
-        """What each piece is moved by along the axis."""
+        """Shift of each piece along the axis [L]."""
         arcs = [self.contact.arc_position[piece.index] for piece in self.pieces]
         lengths = [float(np.ptp(arc)) for arc in arcs]
         starts = np.cumsum([0.0, *(length + SPACE * sum(lengths) for length in lengths)])
@@ -169,7 +179,7 @@ class _Along:
         legend_below(axes)
 
     def _name_pieces(self, axes: Axes) -> None:
-        """Count the distance on each piece from its own beginning."""
+        """Label each piece, with distances from its own start."""
         ticks, labels = [], []
         for piece, shift in zip(self.pieces, self.shifts, strict=True):
             s = self.contact.arc_position[piece.index]
@@ -183,10 +193,7 @@ class _Along:
 
 
 def _curves(level: MeshLevel, *, merged: bool = True) -> list[Curve]:
-    """The direct solution, then all that have a pressure, each thinner than the one before.
-
-    Those of one formulation that cannot be told apart are merged to one curve.
-    """
+    """Curves from the direct solution on, each thinner than the one before; equal ones of a formulation are merged."""
     compared = level.comparison
     everyone = [item for item in (compared.reference, *compared.contenders) if item.assessment is not None]
     groups = list[list[Contender]]()
@@ -215,9 +222,11 @@ def _alike(one: Contender, other: Contender, level: MeshLevel) -> bool:
     return one.attempt.options.formulation is other.attempt.options.formulation and apart <= SAME * peak
 
 
-def _cut_off(axes: Axes, found: dict[str, float], top: float, unit: str) -> None:
-    """Keep the frame to what can be compared, and say what is outside."""
-    beyond = [f"{label} up to {with_unit(number(value), plain(unit))}" for label, value in found.items() if value > top]
+def _cut_off(axes: Axes, maxima: dict[str, float], top: float, unit: str) -> None:
+    """Limit the frame to values up to `top`, and write the larger ones above it."""
+    beyond = [
+        f"{label} up to {with_unit(number(value), plain(unit))}" for label, value in maxima.items() if value > top
+    ]
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
     if beyond:
         axes.set_ylim(-0.1 * top, top)

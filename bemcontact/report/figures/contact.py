@@ -1,11 +1,13 @@
-"""The picture of a contact: the body to scale, the rigid surfaces, and the pressure as a fan along the normals."""
+"""Pictures of the deformed body: the contact to scale with the pressure as a fan, and the magnified shape."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 from scipy.spatial import KDTree
 
 from bemcontact.analysis.result import Result
@@ -13,11 +15,18 @@ from bemcontact.arrays import Array
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.mesh import element_curves
 from bemcontact.problem import DeflectedContour, Problem
-from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, place_names
-from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain, without_glyph_warnings
-from bemcontact.report.figures.pieces import pieces_of
+from bemcontact.report.figures.page import (
+    BLACK,
+    BODY,
+    GREY,
+    VERMILION,
+    frame_plan,
+    pieces_of,
+    plain,
+    without_glyph_warnings,
+)
 from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
-from bemcontact.report.figures.shape import ground_of, loops_of, outline_of
+from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names
 from bemcontact.report.formatting import number, units_of, with_unit
 
 VISIBLE = 0.005
@@ -76,19 +85,9 @@ class Fan:
 def draw_contact(axes: Axes, result: Result) -> None:
     """Draw the deformed body to scale, its supports and loads, the rigid surfaces, and the pressure as a fan.
 
-    The fan stands outside of the body, along the normals of the rigid surface. The largest pressure of each unbroken
-    piece of contact is written beside it. Where the contact is small beside the body, only the part of the body around
-    it is shown, without supports and loads.
-
-    Parameters
-    ----------
-    axes : to draw into; limits and aspect are set
-    result : with its `boundary`
-
-    Raises
-    ------
-    ValueError
-        If the result has no boundary, as one of a condensed problem.
+    The fan lies outside the body, along the normals of the rigid surface. The largest pressure of each unbroken piece
+    of contact is written beside it. If the contact is small beside the body, only the part of the body around it is
+    shown, without supports and loads. `ValueError` for the result of a condensed problem.
     """
     state, problem, units = result.boundary, result.problem, units_of(result.contact)
     if state is None or problem is None:
@@ -100,10 +99,10 @@ def draw_contact(axes: Axes, result: Result) -> None:
     size = float(np.hypot(width, height))
     reach = size if part else OVERHANG * size
     grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in _surfaces(result, problem, reach)]
-    marks = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
+    covered = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
     if not part:
         displacement = _displacement(state)
-        marks += [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
+        covered += [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
     scale = min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans)) if fans else 1.0
     length = max(TALL * float(np.sqrt(width * height)), LEAST * size)
     length = min([length, *(CROSSING * fan.longest(scale) for fan in fans)])
@@ -112,7 +111,7 @@ def draw_contact(axes: Axes, result: Result) -> None:
         tips.append(fan.feet - length * np.minimum(fan.pressure / scale, 1.0)[:, None] * fan.normals)
         _draw_fan(axes, fan, tips[-1], 0.03 * size)
         names.append(_label(fan, tips[-1], units.stress, cut=fan.peak > scale * (1 + LEVEL)))
-    drawn = np.concatenate([window, *tips] if part else [window, *tips, *marks])
+    drawn = np.concatenate([window, *tips] if part else [window, *tips, *covered])
     frame_plan(axes, drawn, units.length)
     with without_glyph_warnings():
         place_names(axes, names, drawn, loops)
@@ -121,7 +120,7 @@ def draw_contact(axes: Axes, result: Result) -> None:
 
 
 def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
-    """Draw the body as it is deformed, and its undeformed outline where that can be told apart; return loops (j, 2)."""
+    """Draw the deformed body, and its undeformed outline where the two differ visibly; return loops (j, 2)."""
     before, after = element_curves(state.points, 5), element_curves(state.points + state.displacement, 5)
     outline = outline_of(state, after)
     axes.add_patch(PathPatch(outline, facecolor=BODY, edgecolor="none", zorder=0))
@@ -163,7 +162,7 @@ def _fans(result: Result, state: BoundaryState) -> Iterator[Fan]:
 
 
 def _window(fans: Sequence[Fan], body: Array) -> tuple[Array, bool]:
-    """Points (k, 2) to be shown, of all the body or of the part around a small contact; and whether it is a part."""
+    """Points (k, 2) to be shown: the whole body, or the part around a small contact; and whether it is a part."""
     if fans:
         feet = np.concatenate([fan.feet for fan in fans])
         extent = float(np.ptp(feet, axis=0).max())
@@ -192,7 +191,7 @@ def _label(fan: Fan, tips: Array, unit: str, *, cut: bool) -> Name:
 
 
 def _surfaces(result: Result, problem: Problem, overhang: float) -> Iterator[tuple[Array, Array]]:
-    """Lines (j, 2) of the rigid surfaces and unit normals (j, 2), where their tools have come to."""
+    """Lines (j, 2) of the rigid surfaces and unit normals (j, 2), displaced with their tools."""
     tools = result.contact.tools
     moves = dict(zip(tools.names, tools.displacement(result.solution.rigid_amplitudes), strict=True))
     points = dict(zip(tools.names, tools.point, strict=True))
@@ -213,3 +212,89 @@ def _displacement(state: BoundaryState) -> Displacement:
     nearest = KDTree(element_curves(state.points, 17).reshape(-1, 2))
     displacement = element_curves(state.displacement, 17).reshape(-1, 2)
     return lambda points: displacement[nearest.query(points)[1]]
+
+
+MAGNIFIED = 0.05
+"""Share of the body's size at which the largest displacement can be seen well; smaller ones are magnified."""
+
+NEAR = 0.15
+"""Share of the body's size up to which the rigid surface across a gap is shown."""
+
+
+def draw_deformed(axes: Axes, result: Result) -> None:
+    """Draw the boundary before and after deformation; thick lines show contact.
+
+    Displacements are magnified by a stated factor. Rigid surfaces are drawn only if the factor is one. `ValueError` for
+    the result of a condensed problem.
+    """
+    state = result.boundary
+    if state is None:
+        raise ValueError("the result of a condensed problem has no boundary to draw")
+    factor = _magnification(state)
+    before = element_curves(state.points, 9)
+    after = element_curves(state.points + factor * state.displacement, 9)
+    axes.add_collection(LineCollection(list(before), colors=GREY, linewidths=0.9, linestyles="dashed", zorder=2))
+    axes.add_collection(LineCollection(list(after), colors=BLACK, linewidths=1.8, zorder=3))
+    axes.add_patch(PathPatch(outline_of(state, after), facecolor=BODY, edgecolor="none", zorder=0))
+    _draw_touching(axes, result, state, after)
+    covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
+    size = float(np.hypot(*extent(state)))
+    if factor == 1:
+        covered += [draw_ground(axes, *ground, 0.025 * size, GREY) for ground in ground_of(result, NEAR * size)]
+    unit = units_of(result.contact).length
+    frame_plan(axes, np.concatenate(covered), unit)
+    largest = with_unit(f"{float(np.hypot(*state.displacement.reshape(-1, 2).T).max()):.3g}", plain(unit))
+    scale = "displacements to scale" if factor == 1 else f"displacements × {factor:g}"
+    surfaces = "" if factor == 1 else "; rigid surfaces not drawn"
+    title = f"deformed shape, {scale} (largest {largest})\nthick: in contact; dashed: undeformed{surfaces}"
+    axes.set_title(title, loc="left", fontsize=10)
+
+
+def _draw_touching(axes: Axes, result: Result, state: BoundaryState, after: Array) -> None:
+    """Draw the half elements with pressure at both nodes, of curves (m, 9, 2), as thick lines with dots."""
+    carrying = {tuple(point) for point in result.contact.points[result.touching].tolist()}
+    touching = np.array([[tuple(node) in carrying for node in element] for element in state.points.tolist()])
+    halves = [*after[touching[:, 0] & touching[:, 1], :5], *after[touching[:, 1] & touching[:, 2], 4:]]
+    axes.add_collection(LineCollection(halves, colors=VERMILION, linewidths=3.5, capstyle="round", zorder=4))
+    axes.scatter(*after[:, ::4][touching].T, s=10, color=VERMILION, zorder=4)
+
+
+def extent(state: BoundaryState) -> tuple[float, float]:
+    """Width and height of the body."""
+    width, height = np.ptp(state.points.reshape(-1, 2), axis=0)
+    return float(width), float(height)
+
+
+def outline_of(state: BoundaryState, curves: Array) -> Path:
+    """Join curves (m, c, 2) to one path of closed loops; holes run the other way round and so stay empty."""
+    loops = (np.vstack([loop[:, :-1].reshape(-1, 2), loop[:1, 0]]) for loop in loops_of(state, curves))
+    return Path.make_compound_path(*(Path(loop, closed=True) for loop in loops))
+
+
+def loops_of(state: BoundaryState, curves: Array) -> list[Array]:
+    """Split curves (m, c, 2) where one loop of elements ends and the next begins."""
+    breaks = (state.points[1:, 0] != state.points[:-1, 2]).any(axis=1)
+    return np.split(curves, np.flatnonzero(breaks) + 1)
+
+
+def ground_of(result: Result, near: float) -> Iterator[tuple[Array, Array]]:
+    """Lines (j, 2) of rigid surface, with normals, no farther than `near` from the deformed body."""
+    contact = result.contact
+    moved = contact.tools.motions @ (contact.tools.amplitudes @ result.solution.rigid_amplitudes)
+    feet = contact.points - (contact.initial_gap + moved)[:, None] * contact.normals
+    shown = result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes) <= near
+    for piece in pieces_of(contact):
+        for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
+            if shown[stretch[0]] and len(stretch) > 1:
+                yield feet[stretch], contact.normals[stretch]
+
+
+def _magnification(state: BoundaryState) -> float:
+    """Choose 1, 2 or 5 times a power of ten so that the largest displacement can be seen."""
+    largest = float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
+    size = float(np.hypot(*extent(state)))
+    if largest == 0 or largest >= MAGNIFIED * size / 2:
+        return 1.0
+    wanted = MAGNIFIED * size / largest
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step for step in (1, 2, 5) if step * power <= wanted) * power)

@@ -6,22 +6,12 @@ from matplotlib.figure import Figure
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.modelling.gap_design.designed_gap import GapDesign
-from bemcontact.report.figures.course import CYCLE
-from bemcontact.report.figures.page import GREY, labelled, new_page, plain
+from bemcontact.report.figures.page import CYCLE, GREY, labelled, new_page, plain
 from bemcontact.report.formatting import units_of
 
 
 def figure_of_design(design: GapDesign) -> Figure:
-    """Draw the pressure of all load states without and with the profile, and the profile below, over arc length.
-
-    Parameters
-    ----------
-    design : GapDesign
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw the pressure of all load states without and with the profile, and the profile, over arc length."""
     figure = new_page(6.4, 6.2)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
     draw_relief(below, design)
@@ -31,14 +21,9 @@ def figure_of_design(design: GapDesign) -> Figure:
 
 
 def draw_relieved_pressure(axes: Axes, design: GapDesign) -> None:
-    """Draw pressure over arc length, dashed without and full with the profile.
+    """Draw pressure over arc length, dashed without and solid with the profile.
 
-    A pressure without the profile of more than three times the peak with it runs out of the picture, and is told.
-
-    Parameters
-    ----------
-    axes : to draw into
-    design : GapDesign
+    The frame ends at three times the peak with the profile; a text gives a larger peak without it.
     """
     at, arc = _points(design)
     for number, (before, after) in enumerate(zip(design.before, design.after, strict=True)):
@@ -56,13 +41,7 @@ def draw_relieved_pressure(axes: Axes, design: GapDesign) -> None:
 
 
 def draw_relief(axes: Axes, design: GapDesign) -> None:
-    """Draw the profile over arc length.
-
-    Parameters
-    ----------
-    axes : to draw into
-    design : GapDesign
-    """
+    """Draw the profile over arc length."""
     at, arc = _points(design)
     axes.fill_between(arc, design.profile[at], 0.0, color=GREY, alpha=0.25, linewidth=0)
     axes.plot(arc, design.profile[at], color=GREY, marker=".", linewidth=1.5)

@@ -1,18 +1,25 @@
-"""The page that pictures stand on: colours, formats, axes with units."""
+"""What all pictures share: colours, pieces of the contact zones, axes with units, and files."""
 
+import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from textwrap import wrap
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, IntArray
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.files import output
+from bemcontact.options import FormulationName
 
 FORMATS = (".png", ".svg", ".pdf")
 """Endings of the files that can be written."""
@@ -26,15 +33,23 @@ BLACK, BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
 )  # fmt: skip
 GREY, BODY = "#7d838c", "#e8ecf2"
 
+COLOURS = {
+    FormulationName.QP1: VERMILION,
+    FormulationName.QP2: BLUE,
+    FormulationName.QP3: BLACK,
+    FormulationName.COMPLEMENTARITY: GREY,
+}
+CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY)
+
 
 def ensure_known_format(path: Path) -> None:
     """Raise `ValueError` unless the file name ends in one of `FORMATS`."""
     if path.suffix.lower() not in FORMATS:
-        raise ValueError(f"{path}: a picture is written as {', '.join(FORMATS)}; end the file name in one of them")
+        raise ValueError(f"{path}: the file name of a picture must end in {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure in the format that the file name's ending says, whole or not at all; the same each time."""
+    """Write a figure in the format of the file name's ending; the bytes depend on the figure alone."""
     ensure_known_format(path)
     ending = path.suffix.lower()[1:]
     undated = {DATES[ending]: None} if ending in DATES else {}
@@ -44,7 +59,7 @@ def save(figure: Figure, path: Path) -> None:
 
 @contextmanager
 def without_glyph_warnings() -> Iterator[None]:
-    """Draw a box for a letter that the font lacks, and say nothing."""
+    """Suppress the warning on a letter that the font lacks; a box is drawn for it."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph", UserWarning)
         yield
@@ -58,17 +73,17 @@ def new_page(width: float, height: float) -> Figure:
 
 
 def plain(text: str) -> str:
-    """Take away the meaning of what matplotlib would read as mathematics."""
+    """Escape what matplotlib would read as mathematics."""
     return text.replace("\\", r"\\").replace("$", r"\$") if "$" in text else text
 
 
 def wrapped(text: str, columns: int) -> str:
-    """Break a user's text into three lines of so many letters at most, and take the meaning of mathematics away."""
+    """Break a user's text into at most three lines of so many letters, and escape mathematics."""
     return plain("\n".join(wrap(text, columns, max_lines=3, placeholder=" …")))
 
 
 def shortened(text: str, columns: int) -> str:
-    """Cut a user's text to so many letters, and take the meaning of mathematics away."""
+    """Cut a user's text to so many letters, and escape mathematics."""
     return plain(text if len(text) <= columns else f"{text[: columns - 1]}…")
 
 
@@ -78,7 +93,7 @@ def labelled(quantity: str, unit: str) -> str:
 
 
 def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
-    """Show all drawn points (k, 2) of a plan with some air around them, more around slender ones; one scale."""
+    """Set limits, aspect and labels of a plan so that it shows all drawn points (k, 2) with a margin."""
     low, high = drawn.min(axis=0), drawn.max(axis=0)
     longest = float((high - low).max())
     air = longest * (0.12 if (high - low).min() < longest / 3 else 0.06)
@@ -88,3 +103,110 @@ def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
     axes.set_xlabel(labelled("x", unit))
     axes.set_ylabel(labelled("y", unit))
     axes.spines[["top", "right"]].set_visible(False)
+
+
+PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece:
+    """An unbroken piece of boundary in one contact zone, with its points in order."""
+
+    label: str
+    order: int
+    index: IntArray
+
+    @property
+    def colour(self) -> str:
+        """Colour of the piece, one of six."""
+        return PIECE_COLOURS[self.order % len(PIECE_COLOURS)]
+
+    @property
+    def dashes(self) -> str:
+        """Line style; only the first piece has a solid line."""
+        return "dashed" if self.order else "solid"
+
+
+def pieces_of(contact: CondensedContact) -> Iterator[Piece]:
+    """List the unbroken pieces of all contact zones, in the order of the contact points."""
+    for order, run in enumerate(np.unique(contact.run)):
+        index = contact.points_of_run(run)
+        zone = int(contact.zone[index[0]])
+        label = shortened(contact.zone_names[zone], 24)
+        if len(np.unique(contact.run[contact.zone == zone])) > 1:
+            label += f" ({contact.points[index[0], 0]:.3g}, {contact.points[index[0], 1]:.3g}) on"
+        yield Piece(label=label, order=order, index=index)
+
+
+INK = "#e8eaed"
+"""Colour on a dark page of what is black on paper."""
+
+IN_THE_DARK = {
+    "#000000": INK,
+    BLACK: INK,
+    "#ffffff": "#16191d",
+    BODY: "#2a3038",
+    GREY: "#9aa2ac",
+    BLUE: "#4ea8de",
+    GREEN: "#2fc08f",
+    VERMILION: "#f0803c",
+    PURPLE: "#dd9cc0",
+}
+"""Colour on paper -> colour on a dark page, for those that would not be seen there."""
+
+
+def vector_graphic(figure: Figure) -> bytes:
+    """Write a figure as transparent SVG for light and dark pages; the bytes depend on the figure alone.
+
+    Matplotlib writes colours as style attributes, which a style sheet can overrule. The style sheet added here does so
+    on dark pages.
+    """
+    stream = BytesIO()
+    with rc_context({"svg.hashsalt": "bemcontact", "svg.fonttype": "path"}), without_glyph_warnings():
+        figure.savefig(
+            stream,
+            format="svg",
+            transparent=True,
+            bbox_inches="tight",
+            pad_inches=0.08,
+            metadata={DATES["svg"]: None, "Creator": None, "Format": None, "Type": None},
+        )
+    written = re.sub(r' d="[^"]*"', _rounded, stream.getvalue().decode())
+    return written.replace("</style>", f"{_style_sheet()}</style>", 1).encode()
+
+
+def _style_sheet() -> str:
+    """Style sheet with the colours for a dark page; text without a colour takes that of the whole picture."""
+    rules = [
+        f'[style*="{kind}: {paper}"] {{ {kind}: {dark} !important }}'
+        for paper, dark in IN_THE_DARK.items()
+        for kind in ("fill", "stroke")
+    ]
+    dark = "\n".join((f"svg {{ fill: {INK} }}", *rules))
+    return f"\nsvg {{ color-scheme: light dark }}\n@media screen and (prefers-color-scheme: dark) {{\n{dark}\n}}\n"
+
+
+def _rounded(path: re.Match[str]) -> str:
+    """Round the points of a path to 0.01 typographic points, and remove needless blanks."""
+    rounded = re.sub(r"-?\d+\.\d+", lambda number: f"{round(float(number[0]), 2) + 0.0:.8g}", path[0])
+    return re.sub(r"\s*([MLQCz])\s*", r"\1", rounded)
+
+
+def show_decades(axes: Axes) -> None:
+    """Make the vertical axis logarithmic with a few decades; a text says so if all values are zero."""
+    if not any((np.asarray(line.get_ydata(), float) > 0).any() for line in axes.lines):
+        axes.text(0.5, 0.5, "zero, to the last digit", transform=axes.transAxes, ha="center", color=BLACK)
+        return
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(numticks=7))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.0e}"))
+
+
+def legend_below(axes: Axes) -> None:
+    """Put the legend below the axes, where it covers nothing."""
+    axes.spines[["top", "right"]].set_visible(False)
+    handles, labels = axes.get_legend_handles_labels()
+    if handles:
+        columns = 3 if max(map(len, labels)) < 14 else 2 if max(map(len, labels)) < 30 else 1
+        axes.legend(loc="upper center", bbox_to_anchor=(0.45, -0.2), ncols=columns, frameon=False, fontsize=8.5)

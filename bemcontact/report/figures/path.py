@@ -8,8 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.report.figures.course import CYCLE
-from bemcontact.report.figures.page import BLACK, labelled, new_page, plain, shortened
+from bemcontact.report.figures.page import BLACK, CYCLE, labelled, new_page, plain, shortened
 from bemcontact.report.formatting import per_thickness, units_of
 
 WIDTH, HEIGHT = 5.6, 2.5
@@ -18,71 +17,61 @@ SHADE = 0.15
 """Opacity of stretches in contact."""
 
 
-def figure_of_path(found: ParameterPath) -> Figure:
-    """Make a page of pictures one below the other, over the same parameter.
-
-    Parameters
-    ----------
-    found : ParameterPath
-
-    Returns
-    -------
-    Figure
-        Peak pressure, resultants of all zones, and for each zone the ends of contact; dots are breakpoints.
-    """
-    zones = found.contact.zone_names
+def figure_of_path(path: ParameterPath) -> Figure:
+    """Draw peak pressure, resultants and ends of contact of each zone over the parameter; dots are breakpoints."""
+    zones = path.contact.zone_names
     figure = new_page(WIDTH, HEIGHT * (2 + len(zones)))
     peaks, forces, *ends = figure.subplots(2 + len(zones), 1, sharex=True)
-    draw_peaks(peaks, found)
-    draw_resultants(forces, found)
+    draw_peaks(peaks, path)
+    draw_resultants(forces, path)
     for axes, zone in zip(ends, zones, strict=True):
-        draw_interval_ends(axes, found, zone)
+        draw_interval_ends(axes, path, zone)
     for axes in (peaks, forces, *ends):
         axes.spines[["top", "right"]].set_visible(False)
-    ends[-1].set_xlabel(shortened(found.key, 60))
-    peaks.set_title(shortened(found.contact.name, 60), fontsize=11)
+    ends[-1].set_xlabel(shortened(path.key, 60))
+    peaks.set_title(shortened(path.contact.name, 60), fontsize=11)
     return figure
 
 
-def draw_peaks(axes: Axes, found: ParameterPath) -> None:
+def draw_peaks(axes: Axes, path: ParameterPath) -> None:
     """Draw the largest pressure over the parameter, with a dot at each breakpoint."""
-    _draw_line(axes, found, [state.peak for state in found.states], BLACK, "")
-    axes.set_ylabel(labelled("peak pressure", units_of(found.contact).stress))
+    _draw_line(axes, path, [state.peak for state in path.states], BLACK, "")
+    axes.set_ylabel(labelled("peak pressure", units_of(path.contact).stress))
     axes.set_ylim(bottom=0)
 
 
-def draw_resultants(axes: Axes, found: ParameterPath) -> None:
+def draw_resultants(axes: Axes, path: ParameterPath) -> None:
     """Draw the size of the force of each rigid surface on the body over the parameter."""
-    zones = found.contact.zone_names
+    zones = path.contact.zone_names
     for order, zone in enumerate(zones):
-        sizes = [float(np.hypot(*state.resultant[order])) for state in found.states]
-        _draw_line(axes, found, sizes, CYCLE[order % len(CYCLE)], plain(zone))
-    axes.set_ylabel(labelled("resultant", per_thickness(units_of(found.contact))))
+        sizes = [float(np.hypot(*state.resultant[order])) for state in path.states]
+        _draw_line(axes, path, sizes, CYCLE[order % len(CYCLE)], plain(zone))
+    axes.set_ylabel(labelled("resultant", per_thickness(units_of(path.contact))))
     axes.set_ylim(bottom=0)
     if len(zones) > 1:
         axes.legend(frameon=False, fontsize=8.5)
 
 
-def draw_interval_ends(axes: Axes, found: ParameterPath, zone: str) -> None:
+def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
     """Draw where a zone is in contact, by arc position, over the parameter."""
-    colour = CYCLE[found.contact.zone_names.index(zone) % len(CYCLE)]
-    for values, starts, ends in _bands(found.states, zone):
+    colour = CYCLE[path.contact.zone_names.index(zone) % len(CYCLE)]
+    for values, starts, ends in _bands(path.states, zone):
         axes.fill_between(values, starts, ends, color=colour, alpha=SHADE, linewidth=0)
         for edge in (starts, ends):
             axes.plot(values, edge, color=colour, linewidth=1.4)
-    axes.set_ylabel(labelled(f"contact of {shortened(zone, 16)}", units_of(found.contact).length))
+    axes.set_ylabel(labelled(f"contact of {shortened(zone, 16)}", units_of(path.contact).length))
 
 
-def _draw_line(axes: Axes, found: ParameterPath, heights: list[float], colour: str, label: str) -> None:
+def _draw_line(axes: Axes, path: ParameterPath, heights: list[float], colour: str, label: str) -> None:
     """Draw a quantity with a dot at each breakpoint."""
-    values = [state.value for state in found.states]
+    values = [state.value for state in path.states]
     axes.plot(values, heights, color=colour, linewidth=1.4, label=label)
-    dots = [(value, y) for state, value, y in zip(found.states, values, heights, strict=True) if state.breakpoint]
+    dots = [(value, y) for state, value, y in zip(path.states, values, heights, strict=True) if state.breakpoint]
     axes.plot(*zip(*dots, strict=True), color=colour, linestyle="none", marker="o", markersize=2.6)
 
 
 def _bands(states: tuple[PathState, ...], zone: str) -> Iterator[tuple[list[float], list[float], list[float]]]:
-    """Values, starts and ends of each interval of a zone for as long as their number stays the same."""
+    """Values, starts and ends of each interval of a zone while the number of intervals stays the same."""
     for count, group in groupby(states, key=lambda state: len(state.ends(zone)[0])):
         together = [*group]
         for i in range(count):

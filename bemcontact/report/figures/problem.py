@@ -1,4 +1,4 @@
-"""The picture of what is asked: geometry, mesh, conditions, loads, rigid surfaces."""
+"""The picture of a problem: geometry, mesh, conditions, loads, rigid surfaces and tools."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -28,7 +28,6 @@ from bemcontact.problem import (
     Problem,
     Spline,
 )
-from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
 from bemcontact.report.figures.page import (
     BLACK,
     BLUE,
@@ -42,18 +41,18 @@ from bemcontact.report.figures.page import (
     without_glyph_warnings,
     wrapped,
 )
-from bemcontact.report.figures.tool_marks import draw_tools
-from bemcontact.report.formatting import prescribed, volume_loads
+from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
+from bemcontact.report.formatting import prescribed, tool_in_words, volume_loads
 
 Displacement = Callable[[Array], Array]
 """Points (k, 2) of the undeformed boundary -> how far (k, 2) they are displaced."""
 
 ROLES = {"may touch": VERMILION, "held": BLUE, "loaded": GREEN, "free": BLACK}
-"""What an edge is for, and its colour."""
+"""Role of an edge -> colour."""
 ALONG = 0.3
 """Largest share of a traction across the edge with which it is drawn as one along the edge."""
 FREE = Condition(traction=AxisFields(x=Field(constant=0.0)))
-"""What an edge without a condition means."""
+"""Condition of an edge without a stated one."""
 FLUSH = 1e-6
 """Gap over the body's size between a plane and an edge that lies in it."""
 SHORT = 0.2
@@ -73,20 +72,13 @@ def figure_of_problem(problem: Problem, mesh: Mesh) -> Figure:
 
 
 def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
-    """Draw the body with its mesh, conditions and rigid surfaces, each edge with its name and what it is told.
-
-    Parameters
-    ----------
-    axes : to draw into; limits and aspect are set
-    problem : what is asked
-    mesh : of this problem
-    """
+    """Draw the body with its mesh, conditions and rigid surfaces; each edge has its name and conditions."""
     _fill_body(axes, problem)
     _draw_mesh(axes, problem, mesh)
     outline = [edge.points(np.linspace(0, 1, 60)) for edge in problem.boundary.edges]
-    marks = [*draw_supports(axes, problem), *draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
+    symbols = [*draw_supports(axes, problem), *draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
     tools = [*draw_tools(axes, problem)]
-    drawn = np.concatenate([*outline, *marks, *(covered for covered, _ in tools)])
+    drawn = np.concatenate([*outline, *symbols, *(covered for covered, _ in tools)])
     frame_plan(axes, drawn, problem.units.length)
     _draw_legend(axes, problem)
     names = [_name(problem, edge) for edge in problem.boundary.edges]
@@ -99,7 +91,7 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
 
 
 def role(problem: Problem, edge: str) -> str:
-    """Say what an edge is for: one of `ROLES`."""
+    """Role of an edge: one of `ROLES`."""
     if any(edge in zone.edges for zone in problem.contact_zones.values()):
         return "may touch"
     conditions = [condition for _, condition in _acting(problem, edge)]
@@ -109,7 +101,7 @@ def role(problem: Problem, edge: str) -> str:
 
 
 def _acting(problem: Problem, edge: str) -> Iterator[tuple[float, Condition]]:
-    """What is prescribed on an edge, by the problem itself and by the load cases that act, each with its factor."""
+    """Conditions on an edge with their factors: those of the problem and of the load cases that act."""
     if edge in problem.conditions:
         yield 1.0, problem.conditions[edge]
     for case, factor in problem.factors().items():
@@ -177,7 +169,7 @@ def draw_supports(axes: Axes, problem: Problem, displacement: Displacement = np.
 def draw_loads(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:
     """Draw prescribed tractions as arrows to one scale; they end on the body if they push, start there if they pull.
 
-    Those along an edge stand beside it, one after the other.
+    Tractions along an edge are drawn beside it.
     """
     size = problem.boundary.size
     across = [_spread(edge, size, 20) for edge in problem.boundary.edges]
@@ -212,7 +204,7 @@ def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
 
 
 def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
-    """Draw the rigid surfaces with their normals, as far as they face the body."""
+    """Draw the rigid surfaces opposite the body with their normals."""
     size = problem.boundary.size
     for zone in problem.contact_zones.values():
         if isinstance(zone.surface, DeflectedContour):
@@ -227,7 +219,7 @@ def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
 
 
 def _draw_contours(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
-    """Draw each edge that a deflected contour faces once more, as far away from its place as the gap is."""
+    """Draw each edge opposite a deflected contour again, displaced by the gap."""
     size = problem.boundary.size
     for name, (feet, normals) in contours(problem, mesh).items():
         for edge in problem.contact_zones[name].edges:
@@ -244,9 +236,9 @@ def _facing(problem: Problem, zone: ContactZone) -> Array:
 
 
 def surface_line(problem: Problem, zone: ContactZone, overhang: float) -> tuple[Array, Array]:
-    """Points (k, 2) of the rigid surface of a zone, in order, some way beyond its ends, and the unit normals there.
+    """Points (k, 2) of the rigid surface of a zone, in order, with an overhang at its ends, and unit normals (k, 2).
 
-    A plane ends where the boundary beside the zone lies in it: it is the face of a punch.
+    A plane that is the face of a punch has no overhang: it ends where the boundary beside the zone lies in it.
     """
     surface, facing, size = zone.surface, _facing(problem, zone), problem.boundary.size
     assert not isinstance(surface, DeflectedContour)
@@ -317,9 +309,59 @@ def _symbols(text: str) -> str:
 
 
 def _draw_legend(axes: Axes, problem: Problem) -> None:
-    """Explain the colours that occur, and name the loads on the volume."""
+    """Explain the colours in the picture, and list the loads on the volume."""
     occurring = {role(problem, edge.name) for edge in problem.boundary.edges}
     handles = [Line2D([], [], color=c, linewidth=2.5, label=name) for name, c in ROLES.items() if name in occurring]
     handles.append(Line2D([], [], color=GREY, linewidth=1.3, label="rigid surface, normal"))
     handles += [Line2D([], [], linestyle="none", label=load) for load in volume_loads(problem)]
     axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+
+
+REACH = 0.13
+"""Length of an arrow over the size of the body."""
+
+
+def draw_tools(axes: Axes, problem: Problem) -> Iterator[tuple[Array, Name]]:
+    """Draw arrows of the force and of the displacement of each tool, with the load cases that act.
+
+    An arrow ends at the point of the tool, or at the middle of its first surface, if it pushes; it starts there if it
+    pulls. Yield points (k, 2) that the arrows cover, and the text to be placed beside them.
+    """
+    for tool in problem.tools:
+        place, normal = _place(problem, tool)
+        action = problem.tool_action(tool)
+        covered = [place[None]]
+        for components, colour in ((action.position, BLUE), (action.load, GREEN)):
+            if not any(components[:2]):
+                continue
+            arrow = REACH * problem.boundary.size * np.array(components[:2]) / np.linalg.norm(components[:2])
+            tail = place - arrow if arrow @ normal > 0 else place
+            covered.append(draw_arrows(axes, tail[None], arrow[None], colour))
+        lines = tool_in_words(action, problem.units).split("; ")
+        yield np.concatenate(covered), _tool_name("\n".join([wrapped(tool, 28), *lines]), any(action.free), covered[-1])
+
+
+def _place(problem: Problem, tool: str) -> tuple[Array, Array]:
+    """Position (2,) of the force on a tool, and the normal (2,) of its surface into the body."""
+    stated = problem.tools[tool]
+    zone = problem.contact_zones[stated.zones[0]]
+    facing = np.concatenate([problem.edge(name).points(np.linspace(0, 1, 61)) for name in zone.edges])
+    middle = facing[len(facing) // 2]
+    if isinstance(zone.surface, DeflectedContour):
+        foot, normal = middle, np.array(zone.surface.unit_direction)
+    else:
+        gap, normals = zone.surface.closest(middle[None])
+        foot, normal = middle - gap[0] * normals[0], normals[0]
+    return (foot if stated.point is None else np.array(stated.point)), normal
+
+
+def _tool_name(text: str, loaded: bool, covered: Array) -> Name:
+    """The text of a tool, around the arrow that is drawn last."""
+    angle = np.radians(45 * np.arange(8))
+    around = np.column_stack([np.cos(angle), np.sin(angle)])
+    return Name(
+        text=text,
+        colour=GREEN if loaded else BLUE,
+        anchors=np.repeat(covered, 8, axis=0),
+        directions=np.tile(around, (len(covered), 1)),
+    )

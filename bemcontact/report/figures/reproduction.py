@@ -1,4 +1,4 @@
-"""The figures of the paper, drawn anew: pressure over the coordinate that it uses, beside what is known."""
+"""The figures of the paper drawn again: pressure over the paper's coordinate beside reference values."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -7,17 +7,27 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.reproduction import PaperStudy, Reproduction, Run, positions
 from bemcontact.problem import Table
 from bemcontact.reference import Expected
-from bemcontact.report.figures.course import legend_below
-from bemcontact.report.figures.page import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, labelled, new_page
+from bemcontact.report.figures.page import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    VERMILION,
+    labelled,
+    legend_below,
+    new_page,
+)
 from bemcontact.report.figures.study import WIDTH, plan_of
 from bemcontact.report.formatting import number
 
 MESHES = (BLUE, VERMILION, GREEN)
-"""Of the problem as stated, the coarsest first, in turn."""
-MARKS = ("s", "D", "^")
-"""Of the variants, in turn."""
+"""Colours of the meshes of the problem as stated, the coarsest first."""
+MARKERS = ("s", "D", "^")
+"""Markers of the variants."""
 SINGLE = ("dotted", (0, (5, 2)), (0, (6, 1.5, 1.5, 1.5)), (0, (9, 2)))
-"""Of places and sizes that references state, in turn."""
+"""Line styles of single values of references."""
 ABOVE = 1.12
 """Height of the frame over the largest pressure in it."""
 WINDOW_HEIGHT = 2.6
@@ -25,17 +35,7 @@ WINDOW_HEIGHT = 2.6
 
 
 def figures_of_reproduction(reproduction: Reproduction) -> dict[str, Figure]:
-    """Make all pictures of a reproduction.
-
-    Parameters
-    ----------
-    reproduction : of any of the problems
-
-    Returns
-    -------
-    dict
-        Name -> figure: "MODEL-pressure", which is the figure of the paper, and "MODEL-problem", with - for _ in MODEL.
-    """
+    """Make the pictures MODEL-pressure, the figure of the paper, and MODEL-problem, with - for _ in MODEL."""
     figures = dict[str, Figure]()
     for item in reproduction.problems:
         name = item.paper.model.replace("_", "-")
@@ -45,7 +45,7 @@ def figures_of_reproduction(reproduction: Reproduction) -> dict[str, Figure]:
 
 
 def _figure_of(item: PaperStudy) -> Figure:
-    """The pressure, and below it the same in the frame that the paper has, if that is a narrow one."""
+    """Draw the pressure, and below it the pressure in the frame of the paper's figure if that is a narrow one."""
     window = WINDOW_HEIGHT if item.paper.frame else 0.0
     figure = new_page(WIDTH + 0.6, 3.9 + window)
     figure.set_layout_engine("none")
@@ -67,16 +67,10 @@ def _figure_of(item: PaperStudy) -> Figure:
 
 
 def draw_against(axes: Axes, item: PaperStudy) -> None:
-    """Draw pressure over the coordinate of the paper: variants as marks, meshes as lines, references in purple or grey.
-
-    Parameters
-    ----------
-    axes : to draw into
-    item : a problem of the paper; answers without contact are left out
-    """
+    """Draw pressure over the paper's coordinate: variants as markers, meshes as lines, references in purple or gray."""
     for order, run in enumerate(run for run in item.variant_runs if run.level.answer.footprint.intervals):
         axes.plot(
-            *_curve(run, item), linestyle="none", marker=MARKS[order % len(MARKS)], markersize=5.5,
+            *_curve(run, item), linestyle="none", marker=MARKERS[order % len(MARKERS)], markersize=5.5,
             markerfacecolor="none", markeredgecolor=(GREEN, ORANGE)[order % 2], label=run.label, zorder=3,
         )  # fmt: skip
     for order, run in enumerate(item.meshes):
@@ -103,7 +97,7 @@ def _curve(run: Run, item: PaperStudy) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _draw_reference(axes: Axes, known: Expected, item: PaperStudy, singles: int) -> int:
-    """Draw what a reference says: a curve, points of a table, lines at single values; return how many lines so far."""
+    """Draw a reference: a curve, points, or lines at single values; return how many lines there are so far."""
     colour, beyond = (PURPLE, "") if known.in_range else (GREY, ", out of its range")
     stated = item.problem.reference[known.name]
     if isinstance(stated, Table):
@@ -118,8 +112,8 @@ def _draw_reference(axes: Axes, known: Expected, item: PaperStudy, singles: int)
         label = f"{known.name}{beyond}"
         axes.plot(here[order], known.pressure[order], color=colour, linewidth=1.4, linestyle=(0, (2.5, 2)), label=label)
     else:
-        told = ((known.peak, "peak", axes.axhline), (known.start, "start", axes.axvline))
-        for value, what, draw in told:
+        single_values = ((known.peak, "peak", axes.axhline), (known.start, "start", axes.axvline))
+        for value, what, draw in single_values:
             if value is not None:
                 label = f"{known.name}: {what} {number(value)}"
                 draw(value, color=colour, linewidth=1.3, linestyle=SINGLE[singles % len(SINGLE)], label=label)

@@ -1,15 +1,25 @@
-"""The page of an answer: its contact, pressure and gap along the contact zones, the deformed shape."""
+"""The page of a result or of several load cases: contact, pressure, gap, deformed shape, peaks."""
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.report.figures.contact import draw_contact
-from bemcontact.report.figures.page import BLACK, GREY, VERMILION, labelled, new_page, plain, wrapped
-from bemcontact.report.figures.pieces import pieces_of
-from bemcontact.report.figures.shape import draw_deformed, extent
+from bemcontact.report.figures.contact import draw_contact, draw_deformed, extent
+from bemcontact.report.figures.page import (
+    BLACK,
+    GREY,
+    PIECE_COLOURS,
+    VERMILION,
+    labelled,
+    new_page,
+    pieces_of,
+    plain,
+    shortened,
+    wrapped,
+)
 from bemcontact.report.formatting import number, units_of, with_unit
 
 CLOSED = 1e-9
@@ -64,10 +74,10 @@ def draw_gap(axes: Axes, result: Result) -> None:
     gap, scale = _gap(result), result.contact.scales.displacement
     _draw_along(axes, result, gap)
     axes.set_ylabel(labelled("gap", units_of(result.contact).length))
-    tell_closed(axes, float(np.abs(gap).max(initial=0.0)), scale)
+    label_closed(axes, float(np.abs(gap).max(initial=0.0)), scale)
 
 
-def tell_closed(axes: Axes, widest: float, scale: float) -> None:
+def label_closed(axes: Axes, widest: float, scale: float) -> None:
     """Write that all gaps are closed, and leave room, where the widest is round-off beside the scale."""
     if widest <= CLOSED * scale:
         axes.set_ylim(-0.1 * scale, scale)
@@ -102,3 +112,58 @@ def _draw_along(axes: Axes, result: Result, values: Array) -> None:
 def _gap(result: Result) -> Array:
     """Gap (n,) recomputed from the pressure."""
     return result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes)
+
+
+INCHES = 9
+DASHES = ("solid", "dashed", "dotted", "dashdot")
+"""Line styles of unbroken pieces of boundary."""
+
+
+def figure_of(results: Result | CaseResults) -> Figure:
+    """Compose the page of a result, or of the results of all load cases."""
+    return figure_of_result(results) if isinstance(results, Result) else figure_of_cases(results)
+
+
+def figure_of_cases(cases: CaseResults) -> Figure:
+    """Compose a page with the pressures and the peak pressures of all load cases."""
+    figure = new_page(INCHES, 6)
+    above, below = figure.subplots(2, 1, height_ratios=(3, 1))
+    for axes in (above, below):
+        axes.spines[["top", "right"]].set_visible(False)
+    draw_case_pressures(above, cases)
+    draw_case_peaks(below, cases)
+    verdict = "all certified" if cases.certified else "NOT all certified"
+    title = f"{wrapped(cases.name, 6 * INCHES)}: {verdict}"
+    figure.suptitle(title, x=0.01, ha="left", fontweight="bold", color=BLACK if cases.certified else VERMILION)
+    return figure
+
+
+def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
+    """Draw the contact pressure of each load case, per undeformed length, over the distance along each piece."""
+    first = next(iter(cases.results.values()))
+    for order, (name, result) in enumerate(cases.results.items()):
+        contact, colour = result.contact, PIECE_COLOURS[order % len(PIECE_COLOURS)]
+        width = 2.2 if order < len(PIECE_COLOURS) else 1.2
+        for piece in pieces_of(contact):
+            along, pressure = contact.arc_position[piece.index], result.solution.pressure[piece.index]
+            label, dashes = None if piece.order else shortened(name, 30), DASHES[piece.order % len(DASHES)]
+            axes.plot(along, pressure, color=colour, linestyle=dashes, linewidth=width, label=label)
+    labels = [f"{DASHES[piece.order % len(DASHES)]}: {piece.label}" for piece in pieces_of(first.contact)]
+    if len(labels) > 1:
+        axes.set_title("; ".join(labels), loc="left", fontsize=9, color=GREY)
+    axes.axhline(0, color=GREY, linewidth=0.8)
+    axes.set_xlabel(labelled("distance along the contact zone", units_of(first.contact).length))
+    axes.set_ylabel(labelled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
+    axes.legend(frameon=False, fontsize=8.5)
+
+
+def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
+    """Draw a bar for the peak pressure of each load case."""
+    first = next(iter(cases.results.values()))
+    peaks = [result.footprint.peak.pressure if result.footprint.peak else 0.0 for result in cases.results.values()]
+    colours = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
+    bars = axes.barh([shortened(name, 30) for name in cases.results], peaks, color=colours)
+    axes.bar_label(bars, fmt="%.5g", padding=3)
+    axes.margins(x=0.12)
+    axes.invert_yaxis()
+    axes.set_xlabel(labelled("peak pressure", units_of(first.contact).stress))

@@ -1,19 +1,23 @@
-"""All pictures of a study, in a size for pages and telephones."""
+"""Pictures of a study in a size for pages and telephones, of the iterations, and of convergence with the mesh."""
+
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, NullLocator
 
 from bemcontact.analysis.study import MeshLevel, Study
 from bemcontact.assessment.comparison import Contender
+from bemcontact.assessment.convergence import Convergence
 from bemcontact.bem import mesh
+from bemcontact.contact.solution import Trace
 from bemcontact.options import Weights
 from bemcontact.problem import Problem
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
-from bemcontact.report.figures.course import draw_convergence, draw_history
-from bemcontact.report.figures.page import new_page
+from bemcontact.report.figures.contact import draw_deformed
+from bemcontact.report.figures.page import BLACK, COLOURS, CYCLE, legend_below, new_page, plain, shortened, show_decades
 from bemcontact.report.figures.problem import draw_problem
-from bemcontact.report.figures.shape import draw_deformed
 
 WIDTH = 5.2
 """Inches of a picture: its text can be read on a telephone, and two stand side by side on a page."""
@@ -24,18 +28,11 @@ ROUND_OFF = 1e-12
 
 
 def figures_of(study: Study) -> dict[str, Figure]:
-    """Make all pictures of a study.
+    """Make all pictures of a study, by name; the finest mesh is drawn.
 
-    Parameters
-    ----------
-    study : on one mesh or several; the finest is drawn
-
-    Returns
-    -------
-    dict
-        Name -> figure: "problem" and "deformed" (of bodies), "pressure", "gap", "difference" (where there is any),
-        "history-qp1" and so on, with the weights if they are not tributary (of what was recorded), "convergence" (of
-        several meshes).
+    Names are "problem" and "deformed" (if a body is known), "pressure", "gap", "difference" (if there is any),
+    "history-qp1" and so on, with the weights if they are not tributary (if histories were recorded), and "convergence"
+    (of several meshes).
     """
     level, figures = study.finest, dict[str, Figure]()
     if study.problem is not None:
@@ -59,7 +56,7 @@ def figures_of(study: Study) -> dict[str, Figure]:
 
 
 def _recorded(level: MeshLevel) -> dict[str, list[Contender]]:
-    """The contenders whose solvers recorded how they got there, by formulation and weights."""
+    """Contenders with a recorded history, by formulation and weights."""
     groups = dict[str, list[Contender]]()
     for item in level.comparison.everyone:
         options = item.attempt.options
@@ -71,14 +68,14 @@ def _recorded(level: MeshLevel) -> dict[str, list[Contender]]:
 
 
 def _page(height: float) -> tuple[Figure, Axes]:
-    """Make a picture; it is cut to what is drawn when it is written, so that no layout has to be sought."""
+    """Make a picture without a layout engine; it is cut to its content when it is written."""
     figure = new_page(WIDTH, height)
     figure.set_layout_engine("none")
     return figure, figure.add_subplot()
 
 
 def plan_of(problem: Problem) -> Figure:
-    """Draw geometry, mesh and conditions, with the explanation of the colours below; slender bodies get more room."""
+    """Draw geometry, mesh and conditions, with the legend below; slender bodies get a wider picture."""
     built = mesh.build(problem)
     width, height = np.ptp(built.nodes, axis=0)
     figure = new_page(WIDE if width > SLENDER * height else 6.2, 1.6 + float(np.clip(4.8 * height / width, 3.2, 7.0)))
@@ -98,3 +95,68 @@ def plan_of(problem: Problem) -> Figure:
         fontsize=9,
     )
     return figure
+
+
+QUANTITY_DASHES = {"objective": "solid", "infeasibility": "dashed", "residual": "dotted"}
+
+FEW = 30
+"""Iterations that are few enough for a dot each."""
+BELOW_ZERO = -1e-11
+"""An objective below this is not zero to round-off."""
+
+
+def draw_history(axes: Axes, contenders: Sequence[Contender]) -> None:
+    """Draw the magnitude of each recorded quantity over the iterations of contenders of one formulation.
+
+    The objective is zero at the contact state (nearly so with other weights than tributary ones). Markers show where it
+    is negative. Contenders without a history are left out.
+    """
+    recorded = [item for item in contenders if item.assessment is not None and item.assessment.solution.history]
+    below_zero = False
+    for order, contender in enumerate(recorded):
+        alone = COLOURS[contender.attempt.options.formulation] if len(recorded) == 1 else None
+        colour = alone or CYCLE[order % len(CYCLE)]
+        for trace in contender.assessment.solution.history if contender.assessment else ():
+            label = trace.quantity if alone else plain(f"{contender.label}: {trace.quantity}")
+            below_zero |= _draw_trace(axes, trace, colour, label)
+    if below_zero:
+        axes.scatter([], [], s=16, marker="v", facecolors="white", edgecolors=BLACK, label="objective below zero")
+    show_decades(axes)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_xlabel("iteration")
+    axes.set_ylabel("size, free of units")
+    legend_below(axes)
+
+
+def _draw_trace(axes: Axes, trace: Trace, colour: str, label: str) -> bool:
+    """Draw the magnitude of one quantity; return whether it is an objective with negative values."""
+    values = np.array(trace.values)
+    iteration = trace.first + np.arange(len(values))
+    size = np.where(values != 0, np.abs(values), np.nan)
+    mark, dashes = "." if len(values) < FEW else "none", QUANTITY_DASHES[trace.quantity]
+    axes.plot(iteration, size, color=colour, linestyle=dashes, linewidth=1.4, marker=mark, label=label)
+    below = (values < BELOW_ZERO) & (trace.quantity == "objective")
+    axes.scatter(iteration[below], size[below], s=16, marker="v", facecolors="white", edgecolors=colour, zorder=3)
+    return bool(below.any())
+
+
+def draw_convergence(axes: Axes, convergence: Convergence) -> None:
+    """Draw the distance of each quantity from its limit over the refinement, with the observed order."""
+    refine = np.array(convergence.refine, float)
+    for order, item in enumerate(convergence.quantities):
+        if item.limit is None:
+            continue
+        distance = np.abs(np.array(item.values) - item.limit) / (abs(item.limit) or 1.0)
+        distance = np.where(distance > 0, distance, np.nan)
+        q = next((q for q in reversed(item.orders) if q is not None), None)
+        order_text = "" if q is None else f", order {q:.2g}"
+        colour = CYCLE[order % len(CYCLE)]
+        label = shortened(f"{item.name}{order_text}", 48)
+        axes.plot(refine, distance, color=colour, marker="o", markersize=5, linewidth=1.5, label=label)
+    axes.set_xscale("log")
+    show_decades(axes)
+    axes.set_xticks(refine, [f"{parts:g}" for parts in refine])
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlabel("parts into which each element is cut")
+    axes.set_ylabel("distance from the limit, relative")
+    legend_below(axes)

@@ -1,7 +1,8 @@
-"""The marks that engineers draw: hatched ground, rollers, arrows, names."""
+"""Hatched ground, rollers, arrows, and names placed where they cover least."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,10 +12,43 @@ from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.report.placement import Box, centred, least_crowded
 
 SYMBOL_REACH = 18.0
 """Half the length of a symbolic arrow, in pixels of the page."""
+
+
+class Box(NamedTuple):
+    """A rectangle on the page, in the page's unit of length."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+
+def centred(center: Array, size: tuple[float, float]) -> Box:
+    """Return the box of this size (width, height) around a centre (2,)."""
+    (x, y), (width, height) = center, size
+    return Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
+
+
+def overlap(a: Box, b: Box) -> float:
+    """Area that two boxes share."""
+    width = min(a.right, b.right) - max(a.left, b.left)
+    height = min(a.top, b.top) - max(a.bottom, b.bottom)
+    return max(width, 0.0) * max(height, 0.0)
+
+
+def crowd(box: Box, taken: Sequence[Box], ink: Array) -> float:
+    """Measure what a box covers: the share covered by other boxes, plus one for each drawn point (k, 2) in it."""
+    area = (box.right - box.left) * (box.top - box.bottom)
+    inside = (ink > (box.left, box.bottom)) & (ink < (box.right, box.top))
+    return 10 * sum(overlap(box, other) for other in taken) / area + float(inside.all(axis=1).sum())
+
+
+def least_crowded(centers: Array, size: tuple[float, float], taken: Sequence[Box], ink: Array) -> int:
+    """Index of the first of the centers (c, 2) at which a label covers least of other labels and of ink (k, 2)."""
+    return int(np.argmin([crowd(centred(center, size), taken, ink) for center in centers]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,20 +62,9 @@ class Name:
 
 
 def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, colour: str) -> Array:
-    """Draw a rigid line and the hatching on the side away from its normals.
+    """Draw a rigid line (k, 2) and hatching of a depth on the side away from its unit normals (k, 2).
 
-    Parameters
-    ----------
-    axes : to draw into
-    points : (k, 2) of the line, in order
-    normals : (k, 2) unit normals, from the ground into the body
-    depth : of the hatching
-    colour : of line and hatching
-
-    Returns
-    -------
-    (k, 2) array
-        What the drawing covers.
+    Return points (k, 2) of what the drawing covers.
     """
     s = np.concatenate([[0.0], np.hypot(*np.diff(points, axis=0).T).cumsum()])
     at = np.linspace(0, s[-1], max(int(s[-1] / (0.6 * depth)), 3))
@@ -74,21 +97,9 @@ def draw_arrows(axes: Axes, tails: Array, vectors: Array, colour: str) -> Array:
 
 
 def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence[Array]) -> list[Box]:
-    """Write names where they cover least of each other and of what is drawn, on their own side of the boundary.
+    """Write names in order where they cover least, on their own side of the closed polygons (j, 2) of the boundary.
 
-    The limits and the place of the axes on the page must be settled before.
-
-    Parameters
-    ----------
-    axes : to write into
-    names : in the order of writing
-    drawn : (k, 2) points of what is drawn
-    loops : (j, 2) closed polygons of the boundary, which no name may be beyond
-
-    Returns
-    -------
-    list of Box
-        What the names cover on the page.
+    `drawn` are points (k, 2) of the drawing. The limits of the axes must be set. Return the boxes of the names.
     """
     _settle(axes)
     to_page, frame = axes.transData, axes.get_window_extent()
@@ -113,16 +124,7 @@ def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence
 
 
 def place_arrow(axes: Axes, symbol: str, vector: Array, drawn: Array, taken: Sequence[Box]) -> None:
-    """Draw an arrow of fixed length along a vector (2,), its symbol at the tail, where it covers least.
-
-    Parameters
-    ----------
-    axes : to draw into; limits and place must be settled
-    symbol : such as ``$g$``
-    vector : only its direction counts
-    drawn : (k, 2) points of what is drawn
-    taken : boxes that names cover
-    """
+    """Draw an arrow of fixed length along a vector (2,), with its symbol at the tail, where it covers least."""
     _settle(axes)
     reach = SYMBOL_REACH * vector / np.hypot(*vector)
     size = (2 * abs(float(reach[0])) + 22, 2 * abs(float(reach[1])) + 22)
@@ -140,7 +142,7 @@ def place_arrow(axes: Axes, symbol: str, vector: Array, drawn: Array, taken: Seq
 
 
 def _settle(axes: Axes) -> None:
-    """Lay the page out, so that places on it are known."""
+    """Lay out the page, so that positions on it are known."""
     page = axes.get_figure(root=True)
     if page is not None:
         page.draw_without_rendering()
@@ -169,13 +171,13 @@ def _places(anchors: Array, directions: Array, size: tuple[float, float]) -> tup
 
 
 def _holds(frame: Bbox, centers: Array, size: tuple[float, float]) -> BoolArray:
-    """Tell which texts lie inside a frame."""
+    """Whether each text lies inside a frame."""
     half = np.array(size) / 2
     return np.all((centers - half > frame.min) & (centers + half < frame.max), axis=1)
 
 
 def _beyond(walls: Sequence[Path], anchors: Array, centers: Array) -> BoolArray:
-    """Tell from which places (c, 2) one would have to cross a wall to reach the anchor (c, 2)."""
+    """Whether the way from each anchor (c, 2) to its place (c, 2) crosses a wall."""
     way = anchors + np.linspace(0.05, 1.0, 20)[:, None, None] * (centers - anchors)
     within = [wall.contains_points(way.reshape(-1, 2)).reshape(way.shape[:2]) for wall in walls]
     inside = np.logical_xor.reduce(within)
