@@ -105,36 +105,24 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Touched:
+class Stretch:
     """A stretch of contact on a run.
 
     Parameters
     ----------
-    start, end : positions [L]; on a closed run the end may lie beyond its length
+    start, end : positions [L]; on a closed run the end may be beyond its length
     start_free, end_free : whether contact ends there by itself, and not at the end of the run or at a corner
+    narrow : whether fewer points are in contact than one element has, so that the places of its ends are not known
     """
 
     start: float
     end: float
     start_free: bool
     end_free: bool
+    narrow: bool = False
 
 
-@dataclass(frozen=True, kw_only=True)
-class Stretch:
-    """A stretch of contact.
-
-    Parameters
-    ----------
-    touched : its ends on the run
-    narrow : whether fewer points touch than one element has, which does not tell where contact ends
-    """
-
-    touched: Touched
-    narrow: bool
-
-
-def stretches(
+def contact_stretches(
     run: ZoneRun, contact: CondensedContact, solution: ContactSolution, intervals: Sequence[ContactInterval]
 ) -> Iterator[Stretch]:
     """List the stretches of contact on a run.
@@ -162,8 +150,8 @@ def stretches(
         corners = first < last  # a single point at a corner says nothing of either side of it
         start, start_free = _end(run, start_arc, arcs[first], 0.0 if first == 0 else None, corners)
         end, end_free = _end(run, end_arc, arcs[last], run.length if last == len(arcs) - 1 else None, corners)
-        touched = Touched(start=start, end=end, start_free=start_free, end_free=end_free)
-        yield Stretch(touched=touched, narrow=last - first < POINTS_OF_ELEMENT - 1)
+        narrow = last - first < POINTS_OF_ELEMENT - 1
+        yield Stretch(start=start, end=end, start_free=start_free, end_free=end_free, narrow=narrow)
 
 
 def _points(run: ZoneRun, contact: CondensedContact, solution: ContactSolution) -> tuple[Array, BoolArray]:

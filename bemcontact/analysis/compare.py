@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Unpack
 
-from bemcontact.adaptivity.mesh_fit import MeshFit
+from bemcontact.adaptivity.fitting import MeshFit
 from bemcontact.analysis.solve import assessed, condensation_of, fitted_to_contact
 from bemcontact.analysis.stopwatch import Progress, Stopwatch
 from bemcontact.analysis.study import MeshLevel, Settings, Study

@@ -4,8 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Unpack
 
-from bemcontact.adaptivity.fitting import fitted
-from bemcontact.adaptivity.mesh_fit import MeshFit
+from bemcontact.adaptivity.fitting import MeshFit, fitted
 from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.stopwatch import Stopwatch

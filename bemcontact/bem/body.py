@@ -8,10 +8,9 @@ import numpy as np
 from scipy.optimize import linprog, nnls
 
 from bemcontact.arrays import Array
-from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.loading import Loading, case_loadings, combined, particular_solution, permanent_loading
-from bemcontact.bem.mesh import Mesh, build
+from bemcontact.bem.mesh import BoundaryValues, Mesh, boundary_values, build
 from bemcontact.bem.rigid_motions import (
     BODY,
     UNSEEN,
@@ -23,7 +22,7 @@ from bemcontact.bem.rigid_motions import (
     placed_tools,
 )
 from bemcontact.bem.system import System, solve
-from bemcontact.contact.tools import BALANCED, Pinned
+from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour

@@ -10,15 +10,14 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, ensure_held
-from bemcontact.bem.boundary_values import BoundaryState
+from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.rigid_motions import (
     all_rigid_motions,
 )
 from bemcontact.bem.system import System, solve
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
-from bemcontact.contact.load_cases import LoadCases
-from bemcontact.contact.tools import Tools
+from bemcontact.contact.load_cases import LoadCases, Tools
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,8 +10,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.bem.boundary_values import BoundaryValues
-from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Closest, DeflectedContour, RigidSurface
 

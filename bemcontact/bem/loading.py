@@ -12,14 +12,12 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.bem import reference_element
-from bemcontact.bem.boundary_values import BoundaryValues, applied_traction, boundary_values
-from bemcontact.bem.mesh import Mesh, along_curve
+from bemcontact.bem.mesh import BoundaryValues, Mesh, along_curve, applied_traction, boundary_values
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.errors import ProblemError
 from bemcontact.problem.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
 from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.material import Material
-from bemcontact.problem.problem import Problem
+from bemcontact.problem.problem import Material, Problem
 
 EXACT_ORDER = 6
 """Gauss points that integrate x² y dx exactly along a quadratic element."""

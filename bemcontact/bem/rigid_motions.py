@@ -68,7 +68,7 @@ class RigidMotions:
             return f"translation along ({a / length:.4g}, {b / length:.4g})"
         pole = self.center + self.radius / c * np.array([-b, a])
         x, y = np.where(abs(pole) > 1e-9 * self.radius, pole, 0.0)
-        sense = "anticlockwise" if c > 0 else "clockwise"
+        sense = "counterclockwise" if c > 0 else "clockwise"
         return f"rotation {sense} about ({x:.4g}, {y:.4g})"
 
 

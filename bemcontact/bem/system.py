@@ -17,15 +17,14 @@ from scipy import sparse
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, reference_element
-from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.influence import Block, Collocation, Influence
 from bemcontact.bem.loading import Loading
-from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
-from bemcontact.problem.material import Material
+from bemcontact.problem.problem import Material
 
 OFFSET = 2 / 3
 """|ξ| of the collocation points inside the two elements at a node where both prescribe the displacement."""

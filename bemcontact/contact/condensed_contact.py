@@ -19,10 +19,15 @@ from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
 from bemcontact.contact import archive
-from bemcontact.contact.free_motions import MotionAlgebra, StiffnessRows, fix_gauge, stiffness_rows
-from bemcontact.contact.load_cases import Change, LoadCases
-from bemcontact.contact.scales import ContactScales, typical_scales
-from bemcontact.contact.tools import Pinned, Tools
+from bemcontact.contact.free_motions import (
+    ContactScales,
+    MotionAlgebra,
+    StiffnessRows,
+    fix_gauge,
+    stiffness_rows,
+    typical_scales,
+)
+from bemcontact.contact.load_cases import Change, LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
 from bemcontact.options import Weights
 

@@ -6,8 +6,7 @@ from bemcontact.problem.contact_zone import ContactZone, RigidTool, ToolAction, 
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import Arc, EllipseArc, Grading, Line
 from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.material import Material
-from bemcontact.problem.problem import MeshDensity, Problem, Units, Variant
+from bemcontact.problem.problem import Material, MeshDensity, Problem, Units, Variant
 from bemcontact.problem.reference import (
     Crack,
     FlatPunch,

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bemcontact.adaptivity.fitted_ends import CONTACT_SHARE, fitted_ends, half_way, halved, movement, resolved
-from bemcontact.adaptivity.zone_runs import Touched, ZoneRun
+from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun
 from bemcontact.problem.curves import Edge, Segment
 
 
@@ -29,11 +29,11 @@ def run_of(lengths: Sequence[float], elements: Sequence[int], *, closed: bool = 
     )
 
 
-def touched(start: float, end: float, *, start_free: bool = True, end_free: bool = True) -> Touched:
-    return Touched(start=start, end=end, start_free=start_free, end_free=end_free)
+def touched(start: float, end: float, *, start_free: bool = True, end_free: bool = True) -> Stretch:
+    return Stretch(start=start, end=end, start_free=start_free, end_free=end_free)
 
 
-def ends_of(run: ZoneRun, *stretches: Touched) -> np.ndarray:
+def ends_of(run: ZoneRun, *stretches: Stretch) -> np.ndarray:
     found = fitted_ends(run, resolved(run, stretches))
     assert len(found) < 1.7 * len(run.ends)  # half as many again
     assert found[0] == 0

@@ -14,8 +14,7 @@ from typer.testing import CliRunner
 import bemcontact
 from bemcontact import cli
 from bemcontact.adaptivity import fitting
-from bemcontact.adaptivity.fitting import SETTLED, fitted
-from bemcontact.adaptivity.mesh_fit import MeshFit
+from bemcontact.adaptivity.fitting import SETTLED, MeshFit, fitted
 from bemcontact.analysis import compare as comparing
 from bemcontact.assessment.footprint import footprint
 from bemcontact.contact.solution import Status

@@ -6,7 +6,7 @@ from bodies import arc, even, mesh_of, rectangle, solved, system_of, values_of, 
 
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.system import solve
-from bemcontact.problem.material import Material
+from bemcontact.problem.problem import Material
 
 
 def order(errors: list[float]) -> float:

@@ -21,7 +21,7 @@ def roller(**tools) -> Body:
     return body_of(made(ROLLER, tools=tools))
 
 
-UP, TURN, SIDE = "translation along (0, 1)", "rotation anticlockwise about", "translation along (1, 0)"
+UP, TURN, SIDE = "translation along (0, 1)", "rotation counterclockwise about", "translation along (1, 0)"
 
 
 @pytest.mark.parametrize(

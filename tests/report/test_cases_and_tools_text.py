@@ -97,7 +97,7 @@ def test_check_tells_tools_cases_and_combinations():
     assert "push: adds to punch, table" in told
     assert "heat: adds to temperature" in told
     assert "all: 1.5 wind + -0.5 heat + 2 settle + 4 spin + 0.7 push" in told
-    assert "rotation anticlockwise about (1.5, 1) of the tool 'punch'" in told
+    assert "rotation counterclockwise about (1.5, 1) of the tool 'punch'" in told
 
 
 def test_check_tells_of_which_case_a_reference_is():

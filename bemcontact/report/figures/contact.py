@@ -10,8 +10,7 @@ from scipy.spatial import KDTree
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.bem.boundary_values import BoundaryState
-from bemcontact.bem.mesh import element_curves
+from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.figures.marks import Name, draw_arrows, draw_ground, place_names
 from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain, without_glyph_warnings

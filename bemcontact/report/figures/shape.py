@@ -10,8 +10,7 @@ from matplotlib.path import Path
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.bem.boundary_values import BoundaryState
-from bemcontact.bem.mesh import element_curves
+from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.report.figures.marks import draw_ground
 from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
 from bemcontact.report.figures.pieces import pieces_of

@@ -10,8 +10,7 @@ from tool_problems import FREE, FREE_CASES, HELD, HELD_CASES, made
 
 from bemcontact.analysis import solve as analysis
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.load_cases import LoadCases
-from bemcontact.contact.tools import Pinned, Tools
+from bemcontact.contact.load_cases import LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
 
 PROBLEMS = {"held": (HELD, HELD_CASES), "free": (FREE, FREE_CASES)}
