@@ -77,23 +77,14 @@ def resolved(run: ZoneRun, stretches: Sequence[Stretch]) -> tuple[Stretch, ...]:
 
 
 def fitted_ends(run: ZoneRun, stretches: Sequence[Stretch]) -> Array:
-    """Positions of element ends, at a ± b (i/n)³ around each end of contact a, and nowhere farther apart than stated.
+    """Positions (m + 1,) [L] of element ends, at a ± b (i/n)³ around each end of contact a.
 
     b is the distance to the next mark: an end of the run, a corner at which contact ends, or the middle between two
-    ends of contact. All n together are as many as are stated, with two in contact for one outside, or more where that
-    is longer, but no fewer than `LEAST_IN_CONTACT` and `LEAST_OPEN` beside an end of contact, for which some are added.
-    Such elements grow up to three times as long as equal ones: from where they would be longer than stated, elements
-    are as stated, so that a run gets about half as many again. Joints of edges stay element ends, the nearest being
-    moved onto them.
-
-    Parameters
-    ----------
-    run : with its element ends as stated
-    stretches : stretches of contact, `resolved`, in order, at least one
-
-    Returns
-    -------
-    (m + 1,) [L]
+    ends of contact. The stretches are `resolved`, in order, at least one. The number of elements is the stated one: two
+    in contact for one outside, or more where the open side is longer. Some are added if there would be fewer than
+    `LEAST_IN_CONTACT` and `LEAST_OPEN` beside an end of contact. Cubic elements grow up to three times as long as equal
+    ones. Where they would be longer than stated, elements are as stated, so that a run gets about half as many again.
+    Joints of edges stay element ends: the nearest ends are moved onto them.
     """
     blocks = _blocks(_parts(run, stretches))
     pieces = _evened([_divided(run, block) for block in blocks], around=run.closed and not blocks[0][0].low_free)
@@ -127,17 +118,9 @@ def _evened(pieces: Sequence[Array], *, around: bool) -> list[Array]:
 def movement(run: ZoneRun, stretches: Sequence[Stretch], fitted_to: Sequence[Stretch] | None) -> float | None:
     """Largest distance of a free end of contact from where the mesh is graded to, over the shorter element there.
 
-    Parameters
-    ----------
-    run : with its present element ends
-    stretches : stretches of contact
-    fitted_to : those that the mesh is graded to; if None, it is graded to an element end from which the lengths of
-        elements grow by `GROWTH` and more to either side
-
-    Returns
-    -------
-    float or None
-        None if the mesh is not graded to these ends of contact, or to more.
+    The mesh is graded to the ends of the stretches `fitted_to`. If these are None, it is graded to an element end from
+    which the lengths of elements grow by `GROWTH` or more to either side. None if the mesh is graded to another number
+    of ends.
     """
     ends = _free_ends(stretches)
     if fitted_to is None:
@@ -154,17 +137,9 @@ def movement(run: ZoneRun, stretches: Sequence[Stretch], fitted_to: Sequence[Str
 
 
 def halved(ends: Array, neighbor: float, at: int) -> Array:
-    """Halve the element at one end of an edge until it is at most `GENTLE` times as long as its neighbor beyond.
+    """Halve the first (at = 0) or last (-1) element until it is at most `GENTLE` times as long as its neighbor beyond.
 
-    Parameters
-    ----------
-    ends : (m + 1,) element ends, ascending
-    neighbor : length of the element beyond, in the same unit
-    at : 0 for the first element, -1 for the last
-
-    Returns
-    -------
-    (m + k + 1,)
+    The element ends (m + 1,) ascend; the result has k more of them.
     """
     ends = ends if at == 0 else ends[::-1]
     while abs(ends[1] - ends[0]) > GENTLE * neighbor * (1 + 1e-9):

@@ -89,32 +89,19 @@ class _Trial:
 
 
 def fitted(problem: Problem, progress: Callable[[str], object] | None = None) -> tuple[Problem, MeshFit | None]:
-    """Fit the mesh to the ends of contact, if the problem asks for it.
+    """Fit the mesh to the ends of contact, if the problem asks for it; the second value is None if it does not.
 
     The complementarity problem is solved on the mesh as stated. `fitted_ends` then places the elements of each contact
     zone anew. Both steps are repeated, eight times at most, until no end of contact moves by more than a fifth of the
     shorter element beside it. Elements beside a zone are halved until they are at most twice as long as the element at
     its end. A mesh is not kept if the pressure oscillates on it and did not on the mesh as stated.
 
-    All this is done without `mesh.refine`, which cuts the fitted elements afterwards. Finer meshes then contain each
+    `mesh.refine` is not applied meanwhile: it cuts the fitted elements afterwards. Finer meshes then contain each
     other, observed orders are meaningful, and fitting costs little. But the ends of contact are those of the mesh that
     was cut. If they matter to many digits, state more elements instead.
 
-    Parameters
-    ----------
-    progress : called with the name of each pass
-
-    Returns
-    -------
-    Problem
-        With the element ends stated, and no longer asking for a fit.
-    MeshFit or None
-        None if the problem did not ask for a fit.
-
-    Raises
-    ------
-    ProblemError, SingularSystemError
-        As of `bemcontact.condense`, on the mesh as stated.
+    The fitted problem has the element ends stated, and does not ask for a fit. The errors are those of
+    `bemcontact.condense` on the mesh as stated. `progress` is called with the name of each pass.
     """
     if not problem.mesh.fit_contact_edges:
         return problem, None

@@ -125,16 +125,10 @@ class Stretch:
 def contact_stretches(
     run: ZoneRun, contact: CondensedContact, solution: ContactSolution, intervals: Sequence[ContactInterval]
 ) -> Iterator[Stretch]:
-    """List the stretches of contact on a run.
+    """List the stretches of contact on a run of the mesh of a condensed problem, from its contact intervals.
 
     An end is free unless contact goes on to the last point of the run or to a corner. A single point stands for a
     stretch that reaches half-way to the points beside it, so that a mesh fitted to that shows more of them.
-
-    Parameters
-    ----------
-    run : on the mesh of the condensed problem
-    contact, solution : the condensed problem and its solution
-    intervals : of contact, of all runs
     """
     arcs, touching = _points(run, contact, solution)
     same = SAME * run.arc[-1]

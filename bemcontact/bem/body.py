@@ -136,14 +136,11 @@ def _pinned(who: str) -> str:
 
 
 def body_of(problem: Problem) -> Body:
-    """Mesh a problem, spread its conditions, and find out whether contact can hold it.
+    """Mesh a problem, spread its conditions over the mesh, and check whether contact can hold the body.
 
-    Raises
-    ------
-    ProblemError
-        If the loads pull the body off its support, move it in a way that no contact resists, or do not press it on;
-        or if the conditions of a deflected contour do not hold the body. Of a problem with load cases of which none
-        acts, it is not asked whether contact can hold the body.
+    `ProblemError` if the loads that act pull the body off its support, move it in a way that no contact resists, or do
+    not press it on; or if the conditions of a deflected contour do not hold the body. A problem with load cases of
+    which none acts is meshed without this check.
     """
     mesh = build(problem)
     permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
@@ -209,23 +206,9 @@ def _against(motions: FreeMotions) -> str:
 
 
 def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
-    """Deflect the body to each contour that serves as a rigid surface.
+    """Displacement (N, 2) [L] of the nodes by contact zone, for each zone whose surface is a deflected contour.
 
-    Parameters
-    ----------
-    mesh : of it
-
-    Returns
-    -------
-    dict
-        By contact zone, for those on a deflected contour: displacement (N, 2) [L] of the nodes.
-
-    Raises
-    ------
-    ProblemError
-        If the conditions of a contour contradict each other, or leave the body free to move.
-    SingularSystemError
-        If the equations of the body have no unique solution.
+    `ProblemError` if the conditions of a contour contradict each other, or leave the body free to move.
     """
     surfaces = {name: zone.surface for name, zone in problem.contact_zones.items()}
     return {

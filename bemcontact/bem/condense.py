@@ -11,9 +11,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, ensure_held
 from bemcontact.bem.mesh import BoundaryState
-from bemcontact.bem.rigid_motions import (
-    all_rigid_motions,
-)
+from bemcontact.bem.rigid_motions import all_rigid_motions
 from bemcontact.bem.system import System, solve
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
@@ -57,13 +55,7 @@ class Condensation:
 
 
 def condense(body: Body) -> Condensation:
-    """Eliminate everything but the contact points.
-
-    Raises
-    ------
-    SingularSystemError
-        If the equations of the body have no unique solution in floating-point arithmetic.
-    """
+    """Eliminate everything but the contact points; `SingularSystemError` if the equations have no unique solution."""
     system = System(
         mesh=body.mesh, material=body.problem.material, points=body.points, motions=body.motions,
         loadings=body.loadings,
@@ -135,13 +127,7 @@ def _observe(system: System, response: Array) -> Array:
 
 
 def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:
-    """Recover the boundary from pressure and rigid amplitudes of a contact solution.
-
-    Parameters
-    ----------
-    pressure : (n,) p [p]
-    rigid_amplitudes : (k,) a [L], in the fixed gauge of the condensed problem
-    """
+    """Recover the boundary from pressure (n,) [p] and rigid amplitudes (k,) [L] of a contact solution."""
     body, system = condensation.body, condensation.system
     mesh, gauge = body.mesh, condensation.gauge
     scaled = np.append(condensation.factors, pressure / system.stress)

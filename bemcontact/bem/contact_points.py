@@ -126,11 +126,8 @@ def contact_points(
 ) -> ContactPoints:
     """List the contact points of all zones; the middle node of an element is always one.
 
-    Parameters
-    ----------
-    problem, mesh, values : the stages up to here
-    deflections : by zone, for those on a deflected contour: displacement (N, 2) [L] of the nodes that shapes it
-    cases : what load cases prescribe in addition
+    `deflections` has the displacement (N, 2) [L] of the nodes by zone, for zones on a deflected contour. `cases` has
+    what load cases prescribe in addition to `values`.
     """
     halves = _half_lengths(mesh)
     tool_of = {zone: tool for tool, stated in problem.tools.items() for zone in stated.zones}

@@ -159,13 +159,10 @@ class Influence:
         return [(rule, rule.derivatives.T @ from_middle.T) for rule in rules]
 
     def each_block(self, collocation: Collocation, use: Callable[[Block], None]) -> None:
-        """Compute rows of F and G for all points and hand them on, block by block, on all processors.
+        """Compute rows of F and G for all points and pass them to `use`, block by block, on all processors.
 
-        BLAS keeps to one thread meanwhile: for products as small as these it loses more by sharing them out.
-
-        Parameters
-        ----------
-        use : called once for each block, from other threads and in any order; must not keep the block
+        `use` is called from other threads and in any order; it must not keep the block. BLAS uses one thread meanwhile,
+        because several threads are slower for products as small as these.
         """
         step = max(8, min(ROWS_PER_BLOCK, LARGEST_BLOCK // len(self.mesh.elements)))
         blocks = [slice(first, min(first + step, len(collocation))) for first in range(0, len(collocation), step)]
@@ -184,12 +181,7 @@ class Influence:
                 pass
 
     def block(self, collocation: Collocation, rows: slice) -> Block:
-        """Rows of F and G for the points `rows`.
-
-        Parameters
-        ----------
-        rows : neighboring points
-        """
+        """Rows of F and G for neighboring points."""
         return self._block(collocation, rows, self._space(rows.stop - rows.start))
 
     def _space(self, size: int) -> _Space:

@@ -123,13 +123,9 @@ def element_curves(values: Array, count: int) -> Array:
 
 
 def along_curve(edge: Edge) -> tuple[Array, Array, Array]:
-    """Gauss points of an edge itself, not of its elements, many enough for integrals to round-off.
+    """Gauss points (q, 2) [L], outward normals (q, 2) and arc lengths (q,) [L] of an edge itself, not of its elements.
 
-    Returns
-    -------
-    points : (q, 2) [L]
-    normals : (q, 2) out of the body
-    lengths : (q,) arc length that belongs to each point [L]
+    The points are many enough for integrals to round-off.
     """
     ends = edge.breakpoints(1)
     xi, weights = reference_element.gauss_legendre(CURVE_ORDER)
@@ -139,14 +135,7 @@ def along_curve(edge: Edge) -> tuple[Array, Array, Array]:
 
 
 def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[str]) -> Mesh:
-    """Make a mesh from its elements.
-
-    Parameters
-    ----------
-    starts, middles : (m, 2) start and middle node of each element [L]
-    after : (m,) the element that begins where each element ends
-    edge_of : m names of edges
-    """
+    """Make a mesh from start and middle nodes (m, 2) [L], the element (m,) after each element, and m names of edges."""
     m = len(starts)
     names = tuple(dict.fromkeys(edge_of))
     return Mesh(
@@ -196,13 +185,7 @@ class BoundaryState:
 
 
 def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:
-    """Evaluate all conditions on the mesh.
-
-    Raises
-    ------
-    ProblemError
-        If two edges prescribe different displacements at the corner they share.
-    """
+    """Spread the conditions over the mesh; `ProblemError` if two edges contradict each other at their common corner."""
     N, m = len(mesh.nodes), len(mesh.elements)
     values = BoundaryValues(
         displacement_given=np.zeros((N, 2), bool),

@@ -78,17 +78,7 @@ def all_rigid_motions(mesh: Mesh) -> RigidMotions:
 
 
 def free_rigid_motions(mesh: Mesh, prescribed: BoolArray) -> RigidMotions:
-    """Find the rigid motions that leave every prescribed displacement component at rest.
-
-    Parameters
-    ----------
-    prescribed : (N, 2) whether the displacement of a node along an axis is prescribed
-
-    Returns
-    -------
-    RigidMotions
-        Translations first where there are any.
-    """
+    """Find the rigid motions that move no prescribed displacement component (N, 2); translations come first."""
     every = all_rigid_motions(mesh)
     rows = every.displacement(mesh.nodes)[prescribed]
     _, values, vectors = np.linalg.svd(np.vstack([rows, np.zeros((3, 3))]))
@@ -264,18 +254,10 @@ class FreeMotions:
 
 
 def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTools) -> tuple[FreeMotions, FreeMotions]:
-    """Separate the free motions of the body and of tools that contact sees from those that no contact point sees.
+    """Separate the free motions of the body and of tools into those that contact sees and those that it does not see.
 
-    Parameters
-    ----------
-    points : of contact
-    of_body : that the conditions leave free
-    tools : of the problem
-
-    Returns
-    -------
-    seen : those of the body first, then those of tools, each with independent columns of R
-    unseen : those in which nothing changes its gap, or body and tools go together
+    The seen motions have independent columns of R; those of the body come first, then those of tools. In the unseen
+    motions no gap changes, or body and tools move together.
     """
     t = len(tools.names)
     poles = tools.poles(points)

@@ -89,15 +89,11 @@ class Equations:
 
 
 def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Equations:
-    """Put collocation points at the nodes, or inside both elements where a node has two unknown tractions.
+    """Put collocation points at the nodes (N,), or inside both elements where a node has two unknown tractions.
 
     A node has one equation along each axis for its one unknown there. Where two elements meet with an unknown traction
     each along an axis, the equation along that axis is written at ξ = 2/3 of the element before and at ξ = -2/3 of
     the element after instead.
-
-    Parameters
-    ----------
-    nodes : (N,) as x + iy, in the lengths of the system
     """
     m, before = len(mesh.elements), mesh.before
     element = np.arange(m)
@@ -319,13 +315,7 @@ SINGULAR = 1e-15
 
 
 def assemble(system: System) -> tuple[Array, Array]:
-    """Set up the bordered matrix (in Fortran order, to be factorized in place) and the right sides.
-
-    Returns
-    -------
-    matrix : (size, size)
-    right : (size, s + n)
-    """
+    """Set up the bordered matrix (size, size), in Fortran order for LU in place, and the right sides (size, s + n)."""
     unknowns = system.unknowns.size
     matrix = np.zeros((system.size, system.size), order="F")
     transposed = matrix.T
@@ -346,15 +336,9 @@ def assemble(system: System) -> tuple[Array, Array]:
 
 
 def solve(system: System) -> Array:
-    """Solve for the loads and for unit pressures: LU in place, then one step of refinement on rows computed anew.
+    """Solve (size, s + n) for loads and unit pressures: LU in place, then one refinement with rows computed anew.
 
-    Returns
-    -------
-    (size, s + n)
-
-    Raises
-    ------
-    SingularSystemError
+    `SingularSystemError` if the equations have no unique solution.
     """
     matrix, right = assemble(system)
     lu = LU.of(matrix, overwrite=True)

@@ -26,12 +26,7 @@ class ContactScales(NamedTuple):
 def typical_scales(compliance: Array, offset: Array, rigid_motions: Array, balancing_pressure: Array) -> ContactScales:
     """Scales with U = ‖M‖∞ T: the larger of those of the load and of the interference.
 
-    Parameters
-    ----------
-    compliance : (n, n) M [L/p]
-    offset : (n,) q, the gap without contact [L]
-    rigid_motions : (n, k) R
-    balancing_pressure : (n,) the least pressure in equilibrium with the load [p]
+    From M (n, n) [L/p], the gap without contact q (n,) [L], R (n, k) and the balancing pressure (n,) [p] of the load.
     """
     norm = float(np.abs(compliance).sum(axis=1).max(initial=0.0))
     pressure = float(np.abs(balancing_pressure).max(initial=0.0))
@@ -121,15 +116,9 @@ class Gauge(NamedTuple):
 
 
 def fix_gauge(motions: MotionAlgebra, compliance: Array, free_displacement: Array) -> Gauge:
-    """Remove from M and Δ1 what depends on how the free rigid motions were held while solving.
+    """Remove from M (n, n) [L/p] and Δ1 (n,) or (n, s) [L] what depends on how free motions were held while solving.
 
     With P and p0 of `MotionAlgebra`: M' = P M P and Δ1' = P (Δ1 + M p0).
-
-    Parameters
-    ----------
-    motions : R, J and the load
-    compliance : (n, n) M [L/p]
-    free_displacement : (n,) Δ1 [L], or (n, s) for s loadings
     """
     M, (n, k) = compliance, motions.rigid_motions.shape
     project = motions.projector if n > k else np.zeros((n, n))
@@ -154,17 +143,7 @@ def stiffness_rows(
 ) -> StiffnessRows:
     """K u_n = B p + r, (12), with K = S, B = I, r = S Δ1 + V load; [S, V] the top of [[M, R], [ℓᵀ, 0]]⁻¹.
 
-    Parameters
-    ----------
-    motions : R, J and the load
-    compliance : (n, n) M [L/p]
-    free_displacement : (n,) Δ1 [L]
-    scales : of the problem
-
-    Raises
-    ------
-    SingularSystemError
-        If the matrix has no inverse.
+    From M (n, n) [L/p] and Δ1 (n,) [L]; `SingularSystemError` if the matrix has no inverse.
     """
     R, ell = motions.rigid_motions, motions.equilibrium
     n, k = R.shape

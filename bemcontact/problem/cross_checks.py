@@ -191,14 +191,7 @@ def _needs_one_zone(reference: RawValue) -> bool:
 
 
 def mesh_issues(boundary: Boundary, path: KeyPath, refine: int) -> list[Issue]:
-    """Issues of a mesh with too many elements for a dense matrix, or too few for its curves.
-
-    Parameters
-    ----------
-    boundary : the boundary, with the elements of each edge
-    path : key path of the boundary
-    refine : number of parts into which each element is cut
-    """
+    """Issues of a mesh with too many elements for a dense matrix, or too few for its curves."""
     total = refine * sum(edge.elements for edge in boundary.edges)
     if total > MOST_ELEMENTS:
         message = f"{total} elements are too many for a dense matrix; take at most {MOST_ELEMENTS}"
