@@ -14,11 +14,11 @@ from bemcontact.problem.curves import cubic_ends, moved_onto
 CONTACT_SHARE = 2.0
 """Ratio of the elements on the contact side of a contact edge to those on the open side, if this is no longer."""
 SHORTEST = 5e-4
-"""Least element, over the shortest side in contact: shorter ones gain little, and cost digits of the certificate."""
+"""Least element over the shortest side in contact: shorter ones gain little and cost digits of the certificate."""
 SHORTEST_OF_RUN = 1e-6
 """Least element over the length of the run: element ends that are nearer to each other are refused."""
 LEAST_IN_CONTACT, LEAST_OPEN = 4, 3
-"""Least elements on each side of a contact edge: with three in contact its place alternates from pass to pass."""
+"""Least numbers of elements beside a contact edge: with three in contact, its place alternates between passes."""
 CLOSE = 1e-2
 """Distance from the end of a run, or from a joint, that is not resolved by elements, over the mean length of these, or
 over the contact that ends there if it is shorter."""

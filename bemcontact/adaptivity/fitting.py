@@ -23,7 +23,7 @@ from bemcontact.serialization import Internal, Leaf
 
 @dataclass(frozen=True, kw_only=True)
 class FitPass(Leaf):
-    """One mesh on the way to the fitted one."""
+    """One pass of the mesh fit: a mesh and the contact on it."""
 
     intervals: tuple[ContactInterval, ...]
     """Contact intervals on this mesh."""
@@ -125,7 +125,7 @@ def fitted(problem: Problem, progress: Callable[[str], object] | None = None) ->
 
 
 def _unrest(trial: _Trial) -> float:
-    """Distance of a mesh from the one that its solution asks for; infinite if unknown."""
+    """Movement of the ends of contact on a mesh; infinite if unknown."""
     return np.inf if trial.movement is None else trial.movement
 
 
@@ -139,7 +139,7 @@ def _oscillates(trial: _Trial, first: _Trial) -> bool:
 
 
 def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_Trial], list[str]]:
-    """Try the mesh as stated, then what the trial before asks for, until one is settled; with notes on what failed."""
+    """Try the mesh as stated, then meshes fitted to the previous trial, until one settles; with notes on failures."""
     progress("mesh as stated")
     body = body_of(stated)
     runs = {run.number: run for run in zone_runs(body)}

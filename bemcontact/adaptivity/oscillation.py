@@ -1,4 +1,4 @@
-"""Oscillation: a pressure that goes up and down from point to point, which no contact does."""
+"""Oscillation of a computed pressure from point to point, which no real contact pressure shows."""
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view

@@ -1,4 +1,4 @@
-"""A problem on its mesh, before it is condensed: what is known, where contact may be, and what contact holds."""
+"""A problem on its mesh, before it is condensed: loadings, contact points, and the motions that contact holds."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -37,12 +37,12 @@ class Body:
 
     Parameters
     ----------
-    problem, mesh, points : the stages up to here
-    loadings : 1 + c, what is permanent and what each load case adds
+    problem, mesh, points : the problem, its mesh and its contact points
+    loadings : 1 + c, the permanent loading, then the addition of each load case
     tools : rigid surfaces that move
     motions : all rigid motions of the body that the conditions leave free
-    seen : those of them, and those of tools, or combinations, that move contact points along the rigid normals
-    unseen : the others, that no contact point sees
+    seen : motions of body and tools, and combinations, that move contact points along the rigid normals
+    unseen : the other free motions, which change no gap
     """
 
     problem: Problem
@@ -72,7 +72,7 @@ class Body:
 
     @cached_property
     def pinned(self) -> Pinned:
-        """The motions that move no contact point, with the true loads: their balance does not depend on the mesh."""
+        """The motions that change no gap, with loads on the exact curves, so that the mesh does not affect their balance."""
         motions = self.unseen.in_user_units()
         return Pinned(
             motions=tuple(f"{motions.who(j)} against the {motions.way(j)}" for j in range(len(motions))),
@@ -104,7 +104,7 @@ class Body:
     def idle_motion(self) -> str | None:
         """A motion that opens gaps and closes none, and in which the loads do no work; None if there is none.
 
-        Contact leaves open how far the body or a tool goes in it: a linear program.
+        Contact does not determine its amplitude. A linear program finds it.
         """
         R, load = self.relative_load
         if not load.size:
@@ -131,7 +131,7 @@ class Body:
 
 
 def _pinned(who: str) -> str:
-    """Say who is pinned."""
+    """Name what is pinned, with its verb."""
     return "they are pinned" if who.endswith(" together") else f"{who} is pinned"
 
 
@@ -165,7 +165,7 @@ def each_case(body: Body) -> Iterator[Body]:
 
 
 def ensure_held(body: Body) -> None:
-    """Refuse what acts on a body if contact cannot hold it; `ProblemError` as of `body_of`."""
+    """Refuse loads that contact cannot hold, with the `ProblemError` of `body_of`."""
     try:
         if complaint := body.pinned.complaint(body.factors, body.forces):
             raise ProblemError(complaint)
@@ -225,7 +225,7 @@ def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: K
     if len(motions):
         message = (
             f"with these conditions nothing holds the body against the {' and the '.join(motions.describe())}, for "
-            "there is no contact where the contour is found; prescribe displacements that hold it"
+            "the contour is computed without contact; prescribe displacements that hold it"
         )
         raise ProblemError(Issue(path=(*path, "conditions"), message=message))
     loading = Loading(values=values, particular=particular_solution(surface.loads, problem.material, mesh))

@@ -1,7 +1,7 @@
 """A body condensed to its contact points: u_n = Δ1 + M p + R a with ℓᵀp = -load, [SS92] (11)-(15), (35)-(38).
 
-Generalised to bodies that contact alone holds: the singular system is bordered by its free rigid motions, and
-equilibrium itself is taken exactly, ℓ = J R, load = work of the applied loads in the free motions.
+The method also covers bodies that only contact holds. Their free rigid motions border the singular system, and
+equilibrium is exact: ℓ = J R, and the load is the work of the applied loads in the free motions.
 """
 
 from dataclasses import dataclass, replace
@@ -117,7 +117,7 @@ def condense(body: Body) -> Condensation:
 
 
 def _observe(system: System, response: Array) -> Array:
-    """Normal displacement (n, s + n) at the contact points due to the unknowns, over L0."""
+    """Normal displacement (n, s + n) over L0 at the contact points due to the unknowns."""
     points = system.points
     result = np.zeros((len(points), response.shape[1]))
     for normal, column in zip(points.normals.T, system.unknowns.displacement[points.node].T, strict=True):

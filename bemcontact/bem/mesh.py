@@ -21,7 +21,7 @@ CONTRADICTION = 1e-9
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mesh:
-    """Three-noded elements on closed loops, the body on the left of each element's direction.
+    """Elements with three nodes on closed loops; the body is on the left.
 
     Node e is the start and node m + e the middle of element e: N = 2m.
     Displacement belongs to a node; traction to an (element, local node) pair, so that it may jump.

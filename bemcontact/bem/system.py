@@ -1,10 +1,10 @@
-"""The linear system of a body: conditions put into F u = G t, unknown columns only, [SS92] (9)-(10).
+"""The linear system of a body: F u = G t with the conditions, for the unknowns only, [SS92] (9)-(10).
 
-Unknown are the displacements that no condition prescribes and the tractions where one does. Contact pressures and
-all that is prescribed stand on the right: A z = b + Σ_i p_i b_i. Displacement is never rotated at contact nodes: the
-normal displacement is observed, u_n = n·u, which is (8) read backwards and lets a node belong to two zones.
+The unknowns are the displacements that no condition prescribes, and the tractions at prescribed displacements. Contact
+pressures and prescribed values are on the right: A z = b + Σ_i p_i b_i. Displacement is not rotated at contact nodes.
+The normal displacement is computed from it, u_n = n·u, the inverse of (8), so that a node may belong to two zones.
 
-Within this module lengths are over L0 and stresses over the shear modulus (see `influence`).
+In this module lengths are divided by L0 and stresses by the shear modulus (see `influence`).
 """
 
 from collections.abc import Iterator, Sequence
@@ -36,8 +36,8 @@ STRAIGHT = 1e-8
 class Unknowns:
     """Columns of the system: x displacements, y displacements, then tractions.
 
-    Traction is continuous where an edge goes on straight. It may jump where two edges meet, and also where two curved
-    elements do, because the normal of the quadratic elements jumps there.
+    Traction is continuous where an edge continues straight. It may jump where two edges meet, and where two curved
+    elements meet, because the normal of the quadratic elements jumps there.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Unknowns:
 
 
 def number_unknowns(mesh: Mesh, values: BoundaryValues) -> Unknowns:
-    """Give every unknown its column."""
+    """Number the columns of the unknowns."""
     free = ~values.displacement_given
     displacement = np.full(free.shape, -1)
     displacement.T[free.T] = np.arange(free.sum())
@@ -70,7 +70,7 @@ def number_unknowns(mesh: Mesh, values: BoundaryValues) -> Unknowns:
 
 
 def _continues_straight(mesh: Mesh) -> BoolArray:
-    """Whether each element (m,) goes on in the direction of the one before it, on the same edge."""
+    """Whether each element (m,) continues the one before it on the same edge, in the same direction."""
     return (mesh.edge == mesh.edge[mesh.before]) & (abs(mesh.turns) < STRAIGHT)
 
 
@@ -157,8 +157,8 @@ class System:
 
     Parameters
     ----------
-    mesh, material, points, motions : what the body is
-    loadings : s things that act on it, each with right sides of its own; they share what is prescribed
+    mesh, material, points, motions : of the body
+    loadings : s loadings, each with a right side; they prescribe displacement and traction at the same places
     """
 
     mesh: Mesh

@@ -49,7 +49,7 @@ def _interference(offset: Array, rigid_motions: Array, widest: float) -> float:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MotionAlgebra:
-    """Free rigid motions of n contact points: what a contact problem in any units has of equilibrium ℓᵀp = -load.
+    """Free rigid motions of n contact points, with the equilibrium ℓᵀp = -load.
 
     With P = I - R (ℓᵀR)⁻¹ ℓᵀ and the balancing pressure p0 every p in equilibrium is P p + p0.
 
@@ -154,8 +154,8 @@ def stiffness_rows(
         inverse = np.linalg.inv(bordered.T).T.astype(float)  # accurate as a left inverse, which is how K is used
     except np.linalg.LinAlgError:
         raise SingularSystemError(
-            "the compliance is singular: some change of pressure moves no contact point, so that pressures cannot "
-            "be told apart; give each contact point a compliance of its own"
+            "the compliance is singular: some change of pressure moves no contact point, so that pressures are "
+            "not unique; give each contact point a compliance of its own"
         ) from None
     S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / row_scale
     return StiffnessRows(S, np.eye(n), S @ free_displacement + V @ motions.motion_load)

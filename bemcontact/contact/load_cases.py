@@ -75,7 +75,7 @@ class Tools:
 
     A tool moves by (x, y) and turns by a small angle about its point; the gap at a contact point of its surfaces then
     changes by -n·w. Where a component is free, its amplitude is one of the free motions of the contact problem and its
-    force stands in the load; where it is not, its displacement stands in the initial gap.
+    force is part of the load. Where it is not free, its displacement is part of the initial gap.
 
     Parameters
     ----------

@@ -189,7 +189,7 @@ def test_a_very_short_contact_has_no_element_that_would_be_refused():
 
 
 @pytest.mark.parametrize("at", [0, -1])
-def test_elements_are_halved_towards_a_short_neighbour(at):
+def test_elements_are_halved_towards_a_short_neighbor(at):
     """4 beside 0.3: 2, 1 and 0.5 twice, which is not more than twice as long."""
     ends = np.array([0.0, 4.0, 9.0]) if at == 0 else np.array([-9.0, -4.0, 0.0])
     lengths = np.diff(halved(ends, 0.3, at))

@@ -227,7 +227,7 @@ def test_whatever_the_zone_is_like_fitting_helps(seed):
 
 
 def test_contact_that_stays_narrower_than_an_element_is_reported(monkeypatch):
-    """After no pass at all: one point under pressure, whose neighbours say no more."""
+    """After no pass at all: one point under pressure, whose neighbors say no more."""
     monkeypatch.setattr(fitting, "MOST_PASSES", 0)
     _, fit = fit_of(cylinder(24, load=1e-4))
     assert not fit.settled
@@ -245,7 +245,7 @@ def test_a_fitted_mesh_is_left_as_it_is(make):
 
 
 def test_no_element_is_longer_than_stated_and_other_edges_are_not_touched():
-    """But for those beside the zone, which are halved until they are no more than twice as long as their neighbours."""
+    """But for those beside the zone, which are halved until they are no more than twice as long as their neighbors."""
     stated = table()
     found, _ = fit_of(stated)
     for name in ("left foot", "bridge", "right foot"):

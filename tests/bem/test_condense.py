@@ -105,7 +105,7 @@ def test_block_on_a_plane_under_downward_load_on_three_free_motions(formulation)
 
 
 def test_polygon_on_a_plane_under_its_weight():
-    """A trapezoid: the resultant is its weight 1.5 x 2, through its centre of area at x = 7/9."""
+    """A trapezoid: the resultant is its weight 1.5 x 2, through its center of area at x = 7/9."""
     edges = [
         {"name": "bottom", "start": [0, 0], "end": [2, 0], "elements": 8},
         {"name": "slope", "start": [2, 0], "end": [1, 1], "elements": 4},

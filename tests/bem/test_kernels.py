@@ -30,9 +30,9 @@ def reference(nodes: np.ndarray, z: complex, foot: float) -> np.ndarray:
     """A, B, L, M (4, 3) by Gauss-Legendre rules of 24 points, on intervals that shrink fourfold towards the foot."""
     with mp.workdps(25):
         rule = GaussLegendre(mp.mp).calc_nodes(4, mp.mp.prec)
-        centre = min(max(mp.mpf(foot), -1), 1)
+        center = min(max(mp.mpf(foot), -1), 1)
         steps = [mp.mpf(2) / 4**k for k in range(19)] + [mp.mpf(0)]
-        ends = sorted({x for step in steps for x in (centre - step, centre + step) if -1 < x < 1} | {-1, 1})
+        ends = sorted({x for step in steps for x in (center - step, center + step) if -1 < x < 1} | {-1, 1})
         n = [mp.mpc(x) for x in nodes]
         c0, c1, c2 = n[1] - mp.mpc(z), (n[2] - n[0]) / 2, (n[0] + n[2]) / 2 - n[1]
         total = [[mp.mpc(0)] * 3 for _ in range(4)]

@@ -161,7 +161,7 @@ def test_hindered_expansion(state):
 
 
 def test_resultants_are_exact():
-    """Rectangle 2 x 1 at (1, -3): gravity acts at its centre; centrifugal force is ρω² A (centre - axis)."""
+    """Rectangle 2 x 1 at (1, -3): gravity acts at its center; centrifugal force is ρω² A (center - axis)."""
     edges = [
         (name, lambda s, c=c: c(s) + np.array([1, -3]), ends) for name, c, ends in rectangle(2, 1, even(2), even(1))
     ]

@@ -121,7 +121,7 @@ def test_work_of_forces_is_force_times_displacement_of_the_point(name: str):
 
 
 def test_units_of_the_user():
-    """Work in a translation is a force, in a rotation a moment, however the motion was normalised."""
+    """Work in a translation is a force, in a rotation a moment, however the motion was normalized."""
     motions = FreeMotions(
         coefficients=np.array([[0, 3.0, 0, 0, 3, 0], [0, 0, 0.2, 0, 0, 0.2], [0, 0, 0, 0.6, 0.8, 0]]),
         names=("a",),
