@@ -72,7 +72,7 @@ class Body:
 
     @cached_property
     def pinned(self) -> Pinned:
-        """The motions that change no gap, with loads on the exact curves, so that the mesh does not affect their balance."""
+        """The motions that change no gap, with loads on the exact curves: the mesh does not affect their balance."""
         motions = self.unseen.in_user_units()
         return Pinned(
             motions=tuple(f"{motions.who(j)} against the {motions.way(j)}" for j in range(len(motions))),

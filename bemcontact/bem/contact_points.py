@@ -178,7 +178,7 @@ def _goes_on(
 
 
 class _Piece(NamedTuple):
-    """One run: zone, tool, elements and length, whether contact continues beyond its ends, its points, its held ends."""
+    """One run: its zone, tool, elements, length, points, held ends, and whether contact continues beyond its ends."""
 
     zone: int
     tool: str | None

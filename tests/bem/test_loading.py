@@ -1,4 +1,4 @@
-"""What acts on a body, permanent and by load case: it adds up to what a spec without load cases would say."""
+"""Permanent loads, load cases and volume loads: sums, closed forms, and resultants on the exact curves."""
 
 import numpy as np
 import pytest
@@ -19,23 +19,23 @@ PAIRS = [(HELD, HELD_CASES, HELD_BY_HAND), (FREE, FREE_CASES, FREE_BY_HAND)]
 def acting(body: Body) -> list[np.ndarray]:
     """All that is known of what acts, as arrays."""
     loading = body.acting
-    found = [loading.values.displacement, loading.values.traction, loading.true_force, np.array(loading.true_moment)]
+    computed = [loading.values.displacement, loading.values.traction, loading.true_force, np.array(loading.true_moment)]
     part = loading.particular
-    return [*found, part.displacement, part.traction, part.force, np.array(part.moment), body.forces]
+    return [*computed, part.displacement, part.traction, part.force, np.array(part.moment), body.forces]
 
 
 @pytest.mark.parametrize(("spec", "cases", "by_hand"), PAIRS)
-def test_combination_acts_as_what_is_written_by_hand(spec: Spec, cases: Spec, by_hand: Spec):
-    """Linear: sums of products of the same numbers, to round-off."""
+def test_combination_acts_as_the_same_loads_in_one_spec(spec: Spec, cases: Spec, by_hand: Spec):
+    """The loads are linear: both are sums of products of the same numbers, to round-off."""
     body, other = body_of(made(spec, **cases, case="all")), body_of(made(spec, **by_hand))
-    for found, known in zip(acting(body), acting(other), strict=True):
-        assert found == pytest.approx(known, rel=1e-13, abs=1e-13 * max(1e-12, float(np.abs(known).max())))
+    for computed, known in zip(acting(body), acting(other), strict=True):
+        assert computed == pytest.approx(known, rel=1e-13, abs=1e-13 * max(1e-12, float(np.abs(known).max())))
     assert body.tools.position @ body.factors == pytest.approx(other.tools.position[:, 0], rel=1e-14)
     assert body.motion_load(body.seen) @ body.factors == pytest.approx(other.motion_load(other.seen)[:, 0], abs=1e-12)
 
 
-def test_a_case_alone_has_nothing_of_what_is_permanent():
-    """Displacements that it does not give are 0 where the problem holds the body, and held all the same."""
+def test_a_case_alone_does_not_contain_the_permanent_loads():
+    """Displacements that it does not give are prescribed as 0 where the problem holds the body."""
     problem = made(HELD, **HELD_CASES)
     mesh = build(problem)
     permanent, loadings = permanent_loading(problem, mesh), case_loadings(problem, mesh)
@@ -63,7 +63,7 @@ def test_true_work_is_that_of_the_resultant():
 
 
 def test_magnitudes_do_not_cancel():
-    """What balances is still a load: of a sum with factors 1 and -1 the magnitude is the sum of both."""
+    """Loads that balance are still loads: the magnitude of a sum with factors 1 and -1 is the sum of both."""
     problem = made(HELD, **HELD_CASES)
     mesh = build(problem)
     spin = case_loadings(problem, mesh)[3]
@@ -72,7 +72,7 @@ def test_magnitudes_do_not_cancel():
     assert nothing.magnitude(mesh) == pytest.approx(2 * spin.magnitude(mesh))
 
 
-def test_contradiction_at_a_corner_is_told_with_the_load_case():
+def test_contradiction_at_a_corner_is_reported_with_the_load_case():
     """Two edges are held at 0; a load case moves one of them only."""
     conditions = {"left": {"displacement": {"x": 0, "y": 0}}, "top": {"displacement": {"x": 0, "y": 0}}}
     cases = {"settle": {"conditions": {"left": {"displacement": {"y": -0.1}}}}}
@@ -135,7 +135,7 @@ def test_rotating_disc(state):
 
 @pytest.mark.parametrize("state", STATES)
 def test_free_body_in_a_linear_temperature_field_has_no_stress(state):
-    """Clamped in the stress-free shape u_p the body feels no traction, and free it takes that shape."""
+    """A body clamped in the stress-free shape u_p has no traction, and a free body takes that shape."""
     material = Material(young_modulus=1000, poisson_ratio=0.3, state=state)
     loads = Loads(temperature=Temperature(expansion=1e-3, change={"constant": 20, "x": 3, "y": -5}))
     mesh = mesh_of(rectangle(2, 1, even(4), even(2)))
