@@ -312,9 +312,10 @@ class Influence:
 
     def _on_elements(self, block: Block, collocation: Collocation, element: IntArray) -> tuple[IntArray, Components]:
         """Pairs whose point lies on the element: their places among all of (element, point), and their integrals."""
-        on = np.flatnonzero(_within(collocation.on_point, block.rows))
+        point = collocation.on_point
+        on = np.flatnonzero((point >= block.rows.start) & (point < block.rows.stop))
         their, local = collocation.on_element[on], collocation.on_local[on]
-        row = collocation.on_point[on] - block.rows.start
+        row = point[on] - block.rows.start
         at = np.searchsorted(element, their) * block.F.shape[-1] + row
         return at, kernels.components(kernels.singular(self.element_nodes[their], local), self._factors)
 
@@ -345,10 +346,6 @@ def _sums(traction: Array, U: Array) -> Array:
     x, y = np.moveaxis(traction.reshape(len(traction), 2, 3 * traction.shape[-1]), 1, 0)
     xx, yy, xy = U.reshape(3, x.shape[-1], U.shape[-1])
     return np.stack([x @ xx + y @ xy, x @ xy + y @ yy], axis=1)
-
-
-def _within(index: IntArray, rows: slice) -> BoolArray:
-    return (index >= rows.start) & (index < rows.stop)
 
 
 def _successive(index: IntArray) -> IntArray | slice:

@@ -20,13 +20,8 @@ RATIO = 0.5
 """Radius of a block over the distance from its middle up to which an element is far."""
 
 
-def _number_of_terms() -> int:
-    """Number of powers until (p + 1) RATIO^p is below TOLERANCE."""
-    p = np.arange(200)
-    return int(np.argmax((p + 1) * RATIO**p < TOLERANCE))
-
-
-TERMS = _number_of_terms()
+TERMS = next(p for p in range(200) if (p + 1) * RATIO**p < TOLERANCE)
+"""Number of powers until (p + 1) RATIO^p is below TOLERANCE."""
 
 
 class Skeleton(NamedTuple):

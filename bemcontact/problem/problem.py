@@ -238,7 +238,7 @@ class Problem(SpecModel):
     def _raw_case_names(cls, raw: RawValue) -> list[str]:
         """Names of load cases and combinations, valid or not."""
         parts = (raw.below(cls, key) for key in ("load_cases", "combinations"))
-        return [str(item.path[-1]) for part in parts for item in part.each()]
+        return [item.name for part in parts for item in part.each()]
 
     @property
     def case_names(self) -> tuple[str, ...]:

@@ -267,7 +267,7 @@ def _varied(document: Document, name: str) -> Iterator[Document]:
 
     `SpecError` if there is no such variant, or if one of its keys leads nowhere.
     """
-    variants = {str(item.path[-1]): item for item in RawValue((), document.data).below(Problem, "variants").each()}
+    variants = {item.name: item for item in RawValue((), document.data).below(Problem, "variants").each()}
     if name not in variants:
         raise SpecError(f"--variant {name or repr(name)}: {unknown_word('variant', name, variants)}")
     variant = variants[name].read(Variant)

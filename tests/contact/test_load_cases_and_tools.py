@@ -130,10 +130,10 @@ def test_keys_are_those_of_the_spec():
         ),
         (
             lambda contact: contact.with_factors({"wind": np.inf}),
-            "factor of 'wind' must be a finite number, changed inf",
+            "factor of 'wind' must be a finite number, found inf",
         ),
-        (lambda contact: contact.with_factors({"wind": "1"}), "factor of 'wind' must be a finite number, changed '1'"),
-        (lambda contact: contact.with_factors([1.0]), r"factors by load case are needed, such as .*; changed \[1.0\]"),
+        (lambda contact: contact.with_factors({"wind": "1"}), "factor of 'wind' must be a finite number, found '1'"),
+        (lambda contact: contact.with_factors([1.0]), r"factors by load case are needed, such as .*; found \[1.0\]"),
         (
             lambda contact: contact.with_tools({"punch": 1}),
             r"have x, y and rotation or moment each, in an array \(2, 3\)",
