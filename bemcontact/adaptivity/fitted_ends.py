@@ -7,18 +7,18 @@ from math import ceil
 
 import numpy as np
 
-from bemcontact.adaptivity.zone_runs import SAME, Touched, ZoneRun
+from bemcontact.adaptivity.zone_runs import SAME, Stretch, ZoneRun
 from bemcontact.arrays import Array
-from bemcontact.problem.element_ends import cubic_ends, moved_onto
+from bemcontact.problem.curves import cubic_ends, moved_onto
 
 CONTACT_SHARE = 2.0
 """Ratio of the elements on the contact side of a contact edge to those on the open side, if this is no longer."""
 SHORTEST = 5e-4
-"""Least element, over the shortest side in contact: shorter ones gain little, and cost digits of the certificate."""
+"""Least element over the shortest side in contact: shorter ones gain little and cost digits of the certificate."""
 SHORTEST_OF_RUN = 1e-6
 """Least element over the length of the run: element ends that are nearer to each other are refused."""
-LEAST_TOUCHED, LEAST_OPEN = 4, 3
-"""Least elements on each side of a contact edge: with three in contact its place alternates from pass to pass."""
+LEAST_IN_CONTACT, LEAST_OPEN = 4, 3
+"""Least numbers of elements beside a contact edge: with three in contact, its place alternates between passes."""
 CLOSE = 1e-2
 """Distance from the end of a run, or from a joint, that is not resolved by elements, over the mean length of these, or
 over the contact that ends there if it is shorter."""
@@ -34,7 +34,7 @@ class _Part:
 
     low: float
     high: float
-    touched: bool
+    in_contact: bool
     low_free: bool
     high_free: bool
     share: float = 0.0
@@ -55,7 +55,7 @@ class _Part:
         return self.width / max(self.sides, 1)
 
 
-def resolved(run: ZoneRun, touched: Sequence[Touched]) -> tuple[Touched, ...]:
+def resolved(run: ZoneRun, stretches: Sequence[Stretch]) -> tuple[Stretch, ...]:
     """Move contact edges that are very near to a joint, or to an end of the run, onto it."""
 
     def settle(position: float, free: bool, width: float) -> tuple[float, bool]:
@@ -67,35 +67,26 @@ def resolved(run: ZoneRun, touched: Sequence[Touched]) -> tuple[Touched, ...]:
         return joint + turns, free and (run.closed or 0.0 < joint < run.length)
 
     moved = []
-    for item in touched:
+    for item in stretches:
         width = item.end - item.start
         start, start_free = settle(item.start, item.start_free, width)
         end, end_free = settle(item.end, item.end_free, width)
         if end > start:
-            moved.append(Touched(start=start, end=end, start_free=start_free, end_free=end_free))
+            moved.append(replace(item, start=start, end=end, start_free=start_free, end_free=end_free))
     return tuple(moved)
 
 
-def fitted_ends(run: ZoneRun, touched: Sequence[Touched]) -> Array:
-    """Positions of element ends, at a ± b (i/n)³ around each end of contact a, and nowhere farther apart than stated.
+def fitted_ends(run: ZoneRun, stretches: Sequence[Stretch]) -> Array:
+    """Positions (m + 1,) [L] of element ends, at a ± b (i/n)³ around each end of contact a.
 
     b is the distance to the next mark: an end of the run, a corner at which contact ends, or the middle between two
-    ends of contact. All n together are as many as are stated, with two in contact for one outside, or more where that
-    is longer, but no fewer than `LEAST_TOUCHED` and `LEAST_OPEN` beside an end of contact, for which some are added.
-    Such elements grow up to three times as long as equal ones: from where they would be longer than stated, elements
-    are as stated, so that a run gets about half as many again. Joints of edges stay element ends, the nearest being
-    moved onto them.
-
-    Parameters
-    ----------
-    run : with its element ends as stated
-    touched : stretches of contact, `resolved`, in order, at least one
-
-    Returns
-    -------
-    (m + 1,) [L]
+    ends of contact. The stretches are `resolved`, in order, at least one. The number of elements is the stated one: two
+    in contact for one outside, or more where the open side is longer. Some are added if there would be fewer than
+    `LEAST_IN_CONTACT` and `LEAST_OPEN` beside an end of contact. Cubic elements grow up to three times as long as equal
+    ones. Where they would be longer than stated, elements are as stated, so that a run gets about half as many again.
+    Joints of edges stay element ends: the nearest ends are moved onto them.
     """
-    blocks = _blocks(_parts(run, touched))
+    blocks = _blocks(_parts(run, stretches))
     pieces = _evened([_divided(run, block) for block in blocks], around=run.closed and not blocks[0][0].low_free)
     positions = np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
     if not run.closed:
@@ -108,7 +99,7 @@ def fitted_ends(run: ZoneRun, touched: Sequence[Touched]) -> Array:
 def _divided(run: ZoneRun, block: Sequence[_Part]) -> Array:
     """Element ends of the parts of a block."""
     counted = _counted(run, _shared(block))
-    narrowest = min((part.reach for part in counted if part.touched and part.sides), default=0.0)
+    narrowest = min((part.reach for part in counted if part.in_contact and part.sides), default=0.0)
     shortest = max(SHORTEST * narrowest, SHORTEST_OF_RUN * run.length)
     ends = [_graded(run, part, shortest) for part in counted]
     return np.concatenate([ends[0], *(positions[1:] for positions in ends[1:])])
@@ -124,22 +115,14 @@ def _evened(pieces: Sequence[Array], *, around: bool) -> list[Array]:
     return evened
 
 
-def movement(run: ZoneRun, touched: Sequence[Touched], fitted_to: Sequence[Touched] | None) -> float | None:
+def movement(run: ZoneRun, stretches: Sequence[Stretch], fitted_to: Sequence[Stretch] | None) -> float | None:
     """Largest distance of a free end of contact from where the mesh is graded to, over the shorter element there.
 
-    Parameters
-    ----------
-    run : with its present element ends
-    touched : stretches of contact
-    fitted_to : those that the mesh is graded to; if None, it is graded to an element end from which the lengths of
-        elements grow by `GROWTH` and more to either side
-
-    Returns
-    -------
-    float or None
-        None if the mesh is not graded to these ends of contact, or to more.
+    The mesh is graded to the ends of the stretches `fitted_to`. If these are None, it is graded to an element end from
+    which the lengths of elements grow by `GROWTH` or more to either side. None if the mesh is graded to another number
+    of ends.
     """
-    ends = _free_ends(touched)
+    ends = _free_ends(stretches)
     if fitted_to is None:
         marks = [mark for end in ends if (mark := _crowded(run, end)) is not None]
     else:
@@ -154,17 +137,9 @@ def movement(run: ZoneRun, touched: Sequence[Touched], fitted_to: Sequence[Touch
 
 
 def halved(ends: Array, neighbor: float, at: int) -> Array:
-    """Halve the element at one end of an edge until it is at most `GENTLE` times as long as its neighbor beyond.
+    """Halve the first (at = 0) or last (-1) element until it is at most `GENTLE` times as long as its neighbor beyond.
 
-    Parameters
-    ----------
-    ends : (m + 1,) element ends, ascending
-    neighbor : length of the element beyond, in the same unit
-    at : 0 for the first element, -1 for the last
-
-    Returns
-    -------
-    (m + k + 1,)
+    The element ends (m + 1,) ascend; the result has k more of them.
     """
     ends = ends if at == 0 else ends[::-1]
     while abs(ends[1] - ends[0]) > GENTLE * neighbor * (1 + 1e-9):
@@ -172,7 +147,7 @@ def halved(ends: Array, neighbor: float, at: int) -> Array:
     return ends if at == 0 else ends[::-1]
 
 
-def half_way(run: ZoneRun, one: Sequence[Touched], other: Sequence[Touched]) -> tuple[Touched, ...]:
+def half_way(run: ZoneRun, one: Sequence[Stretch], other: Sequence[Stretch]) -> tuple[Stretch, ...]:
     """Mean of two lists of stretches; the second list if they differ in number or in the kind of their ends."""
     kinds = [[(item.start_free, item.end_free) for item in lot] for lot in (one, other)]
     if kinds[0] != kinds[1]:
@@ -183,9 +158,9 @@ def half_way(run: ZoneRun, one: Sequence[Touched], other: Sequence[Touched]) -> 
     )
 
 
-def _free_ends(touched: Sequence[Touched]) -> list[float]:
+def _free_ends(stretches: Sequence[Stretch]) -> list[float]:
     """Positions of the free ends of contact."""
-    marks = [mark for item in touched for mark in ((item.start, item.start_free), (item.end, item.end_free))]
+    marks = [mark for item in stretches for mark in ((item.start, item.start_free), (item.end, item.end_free))]
     return [position for position, free in marks if free]
 
 
@@ -209,9 +184,9 @@ def _crowded(run: ZoneRun, position: float) -> float | None:
     return end if farther >= GROWTH * before > 0 and beyond >= GROWTH * after > 0 else None
 
 
-def _parts(run: ZoneRun, touched: Sequence[Touched]) -> list[_Part]:
+def _parts(run: ZoneRun, stretches: Sequence[Stretch]) -> list[_Part]:
     """Contact and what is open between, in order; a closed run all round, from where nothing is graded to if it can."""
-    marks = [mark for item in touched for mark in ((item.start, item.start_free), (item.end, item.end_free))]
+    marks = [mark for item in stretches for mark in ((item.start, item.start_free), (item.end, item.end_free))]
     begin = False
     if run.closed:
         first = next((number for number, (_, free) in enumerate(marks) if not free), 0)
@@ -222,7 +197,7 @@ def _parts(run: ZoneRun, touched: Sequence[Touched]) -> list[_Part]:
     else:
         marks = [(0.0, False), *marks, (run.length, False)]
     return [
-        _Part(low=low, high=high, touched=(number % 2 == 0) == begin, low_free=low_free, high_free=high_free)
+        _Part(low=low, high=high, in_contact=(number % 2 == 0) == begin, low_free=low_free, high_free=high_free)
         for number, ((low, low_free), (high, high_free)) in enumerate(pairwise(marks))
         if high - low > SAME * run.length
     ]
@@ -246,12 +221,12 @@ def _shared(block: Sequence[_Part]) -> list[_Part]:
     makes its shortest element at most `CONTACT_SHARE`³ times as long as that across the contact edge: the compliance
     of collocation loses its definiteness where elements of very different lengths meet under pressure.
     """
-    shares = [CONTACT_SHARE * part.sides if part.touched else 0.0 for part in block]
+    shares = [CONTACT_SHARE * part.sides if part.in_contact else 0.0 for part in block]
     around = [*enumerate(block)]
     if block[0].low_free:  # all round a closed run: the last part is beside the first
         around.append(around[0])
     for (i, one), (j, other) in pairwise(around):
-        (k, side), beside = ((i, one), other) if other.touched else ((j, other), one)
+        (k, side), beside = ((i, one), other) if other.in_contact else ((j, other), one)
         shares[k] += max(1.0, (side.reach / beside.reach) ** (1 / 3))
     return [replace(part, share=share) for part, share in zip(block, shares, strict=True)]
 
@@ -265,10 +240,10 @@ def _counted(run: ZoneRun, block: Sequence[_Part]) -> list[_Part]:
         return [*block]
     whole = block[0].low_free  # all round a closed run
     stated = len(run.ends) - 1 if whole else 1 + len(_inside(run.ends, run, block[0].low, block[-1].high))
-    least = [(LEAST_TOUCHED if part.touched else LEAST_OPEN) * part.sides for part in block]
+    least = [(LEAST_IN_CONTACT if part.in_contact else LEAST_OPEN) * part.sides for part in block]
     pieces = [1 + len(_inside(run.joints, run, part.low, part.high)) for part in block]
     counts = [max(pair) for pair in zip(least, pieces, strict=True)]
-    fair = ceil(LEAST_TOUCHED / CONTACT_SHARE * sum(part.share for part in block))  # enough outside for these
+    fair = ceil(LEAST_IN_CONTACT / CONTACT_SHARE * sum(part.share for part in block))  # enough outside for these
     left = max(max(stated, fair) - sum(counts), 0)
     rivals = list(range(len(block)))
     while left:

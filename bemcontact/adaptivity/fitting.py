@@ -7,9 +7,8 @@ from itertools import pairwise
 import numpy as np
 
 from bemcontact.adaptivity.fitted_ends import fitted_ends, half_way, halved, movement, resolved
-from bemcontact.adaptivity.mesh_fit import FitPass, MeshFit
 from bemcontact.adaptivity.oscillation import oscillation
-from bemcontact.adaptivity.zone_runs import Touched, ZoneRun, stretches, zone_runs
+from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun, contact_stretches, zone_runs
 from bemcontact.arrays import Array
 from bemcontact.assessment.footprint import ContactInterval, footprint
 from bemcontact.bem.body import Body, body_of
@@ -19,6 +18,35 @@ from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.problem import Problem
+from bemcontact.serialization import Internal, Leaf
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitPass(Leaf):
+    """One pass of the mesh fit: a mesh and the contact on it."""
+
+    intervals: tuple[ContactInterval, ...]
+    """Contact intervals on this mesh."""
+    movement: float | None
+    """Largest distance of an end of contact from where the mesh is graded to, over the shorter element there.
+
+    Null if the mesh is not graded to these ends of contact, as the first one mostly is not.
+    """
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshFit(Leaf):
+    """How a mesh was fitted to the ends of contact."""
+
+    passes: tuple[FitPass, ...]
+    """The mesh as it is stated, then each fitted one."""
+    kept: int
+    """Number of the pass whose mesh was kept; 0 is the mesh as it is stated."""
+    settled: bool
+    """Whether the ends of contact on it are those that it is fitted to, and no contact is narrower than an element."""
+    notes: Internal[tuple[str, ...]]
+    """What was done, in words."""
+
 
 MOST_PASSES = 8
 """Meshes tried after the one that was stated."""
@@ -35,7 +63,7 @@ CHANGE = 0.01
 
 ElementEnds = Mapping[str, tuple[float, ...]]
 """By the name of an edge, where its elements end, as `Problem.with_element_ends` takes them."""
-Stretches = Mapping[int, tuple[Touched, ...]]
+Stretches = Mapping[int, tuple[Stretch, ...]]
 """By the number of a run, its stretches of contact, of which one end at least is free."""
 
 
@@ -47,7 +75,7 @@ class _Trial:
     elements: int = 0
     intervals: tuple[ContactInterval, ...] = ()
     fitted_to: Stretches = field(default_factory=dict)
-    touched: Stretches = field(default_factory=dict)
+    stretches: Stretches = field(default_factory=dict)
     movement: float | None = None
     narrow: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
@@ -61,32 +89,19 @@ class _Trial:
 
 
 def fitted(problem: Problem, progress: Callable[[str], object] | None = None) -> tuple[Problem, MeshFit | None]:
-    """Fit the mesh to the ends of contact, if the problem asks for it.
+    """Fit the mesh to the ends of contact, if the problem asks for it; the second value is None if it does not.
 
     The complementarity problem is solved on the mesh as stated. `fitted_ends` then places the elements of each contact
     zone anew. Both steps are repeated, eight times at most, until no end of contact moves by more than a fifth of the
     shorter element beside it. Elements beside a zone are halved until they are at most twice as long as the element at
     its end. A mesh is not kept if the pressure oscillates on it and did not on the mesh as stated.
 
-    All this is done without `mesh.refine`, which cuts the fitted elements afterwards. Finer meshes then contain each
+    `mesh.refine` is not applied meanwhile: it cuts the fitted elements afterwards. Finer meshes then contain each
     other, observed orders are meaningful, and fitting costs little. But the ends of contact are those of the mesh that
     was cut. If they matter to many digits, state more elements instead.
 
-    Parameters
-    ----------
-    progress : called with the name of each pass
-
-    Returns
-    -------
-    Problem
-        With the element ends stated, and no longer asking for a fit.
-    MeshFit or None
-        None if the problem did not ask for a fit.
-
-    Raises
-    ------
-    ProblemError, SingularSystemError
-        As of `bemcontact.condense`, on the mesh as stated.
+    The fitted problem has the element ends stated, and does not ask for a fit. The errors are those of
+    `bemcontact.condense` on the mesh as stated. `progress` is called with the name of each pass.
     """
     if not problem.mesh.fit_contact_edges:
         return problem, None
@@ -110,7 +125,7 @@ def fitted(problem: Problem, progress: Callable[[str], object] | None = None) ->
 
 
 def _unrest(trial: _Trial) -> float:
-    """Distance of a mesh from the one that its solution asks for; infinite if unknown."""
+    """Movement of the ends of contact on a mesh; infinite if unknown."""
     return np.inf if trial.movement is None else trial.movement
 
 
@@ -124,12 +139,12 @@ def _oscillates(trial: _Trial, first: _Trial) -> bool:
 
 
 def _trials(stated: Problem, progress: Callable[[str], object]) -> tuple[list[_Trial], list[str]]:
-    """Try the mesh as stated, then what the trial before asks for, until one is settled; with notes on what failed."""
+    """Try the mesh as stated, then meshes fitted to the previous trial, until one settles; with notes on failures."""
     progress("mesh as stated")
     body = body_of(stated)
     runs = {run.number: run for run in zone_runs(body)}
     trials = [_trial(body, {}, runs, None)]
-    while len(trials) <= MOST_PASSES and trials[-1].touched and not trials[-1].settled:
+    while len(trials) <= MOST_PASSES and trials[-1].stretches and not trials[-1].settled:
         progress(f"pass {len(trials)}")
         try:
             aim = _aim(runs, trials)
@@ -144,18 +159,18 @@ def _aim(stated: Mapping[int, ZoneRun], trials: Sequence[_Trial]) -> Stretches:
     """Stretches of contact for the next mesh; half-way to the computed ones if the ends of contact only alternate."""
     last = trials[-1]
     if len(trials) < 3 or last.narrow or not _unrest(trials[-2]) / 2 <= _unrest(last) <= SWING:
-        return last.touched
+        return last.stretches
     return {
-        number: half_way(stated[number], last.fitted_to.get(number, ()), touched)
-        for number, touched in last.touched.items()
+        number: half_way(stated[number], last.fitted_to.get(number, ()), stretches)
+        for number, stretches in last.stretches.items()
     }
 
 
 def _placed(stated: Mapping[int, ZoneRun], aim: Stretches) -> ElementEnds:
     """Element ends of the runs on which contact ends, and of edges beside them that have long elements there."""
     placed: dict[str, tuple[float, ...]] = {}
-    for number, touched in aim.items():
-        placed |= stated[number].fractions(fitted_ends(stated[number], touched))
+    for number, stretches in aim.items():
+        placed |= stated[number].fractions(fitted_ends(stated[number], stretches))
     for run in (stated[number] for number in aim):
         for edge, own, at in zip(run.beside, (run.edges[0], run.edges[-1]), (-1, 0), strict=False):
             inside, outside = _breakpoints(own, placed), _breakpoints(edge, placed)
@@ -178,23 +193,23 @@ def _trial(body: Body, placed: ElementEnds, stated: Mapping[int, ZoneRun], fitte
         note = f"the mesh could not be fitted to a state of contact: {solution.status.words}"
         return _Trial(placed=placed, notes=(note,))
     intervals = footprint(contact, solution).intervals
-    by_run: dict[int, tuple[Touched, ...]] = {}
+    by_run: dict[int, tuple[Stretch, ...]] = {}
     movements: list[float | None] = [0.0]
     narrow: list[str] = []
     for run in zone_runs(body):
-        here = [*stretches(run, contact, solution, intervals)]
+        here = [*contact_stretches(run, contact, solution, intervals)]
         narrow += [run.zone for one in here if one.narrow]
-        touched = resolved(stated[run.number], [one.touched for one in here])
-        if any(item.start_free or item.end_free for item in touched):
-            by_run[run.number] = touched
-        movements.append(movement(run, touched, None if fitted_to is None else fitted_to.get(run.number, ())))
+        stretches = resolved(stated[run.number], here)
+        if any(item.start_free or item.end_free for item in stretches):
+            by_run[run.number] = stretches
+        movements.append(movement(run, stretches, None if fitted_to is None else fitted_to.get(run.number, ())))
     forces = np.bincount(contact.zone, contact.weights * solution.pressure, len(contact.zone_names))
     return _Trial(
         placed=placed,
         elements=len(body.mesh.elements),
         intervals=intervals,
         fitted_to=fitted_to or {},
-        touched=by_run,
+        stretches=by_run,
         movement=None if None in movements else max(filter(None, movements), default=0.0),
         narrow=tuple(dict.fromkeys(narrow)),
         oscillation=oscillation(contact, solution.pressure),
@@ -229,15 +244,15 @@ def _fit_notes(first: _Trial, last: _Trial, passes: int, refine: int) -> Iterato
 def _no_fit_notes(trials: Sequence[_Trial]) -> Iterator[str]:
     """Notes on why the mesh is as stated."""
     first, largest = trials[0], max(trial.oscillation or 0.0 for trial in trials)
-    if first.settled and first.touched:
+    if first.settled and first.stretches:
         yield "the mesh fits the ends of contact already"
-    elif first.touched and any(_oscillates(trial, first) for trial in trials):
+    elif first.stretches and any(_oscillates(trial, first) for trial in trials):
         yield (
             "the mesh was left as stated: on fitted meshes the pressure oscillates from point to point by "
             f"{largest:.2g} of the peak, as where contact ends near a tip; grade the elements towards the tip, and "
             "state more of them"
         )
-    elif first.touched:
+    elif first.stretches:
         yield "the mesh was left as stated, because the ends of contact did not settle on any fitted mesh"
     elif not first.notes and not first.intervals:
         yield "the mesh is as stated, because nothing touches"

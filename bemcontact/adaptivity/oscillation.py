@@ -1,4 +1,4 @@
-"""Oscillation: a pressure that goes up and down from point to point, which no contact does."""
+"""Oscillation of a computed pressure from point to point, which no real contact pressure shows."""
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -8,20 +8,11 @@ from bemcontact.contact.condensed_contact import CondensedContact
 
 
 def oscillation(contact: CondensedContact, pressure: Array) -> float | None:
-    """Largest amplitude of a pressure that oscillates from point to point, over the peak pressure.
+    """Largest amplitude of a pressure (n,) that oscillates from point to point, over the peak pressure.
 
     Five points in a row under pressure have one alternating part ±a, the distance from a cubic, which the fourth
     divided difference measures. If four such parts in a row alternate, the pressure oscillates by the least of them. A
-    smooth pressure has nearly none, however it bends.
-
-    Parameters
-    ----------
-    pressure : (n,) at the contact points [p]
-
-    Returns
-    -------
-    float or None
-        None if no eight points in a row are under pressure: fewer points cannot tell.
+    smooth pressure has almost none, however it bends. None if no eight points in a row are under pressure.
     """
     amplitudes: list[float] = []
     for run in np.unique(contact.run):

@@ -1,4 +1,4 @@
-"""The unbroken pieces of the contact zones as stretches of the edges, and the stretches of contact on them."""
+"""The unbroken pieces (runs) of the contact zones along the edges, and the stretches of contact on them."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -27,11 +27,11 @@ class ZoneRun:
 
     Parameters
     ----------
-    number : that the contact points on it have
+    number : number of the run at its contact points
     zone : name of its zone
     edges : in the order of the boundary
     closed : whether the last edge ends where the first begins
-    arc : (m + 1,) arc length of the elements themselves up to each element end, which is what contact points know
+    arc : (m + 1,) arc length of the elements up to each element end, as contact points have it
     breakpoints : of each edge, fractions of its length where its elements begin and end
     corner : (k + 1,) whether the boundary turns sharply at each joint of the k edges; false at the ends of an open run
     beside : the edges before and after the piece; none if it is closed
@@ -63,7 +63,7 @@ class ZoneRun:
         return np.concatenate([[0.0], *(start + edge.length * fractions[1:] for start, edge, fractions in parts)])
 
     def position(self, arc: float) -> float:
-        """Position of a point of the elements, from its arc length; across the seam of a closed run it goes on."""
+        """Position of a point of the elements from its arc length; it increases across the seam of a closed run."""
         turns, rest = divmod(arc, float(self.arc[-1])) if self.closed else (0.0, arc)
         return turns * self.length + float(np.interp(rest, self.arc, self.ends))
 
@@ -105,48 +105,30 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Touched:
+class Stretch:
     """A stretch of contact on a run.
 
     Parameters
     ----------
-    start, end : positions [L]; on a closed run the end may lie beyond its length
+    start, end : positions [L]; on a closed run the end may be beyond its length
     start_free, end_free : whether contact ends there by itself, and not at the end of the run or at a corner
+    narrow : whether fewer points are in contact than one element has, so that the places of its ends are not known
     """
 
     start: float
     end: float
     start_free: bool
     end_free: bool
+    narrow: bool = False
 
 
-@dataclass(frozen=True, kw_only=True)
-class Stretch:
-    """A stretch of contact.
-
-    Parameters
-    ----------
-    touched : its ends on the run
-    narrow : whether fewer points touch than one element has, which does not tell where contact ends
-    """
-
-    touched: Touched
-    narrow: bool
-
-
-def stretches(
+def contact_stretches(
     run: ZoneRun, contact: CondensedContact, solution: ContactSolution, intervals: Sequence[ContactInterval]
 ) -> Iterator[Stretch]:
-    """List the stretches of contact on a run.
+    """List the stretches of contact on a run of the mesh of a condensed problem, from its contact intervals.
 
     An end is free unless contact goes on to the last point of the run or to a corner. A single point stands for a
     stretch that reaches half-way to the points beside it, so that a mesh fitted to that shows more of them.
-
-    Parameters
-    ----------
-    run : on the mesh of the condensed problem
-    contact, solution : the condensed problem and its solution
-    intervals : of contact, of all runs
     """
     arcs, touching = _points(run, contact, solution)
     same = SAME * run.arc[-1]
@@ -159,11 +141,11 @@ def stretches(
         if first == last:
             start_arc = min(start_arc, (arcs[first] + arcs[max(first - 1, 0)]) / 2)
             end_arc = max(end_arc, (arcs[last] + arcs[min(last + 1, len(arcs) - 1)]) / 2)
-        corners = first < last  # a single point at a corner says nothing of either side of it
+        corners = first < last  # a single point at a corner does not decide on which side contact is
         start, start_free = _end(run, start_arc, arcs[first], 0.0 if first == 0 else None, corners)
         end, end_free = _end(run, end_arc, arcs[last], run.length if last == len(arcs) - 1 else None, corners)
-        touched = Touched(start=start, end=end, start_free=start_free, end_free=end_free)
-        yield Stretch(touched=touched, narrow=last - first < POINTS_OF_ELEMENT - 1)
+        narrow = last - first < POINTS_OF_ELEMENT - 1
+        yield Stretch(start=start, end=end, start_free=start_free, end_free=end_free, narrow=narrow)
 
 
 def _points(run: ZoneRun, contact: CondensedContact, solution: ContactSolution) -> tuple[Array, BoolArray]:

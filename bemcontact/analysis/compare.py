@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Unpack
 
-from bemcontact.adaptivity.mesh_fit import MeshFit
+from bemcontact.adaptivity.fitting import MeshFit
 from bemcontact.analysis.solve import Progress, Stopwatch, assessed, condensation_of, fitted_to_contact
 from bemcontact.analysis.study import MeshLevel, Settings, Study
 from bemcontact.assessment.comparison import Comparison, comparison

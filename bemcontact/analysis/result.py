@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.adaptivity.mesh_fit import MeshFit
+from bemcontact.adaptivity.fitting import MeshFit
 from bemcontact.arrays import Array
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
 from bemcontact.assessment.residual import Residuals
-from bemcontact.bem.boundary_values import BoundaryState
+from bemcontact.bem.mesh import BoundaryState
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.record import (

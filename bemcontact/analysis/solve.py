@@ -6,8 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Unpack
 
-from bemcontact.adaptivity.fitting import fitted
-from bemcontact.adaptivity.mesh_fit import MeshFit
+from bemcontact.adaptivity.fitting import MeshFit, fitted
 from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.certificate import certify

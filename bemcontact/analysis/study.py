@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 
-from bemcontact.adaptivity.mesh_fit import MeshFit
+from bemcontact.adaptivity.fitting import MeshFit
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.comparison import Comparison, ComparisonRecord
 from bemcontact.assessment.convergence import Convergence, convergence

@@ -57,7 +57,7 @@ class Resultant:
     force: Pair
     """Force (x, y), Σ w p n, per thickness [p L]."""
     moment: float
-    """Its moment about the origin, anticlockwise, per thickness [p L²]."""
+    """Its moment about the origin, counterclockwise, per thickness [p L²]."""
     line_point: Pair | None
     """Point of the line of action that is nearest to the origin [L]; None without a force."""
 
@@ -80,7 +80,7 @@ class FootprintRecord(Record):
     resultant: Pair
     """Force (x, y) of the rigid surfaces on the body, per thickness [p L]."""
     resultant_moment: float
-    """Its moment about the origin, anticlockwise, per thickness [p L²]."""
+    """Its moment about the origin, counterclockwise, per thickness [p L²]."""
     intervals: tuple[ContactInterval, ...]
     """Contact intervals, zone by zone; empty without contact."""
     peak: Peak | None

@@ -1,4 +1,4 @@
-"""A problem on its mesh, before it is condensed: what is known, where contact may be, and what contact holds."""
+"""A problem on its mesh, before it is condensed: loadings, contact points, and the motions that contact holds."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -8,10 +8,9 @@ import numpy as np
 from scipy.optimize import linprog, nnls
 
 from bemcontact.arrays import Array
-from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.loading import Loading, case_loadings, combined, particular_solution, permanent_loading
-from bemcontact.bem.mesh import Mesh, build
+from bemcontact.bem.mesh import BoundaryValues, Mesh, boundary_values, build
 from bemcontact.bem.rigid_motions import (
     BODY,
     UNSEEN,
@@ -23,7 +22,7 @@ from bemcontact.bem.rigid_motions import (
     placed_tools,
 )
 from bemcontact.bem.system import System, solve
-from bemcontact.contact.tools import BALANCED, Pinned
+from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
@@ -38,12 +37,12 @@ class Body:
 
     Parameters
     ----------
-    problem, mesh, points : the stages up to here
-    loadings : 1 + c, what is permanent and what each load case adds
+    problem, mesh, points : the problem, its mesh and its contact points
+    loadings : 1 + c, the permanent loading, then the addition of each load case
     tools : rigid surfaces that move
     motions : all rigid motions of the body that the conditions leave free
-    seen : those of them, and those of tools, or combinations, that move contact points along the rigid normals
-    unseen : the others, that no contact point sees
+    seen : motions of body and tools, and combinations, that move contact points along the rigid normals
+    unseen : the other free motions, which change no gap
     """
 
     problem: Problem
@@ -73,7 +72,7 @@ class Body:
 
     @cached_property
     def pinned(self) -> Pinned:
-        """The motions that move no contact point, with the true loads: their balance does not depend on the mesh."""
+        """The motions that change no gap, with loads on the exact curves: the mesh does not affect their balance."""
         motions = self.unseen.in_user_units()
         return Pinned(
             motions=tuple(f"{motions.who(j)} against the {motions.way(j)}" for j in range(len(motions))),
@@ -105,7 +104,7 @@ class Body:
     def idle_motion(self) -> str | None:
         """A motion that opens gaps and closes none, and in which the loads do no work; None if there is none.
 
-        Contact leaves open how far the body or a tool goes in it: a linear program.
+        Contact does not determine its amplitude. A linear program finds it.
         """
         R, load = self.relative_load
         if not load.size:
@@ -132,19 +131,16 @@ class Body:
 
 
 def _pinned(who: str) -> str:
-    """Say who is pinned."""
+    """Name what is pinned, with its verb."""
     return "they are pinned" if who.endswith(" together") else f"{who} is pinned"
 
 
 def body_of(problem: Problem) -> Body:
-    """Mesh a problem, spread its conditions, and find out whether contact can hold it.
+    """Mesh a problem, spread its conditions over the mesh, and check whether contact can hold the body.
 
-    Raises
-    ------
-    ProblemError
-        If the loads pull the body off its support, move it in a way that no contact resists, or do not press it on;
-        or if the conditions of a deflected contour do not hold the body. Of a problem with load cases of which none
-        acts, it is not asked whether contact can hold the body.
+    `ProblemError` if the loads that act pull the body off its support, move it in a way that no contact resists, or do
+    not press it on; or if the conditions of a deflected contour do not hold the body. A problem with load cases of
+    which none acts is meshed without this check.
     """
     mesh = build(problem)
     permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
@@ -169,7 +165,7 @@ def each_case(body: Body) -> Iterator[Body]:
 
 
 def ensure_held(body: Body) -> None:
-    """Refuse what acts on a body if contact cannot hold it; `ProblemError` as of `body_of`."""
+    """Refuse loads that contact cannot hold, with the `ProblemError` of `body_of`."""
     try:
         if complaint := body.pinned.complaint(body.factors, body.forces):
             raise ProblemError(complaint)
@@ -210,23 +206,9 @@ def _against(motions: FreeMotions) -> str:
 
 
 def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
-    """Deflect the body to each contour that serves as a rigid surface.
+    """Displacement (N, 2) [L] of the nodes by contact zone, for each zone whose surface is a deflected contour.
 
-    Parameters
-    ----------
-    mesh : of it
-
-    Returns
-    -------
-    dict
-        By contact zone, for those on a deflected contour: displacement (N, 2) [L] of the nodes.
-
-    Raises
-    ------
-    ProblemError
-        If the conditions of a contour contradict each other, or leave the body free to move.
-    SingularSystemError
-        If the equations of the body have no unique solution.
+    `ProblemError` if the conditions of a contour contradict each other, or leave the body free to move.
     """
     surfaces = {name: zone.surface for name, zone in problem.contact_zones.items()}
     return {
@@ -243,7 +225,7 @@ def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: K
     if len(motions):
         message = (
             f"with these conditions nothing holds the body against the {' and the '.join(motions.describe())}, for "
-            "there is no contact where the contour is found; prescribe displacements that hold it"
+            "the contour is computed without contact; prescribe displacements that hold it"
         )
         raise ProblemError(Issue(path=(*path, "conditions"), message=message))
     loading = Loading(values=values, particular=particular_solution(surface.loads, problem.material, mesh))

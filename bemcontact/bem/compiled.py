@@ -1,8 +1,7 @@
-"""The far part of a block of rows as machine code, by numba where that is installed (the extra ``fast``).
+"""The far part of a block of rows as machine code, by numba if it is installed (the extra ``fast``).
 
-NumPy does these sums as products of matrices, in passes over arrays of every (Gauss point, element, point). Here one
-element is done with before the next, in two small arrays, and without the lock of the interpreter, so that threads
-share the work.
+NumPy computes these sums as products of matrices over all (Gauss point, element, point). The machine code computes one
+element after the other in two small arrays. It releases the lock of the interpreter, so that threads share the work.
 """
 
 import math

@@ -1,7 +1,7 @@
 """A body condensed to its contact points: u_n = Δ1 + M p + R a with ℓᵀp = -load, [SS92] (11)-(15), (35)-(38).
 
-Generalised to bodies that contact alone holds: the singular system is bordered by its free rigid motions, and
-equilibrium itself is taken exactly, ℓ = J R, load = work of the applied loads in the free motions.
+The method also covers bodies that only contact holds. Their free rigid motions border the singular system, and
+equilibrium is exact: ℓ = J R, and the load is the work of the applied loads in the free motions.
 """
 
 from dataclasses import dataclass, replace
@@ -10,15 +10,12 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, ensure_held
-from bemcontact.bem.boundary_values import BoundaryState
-from bemcontact.bem.rigid_motions import (
-    all_rigid_motions,
-)
+from bemcontact.bem.mesh import BoundaryState
+from bemcontact.bem.rigid_motions import all_rigid_motions
 from bemcontact.bem.system import System, solve
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
-from bemcontact.contact.load_cases import LoadCases
-from bemcontact.contact.tools import Tools
+from bemcontact.contact.load_cases import LoadCases, Tools
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,13 +55,7 @@ class Condensation:
 
 
 def condense(body: Body) -> Condensation:
-    """Eliminate everything but the contact points.
-
-    Raises
-    ------
-    SingularSystemError
-        If the equations of the body have no unique solution in floating-point arithmetic.
-    """
+    """Eliminate everything but the contact points; `SingularSystemError` if the equations have no unique solution."""
     system = System(
         mesh=body.mesh, material=body.problem.material, points=body.points, motions=body.motions,
         loadings=body.loadings,
@@ -126,7 +117,7 @@ def condense(body: Body) -> Condensation:
 
 
 def _observe(system: System, response: Array) -> Array:
-    """Normal displacement (n, s + n) at the contact points due to the unknowns, over L0."""
+    """Normal displacement (n, s + n) over L0 at the contact points due to the unknowns."""
     points = system.points
     result = np.zeros((len(points), response.shape[1]))
     for normal, column in zip(points.normals.T, system.unknowns.displacement[points.node].T, strict=True):
@@ -136,13 +127,7 @@ def _observe(system: System, response: Array) -> Array:
 
 
 def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:
-    """Recover the boundary from pressure and rigid amplitudes of a contact solution.
-
-    Parameters
-    ----------
-    pressure : (n,) p [p]
-    rigid_amplitudes : (k,) a [L], in the fixed gauge of the condensed problem
-    """
+    """Recover the boundary from pressure (n,) [p] and rigid amplitudes (k,) [L] of a contact solution."""
     body, system = condensation.body, condensation.system
     mesh, gauge = body.mesh, condensation.gauge
     scaled = np.append(condensation.factors, pressure / system.stress)

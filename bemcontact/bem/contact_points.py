@@ -1,4 +1,4 @@
-"""The contact points of a mesh: pairs (zone, node) with gap, normal, and the weights that belong to them."""
+"""The contact points of a mesh: pairs (zone, node) with their gaps, normals and weights."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -10,8 +10,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.bem.boundary_values import BoundaryValues
-from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Closest, DeflectedContour, RigidSurface
 
@@ -29,9 +28,9 @@ ARC_ORDER = 12
 class ContactPoints:
     """Candidates for contact, zone by zone, run by run, along the boundary.
 
-    A node whose motion along the rigid normal is prescribed by a condition is no candidate; its pressure is zero. But
-    where contact goes on smoothly beyond such a node, as at the tip of a closed slit, so does pressure: the middle node
-    of the element carries that of the end node too, and counts its length among its own.
+    A node is no candidate if a condition prescribes its motion along the rigid normal; its pressure is zero. Contact
+    may continue smoothly beyond such a node, as at the tip of a closed slit. The end node then has the pressure of the
+    middle node of the element, whose tributary length includes that of the end node.
 
     Parameters
     ----------
@@ -127,11 +126,8 @@ def contact_points(
 ) -> ContactPoints:
     """List the contact points of all zones; the middle node of an element is always one.
 
-    Parameters
-    ----------
-    problem, mesh, values : the stages up to here
-    deflections : by zone, for those on a deflected contour: displacement (N, 2) [L] of the nodes that shapes it
-    cases : what load cases prescribe in addition
+    `deflections` has the displacement (N, 2) [L] of the nodes by zone, for zones on a deflected contour. `cases` has
+    what load cases prescribe in addition to `values`.
     """
     halves = _half_lengths(mesh)
     tool_of = {zone: tool for tool, stated in problem.tools.items() for zone in stated.zones}
@@ -157,7 +153,7 @@ def contact_points(
 
 
 def _closest(surface: RigidSurface, mesh: Mesh, nodes: IntArray, deflection: Array | None) -> Closest:
-    """Gap and normal at nodes: of the shape at their places, or of the contour that they are deflected to."""
+    """Gap and normal at nodes, to the shape at their places or to the deflected contour."""
     if isinstance(surface, DeflectedContour):
         assert deflection is not None
         return surface.behind(deflection[nodes])
@@ -173,7 +169,7 @@ def _on_surface(mesh: Mesh, values: Sequence[BoundaryValues], nodes: IntArray, n
 def _goes_on(
     mesh: Mesh, values: BoundaryValues, elements: IntArray, normals: Array, on_surface: BoolArray
 ) -> tuple[bool, bool]:
-    """Whether contact goes on beyond the first and the last node of a run, over an element that a condition holds."""
+    """Whether contact continues beyond each end of a run, on an element that a condition holds."""
     first, after = elements[0], mesh.elements[elements[-1], 2]  # an element has the number of its start node
     here, beyond = np.array([first, after]), np.array([mesh.before[first], after])
     smooth = abs(mesh.turns[here]) < SMOOTH
@@ -182,7 +178,7 @@ def _goes_on(
 
 
 class _Piece(NamedTuple):
-    """One run: zone, tool, elements and length, whether contact goes on beyond its ends, its points, its held ends."""
+    """One run: its zone, tool, elements, length, points, held ends, and whether contact continues beyond its ends."""
 
     zone: int
     tool: str | None

@@ -1,11 +1,11 @@
-"""Influence of displacement and traction on the boundary upon collocation points: rows of F and G in F u = G t, (7).
+"""Influence of displacement and traction on the boundary at collocation points: rows of F and G in F u = G t, (7).
 
-Rows are computed in blocks of neighboring points. What far elements do to a block follows from what they do, by one
-Gauss rule each, to a few of its points (`skeleton`); pairs near to each other get the rule, or the closed form, that
-the root of their own element map asks for.
+Rows are computed in blocks of neighboring points. The influence of far elements on a block follows from their influence
+on a few of its points (`skeleton`), with one Gauss rule for each element. For near pairs, the root of the element map
+decides between a Gauss rule and the closed form.
 
-Lengths here are dimensionless, over the `reference_length` L0 of the mesh, which also keeps ln r away from the
-degenerate scale; stresses are over the shear modulus.
+Lengths are divided by the `reference_length` L0 of the mesh, which also keeps ln r away from the degenerate scale.
+Stresses are divided by the shear modulus.
 """
 
 import itertools
@@ -32,16 +32,16 @@ LARGEST_BLOCK = 400_000
 CACHE_SIZE = 24_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
 WORTH_COMPILING = 4000
-"""Degrees of freedom from which numba is used, where it is installed: to import it takes as long as it saves then."""
+"""Degrees of freedom from which numba is used if it is installed: for fewer, its import takes longer than it saves."""
 ALONE = threading.Lock()
-"""The number of threads of BLAS is that of the process: two assemblies at once would restore each other's."""
+"""Lock for the number of BLAS threads of the process: two assemblies at once would restore wrong numbers."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Collocation:
-    """Points z at which the displacement equation is written, and where on which elements they lie.
+    """Points z at which the displacement equation is written, and their places on elements.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Collocation:
         elements are taken from the base, which keeps their digits where elements are short
     on_point, on_element, on_local : (q,) each: the point lies on that element at that local coordinate ξ0;
         a node between two elements lies on both, at -1 of the one and +1 of the other
-    corner : (c,) local coordinate -1 element of a node between two elements, or -1 for other points
+    corner : (c,) element that starts at a node between two elements, or -1 for other points
     """
 
     base: ComplexArray
@@ -75,7 +75,7 @@ class Block:
 
     Parameters
     ----------
-    rows : which points
+    rows : numbers of the points
     F : (4, N, R) by components in the order of `kernels.T_ORDER`; multiplies displacement at the nodes
     G : (3, 3, e, R) by components in the order of `kernels.U_ORDER`; multiplies traction times Jacobian at the three
         local nodes of the elements that `Influence` was asked for
@@ -97,7 +97,7 @@ class _Space(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Influence:
-    """The boundary of a body as a source of displacement at points.
+    """The boundary of a body as a source of displacement at collocation points.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class Influence:
     poisson_ratio : effective one, of plane strain
     traction_elements : (e,) elements whose columns of G are wanted, ascending
     known : (s, m, 3, 2) tractions times Jacobian of each of which only the sum G t is wanted
-    by_numba : whether to sum the far part by machine code where numba is installed; None: if the mesh is large enough
+    by_numba : whether machine code sums the far part; if None, it does for large meshes if numba is installed
     """
 
     mesh: Mesh
@@ -159,13 +159,10 @@ class Influence:
         return [(rule, rule.derivatives.T @ from_middle.T) for rule in rules]
 
     def each_block(self, collocation: Collocation, use: Callable[[Block], None]) -> None:
-        """Compute rows of F and G for all points and hand them on, block by block, on all processors.
+        """Compute rows of F and G for all points and pass them to `use`, block by block, on all processors.
 
-        BLAS keeps to one thread meanwhile: for products as small as these it loses more by sharing them out.
-
-        Parameters
-        ----------
-        use : called once for each block, from other threads and in any order; must not keep the block
+        `use` is called from other threads and in any order; it must not keep the block. BLAS uses one thread meanwhile,
+        because several threads are slower for products as small as these.
         """
         step = max(8, min(ROWS_PER_BLOCK, LARGEST_BLOCK // len(self.mesh.elements)))
         blocks = [slice(first, min(first + step, len(collocation))) for first in range(0, len(collocation), step)]
@@ -184,12 +181,7 @@ class Influence:
                 pass
 
     def block(self, collocation: Collocation, rows: slice) -> Block:
-        """Rows of F and G for the points `rows`.
-
-        Parameters
-        ----------
-        rows : neighboring points
-        """
+        """Rows of F and G for neighboring points."""
         return self._block(collocation, rows, self._space(rows.stop - rows.start))
 
     def _space(self, size: int) -> _Space:
@@ -236,7 +228,7 @@ class Influence:
         return compiled.far_sums() if (large if self.by_numba is None else self.by_numba) else None
 
     def _far(self, rows: slice, z: ComplexArray, nodes: ComplexArray, tiers: IntArray, space: _Space) -> Block:
-        """A block with what far elements do to its points, by one Gauss rule each; a tier of -1 leaves one out."""
+        """A block with the influence of far elements on its points, by one Gauss rule each; tier -1 leaves one out."""
         columns = len(self.traction_elements)
         if (tiers < 0).all():
             return self._zero(rows, len(z), columns)
@@ -254,7 +246,7 @@ class Influence:
         )
 
     def _zero(self, rows: slice, points: int, columns: int) -> Block:
-        """A block for so many points, with G for so many elements."""
+        """A block of zeros for a number of points, with G for a number of elements."""
         F, G = np.zeros((4, len(self.nodes), points)), np.zeros((3, 3, columns, points))
         return Block(rows=rows, F=F, G=G, known=np.zeros((len(self.known), 2, points)))
 
@@ -286,7 +278,7 @@ class Influence:
                 block.G[:, :, _successive(self._slot[part])] = result.U
 
     def _near(self, block: Block, collocation: Collocation, element: IntArray) -> None:
-        """Every point of the block with some elements, each pair by the rule that its own root asks for."""
+        """Every point of the block with some elements, each pair by the rule for its own root."""
         base, offset = collocation.base[block.rows], collocation.offset[block.rows]
         tau = ((self.element_nodes[element, None] - base[:, None]) - offset[:, None]).reshape(-1, 3)
         root = kernels.nearest_root(tau)
@@ -320,9 +312,10 @@ class Influence:
 
     def _on_elements(self, block: Block, collocation: Collocation, element: IntArray) -> tuple[IntArray, Components]:
         """Pairs whose point lies on the element: their places among all of (element, point), and their integrals."""
-        on = np.flatnonzero(_within(collocation.on_point, block.rows))
+        point = collocation.on_point
+        on = np.flatnonzero((point >= block.rows.start) & (point < block.rows.stop))
         their, local = collocation.on_element[on], collocation.on_local[on]
-        row = collocation.on_point[on] - block.rows.start
+        row = point[on] - block.rows.start
         at = np.searchsorted(element, their) * block.F.shape[-1] + row
         return at, kernels.components(kernels.singular(self.element_nodes[their], local), self._factors)
 
@@ -353,10 +346,6 @@ def _sums(traction: Array, U: Array) -> Array:
     x, y = np.moveaxis(traction.reshape(len(traction), 2, 3 * traction.shape[-1]), 1, 0)
     xx, yy, xy = U.reshape(3, x.shape[-1], U.shape[-1])
     return np.stack([x @ xx + y @ xy, x @ xy + y @ yy], axis=1)
-
-
-def _within(index: IntArray, rows: slice) -> BoolArray:
-    return (index >= rows.start) & (index < rows.stop)
 
 
 def _successive(index: IntArray) -> IntArray | slice:

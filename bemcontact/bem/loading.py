@@ -12,14 +12,12 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.bem import reference_element
-from bemcontact.bem.boundary_values import BoundaryValues, applied_traction, boundary_values
-from bemcontact.bem.mesh import Mesh, along_curve
+from bemcontact.bem.mesh import BoundaryValues, Mesh, along_curve, applied_traction, boundary_values
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.errors import ProblemError
 from bemcontact.problem.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
 from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.material import Material
-from bemcontact.problem.problem import Problem
+from bemcontact.problem.problem import Material, Problem
 
 EXACT_ORDER = 6
 """Gauss points that integrate x² y dx exactly along a quadratic element."""
@@ -80,7 +78,7 @@ def true_resultant(problem: Problem) -> tuple[Array, float]:
 
 
 def _resultant(load: Gravity | Centrifugal, area: float, moments: Array) -> tuple[Array, float]:
-    """Resultant (2,) and moment about the origin on a body of that area with the first moments ∫ x dA, ∫ y dA (2,)."""
+    """Resultant (2,) and moment about the origin, from the area and its first moments ∫ x dA, ∫ y dA (2,)."""
     if isinstance(load, Gravity):
         b = load.density * np.array(load.acceleration)
         return area * b, float(moments[0] * b[1] - moments[1] * b[0])
@@ -161,7 +159,7 @@ def _moments_of_area(mesh: Mesh) -> tuple[float, Array]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Loading:
-    """Values on the boundary and loads on the volume; loadings of one body share what is prescribed, not its values.
+    """Values on the boundary and loads on the volume; loadings of one body prescribe values at the same places.
 
     Parameters
     ----------
@@ -190,7 +188,7 @@ class Loading:
         return work + motions.work_of(self.particular.force, self.particular.moment)
 
     def true_work(self, mesh: Mesh, motions: RigidMotions) -> Array:
-        """Work (k,) on the curves themselves, to round-off: the balance of loads does not depend on the mesh."""
+        """Work (k,) on the exact curves, to round-off, so that the balance of loads does not depend on the mesh."""
         return motions.work_of(self.true_force, self.true_moment, about=mesh.center)
 
     def magnitude(self, mesh: Mesh) -> float:
@@ -257,7 +255,7 @@ def _loading(problem: Problem, mesh: Mesh, conditions: Mapping[str, Condition], 
 
 
 def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase) -> Loading:
-    """The loading by a load case; where the problem prescribes displacements that it does not give, they are zero."""
+    """The loading by a load case; displacements that the problem prescribes and the case does not give are zero."""
     conditions: dict[str, Condition] = {}
     for edge in {**problem.conditions, **case.conditions}:
         held = problem.conditions[edge].displacement.given if edge in problem.conditions else ()

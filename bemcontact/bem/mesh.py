@@ -1,23 +1,27 @@
-"""The boundary in quadratic elements."""
+"""The boundary in quadratic elements, and the values that the conditions prescribe on it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
+from bemcontact.errors import Issue, ProblemError
+from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.problem import Problem
 
 CURVE_ORDER = 16
 """Gauss points for each element's piece of the curve itself."""
+CONTRADICTION = 1e-9
+"""Difference of two prescribed displacements at one corner, relative to the largest one, from which they contradict."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mesh:
-    """Three-noded elements on closed loops, the body on the left of each element's direction.
+    """Elements with three nodes on closed loops; the body is on the left.
 
     Node e is the start and node m + e the middle of element e: N = 2m.
     Displacement belongs to a node; traction to an (element, local node) pair, so that it may jump.
@@ -119,13 +123,9 @@ def element_curves(values: Array, count: int) -> Array:
 
 
 def along_curve(edge: Edge) -> tuple[Array, Array, Array]:
-    """Gauss points of an edge itself, not of its elements, many enough for integrals to round-off.
+    """Gauss points (q, 2) [L], outward normals (q, 2) and arc lengths (q,) [L] of an edge itself, not of its elements.
 
-    Returns
-    -------
-    points : (q, 2) [L]
-    normals : (q, 2) out of the body
-    lengths : (q,) arc length that belongs to each point [L]
+    The points are many enough for integrals to round-off.
     """
     ends = edge.breakpoints(1)
     xi, weights = reference_element.gauss_legendre(CURVE_ORDER)
@@ -135,14 +135,7 @@ def along_curve(edge: Edge) -> tuple[Array, Array, Array]:
 
 
 def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[str]) -> Mesh:
-    """Make a mesh from its elements.
-
-    Parameters
-    ----------
-    starts, middles : (m, 2) start and middle node of each element [L]
-    after : (m,) the element that begins where each element ends
-    edge_of : m names of edges
-    """
+    """Make a mesh from start and middle nodes (m, 2) [L], the element (m,) after each element, and m names of edges."""
     m = len(starts)
     names = tuple(dict.fromkeys(edge_of))
     return Mesh(
@@ -151,3 +144,117 @@ def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[
         edge=np.array([names.index(name) for name in edge_of]),
         edge_names=names,
     )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BoundaryValues:
+    """Prescribed displacements and tractions on the boundary; zero where nothing is prescribed.
+
+    Parameters
+    ----------
+    displacement_given : (N, 2) whether a displacement component is prescribed at a node
+    displacement : (N, 2) its value [L]
+    traction_unknown : (m, 2) whether the edge of an element prescribes displacement along an axis: traction is sought
+    traction : (m, 3, 2) prescribed traction [p]
+    """
+
+    displacement_given: BoolArray
+    displacement: Array
+    traction_unknown: BoolArray
+    traction: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BoundaryState:
+    """Displacement and traction on the boundary, element by element; traction may jump between elements."""
+
+    points: Array
+    """Nodes (m, 3, 2) of each element [L]."""
+    displacement: Array
+    """Displacement (m, 3, 2) at these nodes [L]."""
+    traction: Array
+    """Force (m, 3, 2) on the body per undeformed length [p]."""
+    edge: IntArray
+    """Index (m,) into `edge_names`."""
+    edge_names: tuple[str, ...]
+    """Names of the edges."""
+    force_balance: float
+    """Resultant of all forces on the body (and of their moments, over the radius), over the sum of their magnitudes."""
+    equilibrium_slack: float
+    """Imbalance of the discrete equations relative to the loads; it measures the mesh."""
+
+
+def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:
+    """Spread the conditions over the mesh; `ProblemError` if two edges contradict each other at their common corner."""
+    N, m = len(mesh.nodes), len(mesh.elements)
+    values = BoundaryValues(
+        displacement_given=np.zeros((N, 2), bool),
+        displacement=np.zeros((N, 2)),
+        traction_unknown=np.zeros((m, 2), bool),
+        traction=np.zeros((m, 3, 2)),
+    )
+    owner = np.full((N, 2), -1)
+    largest = _largest_displacement(problem, mesh)
+    issues = []
+    for index, name in enumerate(mesh.edge_names):
+        if name not in problem.conditions:
+            continue
+        condition, elements = problem.conditions[name], np.flatnonzero(mesh.edge == index)
+        nodes = np.unique(mesh.elements[elements])
+        for axis, field in _given(condition.displacement):
+            value = field.at(mesh.nodes[nodes])
+            taken = values.displacement_given[nodes, axis]
+            wrong = taken & (abs(value - values.displacement[nodes, axis]) > CONTRADICTION * largest)
+            issues += [
+                _contradiction(mesh, mesh.edge_names[owner[node, axis]], name, axis, int(node)) for node in nodes[wrong]
+            ]
+            values.displacement[nodes, axis] = value
+            values.displacement_given[nodes, axis] = True
+            values.traction_unknown[elements, axis] = True
+            owner[nodes, axis] = index
+        values.traction[elements] = applied_traction(
+            condition, mesh.nodes[mesh.elements[elements]], mesh.normals[elements]
+        )
+    if issues:
+        raise ProblemError(issues)
+    return values
+
+
+def applied_traction(condition: Condition, points: Array, normals: Array) -> Array:
+    """Traction (…, 2) [p] that a condition prescribes at points (…, 2) [L] with outward normals, else zero."""
+    traction = np.zeros_like(points)
+    for axis, field in _given(condition.traction):
+        traction[..., axis] = _at(field, points)
+    if condition.pressure is not None:
+        traction = -_at(condition.pressure, points)[..., None] * normals
+    return traction
+
+
+def _given(fields: AxisFields) -> Iterator[tuple[int, Field]]:
+    """Number and field of each axis that is prescribed."""
+    for axis, field in enumerate((fields.x, fields.y)):
+        if field is not None:
+            yield axis, field
+
+
+def _at(field: Field, points: Array) -> Array:
+    return field.at(points.reshape(-1, 2)).reshape(points.shape[:-1])
+
+
+def _largest_displacement(problem: Problem, mesh: Mesh) -> float:
+    """Largest prescribed displacement on the mesh [L]."""
+    largest = 0.0
+    for name, condition in problem.conditions.items():
+        nodes = np.unique(mesh.elements[mesh.edge == mesh.edge_names.index(name)])
+        for _, field in _given(condition.displacement):
+            largest = max(largest, float(abs(field.at(mesh.nodes[nodes])).max()))
+    return largest
+
+
+def _contradiction(mesh: Mesh, first: str, second: str, axis: int, node: int) -> Issue:
+    x, y = mesh.nodes[node]
+    message = (
+        f"at ({x:.6g}, {y:.6g}), where '{second}' meets '{first}', the two prescribe different displacements "
+        f"along {'xy'[axis]}; make them agree at that corner"
+    )
+    return Issue(path=("conditions", second, "displacement", "xy"[axis]), message=message)

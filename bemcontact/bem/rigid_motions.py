@@ -1,4 +1,4 @@
-"""Rigid motions of the body and of tools: which ones no condition prevents, which of them contact sees, their names."""
+"""Rigid motions of the body and of tools that no condition prevents, those that contact sees, and their names."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -68,7 +68,7 @@ class RigidMotions:
             return f"translation along ({a / length:.4g}, {b / length:.4g})"
         pole = self.center + self.radius / c * np.array([-b, a])
         x, y = np.where(abs(pole) > 1e-9 * self.radius, pole, 0.0)
-        sense = "anticlockwise" if c > 0 else "clockwise"
+        sense = "counterclockwise" if c > 0 else "clockwise"
         return f"rotation {sense} about ({x:.4g}, {y:.4g})"
 
 
@@ -78,17 +78,7 @@ def all_rigid_motions(mesh: Mesh) -> RigidMotions:
 
 
 def free_rigid_motions(mesh: Mesh, prescribed: BoolArray) -> RigidMotions:
-    """Find the rigid motions that leave every prescribed displacement component at rest.
-
-    Parameters
-    ----------
-    prescribed : (N, 2) whether the displacement of a node along an axis is prescribed
-
-    Returns
-    -------
-    RigidMotions
-        Translations first where there are any.
-    """
+    """Find the rigid motions that move no prescribed displacement component (N, 2); translations come first."""
     every = all_rigid_motions(mesh)
     rows = every.displacement(mesh.nodes)[prescribed]
     _, values, vectors = np.linalg.svd(np.vstack([rows, np.zeros((3, 3))]))
@@ -122,14 +112,14 @@ BODY = "the body"
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PlacedTools:
-    """t tools beside the contact points of a body; components are x, y and rotation, tool by tool.
+    """t tools with their contact points; components are x, y and rotation, tool by tool.
 
     Parameters
     ----------
     names : of the tools
     point : (t, 2) about which each turns [L]
-    motions : (n, 3 t) what a unit displacement along x and y [1] and a unit rotation [L] add to the gaps, -n·w
-    free : (3 t,) whether the tool is free to move so
+    motions : (n, 3 t) change -n·w of the gaps by a unit displacement along x and y [1], and by a unit rotation [L]
+    free : (3 t,) whether the component is free
     position : (3 t, 1 + c) x, y [L] and rotation [rad] that are given: permanent, then by load case
     force : (3 t, 1 + c) x, y [p L] and moment [p L²] likewise
     """
@@ -156,7 +146,7 @@ class PlacedTools:
 
 
 def placed_tools(problem: Problem, points: ContactPoints) -> PlacedTools:
-    """Find how the tools of a problem move its contact points."""
+    """Compute the motions of the contact points with the tools of a problem."""
     tools, cases = problem.tools, problem.load_cases
     names = tuple(problem.contact_zones)
     columns, places = [np.zeros((len(points), 0))], []
@@ -185,7 +175,7 @@ def _components(tools: Mapping[str, RigidTool], actions: Mapping[str, ToolAction
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FreeMotions:
-    """k motions in each of which the body and the tools move rigidly, all at once.
+    """k motions in which the body and the tools move rigidly together.
 
     Parameters
     ----------
@@ -222,16 +212,16 @@ class FreeMotions:
         return replace(self, coefficients=factors.T @ self.coefficients)
 
     def describe(self) -> tuple[str, ...]:
-        """Describe each motion, and whose it is unless it is that of the body alone."""
+        """Describe each motion, with what moves unless it is the body alone."""
         return tuple(f"{self.way(j)}{'' if self.who(j) == BODY else f' of {self.who(j)}'}" for j in range(len(self)))
 
     def who(self, motion: int) -> str:
-        """Say what moves: the body, tools, or some of them together."""
+        """Name what moves: the body, tools, or several of them together."""
         *others, last = (("the tool '" + self.names[part - 1] + "'") if part else BODY for part in self._moving(motion))
         return f"{', '.join(others)} and {last} together" if others else last
 
     def way(self, motion: int) -> str:
-        """Say how it moves."""
+        """Describe how it moves."""
         ways = [self._part(part).described(self._of(motion, part)) for part in self._moving(motion)]
         return " and ".join(dict.fromkeys(ways))
 
@@ -264,18 +254,10 @@ class FreeMotions:
 
 
 def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTools) -> tuple[FreeMotions, FreeMotions]:
-    """Separate the free motions of the body and of tools that contact sees from those that no contact point sees.
+    """Separate the free motions of the body and of tools into those that contact sees and those that it does not see.
 
-    Parameters
-    ----------
-    points : of contact
-    of_body : that the conditions leave free
-    tools : of the problem
-
-    Returns
-    -------
-    seen : those of the body first, then those of tools, each with independent columns of R
-    unseen : those in which nothing changes its gap, or body and tools go together
+    The seen motions have independent columns of R; those of the body come first, then those of tools. In the unseen
+    motions no gap changes, or body and tools move together.
     """
     t = len(tools.names)
     poles = tools.poles(points)

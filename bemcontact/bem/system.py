@@ -1,10 +1,10 @@
-"""The linear system of a body: conditions put into F u = G t, unknown columns only, [SS92] (9)-(10).
+"""The linear system of a body: F u = G t with the conditions, for the unknowns only, [SS92] (9)-(10).
 
-Unknown are the displacements that no condition prescribes and the tractions where one does. Contact pressures and
-all that is prescribed stand on the right: A z = b + Σ_i p_i b_i. Displacement is never rotated at contact nodes: the
-normal displacement is observed, u_n = n·u, which is (8) read backwards and lets a node belong to two zones.
+The unknowns are the displacements that no condition prescribes, and the tractions at prescribed displacements. Contact
+pressures and prescribed values are on the right: A z = b + Σ_i p_i b_i. Displacement is not rotated at contact nodes.
+The normal displacement is computed from it, u_n = n·u, the inverse of (8), so that a node may belong to two zones.
 
-Within this module lengths are over L0 and stresses over the shear modulus (see `influence`).
+In this module lengths are divided by L0 and stresses by the shear modulus (see `influence`).
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,15 +17,14 @@ from scipy import sparse
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, reference_element
-from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.influence import Block, Collocation, Influence
 from bemcontact.bem.loading import Loading
-from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
-from bemcontact.problem.material import Material
+from bemcontact.problem.problem import Material
 
 OFFSET = 2 / 3
 """|ξ| of the collocation points inside the two elements at a node where both prescribe the displacement."""
@@ -37,8 +36,8 @@ STRAIGHT = 1e-8
 class Unknowns:
     """Columns of the system: x displacements, y displacements, then tractions.
 
-    Traction is continuous where an edge goes on straight. It may jump where two edges meet, and also where two curved
-    elements do, because the normal of the quadratic elements jumps there.
+    Traction is continuous where an edge continues straight. It may jump where two edges meet, and where two curved
+    elements meet, because the normal of the quadratic elements jumps there.
 
     Parameters
     ----------
@@ -53,7 +52,7 @@ class Unknowns:
 
 
 def number_unknowns(mesh: Mesh, values: BoundaryValues) -> Unknowns:
-    """Give every unknown its column."""
+    """Number the columns of the unknowns."""
     free = ~values.displacement_given
     displacement = np.full(free.shape, -1)
     displacement.T[free.T] = np.arange(free.sum())
@@ -71,7 +70,7 @@ def number_unknowns(mesh: Mesh, values: BoundaryValues) -> Unknowns:
 
 
 def _continues_straight(mesh: Mesh) -> BoolArray:
-    """Whether each element (m,) goes on in the direction of the one before it, on the same edge."""
+    """Whether each element (m,) continues the one before it on the same edge, in the same direction."""
     return (mesh.edge == mesh.edge[mesh.before]) & (abs(mesh.turns) < STRAIGHT)
 
 
@@ -90,15 +89,11 @@ class Equations:
 
 
 def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Equations:
-    """Put collocation points at the nodes, or inside both elements where a node has two unknown tractions.
+    """Put collocation points at the nodes (N,), or inside both elements where a node has two unknown tractions.
 
     A node has one equation along each axis for its one unknown there. Where two elements meet with an unknown traction
     each along an axis, the equation along that axis is written at ξ = 2/3 of the element before and at ξ = -2/3 of
     the element after instead.
-
-    Parameters
-    ----------
-    nodes : (N,) as x + iy, in the lengths of the system
     """
     m, before = len(mesh.elements), mesh.before
     element = np.arange(m)
@@ -162,8 +157,8 @@ class System:
 
     Parameters
     ----------
-    mesh, material, points, motions : what the body is
-    loadings : s things that act on it, each with right sides of its own; they share what is prescribed
+    mesh, material, points, motions : of the body
+    loadings : s loadings, each with a right side; they prescribe displacement and traction at the same places
     """
 
     mesh: Mesh
@@ -320,13 +315,7 @@ SINGULAR = 1e-15
 
 
 def assemble(system: System) -> tuple[Array, Array]:
-    """Set up the bordered matrix (in Fortran order, to be factorized in place) and the right sides.
-
-    Returns
-    -------
-    matrix : (size, size)
-    right : (size, s + n)
-    """
+    """Set up the bordered matrix (size, size), in Fortran order for LU in place, and the right sides (size, s + n)."""
     unknowns = system.unknowns.size
     matrix = np.zeros((system.size, system.size), order="F")
     transposed = matrix.T
@@ -347,15 +336,9 @@ def assemble(system: System) -> tuple[Array, Array]:
 
 
 def solve(system: System) -> Array:
-    """Solve for the loads and for unit pressures: LU in place, then one step of refinement on rows computed anew.
+    """Solve (size, s + n) for loads and unit pressures: LU in place, then one refinement with rows computed anew.
 
-    Returns
-    -------
-    (size, s + n)
-
-    Raises
-    ------
-    SingularSystemError
+    `SingularSystemError` if the equations have no unique solution.
     """
     matrix, right = assemble(system)
     lu = LU.of(matrix, overwrite=True)

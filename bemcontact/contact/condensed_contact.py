@@ -1,7 +1,7 @@
 """The waist of the package: a condensed contact problem.
 
-The boundary-element core makes a `CondensedContact`; the formulations turn it into a solution; neither side knows the
-other. Lengths and stresses are in the user's units throughout.
+The boundary-element core makes a `CondensedContact`, and the formulations solve it. Neither side knows the other.
+Lengths and stresses are in the user's units.
 """
 
 import os
@@ -19,10 +19,15 @@ from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
 from bemcontact.contact import archive
-from bemcontact.contact.free_motions import MotionAlgebra, StiffnessRows, fix_gauge, stiffness_rows
-from bemcontact.contact.load_cases import Change, LoadCases
-from bemcontact.contact.scales import ContactScales, typical_scales
-from bemcontact.contact.tools import Pinned, Tools
+from bemcontact.contact.free_motions import (
+    ContactScales,
+    MotionAlgebra,
+    StiffnessRows,
+    fix_gauge,
+    stiffness_rows,
+    typical_scales,
+)
+from bemcontact.contact.load_cases import Change, LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
 from bemcontact.options import Weights
 
@@ -139,7 +144,7 @@ class CondensedContact(MotionAlgebra):
         motion_load: ArrayLike | None = None,
         name: str = "unnamed",
     ) -> Self:
-        """State a contact problem by numbers alone: gap = q + M p + R a >= 0, p >= 0, p·gap = 0, ℓᵀp = -load.
+        """State a contact problem by numbers: gap = q + M p + R a >= 0, p >= 0, p·gap = 0, ℓᵀp = -load.
 
         Parameters
         ----------
@@ -303,7 +308,7 @@ class CondensedContact(MotionAlgebra):
     def changes(self) -> dict[str, Change]:
         """Changes that need no new condensation, by key path, each per unit: factors of load cases, tools.
 
-        Changes without effect are left out, and those that alone would drive a motion that nothing resists.
+        Changes without effect are left out, and changes that would drive a motion that nothing resists.
         """
         cases, tools, pinned = self.cases, self.tools, self.pinned
         unit, units = np.eye(1 + len(cases))[1:], np.eye(3 * len(tools))

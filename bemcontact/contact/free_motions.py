@@ -1,19 +1,55 @@
-"""Algebra of the free rigid motions: equilibrium ℓᵀp = -load with ℓ = J R, the gauge, and the stiffness rows."""
+"""Algebra of the free rigid motions: scales, equilibrium ℓᵀp = -load with ℓ = J R, the gauge, the stiffness rows."""
 
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import linprog
 
 from bemcontact.arrays import Array
-from bemcontact.contact.scales import ContactScales
 from bemcontact.errors import SingularSystemError
+
+INTERFERENCE = 1e-6
+"""Fraction of the widest gap from which there is interference: the accuracy of a linear program."""
+ROUND_OFF = 64 * float(np.finfo(float).eps)
+"""This fraction for a body that is held: less is a gap that has just closed."""
+
+
+class ContactScales(NamedTuple):
+    """Typical displacement U [L] and pressure T [p] of a contact problem, by which residuals are divided."""
+
+    displacement: float
+    pressure: float
+
+
+def typical_scales(compliance: Array, offset: Array, rigid_motions: Array, balancing_pressure: Array) -> ContactScales:
+    """Scales with U = ‖M‖∞ T: the larger of those of the load and of the interference.
+
+    From M (n, n) [L/p], the gap without contact q (n,) [L], R (n, k) and the balancing pressure (n,) [p] of the load.
+    """
+    norm = float(np.abs(compliance).sum(axis=1).max(initial=0.0))
+    pressure = float(np.abs(balancing_pressure).max(initial=0.0))
+    widest = float(np.abs(offset).max(initial=0.0))
+    displacement = max(norm * pressure, _interference(offset, rigid_motions, widest)) or widest or 1.0
+    return ContactScales(displacement, displacement / norm if norm > 0 else pressure or 1.0)
+
+
+def _interference(offset: Array, rigid_motions: Array, widest: float) -> float:
+    """Least s >= 0 [L] with q + R a >= -s for some a, by a linear program; zero below 1e-6 of the widest gap."""
+    n, k = rigid_motions.shape
+    if k == 0 or widest == 0:
+        deepest = float(np.maximum(-offset, 0.0).max(initial=0.0))
+        return deepest if deepest > ROUND_OFF * widest else 0.0
+    columns = np.column_stack([rigid_motions, np.ones(n)])
+    cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
+    optimum = linprog(cost, A_ub=-columns, b_ub=offset / widest, bounds=bounds)
+    return widest * optimum.fun if optimum.success and optimum.fun > INTERFERENCE else 0.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MotionAlgebra:
-    """Free rigid motions of n contact points: what a contact problem in any units has of equilibrium ℓᵀp = -load.
+    """Free rigid motions of n contact points, with the equilibrium ℓᵀp = -load.
 
     With P = I - R (ℓᵀR)⁻¹ ℓᵀ and the balancing pressure p0 every p in equilibrium is P p + p0.
 
@@ -80,15 +116,9 @@ class Gauge(NamedTuple):
 
 
 def fix_gauge(motions: MotionAlgebra, compliance: Array, free_displacement: Array) -> Gauge:
-    """Remove from M and Δ1 what depends on how the free rigid motions were held while solving.
+    """Remove from M (n, n) [L/p] and Δ1 (n,) or (n, s) [L] what depends on how free motions were held while solving.
 
     With P and p0 of `MotionAlgebra`: M' = P M P and Δ1' = P (Δ1 + M p0).
-
-    Parameters
-    ----------
-    motions : R, J and the load
-    compliance : (n, n) M [L/p]
-    free_displacement : (n,) Δ1 [L], or (n, s) for s loadings
     """
     M, (n, k) = compliance, motions.rigid_motions.shape
     project = motions.projector if n > k else np.zeros((n, n))
@@ -113,17 +143,7 @@ def stiffness_rows(
 ) -> StiffnessRows:
     """K u_n = B p + r, (12), with K = S, B = I, r = S Δ1 + V load; [S, V] the top of [[M, R], [ℓᵀ, 0]]⁻¹.
 
-    Parameters
-    ----------
-    motions : R, J and the load
-    compliance : (n, n) M [L/p]
-    free_displacement : (n,) Δ1 [L]
-    scales : of the problem
-
-    Raises
-    ------
-    SingularSystemError
-        If the matrix has no inverse.
+    From M (n, n) [L/p] and Δ1 (n,) [L]; `SingularSystemError` if the matrix has no inverse.
     """
     R, ell = motions.rigid_motions, motions.equilibrium
     n, k = R.shape
@@ -134,8 +154,8 @@ def stiffness_rows(
         inverse = np.linalg.inv(bordered.T).T.astype(float)  # accurate as a left inverse, which is how K is used
     except np.linalg.LinAlgError:
         raise SingularSystemError(
-            "the compliance is singular: some change of pressure moves no contact point, so that pressures cannot "
-            "be told apart; give each contact point a compliance of its own"
+            "the compliance is singular: some change of pressure moves no contact point, so that pressures are "
+            "not unique; give each contact point a compliance of its own"
         ) from None
     S, V = inverse[:n, :n] * (T / U), inverse[:n, n:] / row_scale
     return StiffnessRows(S, np.eye(n), S @ free_displacement + V @ motions.motion_load)

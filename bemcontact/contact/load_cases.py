@@ -1,6 +1,6 @@
-"""Load cases of a condensed body, and directions in which it changes.
+"""Load cases and tools of a condensed body.
 
-Both enter the gap without contact, q = ε + Δ1, and the load in ℓᵀp = -load linearly.
+Their factors, displacements and forces enter the gap without contact, q = ε + Δ1, and the load in ℓᵀp = -load linearly.
 """
 
 from dataclasses import dataclass
@@ -9,7 +9,10 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bemcontact.arrays import Array, freeze_arrays
+from bemcontact.arrays import Array, BoolArray, freeze_arrays
+
+BALANCED = 1e-9
+"""Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as zero."""
 
 
 class Change(NamedTuple):
@@ -64,3 +67,111 @@ class LoadCases:
     def __len__(self) -> int:
         """Return the number of cases."""
         return len(self.names)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Tools:
+    """t tools: rigid surfaces with given displacements, or with given forces and unknown displacements.
+
+    A tool moves by (x, y) and turns by a small angle about its point; the gap at a contact point of its surfaces then
+    changes by -n·w. Where a component is free, its amplitude is one of the free motions of the contact problem and its
+    force is part of the load. Where it is not free, its displacement is part of the initial gap.
+
+    Parameters
+    ----------
+    names : of the tools
+    point : (t, 2) about which each turns, and on which its force acts [L]
+    motions : (n, 3 t) -n·w: what a unit displacement x, y and a unit rotation of each tool add to the gap
+    amplitudes : (3 t, k) motion of the tools per amplitude a of the free motions
+    free : (3 t,) whether a component is free
+    position : (3 t,) displacement of the components that are not: x, y [L], rotation [rad], zero for others
+    force : (3 t,) on the components that are free: x, y [p L], moment [p L²], zero for others
+    """
+
+    names: tuple[str, ...]
+    point: Array
+    motions: Array
+    amplitudes: Array
+    free: BoolArray
+    position: Array
+    force: Array
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    @classmethod
+    def none(cls, points: int, motions: int) -> Self:
+        """No tool at all, for n contact points and k free motions."""
+        return cls(
+            names=(), point=np.zeros((0, 2)), motions=np.zeros((points, 0)), amplitudes=np.zeros((0, motions)),
+            free=np.zeros(0, bool), position=np.zeros(0), force=np.zeros(0),
+        )  # fmt: skip
+
+    def __len__(self) -> int:
+        """Return the number of tools."""
+        return len(self.names)
+
+    def displacement(self, rigid_amplitudes: Array) -> Array:
+        """Displacements (t, 3) of the tools: x, y [L] and rotation [rad], for amplitudes a (k,)."""
+        return (self.position + self.amplitudes @ rigid_amplitudes).reshape(-1, 3)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Key paths (3 t) of the components: of the displacement where it is given, of the force where it is free."""
+        moves, forces = (
+            ("displacement.x", "displacement.y", "displacement.rotation"),
+            ("force.x", "force.y", "force.moment"),
+        )
+        ways = zip(self.free.reshape(-1, 3), self.names, strict=True)
+        return tuple(f"tools.{name}.{(forces if free[i] else moves)[i]}" for free, name in ways for i in range(3))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pinned:
+    """j rigid motions of the body and of tools that move no contact point: all loads must balance in them.
+
+    Parameters
+    ----------
+    motions : j descriptions, "the body against the translation along (1, 0)"
+    turns : (j,) whether work in it is a moment [p L²] and not a force [p L]
+    load : (j, 1 + c) work of what is permanent on the body, and of each load case
+    tools : (3 t, j) motion of the tools
+    magnitude : (1 + c,) sum of the magnitudes of what is permanent on the body, and of each load case [p L]
+    length : by which a moment is divided to compare it with forces [L]
+    """
+
+    motions: tuple[str, ...]
+    turns: BoolArray
+    load: Array
+    tools: Array
+    magnitude: Array
+    length: float
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    @classmethod
+    def none(cls, cases: int, tools: int) -> Self:
+        """No pinned motion, for c cases and t tools."""
+        return cls(
+            motions=(), turns=np.zeros(0, bool), load=np.zeros((0, 1 + cases)), tools=np.zeros((3 * tools, 0)),
+            magnitude=np.zeros(1 + cases), length=1.0,
+        )  # fmt: skip
+
+    def total(self, factors: Array, force: Array) -> float:
+        """Sum of the magnitudes of all loads [p L], for factors (1 + c,) and forces on tools (3 t,)."""
+        x, y, moment = force.reshape(-1, 3).T
+        return float(self.magnitude @ abs(factors) + (np.hypot(x, y) + abs(moment) / self.length).sum())
+
+    def complaint(self, factors: Array, force: Array) -> str | None:
+        """Describe a motion that the loads drive and nothing resists; None if the loads balance."""
+        work, total = self.load @ factors + self.tools.T @ force, self.total(factors, force)
+        for motion, turns, done in zip(self.motions, self.turns, work, strict=True):
+            if abs(done) > BALANCED * total * (self.length if turns else 1.0):
+                return (
+                    f"nothing holds {motion}, and the loads act along it ({'moment' if turns else 'resultant'} "
+                    f"{done:.6g}); prescribe a displacement that holds it, or balance the loads"
+                )
+        return None

@@ -35,15 +35,7 @@ class LU:
     def solve(self, right: Array, residual: Callable[[Array], Array]) -> Array:
         """Solve for right sides (m,) or (m, s), and refine once.
 
-        Parameters
-        ----------
-        right : the right sides
-        residual : right sides less matrix times its argument; the result may be overwritten
-
-        Returns
-        -------
-        Array
-            Of the shape of `right`.
+        `residual` gives the right sides less matrix times its argument; its result may be overwritten.
         """
         (substitute,) = get_lapack_funcs(("getrs",), dtype=float)
         x = substitute(self.factors, self.pivots, right)[0]

@@ -83,11 +83,11 @@ class ToolRecord(Record):
     displacement: Pair
     """Displacement (x, y) of that point [L]."""
     rotation: float
-    """Rotation in radians, anticlockwise."""
+    """Rotation in radians, counterclockwise."""
     force_of_body: Pair
     """Force (x, y) of the body on the tool, per thickness [p L]."""
     moment_of_body: float
-    """Moment of that force about the point, anticlockwise, per thickness [p L²]."""
+    """Moment of that force about the point, counterclockwise, per thickness [p L²]."""
     free: tuple[bool, bool, bool]
     """Whether the tool is free to move along x, along y and to rotate, as it is loaded there."""
 

@@ -1,4 +1,4 @@
-"""A solution of a condensed contact problem: what a formulation found, and how its solver ended."""
+"""A solution of a condensed contact problem as a formulation reports it, and how its solver ended."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -10,9 +10,8 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.free_motions import MotionAlgebra
+from bemcontact.contact.free_motions import ContactScales, MotionAlgebra
 from bemcontact.contact.load_cases import Change
-from bemcontact.contact.scales import ContactScales
 from bemcontact.options import Weights
 
 

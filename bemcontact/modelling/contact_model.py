@@ -11,7 +11,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.scales import ContactScales
+from bemcontact.contact.free_motions import ContactScales
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import minimize

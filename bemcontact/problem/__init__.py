@@ -1,75 +1,43 @@
 """The problem as the user gives it: body, conditions, loads, contact zones, tools; frozen and checked."""
 
-from bemcontact.problem.boundary import Boundary
-from bemcontact.problem.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
-from bemcontact.problem.contact_zone import ContactZone, RigidTool, ToolAction, ToolDisplacement, ToolForce
-from bemcontact.problem.curves import Edge
-from bemcontact.problem.geometry import Arc, EllipseArc, Grading, Line
-from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.material import Material
-from bemcontact.problem.problem import MeshDensity, Problem, Units, Variant
-from bemcontact.problem.reference import (
-    Crack,
-    FlatPunch,
-    Hertz,
-    ProppedBeam,
-    Reference,
-    ShrinkFit,
-    Table,
-    Uniform,
-    Values,
-)
-from bemcontact.problem.rigid_surface import (
-    Circle,
-    Closest,
-    DeflectedContour,
-    Plane,
-    Polyline,
-    RigidSurface,
-    Shape,
-    Spline,
-)
-
-__all__ = [
-    "Arc",
-    "AxisFields",
-    "Boundary",
-    "Centrifugal",
-    "Circle",
-    "Closest",
-    "Condition",
-    "ContactZone",
-    "Crack",
-    "DeflectedContour",
-    "Edge",
-    "EllipseArc",
-    "Field",
-    "FlatPunch",
-    "Grading",
-    "Gravity",
-    "Hertz",
-    "Line",
-    "LoadCase",
-    "Loads",
-    "Material",
-    "MeshDensity",
-    "Plane",
-    "Polyline",
-    "Problem",
-    "ProppedBeam",
-    "Reference",
-    "RigidSurface",
-    "RigidTool",
-    "Shape",
-    "ShrinkFit",
-    "Spline",
-    "Table",
-    "Temperature",
-    "ToolAction",
-    "ToolDisplacement",
-    "ToolForce",
-    "Uniform",
-    "Units",
-    "Values",
-    "Variant",
-]
+from bemcontact.problem.boundary import Boundary as Boundary
+from bemcontact.problem.conditions import AxisFields as AxisFields
+from bemcontact.problem.conditions import Centrifugal as Centrifugal
+from bemcontact.problem.conditions import Condition as Condition
+from bemcontact.problem.conditions import Field as Field
+from bemcontact.problem.conditions import Gravity as Gravity
+from bemcontact.problem.conditions import Loads as Loads
+from bemcontact.problem.conditions import Temperature as Temperature
+from bemcontact.problem.contact_zone import ContactZone as ContactZone
+from bemcontact.problem.contact_zone import RigidTool as RigidTool
+from bemcontact.problem.contact_zone import ToolAction as ToolAction
+from bemcontact.problem.contact_zone import ToolDisplacement as ToolDisplacement
+from bemcontact.problem.contact_zone import ToolForce as ToolForce
+from bemcontact.problem.curves import Edge as Edge
+from bemcontact.problem.geometry import Arc as Arc
+from bemcontact.problem.geometry import EllipseArc as EllipseArc
+from bemcontact.problem.geometry import Grading as Grading
+from bemcontact.problem.geometry import Line as Line
+from bemcontact.problem.load_case import LoadCase as LoadCase
+from bemcontact.problem.problem import Material as Material
+from bemcontact.problem.problem import MeshDensity as MeshDensity
+from bemcontact.problem.problem import Problem as Problem
+from bemcontact.problem.problem import Units as Units
+from bemcontact.problem.problem import Variant as Variant
+from bemcontact.problem.reference import Crack as Crack
+from bemcontact.problem.reference import FlatPunch as FlatPunch
+from bemcontact.problem.reference import Hertz as Hertz
+from bemcontact.problem.reference import ProppedBeam as ProppedBeam
+from bemcontact.problem.reference import Reference as Reference
+from bemcontact.problem.reference import ShrinkFit as ShrinkFit
+from bemcontact.problem.reference import Table as Table
+from bemcontact.problem.reference import Uniform as Uniform
+from bemcontact.problem.reference import Values as Values
+from bemcontact.problem.rigid_surface import Circle as Circle
+from bemcontact.problem.rigid_surface import Closest as Closest
+from bemcontact.problem.rigid_surface import DeflectedContour as DeflectedContour
+from bemcontact.problem.rigid_surface import Plane as Plane
+from bemcontact.problem.rigid_surface import Polyline as Polyline
+from bemcontact.problem.rigid_surface import RigidSurface as RigidSurface
+from bemcontact.problem.rigid_surface import Shape as Shape
+from bemcontact.problem.rigid_surface import Spline as Spline

@@ -35,7 +35,7 @@ def edge_name_issues(boundary: RawValue, conditions: Iterable[RawValue], zones: 
     prescribed = [condition for group in conditions for condition in group.each()]
     issues: list[Issue] = []
     for condition in (*prescribed, *_conditions_of_contours(zones)):
-        if names is not None and (name := str(condition.path[-1])) not in names:
+        if names is not None and (name := condition.name) not in names:
             issues.append(KeyIssue(path=condition.path, message=unknown_word("edge", name, names)))
     zone_of: dict[str, str] = {}
     for zone, member in _edges_of_zones(zones):
@@ -46,7 +46,7 @@ def edge_name_issues(boundary: RawValue, conditions: Iterable[RawValue], zones: 
             issues.append(Issue(path=member.path, message=_repeated_edge(name, zone_of[name], zone)))
         zone_of.setdefault(name, zone)
     for condition in prescribed:
-        if (name := str(condition.path[-1])) in zone_of:
+        if (name := condition.name) in zone_of:
             message = f"edge '{name}' is in the contact zone '{zone_of[name]}' and can have no condition; remove one"
             issues.append(KeyIssue(path=condition.path, message=message))
     return issues
@@ -65,7 +65,7 @@ def _edges_of_zones(zones: RawValue) -> Iterator[tuple[str, RawValue]]:
     for zone in zones.each():
         for member in _one_or_more(zone.below(ContactZone, "edges")):
             if isinstance(member.value, str):
-                yield str(zone.path[-1]), member
+                yield zone.name, member
 
 
 def _one_or_more(names: RawValue) -> Iterator[RawValue]:
@@ -89,12 +89,12 @@ def _repeated_edge(edge: str, first: str, second: str) -> str:
 
 def tool_issues(tools: RawValue, zones: RawValue) -> Iterator[Issue]:
     """Issues of tools that name unknown contact zones, or the same zone."""
-    names = [str(zone.path[-1]) for zone in zones.each()]
+    names = [zone.name for zone in zones.each()]
     tool_of: dict[str, str] = {}
     for tool in tools.each():
         members = tool.below(RigidTool, "zones")
         for member in [members] if isinstance(members.value, str) else members.each():
-            zone, name = member.value, str(tool.path[-1])
+            zone, name = member.value, tool.name
             if names and isinstance(zone, str) and zone not in names:
                 yield Issue(path=member.path, message=unknown_word("contact zone", zone, names))
             elif isinstance(zone, str) and tool_of.setdefault(zone, name) != name:
@@ -104,26 +104,26 @@ def tool_issues(tools: RawValue, zones: RawValue) -> Iterator[Issue]:
 
 def load_case_issues(cases: RawValue, combinations: RawValue, parts: Mapping[str, RawValue]) -> Iterator[Issue]:
     """Issues of load cases that contradict the "conditions" and "tools" of the problem, and of combinations."""
-    conditions = {str(item.path[-1]): item.read(Condition) for item in parts["conditions"].each()}
-    tools = {str(item.path[-1]): item.read(RigidTool) for item in parts["tools"].each()}
+    conditions = {item.name: item.read(Condition) for item in parts["conditions"].each()}
+    tools = {item.name: item.read(RigidTool) for item in parts["tools"].each()}
     for case in cases.each():
         for item in case.below(LoadCase, "conditions").each():
-            name = str(item.path[-1])
+            name = item.name
             if name not in conditions or conditions[name] is not None:  # else the one of the problem is wrong
                 yield from _condition_issues(item, conditions.get(name))
         for item in case.below(LoadCase, "tools").each():
-            name = str(item.path[-1])
+            name = item.name
             if name not in tools:
                 yield KeyIssue(path=item.path, message=unknown_word("tool", name, tools))
             elif (tool := tools[name]) is not None:
                 yield from _action_issues(item, tool)
-    names = [str(case.path[-1]) for case in cases.each()]
+    names = [case.name for case in cases.each()]
     for combination in combinations.each():
-        if (name := str(combination.path[-1])) in names:
+        if (name := combination.name) in names:
             message = f"a load case has the name '{name}' already; give the combination another name"
             yield KeyIssue(path=combination.path, message=message)
         for factor in combination.each():
-            if (name := str(factor.path[-1])) not in names:
+            if (name := factor.name) not in names:
                 yield KeyIssue(path=factor.path, message=unknown_word("load case", name, names))
 
 
@@ -169,7 +169,7 @@ def _action_issues(item: RawValue, tool: RigidTool) -> Iterator[Issue]:
 
 def reference_issues(references: RawValue, zones: RawValue, cases: Sequence[str]) -> list[Issue]:
     """Issues of references that name an unknown zone or load case, or no zone where there are several."""
-    names = [str(zone.path[-1]) for zone in zones.each()]
+    names = [zone.name for zone in zones.each()]
     issues = []
     for reference in references.each():
         zone, case = reference.below(Hertz, "zone"), reference.below(Hertz, "case")
@@ -191,14 +191,7 @@ def _needs_one_zone(reference: RawValue) -> bool:
 
 
 def mesh_issues(boundary: Boundary, path: KeyPath, refine: int) -> list[Issue]:
-    """Issues of a mesh with too many elements for a dense matrix, or too few for its curves.
-
-    Parameters
-    ----------
-    boundary : the boundary, with the elements of each edge
-    path : key path of the boundary
-    refine : number of parts into which each element is cut
-    """
+    """Issues of a mesh with too many elements for a dense matrix, or too few for its curves."""
     total = refine * sum(edge.elements for edge in boundary.edges)
     if total > MOST_ELEMENTS:
         message = f"{total} elements are too many for a dense matrix; take at most {MOST_ELEMENTS}"

@@ -1,7 +1,7 @@
 """Edges as the user gives them: lines, circular arcs and elliptic arcs, each with its number of elements."""
 
 from math import atan2, hypot, isfinite, pi, radians
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_validator
 
@@ -238,9 +238,7 @@ def _moved(center: Point, distance: float, direction: Point) -> Point:
 
 AnyEdge = Line | Arc | EllipseArc
 """An edge of any shape."""
-EdgeSpec = Annotated[
-    AnyEdge, TaggedUnion(what="an edge", kinds={"line": Line, "arc": Arc, "ellipse": EllipseArc}, default="line")
-]
+EdgeSpec = Annotated[AnyEdge, TaggedUnion(what="an edge", members=get_args(AnyEdge), default="line")]
 """An edge whose class is chosen by the key `kind`."""
 LoopSpec = Annotated[tuple[EdgeSpec, ...], Field(min_length=1)]
 """Edges in order: each edge starts at the end of the previous one, and the last one closes the loop."""

@@ -87,6 +87,11 @@ class RawValue(NamedTuple):
     path: KeyPath
     value: Any
 
+    @property
+    def name(self) -> str:
+        """Last key of the path."""
+        return str(self.path[-1])
+
     def below(self, model: type[SpecModel], key: str) -> Self:
         """Value under a key of the model, even if the key is misspelled; None if there is no value."""
         if isinstance(self.value, BaseModel):

@@ -2,9 +2,17 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, Field, ModelWrapValidatorHandler, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    Field,
+    ModelWrapValidatorHandler,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.boundary import Boundary
@@ -22,9 +30,51 @@ from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, with_entry
 from bemcontact.problem.load_case import Combination, LoadCase
-from bemcontact.problem.material import Material
 from bemcontact.problem.reference import NonEmptyText, ReferenceSpec
-from bemcontact.problem.validation import Count, Flag, Name, SpecModel, Text, invalid, issues_of, unknown_word
+from bemcontact.problem.validation import (
+    Count,
+    Flag,
+    Name,
+    Number,
+    Positive,
+    SpecModel,
+    Text,
+    invalid,
+    issues_of,
+    unknown_word,
+)
+
+
+class Material(SpecModel):
+    """An isotropic linear elastic material in plane strain or plane stress."""
+
+    young_modulus: Positive
+    """The modulus of elasticity E (Young's modulus), in the unit of stress."""
+    state: Literal["plane_strain", "plane_stress"] = "plane_strain"
+    """The plane state: plane_strain (thick body, the default) or plane_stress (thin sheet)."""
+    poisson_ratio: Annotated[Number, Field(json_schema_extra={"exclusiveMinimum": -1, "maximum": 0.5})]
+    """The Poisson ratio ν, for most materials between 0 and 0.5."""
+
+    @field_validator("poisson_ratio")
+    @classmethod
+    def _in_range(cls, value: float, info: ValidationInfo) -> float:
+        """Refuse ν without positive strain energy, and ν = 0.5 in plane strain, which is incompressible."""
+        if not -1 < value <= 0.5:
+            raise invalid(f"must be greater than -1 and less than 0.5, found {value:g}")
+        if value == 0.5 and info.data.get("state") == "plane_strain":
+            raise invalid("must be less than 0.5 in plane strain, found 0.5; take 0.499, or state: plane_stress")
+        return value
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + ν)) [p]."""
+        return self.young_modulus / (2 * (1 + self.poisson_ratio))
+
+    @property
+    def effective_poisson_ratio(self) -> float:
+        """The ν of the plane-strain formulas: ν itself in plane strain, ν / (1 + ν) in plane stress."""
+        nu = self.poisson_ratio
+        return nu if self.state == "plane_strain" else nu / (1 + nu)
 
 
 class Units(SpecModel):
@@ -188,7 +238,7 @@ class Problem(SpecModel):
     def _raw_case_names(cls, raw: RawValue) -> list[str]:
         """Names of load cases and combinations, valid or not."""
         parts = (raw.below(cls, key) for key in ("load_cases", "combinations"))
-        return [str(item.path[-1]) for part in parts for item in part.each()]
+        return [item.name for part in parts for item in part.each()]
 
     @property
     def case_names(self) -> tuple[str, ...]:

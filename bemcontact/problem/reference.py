@@ -5,7 +5,7 @@ Forces are per thickness, lengths are in the units of the problem. A reference d
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, Self, get_args
 
 from pydantic import AfterValidator, Field, Strict, ValidationInfo, field_validator, model_validator
 
@@ -298,20 +298,5 @@ class Table(_PositionedReference):
 
 Reference = Hertz | FlatPunch | ShrinkFit | Uniform | Crack | ProppedBeam | Values | Table
 """A reference of any kind."""
-ReferenceSpec = Annotated[
-    Reference,
-    TaggedUnion(
-        what="a reference",
-        kinds={
-            "hertz": Hertz,
-            "flat_punch": FlatPunch,
-            "shrink_fit": ShrinkFit,
-            "uniform": Uniform,
-            "crack": Crack,
-            "propped_beam": ProppedBeam,
-            "values": Values,
-            "table": Table,
-        },
-    ),
-]
+ReferenceSpec = Annotated[Reference, TaggedUnion(what="a reference", members=get_args(Reference))]
 """A reference whose class is chosen by the key `kind`."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from functools import cached_property
 from itertools import pairwise
-from typing import Annotated, Any, Literal, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self, get_args
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -275,17 +275,5 @@ Shape = Plane | Circle | Polyline | Spline
 """A rigid surface that has a gap at any point of the plane."""
 RigidSurface = Shape | DeflectedContour
 """The surface that the body may touch."""
-SurfaceSpec = Annotated[
-    RigidSurface,
-    TaggedUnion(
-        what="a rigid surface",
-        kinds={
-            "plane": Plane,
-            "circle": Circle,
-            "polyline": Polyline,
-            "spline": Spline,
-            "deflected_contour": DeflectedContour,
-        },
-    ),
-]
+SurfaceSpec = Annotated[RigidSurface, TaggedUnion(what="a rigid surface", members=get_args(RigidSurface))]
 """A rigid surface whose class is chosen by the key `kind`."""

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from functools import cached_property
 from typing import Annotated, Any, Self
 
 from pydantic import (
@@ -293,13 +294,18 @@ class TaggedUnion:
     Parameters
     ----------
     what : name of the thing with its article, for error messages
-    kinds : members of the union by their kind
+    members : classes of the union; the default of the key `kind` of each is its kind
     default : kind of a mapping without the key `kind`; if None, the key is required
     """
 
     what: str
-    kinds: Mapping[str, type[SpecModel]]
+    members: tuple[type[SpecModel], ...]
     default: str | None = None
+
+    @cached_property
+    def kinds(self) -> dict[str, type[SpecModel]]:
+        """The members by their kind."""
+        return {member.model_fields["kind"].default: member for member in self.members}
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         """Validate with the chosen member; the union itself serves the JSON Schema only."""
@@ -323,7 +329,7 @@ class TaggedUnion:
 
     def _chosen(self, value: Any) -> SpecModel:
         """Validate a mapping as the kind that it names."""
-        if isinstance(value, tuple(self.kinds.values())):
+        if isinstance(value, self.members):
             return value
         if not isinstance(value, Mapping):
             raise invalid(f"expected a mapping that describes {self.what}, found {described(value)}")

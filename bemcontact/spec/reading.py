@@ -86,17 +86,9 @@ def as_run(path: str | os.PathLike[str], overrides: Sequence[str] = (), variant:
 def located(
     error: ProblemError, path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: str | None = None
 ) -> SpecError:
-    """Error with the places in the file of issues that were found after the problem had been read.
+    """Error with the place in the file of each issue of a problem that had been read with these arguments.
 
-    Parameters
-    ----------
-    error : error of the problem
-    path, overrides, variant : arguments of `load` for this problem
-
-    Returns
-    -------
-    SpecError
-        A line ``file:line:column: key.path: message`` for each issue, or ``file: message`` if it has no key path.
+    Each line is ``file:line:column: key.path: message``, or ``file: message`` if the issue has no key path.
     """
     name = os.fspath(path)
     document = _stages(text_of(path), name, overrides, variant)[-1]
@@ -275,7 +267,7 @@ def _varied(document: Document, name: str) -> Iterator[Document]:
 
     `SpecError` if there is no such variant, or if one of its keys leads nowhere.
     """
-    variants = {str(item.path[-1]): item for item in RawValue((), document.data).below(Problem, "variants").each()}
+    variants = {item.name: item for item in RawValue((), document.data).below(Problem, "variants").each()}
     if name not in variants:
         raise SpecError(f"--variant {name or repr(name)}: {unknown_word('variant', name, variants)}")
     variant = variants[name].read(Variant)

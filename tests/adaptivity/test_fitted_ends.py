@@ -1,4 +1,4 @@
-"""Element ends graded to ends of contact: where they lie, how many there are, what is left as it was."""
+"""Element ends graded to ends of contact: their places, their number, and the elements that stay as stated."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bemcontact.adaptivity.fitted_ends import CONTACT_SHARE, fitted_ends, half_way, halved, movement, resolved
-from bemcontact.adaptivity.zone_runs import Touched, ZoneRun
+from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun
 from bemcontact.problem.curves import Edge, Segment
 
 
@@ -29,17 +29,17 @@ def run_of(lengths: Sequence[float], elements: Sequence[int], *, closed: bool = 
     )
 
 
-def touched(start: float, end: float, *, start_free: bool = True, end_free: bool = True) -> Touched:
-    return Touched(start=start, end=end, start_free=start_free, end_free=end_free)
+def touched(start: float, end: float, *, start_free: bool = True, end_free: bool = True) -> Stretch:
+    return Stretch(start=start, end=end, start_free=start_free, end_free=end_free)
 
 
-def ends_of(run: ZoneRun, *stretches: Touched) -> np.ndarray:
-    found = fitted_ends(run, resolved(run, stretches))
-    assert len(found) < 1.7 * len(run.ends)  # half as many again
-    assert found[0] == 0
-    assert found[-1] == run.length
-    assert np.all(np.diff(found) > 0)
-    return found
+def ends_of(run: ZoneRun, *stretches: Stretch) -> np.ndarray:
+    positions = fitted_ends(run, resolved(run, stretches))
+    assert len(positions) < 1.7 * len(run.ends)  # half as many again
+    assert positions[0] == 0
+    assert positions[-1] == run.length
+    assert np.all(np.diff(positions) > 0)
+    return positions
 
 
 def test_one_end_of_contact_in_a_zone():
@@ -74,7 +74,7 @@ def test_no_element_is_longer_than_those_stated_in_its_place(elements, start, en
 
 
 @given(st.floats(0.05, 0.45), st.floats(0.5, 0.95), st.integers(20, 60))
-def test_a_mirrored_run_is_divided_in_the_mirror(start, end, elements):
+def test_a_mirrored_run_has_mirrored_elements(start, end, elements):
     """From 20 elements on, of which eight in a narrow contact and enough outside are half as many again."""
     ends = ends_of(run_of([1.0], [elements]), touched(start, end))
     mirrored = ends_of(run_of([1.0], [elements]), touched(1 - end, 1 - start))
@@ -99,8 +99,8 @@ def test_joints_of_edges_stay_element_ends():
     assert stated["edge 2"][0:1] != ()
 
 
-def test_contact_that_ends_at_a_joint_all_but_is_graded_to_the_joint():
-    """A hundredth of an element is no element."""
+def test_contact_that_ends_almost_at_a_joint_is_graded_to_the_joint():
+    """A distance of a hundredth of an element is not resolved."""
     run = run_of([2.0, 2.0], [8, 8])
     assert resolved(run, [touched(0, 2.002)])[0].end == 2.0
     assert resolved(run, [touched(0, 2.003)])[0].end == 2.003
@@ -133,7 +133,7 @@ def test_contacts_that_nearly_meet_share_what_is_between_them():
 
 @pytest.mark.parametrize("shift", [0.0, 3.0, 9.0, -4.0])
 def test_a_closed_run_is_divided_alike_wherever_it_begins(shift):
-    """In the contact, if the seam lies elsewhere."""
+    """The elements in contact do not depend on the seam."""
     run = run_of([12.0], [48], closed=True)
     ends = ends_of(run, touched(4 + shift, 7 + shift))
     turned = np.sort(np.mod(ends[:-1] - shift, 12))
@@ -143,7 +143,7 @@ def test_a_closed_run_is_divided_alike_wherever_it_begins(shift):
     assert near[0] == pytest.approx(4, rel=1e-14)
 
 
-def test_contact_may_lie_across_the_seam_of_a_closed_run():
+def test_contact_may_cross_the_seam_of_a_closed_run():
     ends = ends_of(run_of([12.0], [48], closed=True), touched(10, 13))
     assert {0.0, 1.0, 10.0, 12.0} <= set(ends.tolist())
 
@@ -165,7 +165,7 @@ def test_beyond_a_corner_at_which_contact_ends_elements_are_halved(closed):
     assert np.diff(ends).max() <= 0.5 * (1 + 1e-9)
 
 
-def test_a_zone_gets_the_elements_that_it_takes():
+def test_a_zone_gets_as_many_elements_as_it_needs():
     """Four inside each end of contact and three outside: the first are 1/64 and 1/27 of what they are graded over."""
     ends = fitted_ends(run_of([4.0], [2]), [touched(1, 3)])
     assert len(ends) == 15
@@ -173,7 +173,7 @@ def test_a_zone_gets_the_elements_that_it_takes():
 
 
 @pytest.mark.parametrize("seam", [0.0, 5.0, 30.0])
-def test_what_is_open_on_a_closed_run_has_elements_for_both_its_ends(seam):
+def test_the_open_side_of_a_closed_run_has_elements_for_both_its_ends(seam):
     """So the shortest is at most `CONTACT_SHARE`³ times as long as that in contact; twice, as numbers are whole."""
     run = run_of([60.0], [30], closed=True)
     ends = fitted_ends(run, [touched(10 + seam, 27 + seam)])
@@ -183,13 +183,13 @@ def test_what_is_open_on_a_closed_run_has_elements_for_both_its_ends(seam):
 
 
 def test_a_very_short_contact_has_no_element_that_would_be_refused():
-    """A millionth of the run at least."""
+    """Each element has at least a millionth of the run."""
     ends = ends_of(run_of([10.0], [60]), touched(0, 1e-3, start_free=False))
     assert np.diff(ends).min() >= 1e-5 * (1 - 1e-9)
 
 
 @pytest.mark.parametrize("at", [0, -1])
-def test_elements_are_halved_towards_a_short_neighbour(at):
+def test_elements_are_halved_towards_a_short_neighbor(at):
     """4 beside 0.3: 2, 1 and 0.5 twice, which is not more than twice as long."""
     ends = np.array([0.0, 4.0, 9.0]) if at == 0 else np.array([-9.0, -4.0, 0.0])
     lengths = np.diff(halved(ends, 0.3, at))
@@ -202,10 +202,10 @@ def test_movement_is_measured_in_the_shorter_element_where_the_mesh_is_graded_to
     stated = run_of([4.0], [12])
     ends = ends_of(stated, touched(0, 3, start_free=False))
     run = with_ends(stated, ends)
-    fitted_to, found = touched(0, 3, start_free=False), touched(0, 3.001, start_free=False)
-    assert movement(run, [found], [fitted_to]) == pytest.approx(0.001 / (3 / 512), rel=1e-9)
-    assert movement(run, [found], None) == movement(run, [found], [fitted_to])  # elements grow from there
-    assert movement(stated, [found], None) is None
+    fitted_to, computed = touched(0, 3, start_free=False), touched(0, 3.001, start_free=False)
+    assert movement(run, [computed], [fitted_to]) == pytest.approx(0.001 / (3 / 512), rel=1e-9)
+    assert movement(run, [computed], None) == movement(run, [computed], [fitted_to])  # elements grow from there
+    assert movement(stated, [computed], None) is None
     assert movement(run, [touched(0.001, 3.001)], None) is None  # nothing crowds to the end of a run
     assert movement(run, [touched(1, 3)], [fitted_to]) is None  # one end more
 
@@ -217,7 +217,7 @@ def test_movement_round_the_seam_of_a_closed_run():
     assert half_way(run, [touched(-2, 0.2)], [touched(10, 12)]) == (touched(10, 12.1),)
 
 
-def test_stretches_of_other_kinds_have_no_middle():
+def test_stretches_of_different_kinds_have_no_mean():
     run = run_of([12.0], [48])
     assert half_way(run, [touched(2, 5)], [touched(3, 6)]) == (touched(2.5, 5.5),)
     assert half_way(run, [touched(2, 5)], [touched(3, 6, end_free=False)]) == (touched(3, 6, end_free=False),)

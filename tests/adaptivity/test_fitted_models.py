@@ -1,4 +1,4 @@
-"""Fitting makes no shipped problem worse: what is known of it still holds, and errors are no larger than unfitted."""
+"""Fitting makes no shipped problem worse: references are still met, and errors are not larger than without a fit."""
 
 from collections.abc import Callable
 from functools import cache
@@ -48,7 +48,7 @@ def differences(result: Result) -> dict[tuple[str, str], tuple[float, float]]:
 
 @pytest.mark.parametrize("refine", [1, 2])
 @pytest.mark.parametrize(("name", "case"), CASES)
-def test_what_is_known_still_holds(name: str, case: str | None, refine: int):
+def test_references_are_still_met(name: str, case: str | None, refine: int):
     result = solved(name, fit=True, refine=refine, case=case)
     assert result.certified
     assert result.mesh_fit is not None
@@ -57,8 +57,8 @@ def test_what_is_known_still_holds(name: str, case: str | None, refine: int):
 
 
 @pytest.mark.parametrize(("name", "case"), CASES)
-def test_pressures_are_no_farther_from_what_is_known(name: str, case: str | None):
-    """In the mean square, and up to a tenth of what a reference is good for."""
+def test_pressures_are_not_farther_from_the_references(name: str, case: str | None):
+    """In the mean square, up to a tenth of the tolerance of the reference."""
     fitted, unfitted = (differences(solved(name, fit=fit, case=case)) for fit in (True, False))
     for (reference, quantity), (difference, tolerance) in fitted.items():
         if quantity == "pressure (mean square)":
@@ -106,10 +106,10 @@ def test_errors_are_no_larger(name: str, edge: str, quantity: Callable[[Result],
 
 
 def test_the_start_of_contact_does_not_depend_on_the_elements_in_the_zone():
-    """Of the cantilever, fitted, to 0.002 cm; unfitted it moves by a tenth of an element of 1 cm."""
-    found = {
+    """The cantilever, to 0.002 cm with a fit; without it, the start moves by a tenth of an element of 1 cm."""
+    starts = {
         fit: [start(solved("cantilever_flat_surface", fit=fit, zone=("landing", n))) for n in (8, 9, 10, 11, 12)]
         for fit in (True, False)
     }
-    assert np.ptp(found[True]) <= 2e-3
-    assert np.ptp(found[False]) >= 0.05
+    assert np.ptp(starts[True]) <= 2e-3
+    assert np.ptp(starts[False]) >= 0.05

@@ -1,4 +1,4 @@
-"""Meshes that find the ends of contact: how exact they are, what they leave alone, what they say."""
+"""Meshes fitted to the ends of contact: their accuracy, the elements that stay, and the notes."""
 
 import json
 from dataclasses import replace
@@ -14,8 +14,7 @@ from typer.testing import CliRunner
 import bemcontact
 from bemcontact import cli
 from bemcontact.adaptivity import fitting
-from bemcontact.adaptivity.fitting import SETTLED, fitted
-from bemcontact.adaptivity.mesh_fit import MeshFit
+from bemcontact.adaptivity.fitting import SETTLED, MeshFit, fitted
 from bemcontact.analysis import compare as comparing
 from bemcontact.assessment.footprint import footprint
 from bemcontact.contact.solution import Status
@@ -30,10 +29,10 @@ HALF_WIDTH, PEAK = 2.7685, 183.335
 
 
 def fit_of(problem: Problem) -> tuple[Problem, MeshFit]:
-    found, fit = fitted(problem)
+    adapted, fit = fitted(problem)
     assert fit is not None
-    assert not found.mesh.fit_contact_edges
-    return found, fit
+    assert not adapted.mesh.fit_contact_edges
+    return adapted, fit
 
 
 def all_ends(problem: Problem) -> dict[str, np.ndarray]:
@@ -105,8 +104,8 @@ def test_passes_are_reported(cylinders):
     assert fit.settled
     assert 2 <= fit.kept <= 3
     first, last = fit.passes[0].intervals[0].end, fit.passes[fit.kept].intervals[0].end
-    (told,) = (note for note in cylinders[12].notes if note.startswith("mesh fitted"))
-    assert told == (
+    (note,) = (note for note in cylinders[12].notes if note.startswith("mesh fitted"))
+    assert note == (
         f"mesh fitted to the ends of contact in {fit.kept} passes; it has 48 elements where 42 were stated; "
         f"end of contact in foot moved from "
         f"({first[0]:.6g}, {first[1]:.6g}) to ({last[0]:.6g}, {last[1]:.6g})"
@@ -119,7 +118,7 @@ def test_passes_are_reported(cylinders):
 
 @pytest.mark.parametrize("load", [1e-2, 1e-3, 1e-4, 1e-5])
 def test_hertz_on_a_zone_that_is_much_longer(load):
-    """On elements of 0.17 contact is 0.27 wide, or 0.0087, and one point feels it: the mesh is fitted all the same.
+    """On elements of 0.17 contact is 0.27 or 0.0087 wide, with one point in contact. The mesh is fitted nevertheless.
 
     b/R = 0.034 at most, where Hertz holds to 0.03 %; the peak suffers a little from the mesh that was stated beside it.
     """
@@ -134,7 +133,7 @@ def test_hertz_on_a_zone_that_is_much_longer(load):
 
 @pytest.mark.parametrize("load", [1e-3, 1e-4])
 def test_two_narrow_contacts_settle(load):
-    """Half-way steps are for ends that swing: with them, eight passes are too few for such narrow contacts."""
+    """Half-way steps are for ends that alternate: with such steps, eight passes are too few for narrow contacts."""
     stated = table().with_value("conditions.top.pressure", {"constant": 8 * load, "x": load})
     result = bemcontact.solve(stated, "complementarity")
     assert result.certified
@@ -163,7 +162,7 @@ mesh: {fit_contact_edges: true}
 
 @pytest.mark.parametrize("load", [20.0, 5.0, 0.5, 0.02])
 def test_contact_round_a_corner_is_fitted_on_both_sides(load):
-    """A wedge has no length of its own: contact grows like the load; its peak is infinite, and only as high as a mesh.
+    """A wedge has no length: contact grows like the load. Its peak is infinite; the mesh limits the computed one.
 
     So it does from three points under pressure down to one, a thousandth of it; against the fine mesh of one load.
     """
@@ -172,7 +171,7 @@ def test_contact_round_a_corner_is_fitted_on_both_sides(load):
     assert result.certified
     assert result.mesh_fit.settled
     for which in ("start", "end"):
-        end, fine = (getattr(found.intervals[0], which)[0] for found in (result.footprint, finest))
+        end, fine = (getattr(footprint.intervals[0], which)[0] for footprint in (result.footprint, finest))
         assert end / load == pytest.approx(fine / 2, rel=0.05)
 
 
@@ -195,7 +194,7 @@ mesh: {fit_contact_edges: true}
 
 
 def test_contact_on_one_side_of_a_corner_is_fitted_to():
-    """A point at first; with long elements beyond the corner the passes would swing between two states for ever."""
+    """One point at first. With long elements beyond the corner, the passes would alternate between two states."""
     result = bemcontact.solve(bemcontact.loads(TILTED), "complementarity")
     finest = bemcontact.solve(bemcontact.loads(TILTED).refined(4), "complementarity")
     assert result.certified
@@ -207,8 +206,8 @@ def test_contact_on_one_side_of_a_corner_is_fitted_to():
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_whatever_the_zone_is_like_fitting_helps(seed):
-    """Elements of any number and grading, loads down to 1e-7: within 2e-2 of Hertz, and nearer than unfitted.
+def test_fitting_improves_zones_of_any_mesh(seed):
+    """Elements of any number and grading, loads down to 1e-7: within 2e-2 of Hertz, and nearer than without a fit.
 
     Four elements in contact, which are all that a short zone gets, give a peak to less than that.
     """
@@ -228,7 +227,7 @@ def test_whatever_the_zone_is_like_fitting_helps(seed):
 
 
 def test_contact_that_stays_narrower_than_an_element_is_reported(monkeypatch):
-    """After no pass at all: one point under pressure, whose neighbours say no more."""
+    """Without a pass: one point is under pressure, and its neighbors give no more information."""
     monkeypatch.setattr(fitting, "MOST_PASSES", 0)
     _, fit = fit_of(cylinder(24, load=1e-4))
     assert not fit.settled
@@ -237,45 +236,45 @@ def test_contact_that_stays_narrower_than_an_element_is_reported(monkeypatch):
 
 @pytest.mark.parametrize("make", [lambda: cylinder(12), lambda: cylinder(24, load=0.01), cantilever])
 def test_a_fitted_mesh_is_left_as_it_is(make):
-    found, fit = fit_of(make())
+    adapted, fit = fit_of(make())
     assert fit.settled
-    again, second = fit_of(found.with_value("mesh.fit_contact_edges", True))
-    assert again == found
+    again, second = fit_of(adapted.with_value("mesh.fit_contact_edges", True))
+    assert again == adapted
     assert second.kept == 0
     assert second.notes == ("the mesh fits the ends of contact already",)
 
 
 def test_no_element_is_longer_than_stated_and_other_edges_are_not_touched():
-    """But for those beside the zone, which are halved until they are no more than twice as long as their neighbours."""
+    """Elements beside the zone are the exception: they are halved to at most twice the length of their neighbors."""
     stated = table()
-    found, _ = fit_of(stated)
+    adapted, _ = fit_of(stated)
     for name in ("left foot", "bridge", "right foot"):
-        ends, own = found.edge(name).breakpoints(), stated.edge(name).breakpoints()
+        ends, own = adapted.edge(name).breakpoints(), stated.edge(name).breakpoints()
         assert np.diff(np.interp(ends, own, np.arange(len(own)))).max() <= 1 + 1e-9
-    assert found.edge("top") == stated.edge("top")
-    last = np.diff(found.edge("right foot").breakpoints())[-1] * found.edge("right foot").length
-    beside = np.diff(found.edge("right").breakpoints()) * found.edge("right").length
+    assert adapted.edge("top") == stated.edge("top")
+    last = np.diff(adapted.edge("right foot").breakpoints())[-1] * adapted.edge("right foot").length
+    beside = np.diff(adapted.edge("right").breakpoints()) * adapted.edge("right").length
     assert beside[0] <= 2 * last * (1 + 1e-9)
     assert len(beside) > stated.edge("right").elements
 
 
 def test_two_contacts_in_one_zone_of_three_edges():
     """Each of the four ends of contact has its element end."""
-    found, fit = fit_of(table().refined(2))
+    adapted, fit = fit_of(table().refined(2))
     stretches = fit.passes[fit.kept].intervals
     assert [item.zone for item in stretches] == ["feet", "feet"]
-    ends = np.vstack([edge.points(edge.breakpoints()) for edge in found.boundary.edges])
+    ends = np.vstack([edge.points(edge.breakpoints()) for edge in adapted.boundary.edges])
     for point in (point for item in stretches for point in (item.start, item.end)):
         assert np.hypot(*(ends - point).T).min() <= 0.02  # a twentieth of the contact
     assert len([note for note in fit.notes if note.count("of contact in feet moved") == 4]) == 1
-    assert found.mesh.refine == 2
+    assert adapted.mesh.refine == 2
     result = bemcontact.solve(table())
     assert result.certified
     assert result.footprint.resultant.force == pytest.approx((0.0, 8 * 2 * 3.0606601717798214), rel=1e-9)
 
 
 @pytest.mark.parametrize(("length", "stress"), [(1e-3, 1.0), (2.54, 1e6)])
-def test_a_change_of_units_moves_nothing(length, stress):
+def test_fitted_mesh_does_not_depend_on_units(length, stress):
     one, _ = fit_of(cylinder(12))
     other, _ = fit_of(cylinder(12, length=length, stress=stress))
     assert_same_elements(one, other, 1e-9)
@@ -292,41 +291,41 @@ def test_a_mirrored_problem_has_the_mirrored_mesh(make):
 
 @pytest.mark.parametrize("edges", ["bottom", "[bottom, right]", "[left, bottom, right]"])
 def test_contact_up_to_the_corners_needs_no_fit(edges):
-    """Of a zone, or of a body in it: the mesh is as stated, and the note says why."""
+    """The corners of a zone, or of a body in it: the mesh is as stated, and the note gives the reason."""
     stated = block(edges)
-    found, fit = fit_of(stated)
-    assert_same_elements(found, stated, 0)
+    adapted, fit = fit_of(stated)
+    assert_same_elements(adapted, stated, 0)
     assert fit.settled
     (note,) = fit.notes
     assert note.startswith("the mesh is as stated: contact ends at no place inside a zone")
 
 
 def test_contact_that_reaches_the_end_of_its_zone_is_fitted_at_its_other_end():
-    found, fit = fit_of(cantilever())
+    adapted, fit = fit_of(cantilever())
     (interval,) = fit.passes[fit.kept].intervals
     assert interval.end == pytest.approx((50, 0))
-    ends = 40 + 10 * found.edge("tip of lower").breakpoints()
+    ends = 40 + 10 * adapted.edge("tip of lower").breakpoints()
     near = int(np.argmin(abs(ends - interval.start[0])))
     assert abs(ends[near] - interval.start[0]) <= SETTLED * np.diff(ends).min()
     inside = np.diff(ends[near:])
     assert np.all(np.diff(inside) > -1e-12)  # they do not shrink up to the end of the zone
-    assert bemcontact.solve(found).certified
+    assert bemcontact.solve(adapted).certified
 
 
 def test_a_zone_without_contact_stays_as_stated():
     """The paper's printed modulus: no contact at all."""
     stated = cantilever().with_value("material.young_modulus", 2e6)
-    found, fit = fit_of(stated)
-    assert_same_elements(found, stated, 0)
+    adapted, fit = fit_of(stated)
+    assert_same_elements(adapted, stated, 0)
     assert fit.passes[0].intervals == ()
     assert fit.notes == ("the mesh is as stated, because nothing touches",)
 
 
-def test_contact_on_part_of_a_closed_zone_is_found_wherever_the_zone_begins():
+def test_contact_on_a_closed_zone_does_not_depend_on_its_start():
     """The ends of contact do not depend on the seam: to 1e-4 of the radius."""
-    found = [fit_of(ring(seam)) for seam in (0, 100)]
-    assert all(fit.settled and fit.kept for _, fit in found)
-    ends = [fit.passes[fit.kept].intervals[0] for _, fit in found]
+    fits = [fit_of(ring(seam)) for seam in (0, 100)]
+    assert all(fit.settled and fit.kept for _, fit in fits)
+    ends = [fit.passes[fit.kept].intervals[0] for _, fit in fits]
     assert ends[0].start == pytest.approx(ends[1].start, abs=1e-3)
     assert ends[0].end == pytest.approx(ends[1].end, abs=1e-3)
     assert ends[0].start == pytest.approx((-ends[0].end[0], ends[0].end[1]), abs=1e-3)  # the load is symmetric
@@ -334,7 +333,7 @@ def test_contact_on_part_of_a_closed_zone_is_found_wherever_the_zone_begins():
 
 @pytest.mark.parametrize(("radius", "seam", "elements"), [(9.9994, 346.45, 30), (9.9999, 302.14, 31)])
 def test_half_of_a_closed_zone_in_contact_is_certified(radius, seam, elements):
-    """The open half has two ends too, each with elements enough: very long beside short ones cost definiteness."""
+    """The open half has two ends too, each with enough elements: long beside short elements make M indefinite."""
     stated = ring(seam).with_value("contact_zones.pin.surface.radius", radius)
     data = stated.model_dump()
     data["boundary"]["holes"][0][0]["elements"] = elements
@@ -345,25 +344,25 @@ def test_half_of_a_closed_zone_in_contact_is_certified(radius, seam, elements):
 
 
 def test_contact_all_round_a_closed_zone_needs_no_fit():
-    """A pin that is too thick by a hundredth of its radius stretches the ring all round."""
-    found, fit = fit_of(ring().with_value("contact_zones.pin.surface.radius", 10.1))
+    """A pin that is too thick by a hundredth of its radius stretches the whole ring."""
+    adapted, fit = fit_of(ring().with_value("contact_zones.pin.surface.radius", 10.1))
     assert fit.settled
     assert fit.kept == 0
-    assert_same_elements(found, ring(), 0)
+    assert_same_elements(adapted, ring(), 0)
 
 
-def test_a_zone_of_three_elements_gets_those_that_it_takes():
-    """Half-width and peak to 2e-3 of finite elements, from which the three are off by 5.5e-3 and 4.8e-3."""
-    found, fit = fit_of(cylinder(3))
+def test_a_zone_of_three_elements_gets_more_elements():
+    """Half-width and peak to 2e-3 of finite elements, the three elements differ by 5.5e-3 and 4.8e-3."""
+    adapted, fit = fit_of(cylinder(3))
     assert fit.settled
     assert any("elements where 33 were stated" in note for note in fit.notes)
-    result = bemcontact.solve(found, "complementarity")
+    result = bemcontact.solve(adapted, "complementarity")
     assert result.footprint.intervals[0].end[0] == pytest.approx(HALF_WIDTH, rel=2e-3)
     assert result.footprint.peak.pressure == pytest.approx(PEAK, rel=2e-3)
 
 
-def test_contact_that_vanishes_on_the_way_is_reported(monkeypatch):
-    """The second solve is made to see no contact on the left foot; the third sees it again."""
+def test_contact_that_vanishes_in_a_pass_is_reported(monkeypatch):
+    """The second solve is changed to have no contact on the left foot; the third has it again."""
     seen = []
 
     def blinking(contact, solution):
@@ -379,12 +378,12 @@ def test_contact_that_vanishes_on_the_way_is_reported(monkeypatch):
 
 
 def test_a_problem_without_a_contact_state_is_not_fitted(monkeypatch):
-    """A solver that breaks down at once."""
+    """The solver breaks down at once."""
     broken = lambda contact: replace(complementarity.solve(contact), status=Status.NUMERICAL_FAILURE)  # noqa: E731
     monkeypatch.setattr(fitting, "complementarity", SimpleNamespace(solve=broken))
     stated = cylinder(6)
-    found, fit = fit_of(stated)
-    assert_same_elements(found, stated, 0)
+    adapted, fit = fit_of(stated)
+    assert_same_elements(adapted, stated, 0)
     assert fit.notes == ("the mesh could not be fitted to a state of contact: broke down numerically",)
     assert not fit.settled
 
@@ -404,24 +403,24 @@ def test_element_ends_are_checked(ends, words):
 
 
 def test_a_mesh_that_cannot_be_made_is_given_up(monkeypatch):
-    """The mesh as stated is kept, and the reason told."""
+    """The mesh as stated is kept, and a note gives the reason."""
     monkeypatch.setattr(fitting, "fitted_ends", lambda run, touched: np.array([0.0, 0.4999, 0.5, run.length]))
-    found, fit = fit_of(ring())
+    adapted, fit = fit_of(ring())
     assert fit.kept == 0
     assert not fit.settled
     assert fit.notes[0] == "the mesh was left as stated, because the ends of contact did not settle on any fitted mesh"
     assert any("the mesh of pass 1 was given up" in note and "turns by" in note for note in fit.notes)
-    assert_same_elements(found, ring(), 0)
+    assert_same_elements(adapted, ring(), 0)
 
 
 def test_refinement_cuts_the_fitted_elements():
-    found, _ = fit_of(cylinder(12))
+    adapted, _ = fit_of(cylinder(12))
     finer, _ = fit_of(cylinder(12).refined(2))
-    np.testing.assert_array_equal(found.edge("foot").breakpoints(2), finer.edge("foot").breakpoints(2))
+    np.testing.assert_array_equal(adapted.edge("foot").breakpoints(2), finer.edge("foot").breakpoints(2))
     assert finer.mesh.refine == 2
 
 
-def test_condense_fits_too_and_says_so():
+def test_condense_fits_too_and_notes_it():
     contact = bemcontact.condense(cylinder(6))
     assert contact.notes[0].startswith("mesh fitted to the ends of contact")
 
@@ -429,11 +428,11 @@ def test_condense_fits_too_and_says_so():
 def test_a_comparison_fits_once_and_then_refines():
     said = []
     plan = ComparisonOptions.of(["qp3"])
-    found = comparing.study(plan, cylinder(6), (1, 2), lambda stage, now: said.append((stage, now)))
-    assert found.certified
+    study = comparing.study(plan, cylinder(6), (1, 2), lambda stage, now: said.append((stage, now)))
+    assert study.certified
     assert next(stage for stage, now in said if not now) == "mesh fit"
     assert [stage for stage, _ in said].count("refine 1: mesh fit") == 0
-    coarse, fine = found.levels
+    coarse, fine = study.levels
     assert coarse.answer.mesh_fit is fine.answer.mesh_fit is not None
     np.testing.assert_allclose(fine.answer.contact.points[::4], coarse.answer.contact.points[::2], rtol=0, atol=1e-14)
     assert "mesh fit" in coarse.answer.seconds
@@ -457,31 +456,31 @@ def test_the_option_of_the_command_line_is_the_key_of_the_spec(tmp_path, monkeyp
     one, other = json.loads(by_option.stdout), json.loads(by_key.stdout)
     assert one["mesh_fit"] == other["mesh_fit"] is not None
     assert one["pressure"] == other["pressure"]
-    told = CliRunner().invoke(cli.app, ["check", model, "--set", "mesh.fit_contact_edges=true"])
-    assert "towards the ends of contact" in told.stdout
+    answer = CliRunner().invoke(cli.app, ["check", model, "--set", "mesh.fit_contact_edges=true"])
+    assert "towards the ends of contact" in answer.stdout
 
 
 def test_a_peak_that_moves_with_the_fitted_mesh_is_reported():
-    """One point under pressure has a peak of its own; the note tells the peaks of both meshes."""
+    """One point under pressure has a peak of its own; the note has the peaks of both meshes."""
     stated = cylinder(24, load=1e-4)
-    found, fit = fit_of(stated)
+    adapted, fit = fit_of(stated)
     plain = stated.with_value("mesh.fit_contact_edges", False)
-    peaks = [bemcontact.solve(one, "complementarity").footprint.peak.pressure for one in (plain, found)]
+    peaks = [bemcontact.solve(one, "complementarity").footprint.peak.pressure for one in (plain, adapted)]
     assert abs(peaks[1] - peaks[0]) > 0.1 * peaks[0]
-    told = f"the peak pressure changed from {peaks[0]:.5g} to {peaks[1]:.5g}"
-    assert any(note.startswith(told) for note in fit.notes)
+    start = f"the peak pressure changed from {peaks[0]:.5g} to {peaks[1]:.5g}"
+    assert any(note.startswith(start) for note in fit.notes)
     assert not any(note.startswith("the force") for note in fit.notes)  # contact alone carries the load
 
 
 def test_a_force_that_moves_with_the_fitted_mesh_is_reported():
-    """A spring in place of the load: what one point under pressure carries is another force."""
+    """With a spring in place of the load, one point under pressure carries another force."""
     first, last = (fitting._Trial(placed={}, forces={"foot": force}) for force in (1.0, 1.02))
     (note,) = fitting._changed(first, last)
     assert note.startswith("the force on foot changed from 1 to 1.02")
 
 
-def test_what_is_left_to_do_with_a_finer_cut_is_reported(monkeypatch):
-    """Cutting elements that lie in the wrong places settles nothing; the numbers are those before they are cut."""
+def test_movement_that_a_finer_cut_does_not_reduce_is_reported(monkeypatch):
+    """Elements at wrong places do not settle by cutting; the numbers are those before the cut."""
     monkeypatch.setattr(fitting, "MOST_PASSES", 1)
     _, fit = fit_of(ring().refined(2))
     assert "it has 77 elements where 60 were stated, before each was cut into 2" in fit.notes[0]
@@ -489,15 +488,15 @@ def test_what_is_left_to_do_with_a_finer_cut_is_reported(monkeypatch):
     assert still.endswith("before each was cut into 2; state more elements in the zone, not a finer cut")
 
 
-def test_a_fitted_mesh_on_which_the_pressure_saws_is_not_kept():
-    """The open node at the tip of the crack is none of the contact's: fitted to it, pressures oscillate by 0.1."""
+def test_a_fitted_mesh_with_an_oscillating_pressure_is_not_kept():
+    """The open node at the tip is no real end of contact: pressures on a mesh fitted to it oscillate by 0.1."""
     crack = load("elliptical_crack_closure")
     for edge, elements, ratio in (("crack", 8, 20), ("ligament", 6, 40)):  # too long beside the tip
         crack = crack.with_value(f"boundary.outer.{edge}.elements", elements)
         crack = crack.with_value(f"boundary.outer.{edge}.grading.ratio", ratio)
     crack = crack.with_value("mesh.fit_contact_edges", True)
-    found, fit = fit_of(crack)
-    assert_same_elements(found, crack, 0)
+    adapted, fit = fit_of(crack)
+    assert_same_elements(adapted, crack, 0)
     assert not fit.settled
     assert any(
         note.startswith("the mesh was left as stated: on fitted meshes the pressure oscillates") for note in fit.notes

@@ -319,7 +319,7 @@ REFUSED = {
     "tool without load": (
         BETWEEN,
         {"press": {"zones": "press", "force": {"y": 0}}},
-        "only contact holds the body against the translation along (0, 1) and the rotation anticlockwise about "
+        "only contact holds the body against the translation along (0, 1) and the rotation counterclockwise about "
         "(1, 0.5), and the tool 'press' against the translation along (0, 1), but no load presses it onto its support, "
         "so that its position is not determined; apply a load, or prescribe a displacement",
     ),
@@ -339,8 +339,8 @@ REFUSED = {
     "moment beyond the edge": (
         BETWEEN,
         {"press": {"zones": "press", "point": [1, 1], "force": {"y": -10, "moment": 11}}},
-        "the load pulls the tool 'press' off what it touches: it drives the rotation anticlockwise about (0, 1), which "
-        "no contact resists; turn the load around, or move it to where contact can hold it, or prescribe a "
+        "the load pulls the tool 'press' off what it touches: it drives the rotation counterclockwise about (0, 1), "
+        "which no contact resists; turn the load around, or move it to where contact can hold it, or prescribe a "
         "displacement that holds it",
     ),
     "forces that do not balance": (
@@ -361,7 +361,7 @@ REFUSED = {
         {**BETWEEN, "contact_zones": {**BETWEEN["contact_zones"], "press": {"edges": ["head", "top"], "surface": {
             "kind": "circle", "center": [1, 4], "radius": 3, "body": "outside"}}}},
         {"press": {"zones": "press", "point": [1, 4], "force": {"y": -10, "moment": 2}}},
-        "nothing holds the tool 'press' against the rotation anticlockwise about (1, 4), and the loads act along it "
+        "nothing holds the tool 'press' against the rotation counterclockwise about (1, 4), and the loads act along it "
         "(moment 2)",
     ),
 }  # fmt: skip

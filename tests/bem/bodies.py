@@ -4,14 +4,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.loading import Loading, particular_solution
-from bemcontact.bem.mesh import Mesh, connected
+from bemcontact.bem.mesh import BoundaryValues, Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
 from bemcontact.bem.system import System, solve
 from bemcontact.problem.conditions import Loads
-from bemcontact.problem.material import Material
+from bemcontact.problem.problem import Material
 
 Curve = Callable[[np.ndarray], np.ndarray]
 
@@ -45,7 +44,7 @@ def mesh_of(*loops: Sequence[tuple[str, Curve, Sequence[float]]]) -> Mesh:
 
 
 def rectangle(width: float, height: float, along: Sequence[float], across: Sequence[float]) -> list:
-    """The four edges bottom, right, top, left, anticlockwise from the origin."""
+    """The four edges bottom, right, top, left, counterclockwise from the origin."""
     w, h = width, height
     return [
         ("bottom", segment((0, 0), (w, 0)), along),

@@ -1,4 +1,4 @@
-"""Machine code and NumPy sum the same numbers; without numba all goes on as before."""
+"""Machine code and NumPy give the same sums; without numba, NumPy is used."""
 
 import dataclasses
 import sys
@@ -11,7 +11,7 @@ from bodies import arc, even, mesh_of, rectangle, segment, solved, values_of, wi
 from bemcontact.bem import compiled, influence
 from bemcontact.bem.influence import WORTH_COMPILING, Influence
 from bemcontact.bem.system import number_unknowns, place_equations
-from bemcontact.problem.material import Material
+from bemcontact.problem.problem import Material
 
 MATERIAL = Material(young_modulus=1000, poisson_ratio=0.3)
 STRESS = np.array([[3.0, 1.2], [1.2, -2.0]])
@@ -69,7 +69,7 @@ def rows_of(source, fixed):
 
 @pytest.mark.parametrize("name", MESHES)
 def test_machine_code_and_numpy_agree(name):
-    """To round-off of the largest entry; every element, and one of three stretches, has columns of G."""
+    """They agree to round-off of the largest entry. All elements, or those of one stretch, have columns of G."""
     mesh = mesh_of(*MESHES[name])
     m = len(mesh.elements)
     for wanted in (np.arange(m), np.arange(m // 3, 2 * m // 3), np.zeros(0, int)):
@@ -82,8 +82,8 @@ def test_machine_code_and_numpy_agree(name):
             assert abs(compiled_rows - numpy_rows).max(initial=0) <= 1e-14 * largest
 
 
-def test_the_loops_themselves_and_numpy_agree(monkeypatch):
-    """What numba compiles is Python, and gives the same when it runs as that."""
+def test_loops_without_numba_agree_with_numpy(monkeypatch):
+    """The function that numba compiles gives the same result as Python."""
     mesh = mesh_of(rectangle(2, 1, even(16), even(8)))
     by_products = influence_of(mesh, by_numba=False, traction_elements=range(20))
     by_loops = dataclasses.replace(by_products, by_numba=True)
@@ -92,7 +92,7 @@ def test_the_loops_themselves_and_numpy_agree(monkeypatch):
         assert abs(one - other).max() <= 1e-14 * abs(other).max()
 
 
-def test_only_large_meshes_ask_for_numba():
+def test_only_large_meshes_use_numba():
     small, large = (mesh_of([("c", arc((0, 0), 1, 0, 360), even(count))]) for count in (8, WORTH_COMPILING // 4))
     assert influence_of(small)._far_sums is None
     assert influence_of(large)._far_sums is not None
@@ -100,7 +100,7 @@ def test_only_large_meshes_ask_for_numba():
 
 
 @pytest.mark.usefixtures("without_numba")
-def test_without_numba_numpy_does_it():
+def test_numpy_is_used_without_numba():
     mesh = mesh_of(*MESHES["curved"])
     wanting = influence_of(mesh, by_numba=True)
     assert wanting._far_sums is None
@@ -108,7 +108,7 @@ def test_without_numba_numpy_does_it():
     assert (rows_of(influence_of(mesh, by_numba=False), {})[0] == F).all()
 
 
-def test_machine_code_that_cannot_be_kept_is_made_anew(monkeypatch):
+def test_machine_code_that_cannot_be_cached_is_compiled_again(monkeypatch):
     """Numba refuses to cache where it finds no directory to write to."""
 
     def njit(function, *, cache=False, **_):
@@ -124,7 +124,7 @@ def test_machine_code_that_cannot_be_kept_is_made_anew(monkeypatch):
 
 @pytest.mark.parametrize("fixed", [{}, {"left": "xy"}, {"bottom": "y", "left": "x"}])
 def test_constant_stress_is_exact_by_machine_code(fixed, monkeypatch):
-    """The patch test, numba chosen without being asked for."""
+    """The patch test, with numba chosen by default."""
     mesh = mesh_of(rectangle(2, 1, GRADED, even(40)))
     monkeypatch.setattr(influence, "WORTH_COMPILING", mesh.degrees_of_freedom)
     u, t, system = solved(mesh, MATERIAL, values_of(mesh, fixed, displacement, traction))

@@ -56,7 +56,7 @@ def moment_of(result, about=(0.0, 0.0)):
     ],
 )
 def test_free_motions_are_counted(conditions, zones, seen, unseen, idle):
-    """What prescribed displacements leave of three motions, and what a plane or two see of it.
+    """Number of the three motions that no displacement prevents, and of those that one or two planes see.
 
     A load right above the corner lets the body tilt about it without work, and one along a wall lets it slide off.
     """
@@ -68,7 +68,7 @@ def test_free_motions_are_counted(conditions, zones, seen, unseen, idle):
 
 
 def test_uniform_pressure_on_a_block_is_exact():
-    """Constant stress: p = 10 at every point, also where the body is held by contact alone."""
+    """Constant stress: p = 10 at every point, also if only contact holds the body."""
     for conditions in ({"top": {"pressure": 10}}, {"top": {"pressure": 10}, "left": {"displacement": {"x": 0}}}):
         result = solve(block(conditions))
         assert result.certified
@@ -105,7 +105,7 @@ def test_block_on_a_plane_under_downward_load_on_three_free_motions(formulation)
 
 
 def test_polygon_on_a_plane_under_its_weight():
-    """A trapezoid: the resultant is its weight 1.5 x 2, through its centre of area at x = 7/9."""
+    """A trapezoid: the resultant is its weight 1.5 x 2, through its center of area at x = 7/9."""
     edges = [
         {"name": "bottom", "start": [0, 0], "end": [2, 0], "elements": 8},
         {"name": "slope", "start": [2, 0], "end": [1, 1], "elements": 4},
@@ -140,8 +140,8 @@ def partly_held(beyond, surface=PLANE, mirrored=False, slope=0.0, graded=1.0):
 
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("graded", [1, 20])
-def test_contact_that_goes_on_beyond_a_held_node(mirrored, graded):
-    """Uniform pressure 10 on the half that may touch, next to one that is held: so it is up to the node they share."""
+def test_contact_that_continues_beyond_a_held_node(mirrored, graded):
+    """The half that may touch is beside a held half: its pressure is 10 up to their common node."""
     body = partly_held({"displacement": {"y": 0}}, mirrored=mirrored, graded=graded)
     result = solve(condense(body).contact)
     assert result.certified
@@ -164,7 +164,7 @@ def test_contact_that_goes_on_beyond_a_held_node(mirrored, graded):
     ],
 )
 def test_contact_that_ends_at_a_held_node(body):
-    """Nothing tells how pressure goes on there; it is zero at the node."""
+    """The pressure beyond the node is unknown; it is zero at the node."""
     assert len(body.points) == 8
     assert body.points.tributary.sum() == pytest.approx(1 - 1 / 4 / 6, rel=1e-13)
 
@@ -184,7 +184,7 @@ def test_weights_integrate_pressure():
 
 
 def test_recovered_boundary_agrees_with_the_condensed_equation():
-    """n·u at the contact points is u_n, whatever the gauge; with three, two, one and no free motions."""
+    """n·u at the contact points is u_n in any gauge, with three, two, one and no free motions."""
     cases = [
         block({"top": {"pressure": {"constant": 5, "x": 4}}}, {"b": (["bottom"], PLANE), "w": (["left"], WALL)}),
         block({"top": {"pressure": {"constant": 5, "x": 4}}}),
@@ -200,7 +200,7 @@ def test_recovered_boundary_agrees_with_the_condensed_equation():
         assert abs(seen - solution.displacement[points.point]).max() < 1e-12 * condensation.contact.scales.displacement
 
 
-def test_free_body_lies_where_contact_puts_it():
+def test_contact_determines_the_position_of_a_free_body():
     """Uniform pressure 10, free to slide: v = -10 y (1-ν²)/E and u = 10 x ν(1+ν)/E, rigid amplitudes included."""
     result = solve(block({"top": {"pressure": 10}, "left": {"displacement": {"x": 0}}}))
     assert result.boundary is not None
@@ -242,7 +242,7 @@ def test_contact_points_that_see_no_free_motion():
 
 @pytest.mark.parametrize("formulation", ["qp3", "complementarity"])
 def test_as_many_points_as_free_motions(formulation):
-    """One element with three points on three pieces of a polyline: equilibrium alone fixes the pressures."""
+    """One element with three points on three pieces of a polyline: equilibrium determines the pressures."""
     hollow = {"kind": "polyline", "points": [[-1, 1], [0, 0], [1, 0], [2, 1]]}
     edges = rectangle(1, 1, 1, 2)
     result = solve(problem(edges, {"seat": (["bottom"], hollow)}, conditions={"top": {"pressure": 10}}), formulation)
@@ -252,7 +252,7 @@ def test_as_many_points_as_free_motions(formulation):
 
 @pytest.mark.parametrize("elements", [(6, 6), (5, 7), (10, 14)])
 def test_balanced_loads_need_no_symmetric_mesh(elements):
-    """Pressure y² around the upper half of a disc balances sideways; the weights of an uneven mesh do not quite."""
+    """Pressure y² around the upper half of a disc is balanced, but not exactly with the weights of an uneven mesh."""
     arc = {"kind": "arc", "center": [0, 1], "radius": 1}
     edges = [
         {**arc, "name": "foot", "angles": [-110, -70], "elements": 8},
@@ -270,7 +270,7 @@ def test_balanced_loads_need_no_symmetric_mesh(elements):
 
 @pytest.mark.parametrize("center", [(0, 0), (3.3, 1.7)])
 def test_rotating_ring_on_a_pin(center):
-    """Centrifugal force balances itself wherever the axis is; the ring turns freely, and the pin keeps it in place."""
+    """The centrifugal force about any axis is balanced or held by the pin; the ring turns freely."""
     out, hole = ({"kind": "arc", "center": center, "radius": r} for r in (2, 1))
     body = Problem(
         name="ring",
@@ -291,7 +291,7 @@ def test_rotating_ring_on_a_pin(center):
 
 
 def test_two_zones_that_meet_on_one_surface():
-    """A flat foot in two edges, each a zone of its own: the point where they meet is one, and nothing else changes."""
+    """A flat foot in two edges, each of them a zone: they share one point where they meet, and nothing else changes."""
     halves = [
         {"name": "a", "start": [0, 0], "end": [1, 0], "elements": 3},
         {"name": "b", "start": [1, 0], "end": [2, 0], "elements": 3},

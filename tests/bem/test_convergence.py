@@ -6,7 +6,7 @@ from bodies import arc, even, mesh_of, rectangle, solved, system_of, values_of, 
 
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.system import solve
-from bemcontact.problem.material import Material
+from bemcontact.problem.problem import Material
 
 
 def order(errors: list[float]) -> float:
@@ -22,7 +22,7 @@ def lame_ring(points: np.ndarray, material: Material, a: float, b: float, p: flo
 
 
 def test_lame_ring():
-    """Nodal displacement on smooth contours is superconvergent, order four; 3.8 is what a third halving must show."""
+    """Nodal displacement on smooth contours is superconvergent of order four; the third halving must show 3.8."""
     material = Material(young_modulus=1000, poisson_ratio=0.3)
     errors = []
     for n in (8, 16, 32, 64):
@@ -64,7 +64,7 @@ def cubic(z):
 
 @pytest.mark.parametrize("state", ["plane_strain", "plane_stress"])
 def test_kirsch_hole(state):
-    """The unbounded plate outside one hole, loaded by what cancels the tension; no rigid motion at infinity."""
+    """The unbounded plate outside one hole, with the load that cancels the tension; no rigid motion at infinity."""
     material = Material(young_modulus=1000, poisson_ratio=0.3, state=state)
     errors = []
     for n in (8, 16, 32, 64):
@@ -79,7 +79,7 @@ def test_kirsch_hole(state):
 
 
 def test_cubic_field_in_a_disc():
-    """A field without such symmetry: the Cauchy kernel meets the cubic remainder of the displacement, order three."""
+    """A field without such symmetry: the Cauchy kernel acts on the cubic remainder of the displacement, order three."""
     material = Material(young_modulus=1000, poisson_ratio=0.3)
     errors = []
     for n in (8, 16, 32, 64):

@@ -1,4 +1,4 @@
-"""The four complex integrals against quadrature in 25 digits, and against what Kelvin's kernels are."""
+"""The four complex integrals against quadrature in 25 digits, and against Kelvin's kernels."""
 
 from itertools import pairwise, product
 
@@ -30,9 +30,9 @@ def reference(nodes: np.ndarray, z: complex, foot: float) -> np.ndarray:
     """A, B, L, M (4, 3) by Gauss-Legendre rules of 24 points, on intervals that shrink fourfold towards the foot."""
     with mp.workdps(25):
         rule = GaussLegendre(mp.mp).calc_nodes(4, mp.mp.prec)
-        centre = min(max(mp.mpf(foot), -1), 1)
+        center = min(max(mp.mpf(foot), -1), 1)
         steps = [mp.mpf(2) / 4**k for k in range(19)] + [mp.mpf(0)]
-        ends = sorted({x for step in steps for x in (centre - step, centre + step) if -1 < x < 1} | {-1, 1})
+        ends = sorted({x for step in steps for x in (center - step, center + step) if -1 < x < 1} | {-1, 1})
         n = [mp.mpc(x) for x in nodes]
         c0, c1, c2 = n[1] - mp.mpc(z), (n[2] - n[0]) / 2, (n[0] + n[2]) / 2 - n[1]
         total = [[mp.mpc(0)] * 3 for _ in range(4)]
@@ -71,7 +71,7 @@ def components_of(reference: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_integrals_near_an_element_are_exact(element):
-    """To 1e-12 from three element lengths down to 1e-9 of one, on both sides, abreast of the element and beyond it."""
+    """To 1e-12 from three element lengths down to 1e-9 of one, on both sides, beside the element and beyond it."""
     nodes = ELEMENTS[element]
     for (d, foot), side in zip(product(DISTANCES, (-1.001, -0.6, 0.3, 1.0)), [1, -1] * 14, strict=True):
         position, slope = at(nodes, foot)
@@ -114,7 +114,7 @@ def test_regular_rule_sums_kelvins_kernels():
     assert result[4:] == pytest.approx(np.array([U[ij] for ij in kernels.U_ORDER]), abs=1e-13)
 
 
-def test_tiers_are_as_good_as_they_say():
+def test_each_rule_has_the_accuracy_of_its_tier():
     """Poles 1/(ξ - r)² and ln(ξ - r), times N_1, with r on the ellipse of each rule: errors below 30 tolerances."""
     for order, rho in zip(reference_element.ORDERS, reference_element.SMALLEST_RHO, strict=True):
         xi, weights = reference_element.gauss_legendre(int(order))

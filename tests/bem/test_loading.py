@@ -1,14 +1,17 @@
-"""What acts on a body, permanent and by load case: it adds up to what a spec without load cases would say."""
+"""Permanent loads, load cases and volume loads: sums, closed forms, and resultants on the exact curves."""
 
 import numpy as np
 import pytest
+from bodies import arc, even, mesh_of, rectangle, solved, values_of, without_rigid_motion
 from tool_problems import FREE, FREE_BY_HAND, FREE_CASES, HELD, HELD_BY_HAND, HELD_CASES, Spec, made
 
 from bemcontact.bem.body import Body, body_of
-from bemcontact.bem.loading import case_loadings, combined, permanent_loading
+from bemcontact.bem.loading import case_loadings, combined, particular_solution, permanent_loading
 from bemcontact.bem.mesh import build
 from bemcontact.bem.rigid_motions import all_rigid_motions
 from bemcontact.errors import ProblemError
+from bemcontact.problem.conditions import Centrifugal, Gravity, Loads, Temperature
+from bemcontact.problem.problem import Material
 
 PAIRS = [(HELD, HELD_CASES, HELD_BY_HAND), (FREE, FREE_CASES, FREE_BY_HAND)]
 
@@ -16,23 +19,23 @@ PAIRS = [(HELD, HELD_CASES, HELD_BY_HAND), (FREE, FREE_CASES, FREE_BY_HAND)]
 def acting(body: Body) -> list[np.ndarray]:
     """All that is known of what acts, as arrays."""
     loading = body.acting
-    found = [loading.values.displacement, loading.values.traction, loading.true_force, np.array(loading.true_moment)]
+    computed = [loading.values.displacement, loading.values.traction, loading.true_force, np.array(loading.true_moment)]
     part = loading.particular
-    return [*found, part.displacement, part.traction, part.force, np.array(part.moment), body.forces]
+    return [*computed, part.displacement, part.traction, part.force, np.array(part.moment), body.forces]
 
 
 @pytest.mark.parametrize(("spec", "cases", "by_hand"), PAIRS)
-def test_combination_acts_as_what_is_written_by_hand(spec: Spec, cases: Spec, by_hand: Spec):
-    """Linear: sums of products of the same numbers, to round-off."""
+def test_combination_acts_as_the_same_loads_in_one_spec(spec: Spec, cases: Spec, by_hand: Spec):
+    """The loads are linear: both are sums of products of the same numbers, to round-off."""
     body, other = body_of(made(spec, **cases, case="all")), body_of(made(spec, **by_hand))
-    for found, known in zip(acting(body), acting(other), strict=True):
-        assert found == pytest.approx(known, rel=1e-13, abs=1e-13 * max(1e-12, float(np.abs(known).max())))
+    for computed, known in zip(acting(body), acting(other), strict=True):
+        assert computed == pytest.approx(known, rel=1e-13, abs=1e-13 * max(1e-12, float(np.abs(known).max())))
     assert body.tools.position @ body.factors == pytest.approx(other.tools.position[:, 0], rel=1e-14)
     assert body.motion_load(body.seen) @ body.factors == pytest.approx(other.motion_load(other.seen)[:, 0], abs=1e-12)
 
 
-def test_a_case_alone_has_nothing_of_what_is_permanent():
-    """Displacements that it does not give are 0 where the problem holds the body, and held all the same."""
+def test_a_case_alone_does_not_contain_the_permanent_loads():
+    """Displacements that it does not give are prescribed as 0 where the problem holds the body."""
     problem = made(HELD, **HELD_CASES)
     mesh = build(problem)
     permanent, loadings = permanent_loading(problem, mesh), case_loadings(problem, mesh)
@@ -60,7 +63,7 @@ def test_true_work_is_that_of_the_resultant():
 
 
 def test_magnitudes_do_not_cancel():
-    """What balances is still a load: of a sum with factors 1 and -1 the magnitude is the sum of both."""
+    """Loads that balance are still loads: the magnitude of a sum with factors 1 and -1 is the sum of both."""
     problem = made(HELD, **HELD_CASES)
     mesh = build(problem)
     spin = case_loadings(problem, mesh)[3]
@@ -69,7 +72,7 @@ def test_magnitudes_do_not_cancel():
     assert nothing.magnitude(mesh) == pytest.approx(2 * spin.magnitude(mesh))
 
 
-def test_contradiction_at_a_corner_is_told_with_the_load_case():
+def test_contradiction_at_a_corner_is_reported_with_the_load_case():
     """Two edges are held at 0; a load case moves one of them only."""
     conditions = {"left": {"displacement": {"x": 0, "y": 0}}, "top": {"displacement": {"x": 0, "y": 0}}}
     cases = {"settle": {"conditions": {"left": {"displacement": {"y": -0.1}}}}}
@@ -78,3 +81,96 @@ def test_contradiction_at_a_corner_is_told_with_the_load_case():
     (issue,) = caught.value.issues
     assert issue.path[:4] == ("load_cases", "settle", "conditions", "left")
     assert "prescribe different displacements along y; make them agree" in issue.message
+
+
+STATES = ("plane_strain", "plane_stress")
+
+
+def nothing(points):
+    return 0 * points
+
+
+def no_traction(points, normals):
+    return 0 * points
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_hanging_column(state):
+    """Uniaxial stress ρ g y in a column held at its top by just that stress; displacement is quadratic, hence exact.
+
+    u_y = ρ g y²/2 (1 - ν'²)/E' …, written with the plane-strain compliances (1 - ν)/(2G) and -ν/(2G).
+    """
+    material = Material(young_modulus=1000, poisson_ratio=0.3, state=state)
+    nu, G, weight = material.effective_poisson_ratio, material.shear_modulus, 2.0
+
+    def displacement(points):
+        x, y = points[:, 0], points[:, 1]
+        along, across = weight * (1 - nu) / (2 * G), -weight * nu / (2 * G)
+        return np.column_stack([across * x * y, (along * y**2 - across * x**2) / 2])
+
+    def traction(points, normals):
+        return np.stack([0 * points[..., 1], weight * points[..., 1] * normals[..., 1]], axis=-1)
+
+    mesh = mesh_of(rectangle(1, 3, even(2), even(4)))
+    loads = Loads(gravity=Gravity(density=2, acceleration=(0, -1)))
+    u, _, _ = solved(mesh, material, values_of(mesh, {}, displacement, traction), loads)
+    difference = without_rigid_motion(mesh, u - displacement(mesh.nodes))
+    assert abs(difference).max() < 1e-12 * abs(displacement(mesh.nodes)).max()
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_rotating_disc(state):
+    """Solid disc: u_r = ρω²(1-2ν)/(16G(1-ν)) r ((3-2ν) - r²) (Timoshenko and Goodier, § 32), order four."""
+    material = Material(young_modulus=1000, poisson_ratio=0.3, state=state)
+    nu, G = material.effective_poisson_ratio, material.shear_modulus
+    errors = []
+    for n in (8, 16, 32):
+        mesh = mesh_of([("rim", arc((1, 2), 1, 0, 360), even(n))])
+        loads = Loads(centrifugal=Centrifugal(density=3, angular_velocity=2, center=(1, 2)))
+        u, _, _ = solved(mesh, material, values_of(mesh, {}, nothing, no_traction), loads)
+        exact = 12 * (1 - 2 * nu) / (16 * G * (1 - nu)) * (2 - 2 * nu) * (mesh.nodes - [1, 2])
+        errors.append(abs(without_rigid_motion(mesh, u - exact)).max() / abs(exact).max())
+    assert np.log2(errors[0] / errors[-1]) / 2 >= 3.8, errors
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_free_body_in_a_linear_temperature_field_has_no_stress(state):
+    """A body clamped in the stress-free shape u_p has no traction, and a free body takes that shape."""
+    material = Material(young_modulus=1000, poisson_ratio=0.3, state=state)
+    loads = Loads(temperature=Temperature(expansion=1e-3, change={"constant": 20, "x": 3, "y": -5}))
+    mesh = mesh_of(rectangle(2, 1, even(4), even(2)))
+    shape = particular_solution(loads, material, mesh).displacement
+    u, _, _ = solved(mesh, material, values_of(mesh, {}, nothing, no_traction), loads)
+    assert abs(without_rigid_motion(mesh, u - shape)).max() < 1e-13 * abs(shape).max()
+    values = values_of(mesh, {"left": "xy", "top": "x"}, lambda points: shape, no_traction)
+    _, t, _ = solved(mesh, material, values, loads)
+    assert abs(t).max() < 1e-11 * material.young_modulus * 1e-3 * 20
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_hindered_expansion(state):
+    """Between rollers on all sides: σ = -EαΔT/(1-2ν) in plane strain, -EαΔT/(1-ν) in plane stress."""
+    material = Material(young_modulus=1000, poisson_ratio=0.3, state=state)
+    loads = Loads(temperature=Temperature(expansion=1e-3, change=7))
+    mesh = mesh_of(rectangle(2, 1, even(4), even(2)))
+    fixed = {"left": "x", "right": "x", "top": "y", "bottom": "y"}
+    _, t, _ = solved(mesh, material, values_of(mesh, fixed, nothing, no_traction), loads)
+    pressure = 1000 * 7e-3 / ((1 - 0.6) if state == "plane_strain" else (1 - 0.3))
+    expected = -pressure * mesh.normals
+    assert abs(t - expected).max() < 1e-11 * pressure
+
+
+def test_resultants_are_exact():
+    """Rectangle 2 x 1 at (1, -3): gravity acts at its center; centrifugal force is ρω² A (center - axis)."""
+    edges = [
+        (name, lambda s, c=c: c(s) + np.array([1, -3]), ends) for name, c, ends in rectangle(2, 1, even(2), even(1))
+    ]
+    mesh, material = mesh_of(edges), Material(young_modulus=1, poisson_ratio=0)
+    gravity = particular_solution(Loads(gravity=Gravity(density=5, acceleration=(3, -2))), material, mesh)
+    assert gravity.force == pytest.approx([30, -20], rel=1e-14)
+    assert gravity.moment == pytest.approx(2 * -20 - -2.5 * 30, rel=1e-14)
+    turning = Loads(centrifugal=Centrifugal(density=5, angular_velocity=2, center=(0.5, 1)))
+    centrifugal = particular_solution(turning, material, mesh)
+    force = 20 * 2 * np.array([2 - 0.5, -2.5 - 1])
+    assert centrifugal.force == pytest.approx(force, rel=1e-14)
+    assert centrifugal.moment == pytest.approx(0.5 * force[1] - 1 * force[0], rel=1e-13)

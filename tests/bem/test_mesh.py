@@ -1,4 +1,4 @@
-"""Elements and how they join."""
+"""Elements and their joints."""
 
 import numpy as np
 import pytest

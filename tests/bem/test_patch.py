@@ -8,7 +8,7 @@ from bemcontact.bem.contact_points import element_lengths
 from bemcontact.bem.influence import Influence
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.system import number_unknowns, place_equations
-from bemcontact.problem.material import Material
+from bemcontact.problem.problem import Material
 
 MATERIAL = Material(young_modulus=1000, poisson_ratio=0.3)
 STRESS = np.array([[3.0, 1.2], [1.2, -2.0]])

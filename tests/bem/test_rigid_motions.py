@@ -1,4 +1,4 @@
-"""Motions of body and tools that no condition prevents: which contact sees, and what they are called."""
+"""Motions of body and tools that no condition prevents: those that contact sees, and their names."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def roller(**tools) -> Body:
     return body_of(made(ROLLER, tools=tools))
 
 
-UP, TURN, SIDE = "translation along (0, 1)", "rotation anticlockwise about", "translation along (1, 0)"
+UP, TURN, SIDE = "translation along (0, 1)", "rotation counterclockwise about", "translation along (1, 0)"
 
 
 @pytest.mark.parametrize(
@@ -60,8 +60,8 @@ UP, TURN, SIDE = "translation along (0, 1)", "rotation anticlockwise about", "tr
         ),
     ],
 )
-def test_what_is_seen_and_what_is_not(body: Body, seen: tuple[str, ...], unseen: tuple[str, ...]):
-    """By hand: along a plane nothing changes a gap, and where all that touches goes along, neither."""
+def test_seen_and_unseen_motions_by_hand(body: Body, seen: tuple[str, ...], unseen: tuple[str, ...]):
+    """A motion along a plane changes no gap, and neither does a common motion of all that touches."""
     assert body.seen.describe()[-2:] == seen[-2:]
     assert sorted(body.seen.describe()) == sorted(seen)
     assert body.unseen.describe() == unseen
@@ -97,7 +97,7 @@ def test_tools_move_only_where_they_are_free(name: str):
 
 
 @pytest.mark.parametrize("name", BODIES)
-def test_what_a_tool_adds_to_the_gaps_is_its_rigid_motion(name: str):
+def test_change_of_the_gaps_by_a_tool_is_its_rigid_motion(name: str):
     """-n·w with w = (x - θ (Y - Py), y + θ (X - Px)) at contact points of its zones, 0 at others."""
     body = BODIES[name]
     points, zones = body.points, list(body.problem.contact_zones)
@@ -120,8 +120,8 @@ def test_work_of_forces_is_force_times_displacement_of_the_point(name: str):
     assert on_tools == pytest.approx(by_hand, rel=1e-12)
 
 
-def test_units_of_the_user():
-    """Work in a translation is a force, in a rotation a moment, however the motion was normalised."""
+def test_work_is_a_force_or_a_moment_in_user_units():
+    """Work is a force in a translation, and a moment in a rotation, for any normalization of the motion."""
     motions = FreeMotions(
         coefficients=np.array([[0, 3.0, 0, 0, 3, 0], [0, 0, 0.2, 0, 0, 0.2], [0, 0, 0, 0.6, 0.8, 0]]),
         names=("a",),

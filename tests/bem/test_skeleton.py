@@ -1,4 +1,4 @@
-"""Few points that stand for a block, against the kernels themselves."""
+"""Few points that represent a block, against the kernels."""
 
 import numpy as np
 import pytest
@@ -34,8 +34,8 @@ def kernels_at(z, zeta):
 
 @pytest.mark.parametrize("name", BLOCKS)
 @pytest.mark.parametrize("ratio", [RATIO, 0.1, 1e-3])
-def test_far_sources_at_all_points_follow_from_the_few(name, ratio):
-    """To the tolerance of one integral, times what sums of a few dozen terms add, from the nearest sources on."""
+def test_far_influence_at_all_points_follows_from_a_few(name, ratio):
+    """To the tolerance of one integral, times the round-off of sums of dozens of terms, from the nearest sources on."""
     z = BLOCKS[name]
     middle, radius = disc(z)
     zeta = middle + (radius or 1.0) / ratio * np.exp(2j * np.pi * np.arange(50) / 50)
@@ -45,19 +45,19 @@ def test_far_sources_at_all_points_follow_from_the_few(name, ratio):
 
 
 @pytest.mark.parametrize("name", BLOCKS)
-def test_the_few_stand_for_themselves(name):
+def test_chosen_points_have_unit_weights(name):
     few = skeleton(BLOCKS[name])
     assert (few.weights[:, few.at] == np.eye(len(few.at))).all()
 
 
 @pytest.mark.parametrize(("name", "most"), [("straight", 40), ("graded", 40), ("arc", 40), ("corner", 80)])
-def test_on_a_boundary_few_points_do(name, most):
+def test_few_points_are_enough_on_a_boundary(name, most):
     """A function with Bernstein parameter 2 / RATIO needs 24 terms for 1e-14; a corner has two such pieces."""
     assert len(skeleton(BLOCKS[name]).at) <= most
 
 
 @pytest.mark.parametrize("size", [1e-6, 3.7, 1e6])
-def test_a_change_of_units_changes_no_more_than_round_off_does(size):
+def test_skeleton_does_not_depend_on_units_up_to_round_off(size):
     few, there = skeleton(EIGHTH), skeleton(size * EIGHTH)
     assert abs(len(few.at) - len(there.at)) <= 2
 
@@ -73,8 +73,8 @@ def test_a_change_of_units_changes_no_more_than_round_off_does(size):
     ids=["circle", "strip", "graded plate with a hole"],
 )
 @pytest.mark.parametrize("first", [0, 40, 150])
-def test_blocks_with_a_skeleton_and_every_pair_by_itself_agree(loops, first, points, monkeypatch):
-    """Both are good to the tolerance of one integral, of those of order one."""
+def test_blocks_with_a_skeleton_agree_with_separate_pairs(loops, first, points, monkeypatch):
+    """Both have the tolerance of one integral of order one."""
     mesh = mesh_of(*loops)
     source = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(0, len(mesh.elements), 2))
     values = values_of(mesh, {}, lambda at: 0 * at, lambda at, normals: 0 * normals)
@@ -90,7 +90,7 @@ def test_blocks_with_a_skeleton_and_every_pair_by_itself_agree(loops, first, poi
 @pytest.mark.parametrize("by_numba", [False, True])
 @pytest.mark.parametrize("ratio", [1e6, 1e9])
 def test_short_elements_keep_their_digits(ratio, by_numba):
-    """F u = 0 for translations, as good in a block of the shortest elements as anywhere."""
+    """F u = 0 for translations, with the same accuracy in a block of the shortest elements as elsewhere."""
     half = np.geomspace(1, ratio, 25)
     ends = np.append(0, np.cumsum(np.concatenate([half, half[::-1]]))) / (2 * half.sum())
     mesh = mesh_of(rectangle(2, 1, ends, ends))
@@ -104,15 +104,17 @@ def test_short_elements_keep_their_digits(ratio, by_numba):
 
 @pytest.mark.parametrize("by_numba", [False, True])
 def test_the_sum_over_known_tractions_is_that_of_their_columns(by_numba):
-    """Linearity, for far and near elements and tractions on some of them, on others with columns, and on both."""
+    """The sum is linear, for far and near elements, with tractions on some, with columns on others, and with both."""
     mesh = mesh_of([("c", arc((0, 0), 1, 0, 360), even(300))])
     known = np.random.default_rng(1).standard_normal((2, 300, 3, 2))
     known[:, 50:150] = 0
     columns = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(300), by_numba=by_numba)
-    told = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(20, 80), known=known, by_numba=by_numba)
+    summed = Influence(
+        mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(20, 80), known=known, by_numba=by_numba
+    )
     values = values_of(mesh, {}, lambda at: 0 * at, lambda at, normals: 0 * normals)
     collocation = place_equations(mesh, number_unknowns(mesh, values), columns.nodes).collocation
-    all_of_them, block = (one.block(collocation, slice(40, 200)) for one in (columns, told))
+    all_of_them, block = (one.block(collocation, slice(40, 200)) for one in (columns, summed))
     xx, yy, xy = all_of_them.G
     pairs = known.transpose(0, 3, 2, 1)
     expected = np.array(

@@ -177,7 +177,7 @@ contact_zones:
 
 
 def test_a_contour_that_cannot_be_found_is_located(block: Path):
-    """Contact would hold the block, but it is not there when the contour is found."""
+    """Contact would hold the block, but the contour is computed without contact."""
     text = BLOCK[: BLOCK.index("conditions:")] + CONTOUR
     block.write_text(text, encoding="utf-8")
     answer = run("check", block)

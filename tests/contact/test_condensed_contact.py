@@ -1,4 +1,4 @@
-"""The condensed problem: its file, its gauge, its stiffness rows, and what it refuses."""
+"""The condensed problem: its file, its gauge, its stiffness rows, and its errors."""
 
 from dataclasses import fields, is_dataclass, replace
 
@@ -22,7 +22,7 @@ def beam(n: int) -> CondensedContact:
     return CondensedContact.from_compliance(near**2 * (3 * far - near) / 6 * weights, 0.1 - x**2, weights)
 
 
-def test_file_gives_back_every_field(tmp_path):
+def test_every_field_is_read_back_from_a_file(tmp_path):
     def compare(before, after):
         assert type(after) is type(before)
         if isinstance(before, np.ndarray):
@@ -76,7 +76,7 @@ def test_arrays_that_state_no_problem_are_refused(changes, text):
         replace(random_contact(0, 12, 2), **changes)
 
 
-def test_weights_that_are_not_there_are_refused():
+def test_missing_weights_are_refused():
     with pytest.raises(ProblemError, match="no consistent weights"):
         random_contact(0, 12, 2).weight_matrix(Weights.CONSISTENT)
 
@@ -107,8 +107,8 @@ def test_gauge_keeps_the_displacement_of_every_balanced_pressure():
     np.testing.assert_allclose(gauge.free_displacement + gauge.compliance @ p + R @ a, before, atol=1e-12)
 
 
-def test_gauge_forgets_how_the_body_was_held():
-    """M + R Xᵀ + Y ℓᵀ with Δ1 + R b + Y load says the same of every balanced p; the fixed gauge is the same."""
+def test_gauge_does_not_depend_on_the_support():
+    """M + R Xᵀ + Y ℓᵀ with Δ1 + R b + Y load has the same gap for every balanced p, so the fixed gauge is the same."""
     rng = np.random.default_rng(3)
     n, k = 9, 3
     M, R, J = rng.standard_normal((n, n)), rng.standard_normal((n, k)), rng.uniform(0.5, 1, n)
@@ -124,7 +124,7 @@ def test_gauge_forgets_how_the_body_was_held():
 
 @pytest.mark.parametrize("k", [1, 2, 3])
 def test_solution_does_not_depend_on_the_gauge(k):
-    """A problem that is stated with other bordering has the same pressure and the same gap."""
+    """A problem with another bordering has the same pressure and the same gap."""
     rng = np.random.default_rng(4)
     problem = random_contact(5, 12, k)
     R, ell = problem.rigid_motions, problem.equilibrium
@@ -191,7 +191,7 @@ def test_scales_follow_the_units(length, stress):
 
 
 def test_problem_of_zeros_has_scales():
-    """Nothing is divided by zero where gap and compliance vanish."""
+    """Zero gap and zero compliance cause no division by zero."""
     assert CondensedContact.from_compliance(np.zeros((2, 2)), np.zeros(2)).scales == (1.0, 1.0)
 
 

@@ -1,4 +1,4 @@
-"""Ends of many searches, as they are told to a person."""
+"""The printed list of the ends of many searches."""
 
 from dataclasses import replace
 
@@ -24,8 +24,8 @@ def ends(count: int) -> tuple[End, ...]:
     )
 
 
-def test_ends_are_told_in_short_lines():
-    """Eight are listed; the number of iterations stands once where least and most are one."""
+def test_ends_are_printed_in_short_lines():
+    """Eight ends are listed. The number of iterations is printed once if the least and the largest are equal."""
     few = RandomStarts(formulation="qp1", count=4, seed=0, ends=ends(2))
     assert str(few).splitlines()[1:] == [
         "2 x local minimum, objective 5.0e-01, residual 2.5e-01, 1 iteration",

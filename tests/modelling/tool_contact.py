@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.load_cases import LoadCases
-from bemcontact.contact.tools import Tools
+from bemcontact.contact.load_cases import LoadCases, Tools
 
 
 def tool_contact(seed: int = 0, n: int = 20, units: tuple[float, float] = (1.0, 1.0)) -> CondensedContact:

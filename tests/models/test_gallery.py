@@ -1,4 +1,4 @@
-"""Every file in models/gallery/ has the answer that is known of it, by each formulation, and nearer on a finer mesh."""
+"""Every file in models/gallery/ meets its references with each formulation, and is more accurate on a finer mesh."""
 
 from functools import cache
 from pathlib import Path
@@ -93,8 +93,8 @@ def test_comparison_is_certified(name: str, case: str | None):
 
 
 @pytest.mark.parametrize(("name", "case"), CASES)
-def test_finer_mesh_is_nearer(name: str, case: str | None):
-    """The largest difference; where a statement is exact on any mesh, round-off is all that there is."""
+def test_finer_mesh_is_more_accurate(name: str, case: str | None):
+    """The largest difference decreases, or is round-off if the method is exact on any mesh."""
     coarse, fine = (max(abs(item.difference or 0.0) for item in scores(name, "qp3", refine, case)) for refine in (1, 2))
     assert fine < coarse or fine < 1e-9
 
@@ -122,7 +122,7 @@ def test_load_does_not_move_the_end_of_receding_contact(formulation: str):
 
 
 def test_material_does_not_move_the_end_of_receding_contact():
-    """Without friction neither E nor ν has a part in the stress between a strip and a rigid base; the mesh has."""
+    """Without friction, the stress between a strip and a rigid base does not depend on E and ν, but on the mesh."""
     steel = result("receding_contact", "qp3", 2).footprint.intervals[0].end[0]
     cork = problem("receding_contact", 2).with_value("material", {"young_modulus": 20, "poisson_ratio": 0.0})
     assert analysis.solve(cork).footprint.intervals[0].end[0] == pytest.approx(steel, rel=1e-4)
@@ -175,8 +175,8 @@ class EndlessStrip:
         return np.sin((2 * np.arange(self.terms) + 1) * theta[:, None]) @ k
 
 
-def test_receding_contact_of_an_endless_strip():
-    """The numbers in the file, from another method; and the pressure of all points away from the end, to 0.1 %."""
+def test_receding_contact_of_an_infinite_strip():
+    """The numbers in the file are from another method. The pressure away from the end agrees to 0.1 %."""
     strip = EndlessStrip(half_load=0.5)
     a = brentq(strip.left_over, 0.95, 1.05, xtol=1e-12)
     stated = problem("receding_contact").reference["endless strip"]
@@ -190,7 +190,7 @@ def test_receding_contact_of_an_endless_strip():
 
 
 def test_polygon_rolls_into_its_groove():
-    """From where it touches nothing, it turns by the 0.0064 of the groove; forces and moment are balanced."""
+    """It starts without contact and turns by the 0.0064 of the groove; forces and moment are balanced."""
     answer = analysis.solve(problem("rolling_polygon"))
     assert answer.contact.initial_gap.min() > 0.1
     assert answer.contact.free_motions == 3

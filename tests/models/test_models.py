@@ -1,4 +1,4 @@
-"""Every file in models/ states a problem that is described, certified, and has the answer that its references tell."""
+"""Every file in models/ is a problem with a description and a certified solution that meets its references."""
 
 import json
 from functools import cache
@@ -97,7 +97,7 @@ def test_variants_have_the_number_of_elements_of_the_paper(name: str, elements: 
 
 
 @pytest.mark.parametrize("refine", [1, 4])
-def test_cantilever_on_a_curved_surface_passes_half_of_its_load_on(refine: int):
+def test_cantilever_on_a_curved_surface_carries_half_of_its_load_at_the_far_end(refine: int):
     """[SS92], Fig. 2: 50 ± 0.01 away from the clamp."""
     for answer in answers("cantilever_curved_surface", refine):
         x = answer.contact.points[:, 0]
@@ -107,15 +107,15 @@ def test_cantilever_on_a_curved_surface_passes_half_of_its_load_on(refine: int):
 
 @pytest.mark.parametrize("refine", [1, 4])
 def test_contact_carries_all_of_the_load(refine: int):
-    """Half of 810 under the cylinder, 25 · 3 along the pull of the plate; nothing else holds them there."""
+    """Half of 810 under the cylinder, 25 · 3 along the pull of the plate; nothing else holds them."""
     for answer in answers("cylinder_on_plane", refine):
         assert answer.footprint.resultant.force == pytest.approx((0, 405), rel=1e-9, abs=405e-9)
     for answer in answers("bolt_in_plate", refine):
         assert answer.footprint.resultant.force[0] == pytest.approx(-75, rel=1e-9)
 
 
-def test_open_nodes_at_the_tip_of_the_crack_go_with_the_mesh():
-    """Whatever is open moves to the tip: each mesh has only its last node open, if any, and a fine one has none."""
+def test_open_nodes_at_the_tip_of_the_crack_depend_on_the_mesh():
+    """The open part moves to the tip: each mesh has at most its last node open, and a fine mesh has none."""
     last = []
     for refine in (1, 2, 4, 8):
         answer = result("elliptical_crack_closure", "complementarity", "paper", refine)
@@ -141,8 +141,8 @@ def test_crack_closes_to_its_tip(refine: int, within: float):
     assert boundary["traction"][first][0][1] == pytest.approx(1000 / (1 - 0.3**2), rel=within)
 
 
-def test_slit_misses_what_the_ends_of_the_crack_add():
-    """By the closed forms of an infinite panel the crack has a pressure larger by q c/2a = 3.75; here by about that."""
+def test_slit_has_no_pressure_from_the_ends_of_the_crack():
+    """By the closed forms of an infinite panel the pressure of the crack is larger by about q c/2a = 3.75."""
     crack, slit = (result(name, "qp3").footprint.peak for name in ("elliptical_crack_closure", "slit_closure"))
     assert crack is not None
     assert slit is not None
@@ -150,8 +150,8 @@ def test_slit_misses_what_the_ends_of_the_crack_add():
 
 
 @pytest.mark.parametrize(("refine", "within"), [(1, 0.5), (4, 0.0625)])
-def test_landing_of_the_cantilever(refine: int, within: float):
-    """Start at 42.395 by finite elements: within a node spacing, and within half a one on the fine mesh."""
+def test_start_of_contact_of_the_cantilever(refine: int, within: float):
+    """Start at 42.395 by finite elements: within one node spacing, and within half of it on the fine mesh."""
     for answer in answers("cantilever_flat_surface", refine):
         (interval,) = answer.footprint.intervals
         assert interval.start[0] == pytest.approx(42.395, abs=within)

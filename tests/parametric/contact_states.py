@@ -6,8 +6,7 @@ import numpy as np
 from contact_problems import random_contact
 
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.load_cases import Change, LoadCases
-from bemcontact.contact.tools import Tools
+from bemcontact.contact.load_cases import Change, LoadCases, Tools
 
 
 def degenerate(seed: int, n: int, k: int, weak: int) -> tuple[CondensedContact, np.ndarray, np.ndarray]:

@@ -155,7 +155,7 @@ def test_loop_that_touches_itself_in_a_corner_is_refused():
     assert any("at (1, 1)" in line for line in issues(outer=lines))
 
 
-def test_edge_that_folds_back_on_its_neighbour_is_refused():
+def test_edge_that_folds_back_on_its_neighbor_is_refused():
     corners = [(0, 0), (2, 0), (2, 2), (2, 1), (0, 1)]
     lines = [Line(name=f"side {i}", start=corner, elements=1) for i, corner in enumerate(corners)]
     assert "'side 2' crosses or touches 'side 1' at (2, 1.5)" in issues(outer=lines)[0]

@@ -1,6 +1,8 @@
-"""Problems made in Python, changes of single values, and errors that list every issue."""
+"""Problems made in Python: materials, changes of values, variants, and errors that list every issue."""
 
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from bemcontact.errors import ProblemError
 from bemcontact.problem import (
@@ -180,3 +182,122 @@ def test_contour_is_checked_against_the_body():
     assert issue.startswith("contact_zones.foot.surface: the normal of the rigid surface must point ")
     assert "at 'arc'" in issue
     assert "reverse the direction: [0, 3]" in issue
+
+
+@given(st.floats(1e-6, 1e9), st.floats(-0.99, 0.49))
+@example(1.0, -0.5)
+def test_plane_stress_is_plane_strain_with_another_ratio_and_modulus(young_modulus, poisson_ratio):
+    sheet = Material(young_modulus=young_modulus, poisson_ratio=poisson_ratio, state="plane_stress")
+    thick = Material(young_modulus=young_modulus, poisson_ratio=poisson_ratio)
+    assert sheet.shear_modulus == thick.shear_modulus
+    assert thick.effective_poisson_ratio == poisson_ratio
+    # Strain per uniaxial stress, 1/E of the sheet, is (1 - ν'²)/E' of the equivalent thick body with E' = 2G(1 + ν').
+    # That is (1 - ν')/(2G), which stays finite where ν = -1/2 makes ν' = -1.
+    equivalent = (1 - sheet.effective_poisson_ratio) / (2 * sheet.shear_modulus)
+    assert equivalent == pytest.approx(1 / young_modulus, rel=1e-12)
+
+
+@pytest.mark.parametrize("poisson_ratio", [-1, 0.6, 1, -2])
+def test_ratio_beyond_positive_energy_is_refused(poisson_ratio):
+    for state in ("plane_strain", "plane_stress"):
+        with pytest.raises(ProblemError, match=f"greater than -1 and less than 0.5, found {poisson_ratio:g}"):
+            Material(young_modulus=1, poisson_ratio=poisson_ratio, state=state)
+
+
+def test_incompressible_material_needs_plane_stress():
+    assert Material(young_modulus=1, poisson_ratio=0.5, state="plane_stress").effective_poisson_ratio == 0.5 / 1.5
+    with pytest.raises(ProblemError, match=r"take 0\.499, or state: plane_stress"):
+        Material(young_modulus=1, poisson_ratio=0.5)
+
+
+def test_all_issues_of_a_material_are_reported_together():
+    with pytest.raises(ProblemError) as caught:
+        Material(young_modulus=-1, poisson_ratio="0.3")
+    assert [str(issue) for issue in caught.value.issues] == [
+        "young_modulus: must be greater than 0, found -1",
+        "poisson_ratio: expected a number, found the text '0.3'; leave the quotes out",
+    ]
+
+
+def block(variants, **more):
+    corners = {"bottom": [0, 0], "right": [4, 0], "top": [4, 2], "left": [0, 2]}
+    return Problem(
+        name="block",
+        material={"young_modulus": 1000, "poisson_ratio": 0.3},
+        boundary={"outer": [{"name": key, "start": start, "elements": 2} for key, start in corners.items()]},
+        conditions={"left": {"displacement": {"x": 0}}, "top": {"pressure": 3}},
+        contact_zones={"foot": {"edges": "bottom", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
+        variants=variants,
+        **more,
+    )  # pyright: ignore
+
+
+def variant_issues(variants):
+    with pytest.raises(ProblemError) as caught:
+        block(variants)
+    return [str(issue) for issue in caught.value.issues]
+
+
+FINE = {"description": "more elements", "set": {"boundary.outer.bottom.elements": 8, "boundary.outer[2].elements": 6}}
+
+
+def test_a_variant_is_the_problem_with_its_values():
+    problem = block({"fine": FINE, "soft": {"set": {"material.young_modulus": 10}}})
+    fine = problem.variant("fine")
+    assert [edge.elements for edge in fine.boundary.edges] == [8, 2, 6, 2]
+    assert (fine.name, fine.variants) == ("block, fine", {})
+    by_hand = block({}).with_value("boundary.outer.bottom.elements", 8).with_value("boundary.outer.top.elements", 6)
+    assert fine == by_hand.with_value("name", "block, fine")
+    assert problem.variant("soft").material.young_modulus == 10
+    assert problem.edge("bottom").elements == 2
+
+
+def test_variants_are_part_of_the_data_and_stay_when_values_change():
+    problem = block({"fine": FINE})
+    assert Problem(**problem.model_dump()) == problem
+    assert problem.refined(2).variant("fine").mesh.refine == 2
+
+
+def test_values_are_set_all_at_once():
+    """Neither the zone on the top nor the pressure on the bottom could be set alone: one edge would have both."""
+    turned = {
+        "contact_zones.foot": {"edges": "top", "surface": {"kind": "plane", "point": [0, 2], "normal": [0, -1]}},
+        "conditions": {"left": {"displacement": {"x": 0}}, "bottom": {"pressure": 3}},
+    }
+    assert block({"turned": {"set": turned}}).variant("turned").contact_zones["foot"].edges == ("top",)
+
+
+def test_an_unknown_variant_is_refused():
+    with pytest.raises(ProblemError, match=r"^variants: unknown variant 'fime'; did you mean 'fine'\?"):
+        block({"fine": FINE}).variant("fime")
+    with pytest.raises(ProblemError, match="unknown variant 'fine'; there are none"):
+        block({}).variant("fine")
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        (
+            {"material.poisson_ratio": 0.7},
+            "set.material.poisson_ratio: with this variant, material.poisson_ratio: must",
+        ),
+        (
+            {"material.poison_ratio": 0.2},
+            "set.material.poison_ratio: with this variant, material.poison_ratio: unknown",
+        ),
+        ({"boundary.outer.tap.elements": 3}, "set.boundary.outer.tap.elements: boundary.outer: unknown entry 'tap'"),
+        ({"a..b": 3}, "set.a..b: 'a..b' is not a key path"),
+        ({"variants.other.set": {}}, "set.variants.other.set: a variant cannot change variants"),
+        ({"contact_zones.foot.edges": "top"}, ": with this variant, conditions.top: edge 'top' is in the contact zone"),
+        ({}, "set: the variant sets no value"),
+        (None, "set: "),
+    ],
+)
+def test_a_broken_variant_is_found_at_once(values, words):
+    (found,) = variant_issues({"fine": FINE, "broken": {"set": values}})
+    assert words in found
+    assert found.startswith("variants.broken")
+
+
+def test_misspelled_keys_are_named():
+    assert "did you mean 'set'" in variant_issues({"fine": {"sets": {"mesh.refine": 2}}})[0]

@@ -540,7 +540,7 @@ def test_later_issues_are_located_in_the_file(tmp_path):
     path = tmp_path / "block.yaml"
     path.write_text(SPEC, encoding="utf-8")
     issues = [
-        Issue(path=("conditions", "left", "displacement", "x"), message="conflicts with its neighbour"),
+        Issue(path=("conditions", "left", "displacement", "x"), message="conflicts with its neighbor"),
         Issue(path=("conditions", "right"), message="conflicts too"),
         Issue(path=(), message="nothing holds the body"),
     ]
@@ -548,7 +548,7 @@ def test_later_issues_are_located_in_the_file(tmp_path):
     assert str(error).splitlines() == [
         "--set conditions.right={pressure: 1}: conditions.right: conflicts too",
         f"{path}: nothing holds the body",
-        f"{path}:24:28: conditions.left.displacement.x: conflicts with its neighbour",
+        f"{path}:24:28: conditions.left.displacement.x: conflicts with its neighbor",
     ]
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.scales import ContactScales
+from bemcontact.contact.free_motions import ContactScales
 from bemcontact.errors import SolverError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import minimize

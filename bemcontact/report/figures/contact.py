@@ -12,8 +12,7 @@ from scipy.spatial import KDTree
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.bem.boundary_values import BoundaryState
-from bemcontact.bem.mesh import element_curves
+from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.figures.page import (
     BLACK,

@@ -13,8 +13,7 @@ from matplotlib.path import Path
 
 from bemcontact.analysis.check import contours
 from bemcontact.arrays import Array
-from bemcontact.bem.boundary_values import applied_traction
-from bemcontact.bem.mesh import Mesh, element_curves
+from bemcontact.bem.mesh import Mesh, applied_traction, element_curves
 from bemcontact.problem import (
     AxisFields,
     Circle,

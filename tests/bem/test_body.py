@@ -1,4 +1,4 @@
-"""A rigid surface that is the deflected contour of the same body: its gap, how it is found, contact on it."""
+"""A rigid surface that is the deflected contour of the same body: its gap, its loads, and contact on it."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def lowered(by):
     return {"displacement": {"x": 0, "y": -by}}
 
 
-def test_bar_pressed_further_than_its_contour():
+def test_bar_that_is_pressed_below_its_contour():
     """The contour is lower by 0.01, the bar by 0.03: it is shortened by 0.02 of its height 1, p = 1000 · 0.02."""
     result = solve(bar(contour({"top": lowered(0.01)}), {"top": lowered(0.03)}))
     assert result.certified
@@ -48,14 +48,14 @@ def test_bar_pressed_further_than_its_contour():
     assert result.solution.pressure == pytest.approx(np.full(13, 20.0), rel=1e-10)
 
 
-def test_what_the_contour_does_not_replace_is_kept():
+def test_contour_keeps_conditions_that_it_does_not_replace():
     """The top is held for both; a pull of 5 on the bottom lengthens the bar by 5/1000 of its height."""
     gap = body_of(bar(contour({"bottom": {"pressure": -5}}), {"top": HELD})).points.gap
     assert gap == pytest.approx(np.full(13, 0.005), rel=1e-11)
 
 
 def test_volume_loads_of_the_problem_do_not_deflect_the_contour():
-    """A hanging bar is lengthened by ρ g h²/2E = 0.03 by its weight; the problem's own weight does not count."""
+    """A hanging bar is lengthened by ρ g h²/2E = 0.03 by its weight; the weight in the problem does not act."""
     weight = {"gravity": {"density": 6, "acceleration": [0, -10]}}
     hanging = body_of(bar(contour({}, loads=weight), {"top": HELD}))
     assert hanging.points.gap == pytest.approx(np.full(13, 0.03), rel=1e-3)  # weight is quadratic along the sides
@@ -63,7 +63,7 @@ def test_volume_loads_of_the_problem_do_not_deflect_the_contour():
     assert body_of(heavy).points.gap == pytest.approx(np.full(13, 0.01), rel=1e-12)
 
 
-def test_pressure_is_the_sum_of_what_shapes_the_contour_and_what_comes_on_top():
+def test_pressure_is_the_sum_of_the_loads_of_the_contour_and_of_the_problem():
     """By superposition: a pull of -3 - 2x shapes it, lowering the top by 0.01 between walls adds D · 0.01 everywhere.
 
     D = E (1 - ν) / ((1 + ν) (1 - 2ν)), the modulus of a bar that cannot widen. The mesh has the sum exactly.
@@ -77,7 +77,7 @@ def test_pressure_is_the_sum_of_what_shapes_the_contour_and_what_comes_on_top():
     assert result.solution.pressure == pytest.approx(1000 * 0.7 / (1.3 * 0.4) * 0.01 - 3 - 2 * x, rel=1e-9)
 
 
-def test_units_of_length_and_force_change_nothing():
+def test_result_does_not_depend_on_the_units():
     """In mm and N instead of m and kN: lengths 1e3, stresses 1e-3, the same contact."""
     conditions = {"left": HELD, "top": {"traction": {"y": -4}}}
     in_m = bar(contour({"top": {"traction": {"y": -1}}}), conditions, width=6.0)
@@ -89,7 +89,7 @@ def test_units_of_length_and_force_change_nothing():
     assert solve(second).solution.pressure * 1e3 == pytest.approx(pressure, abs=1e-8 * abs(pressure).max())
 
 
-def test_direction_counts_and_its_length_does_not():
+def test_only_the_direction_of_the_gap_matters_and_not_its_length():
     conditions, other = {"left": HELD, "top": {"traction": {"y": -4}}}, {"top": {"traction": {"y": -1, "x": 3}}}
     straight, steep, slanted = (
         body_of(bar({**contour(other), "direction": direction}, conditions)).points
@@ -100,16 +100,16 @@ def test_direction_counts_and_its_length_does_not():
     assert abs(slanted.gap - 0.8 * straight.gap).max() > 0.1 * abs(straight.gap).max()  # u has a part along x
 
 
-def test_zones_on_other_surfaces_stand_beside_it():
-    """A wall beside the bar keeps its own gap, and is not there when the contour is found."""
+def test_other_zones_may_have_other_surfaces():
+    """A wall beside the bar keeps its own gap. The contour is computed without it."""
     wall = {"edges": "right", "surface": {"kind": "plane", "point": [2.25, 0], "normal": [-1, 0]}}
     body = body_of(bar(contour({"top": lowered(0.01)}), {"top": HELD}, zones={"wall": wall}))
     assert body.points.gap[body.points.zone == 0] == pytest.approx(np.full(13, 0.01), rel=1e-12)
     assert body.points.gap[body.points.zone == 1] == pytest.approx(np.full(6, 0.25), rel=1e-12)  # one end is held
 
 
-def test_contour_is_found_on_the_mesh_of_the_problem():
-    """Bending of a clamped bar: a gap at every node of a finer mesh too, and the one at the free end settles."""
+def test_contour_is_computed_on_the_mesh_of_the_problem():
+    """Bending of a clamped bar: a finer mesh has a gap at every node too, and the gap at the free end converges."""
     problem = bar(contour({"top": {"traction": {"y": -1}}}), {"left": HELD, "top": {"traction": {"y": -2}}}, width=6.0)
     meshes = [body_of(problem.refined(parts)).points for parts in (1, 2, 4)]
     assert [len(points) for points in meshes] == [12, 24, 48]  # two nodes for each element; the clamped one is none
@@ -117,8 +117,8 @@ def test_contour_is_found_on_the_mesh_of_the_problem():
     assert abs(second - third) < 0.5 * abs(first - third) < 0.02 * third
 
 
-def test_body_must_be_held_without_contact():
-    """Contact holds it when it is solved, but nothing does when the contour is found."""
+def test_body_of_a_contour_must_be_held_without_contact():
+    """Contact holds the body in the solution, but nothing holds it for the contour."""
     with pytest.raises(
         ProblemError, match=r"against the translation along \(0, 1\).*prescribe displacements"
     ) as caught:
@@ -133,8 +133,8 @@ def test_body_must_be_held_without_contact():
         ({"left": HELD}, {"left": lowered(0.01), "top": lowered(0.01)}, (*CONTOUR, "conditions", "left")),
     ],
 )
-def test_contradictions_are_found_where_they_are_stated(own, kept, path):
-    """The second edge at the corner is blamed: by what is kept of the problem, or by what replaces it."""
+def test_contradictions_are_reported_where_they_are_stated(own, kept, path):
+    """The error names the second edge at the corner, with its condition of the problem or of the contour."""
     with pytest.raises(ProblemError, match="different displacements") as caught:
         body_of(bar(contour(own), kept))
     assert {issue.path[: len(path)] for issue in caught.value.issues} == {path}

@@ -1,4 +1,4 @@
-"""What may change without condensing anew: load cases and tools enter q = ε + Δ1 and the load linearly."""
+"""Changes without a new condensation: load cases and tools enter q = ε + Δ1 and the load linearly."""
 
 from functools import cache
 
@@ -10,8 +10,7 @@ from tool_problems import FREE, FREE_CASES, HELD, HELD_CASES, made
 
 from bemcontact.analysis import solve as analysis
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.load_cases import LoadCases
-from bemcontact.contact.tools import Pinned, Tools
+from bemcontact.contact.load_cases import LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
 
 PROBLEMS = {"held": (HELD, HELD_CASES), "free": (FREE, FREE_CASES)}
@@ -45,18 +44,18 @@ def alike(one: CondensedContact, other: CondensedContact) -> None:
 
 @given(names, factors)
 def test_factors_are_linear(name: str, values: list[float]):
-    """What acts is what is permanent and the sum of factor times `changes`."""
+    """The acting load is the permanent one plus the sum of factor times `changes`."""
     contact, wanted = condensed(name), factors_of(name, values)
-    found, changes = contact.with_factors(wanted), contact.changes
+    changed, changes = contact.with_factors(wanted), contact.changes
     steps = [(factor, changes[f"load_cases.{case}"]) for case, factor in wanted.items()]
     offset = contact.offset + sum(factor * step.offset for factor, step in steps)
     load = contact.motion_load + sum(factor * step.motion_load for factor, step in steps)
-    assert found.offset == pytest.approx(offset, abs=1e-12 * max(1e-3, abs(offset).max()))
-    assert found.motion_load == pytest.approx(load, rel=1e-11, abs=1e-11)
+    assert changed.offset == pytest.approx(offset, abs=1e-12 * max(1e-3, abs(offset).max()))
+    assert changed.motion_load == pytest.approx(load, rel=1e-11, abs=1e-11)
 
 
 @given(names, factors, factors)
-def test_the_last_factors_count(name: str, before: list[float], after: list[float]):
+def test_later_factors_replace_earlier_ones(name: str, before: list[float], after: list[float]):
     contact = condensed(name)
     alike(
         contact.with_factors(factors_of(name, before)).with_factors(factors_of(name, after)),
@@ -65,7 +64,7 @@ def test_the_last_factors_count(name: str, before: list[float], after: list[floa
 
 
 @given(names, factors)
-def test_no_factors_are_what_is_permanent(name: str, values: list[float]):
+def test_permanent_load_acts_without_factors(name: str, values: list[float]):
     contact = condensed(name)
     alike(contact.with_factors(factors_of(name, values)).with_factors({}), contact)
 
@@ -74,40 +73,40 @@ components = st.lists(st.tuples(numbers, numbers, numbers), min_size=2, max_size
 
 
 @given(names, components, components)
-def test_tools_are_where_they_are_put(name: str, position: list, force: list):
-    """Components that are given go there, those that are free keep no position; forces the other way round."""
+def test_tools_have_the_given_displacements_and_forces(name: str, position: list, force: list):
+    """Given components have the displacement, and free components have the force; the others are zero."""
     contact = condensed(name)
     t = len(contact.tools)
     at, pushed = np.array(position[:t]).ravel(), np.array(force[:t]).ravel()
-    found = contact.with_tools(position[:t], force[:t])
+    changed = contact.with_tools(position[:t], force[:t])
     free = contact.tools.free
-    assert found.tools.position == pytest.approx(np.where(free, 0.0, at), abs=1e-14)
-    assert found.tools.force == pytest.approx(np.where(free, pushed, 0.0), abs=1e-13)
-    alike(found.with_tools(contact.tools.position, contact.tools.force), contact)
+    assert changed.tools.position == pytest.approx(np.where(free, 0.0, at), abs=1e-14)
+    assert changed.tools.force == pytest.approx(np.where(free, pushed, 0.0), abs=1e-13)
+    alike(changed.with_tools(contact.tools.position, contact.tools.force), contact)
     changes, step = contact.changes, np.where(free, pushed - contact.tools.force, at - contact.tools.position)
     known = [(step[i], changes[key]) for i, key in enumerate(contact.tools.keys) if key in changes]
     offset = contact.offset + sum(size * change.offset for size, change in known)
     load = contact.motion_load + sum(size * change.motion_load for size, change in known)
-    assert found.offset == pytest.approx(offset, abs=1e-11)
-    assert found.motion_load == pytest.approx(load, rel=1e-11, abs=1e-10)
+    assert changed.offset == pytest.approx(offset, abs=1e-11)
+    assert changed.motion_load == pytest.approx(load, rel=1e-11, abs=1e-10)
 
 
 @given(factors, components)
 def test_factors_and_tools_add_up_in_any_order(values: list[float], position: list):
-    """A load case moves tools from where they are."""
+    """A load case moves tools from their present place."""
     contact, wanted = condensed("held"), factors_of("held", values)
     step = contact.cases.position @ contact.with_factors(wanted).cases.factors
     moved = contact.with_tools(position).with_factors(wanted)
     alike(moved, contact.with_factors(wanted).with_tools(np.array(position).ravel() + step))
 
 
-def test_nothing_given_changes_nothing():
+def test_empty_changes_have_no_effect():
     contact = condensed("held")
     alike(contact.with_tools(), contact)
 
 
 def test_keys_are_those_of_the_spec():
-    """What `Problem.with_value` takes, with the same effect: force where the tool is free, else displacement."""
+    """`Problem.with_value` accepts the keys, with the same effect: a force if the tool is free, else a displacement."""
     keys = condensed("held").changes
     assert "tools.punch.force.y" in keys
     assert "tools.punch.force.moment" in keys
@@ -129,7 +128,10 @@ def test_keys_are_those_of_the_spec():
             lambda contact: contact.with_factors({"snow": 1}),
             "there is no load case 'snow'; there are: wind, heat, settle",
         ),
-        (lambda contact: contact.with_factors({"wind": np.inf}), "factor of 'wind' must be a finite number, found inf"),
+        (
+            lambda contact: contact.with_factors({"wind": np.inf}),
+            "factor of 'wind' must be a finite number, found inf",
+        ),
         (lambda contact: contact.with_factors({"wind": "1"}), "factor of 'wind' must be a finite number, found '1'"),
         (lambda contact: contact.with_factors([1.0]), r"factors by load case are needed, such as .*; found \[1.0\]"),
         (
@@ -144,13 +146,13 @@ def test_keys_are_those_of_the_spec():
         (lambda contact: contact.with_tools(force=[[0, np.nan, 0]] * 2), "forces on them, must be finite numbers"),
     ],
 )
-def test_what_does_not_fit_is_refused(change, words: str):
+def test_changes_that_do_not_fit_are_refused(change, words: str):
     with pytest.raises(ProblemError, match=words):
         change(condensed("held"))
 
 
 def test_forces_that_nothing_resists_are_refused_after_condensing_too():
-    """Both tools are loaded: what is changed on one only would push all of them away, and no pressure can tell."""
+    """Both tools are loaded: a change on one of them would move all of them away, and no pressure can balance it."""
     zones = {**FREE["contact_zones"], "punch": {**FREE["contact_zones"]["punch"], "edges": ["head", "top"]}}
     tools = {
         "punch": {"zones": "punch", "force": {"x": 0, "y": -10}},
@@ -173,6 +175,6 @@ def test_forces_that_nothing_resists_are_refused_after_condensing_too():
     assert balanced.motion_load @ balanced.motion_load > 0
 
 
-def test_none_says_nothing():
+def test_none_is_empty():
     assert len(Tools.none(4, 2)) == len(LoadCases.none(4, 2, 0)) == 0
     assert Pinned.none(2, 1).complaint(np.ones(3), np.ones(3)) is None
