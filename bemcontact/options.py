@@ -228,11 +228,13 @@ class SolveOptions:
                 "outside this range the work or the equations are lost in the round-off of the other; 1 is the default"
             )
         ensure_whole_fields(self)
+        if not isinstance(self.polish, bool):
+            raise OptionError(f"polish must be True or False; found {self.polish!r}")
         if not (self.start is None or isinstance(self.start, StartName | os.PathLike | GivenStart)):
             given = f"'{self.start}'" if isinstance(self.start, str) else f"of type {type(self.start).__name__}"
             raise OptionError(f"there is no start {given}; take {', '.join(StartName)}, or a Start of your own")
         if not self.is_random and not (self.seed is None and self.starts is None):
-            raise OptionError("a seed or a number of starts goes with random starts; leave out the other start")
+            raise OptionError("a seed or a number of starts needs random starts; leave out the other start")
         self._ensure_used()
 
     @classmethod
@@ -243,6 +245,7 @@ class SolveOptions:
         **options: Unpack[SolveKeywords],
     ) -> "SolveOptions":
         """Make options; unlike the constructor, it is typed for names as texts."""
+        ensure_known(options, (item.name for item in fields(cls)))
         return cls(**cast(dict[str, Any], {"formulation": formulation, "weights": weights, **options}))
 
     @property
@@ -281,7 +284,9 @@ class SolveOptions:
             value = getattr(self, option)
             is_set = self.is_random or value not in (None, StartName.NULL) if option == "start" else value != default
             if is_set:
-                raise OptionError(f"{self.formulation} has no use for the option '{option}'; {takes}leave it out")
+                stated = [name for name in ("starts", "seed") if option == "start" and getattr(self, name) is not None]
+                given = stated[0] if stated else option
+                raise OptionError(f"{self.formulation} has no use for the option '{given}'; {takes}leave it out")
 
 
 class ComparisonKeywords(TypedDict, total=False):
@@ -356,6 +361,7 @@ class ComparisonOptions:
         **options: Unpack[ComparisonKeywords],
     ) -> "ComparisonOptions":
         """Make options; unlike the constructor, it is typed for names as texts and for single items."""
+        ensure_known(options, (item.name for item in fields(cls)))
         given = {"formulations": formulations, "weights": weights, "penalties": penalties, **options}
         return cls(**cast(dict[str, Any], given))
 
@@ -414,6 +420,14 @@ def ensure_whole_fields(options: SolveOptions | ComparisonOptions) -> None:
         if least is not None and value is not None:
             ensure_whole(value, item.metadata["noun"] or item.name, least)
             object.__setattr__(options, item.name, int(value))
+
+
+def ensure_known(options: Iterable[str], known: Iterable[str]) -> None:
+    """Refuse the name of an option that does not exist; list those that do."""
+    known = [*known]
+    for name in options:
+        if name not in known:
+            raise OptionError(f"there is no option '{name}'; choose from {', '.join(known)}")
 
 
 def _compared(name: object) -> FormulationName:

@@ -5,6 +5,8 @@ from typing import get_args, get_type_hints
 
 import pytest
 
+import bemcontact
+from bemcontact.errors import OptionError
 from bemcontact.options import (
     USES,
     ComparisonKeywords,
@@ -32,6 +34,22 @@ def test_keywords_are_the_fields_of_the_options_with_their_types(keywords, optio
     for name, hint in stated.items():
         kinds = {*(get_args(declared[name]) or (declared[name],))}
         assert kinds <= {*(get_args(hint) or (hint,))}, name
+
+
+@pytest.mark.parametrize(
+    ("call", "options", "words"),
+    [
+        (bemcontact.solve, {"method": "qp1"}, "there is no option 'method'; choose from formulation, weights"),
+        (bemcontact.compare, {"method": "qp1"}, "there is no option 'method'; choose from formulations"),
+        (bemcontact.random_starts, {"polish": True}, "there is no option 'polish'; choose from penalty, rows"),
+        (bemcontact.random_starts, {"start": "null"}, "there is no option 'start'"),
+        (bemcontact.solve, {"polish": "no"}, "polish must be True or False; found 'no'"),
+        (bemcontact.solve, {"starts": 3}, "qp3 has no use for the option 'starts'"),
+    ],
+)
+def test_an_option_that_does_not_exist_or_has_no_use_is_refused_by_its_name(call, options, words):
+    with pytest.raises(OptionError, match=words):
+        call(bemcontact.CondensedContact.from_compliance([[1.0]], [-1.0]), **options)
 
 
 def test_each_option_that_a_formulation_uses_is_a_field():

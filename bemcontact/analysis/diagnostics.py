@@ -29,11 +29,22 @@ def diagnostics(
 ) -> Iterator[str]:
     """Notes on a solution; those on mesh and size need a body."""
     touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
+    yield from floating(contact, touching)
     yield from few_points(contact, touching, where)
     if body is not None:
         yield from reached_zone_ends(body, touching)
         yield from long_neighbors(body, touching)
         yield from large_pressure(body, where)
+
+
+def floating(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Note that no point carries pressure although only contact could hold the body or a tool."""
+    if contact.free_motions and not touching.any():
+        motions = " and the ".join(contact.motion_names)
+        yield (
+            f"no contact point carries pressure, so contact does not determine the {motions}; if there should be "
+            "contact, check the directions of loads and displaced tools"
+        )
 
 
 def few_points(contact: CondensedContact, touching: NDArray[np.bool_], where: Footprint) -> Iterator[str]:

@@ -28,6 +28,7 @@ from bemcontact.options import (
     StartName,
     StatementKeywords,
     Weights,
+    ensure_known,
     ensure_whole,
 )
 from bemcontact.problem.problem import Problem
@@ -250,6 +251,7 @@ def random_starts(
     ProblemError
         As of `solve`.
     """
+    ensure_known(options, StatementKeywords.__annotations__)
     ensure_whole(count, "number of starts", 1)
     ensure_whole(seed, "seed", 0)
     read = SolveOptions.of(formulation, weights, start=StartName.RANDOM, starts=count, seed=seed, **options)

@@ -28,6 +28,7 @@ from bemcontact.errors import Issue, ProblemError
 LARGEST_NUMBER = 1e100
 """The square of this number is still finite, so that lengths and areas can be computed."""
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
+_NUMBER_AND_UNIT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)? *[^\W\d_][^ ]*")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -279,7 +280,7 @@ def number_hint(value: object) -> str:
     try:
         float(value.replace(",", ".", 1))
     except ValueError:
-        return ""
+        return "; write the number alone, in the units of the file" if _NUMBER_AND_UNIT.fullmatch(value) else ""
     return "; the decimal sign is a point" if "," in value else "; leave the quotes out"
 
 

@@ -37,8 +37,11 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     for zone in zone_forces(record, units):
         yield "Resultant", f"of {zone}"
     for name, amplitude in zip(record["motion_names"], record["rigid_amplitudes"], strict=True):
-        unit = units.length if name.startswith("translation") else ""
-        yield "Free motion", f"{name}: {with_unit(number(settled(amplitude, moves)), unit)}"
+        if " of the tool " in name:
+            continue  # its line tells where it is
+        # the amplitude of a rotation is a displacement [L] at a distance that no reader knows
+        moved = f": {with_unit(number(settled(amplitude, moves)), units.length)}" * name.startswith("translation")
+        yield "Free motion", f"{name}{moved}"
     for tool in record["tools"]:
         yield "Tool", _tool(tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)

@@ -355,7 +355,7 @@ def _contender_table(compared: Comparison) -> Table:
 
 def _curvature_table(compared: Comparison) -> Table:
     """List how many eigenvalues are positive, zero and negative where a local solver searched."""
-    table = table_of("eigenvalues + 0 -", "whole Hessian", "reduced, start", "reduced, end", "convex in equilibrium")
+    table = table_of("signs + 0 -", "whole Hessian", "reduced, start", "reduced, end", "convex in equilibrium")
     for item in compared.contenders:
         search = item.solution.search if item.solution else None
         if search is None:
@@ -368,11 +368,14 @@ def _curvature_table(compared: Comparison) -> Table:
 
 def _score_table(level: MeshLevel, units: Units) -> Table:
     """List the references and the differences from them."""
-    table = table_of("reference", "quantity", "computed", "expected", "difference", "allowed", "")
-    keys = ("reference", "quantity", "computed", "expected", "difference", "tolerance", "verdict")
+    table = table_of("reference", "quantity", "computed", "expected", "difference", "")
     scores, references = ([item.to_dict() for item in items] for items in (level.scores, level.expected))
+    judged = {"holds": "within", "does not hold": "MORE THAN"}
     for row in scores_in_words(scores, references, units):
-        table.add_row(*(Text(row[key]) for key in keys), style="red" if row["colour"] == "bad" else "")
+        expected = row["expected"].removesuffix(f" {row['unit']}")
+        verdict = f"{judged[row['verdict']]} {row['tolerance']}" if row["verdict"] in judged else row["verdict"]
+        cells = (row["reference"], row["quantity"], row["computed"], expected, row["difference"], verdict)
+        table.add_row(*map(Text, cells), style="red" if row["colour"] == "bad" else "")
     return table
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from contact_meshes import cylinder, ring, table
 from scipy.optimize import brentq
+from tool_problems import BETWEEN, made
 
 import bemcontact
 from bemcontact.analysis.result import Result
@@ -115,3 +116,13 @@ def test_long_elements_beyond_a_pressed_corner_are_told(elements, told):
     fitted = bemcontact.solve(coarse, "complementarity")
     assert not [note for note in fitted.notes if note.startswith(LONG)]
     assert fitted.footprint.peak.pressure == pytest.approx(18.819, rel=3e-3)  # Hertz
+
+
+def test_a_body_that_nothing_presses_floats_and_a_note_says_so():
+    """A block between a floor and a plate that moves away: contact could hold it, but carries no pressure."""
+    moves_away = {"press": {"zones": "press", "displacement": {"y": 0.1}}}
+    result = bemcontact.solve(
+        made(BETWEEN, tools=moves_away, load_cases={}, combinations={}, conditions={"left": {"displacement": {"x": 0}}})
+    )
+    assert result.footprint.intervals == ()
+    assert any("contact does not determine the translation along (0, 1)" in note for note in result.notes)

@@ -75,6 +75,13 @@ BROKEN = {
         "material.young_modulus",
         ("'1e3'", "leave the quotes out"),
     ),
+    "number with its unit": Broken(
+        "young_modulus: 1e3",
+        "young_modulus: 210 GPa",
+        "4:18",
+        "material.young_modulus",
+        ("'210 GPa'", "write the number alone, in the units of the file"),
+    ),
     "decimal comma": Broken(
         "poisson_ratio: .3",
         "poisson_ratio: 0,3",
