@@ -19,6 +19,7 @@ CONFIG = ConfigDict(
     extra="forbid",
     frozen=True,
     arbitrary_types_allowed=True,
+    defer_build=True,
     use_attribute_docstrings=True,
     json_schema_serialization_defaults_required=True,
     ser_json_inf_nan="constants",

@@ -65,7 +65,7 @@ class Certificate(Leaf):
     """Bound on the difference of each pressure from that of the solution [p]; null if there is none."""
     relative_error_bound: float | None
     """Error bound over the peak pressure; null if there is none, or where nothing touches."""
-    complaint: str
+    violation: str
     """Residual that is too large, if this is not a solution; otherwise empty."""
     words: str
     """Two or three sentences for an engineer."""
@@ -89,19 +89,19 @@ def certify(
     unique = eigenvalue is None or eigenvalue > contact.size * np.finfo(float).eps
     bound = _error_bound(contact, solution, eigenvalue) if unique else None
     peak = contact.peak(solution.pressure)
-    complaint = _complaint(residuals, tolerance, max(1.0, peak / contact.scales.pressure))
+    violation = _violation(residuals, tolerance, max(1.0, peak / contact.scales.pressure))
     kind = CertificateKind.UNIQUE if unique else CertificateKind.LOCAL
     if unique and (bound is None or bound > LARGEST_BOUND * (peak or contact.scales.pressure)):
         kind = CertificateKind.OPEN
-    kind = CertificateKind.NOT_A_SOLUTION if complaint else kind
+    kind = CertificateKind.NOT_A_SOLUTION if violation else kind
     relative = bound / peak if bound is not None and peak > 0 else None
     return Certificate(
         kind=kind,
         smallest_eigenvalue=eigenvalue,
         error_bound=bound,
         relative_error_bound=relative,
-        complaint=complaint,
-        words=_certificate_sentence(kind, complaint, eigenvalue, relative, advice(solution)),
+        violation=violation,
+        words=_certificate_sentence(kind, violation, eigenvalue, relative, advice(solution)),
     )
 
 
@@ -174,7 +174,7 @@ def _nearest_balanced(p: Array, contact_set: NDArray[np.bool_], ell: Array, load
     return None
 
 
-def _complaint(residuals: Residuals, tolerance: float, size: float) -> str:
+def _violation(residuals: Residuals, tolerance: float, size: float) -> str:
     """The worst violation in words, or empty; `size` is that of the pressure over T."""
     of_gaps = max(tolerance * size, residuals.round_off)
     checks = {
@@ -189,7 +189,7 @@ def _complaint(residuals: Residuals, tolerance: float, size: float) -> str:
 
 
 def _certificate_sentence(
-    kind: CertificateKind, complaint: str, eigenvalue: float | None, relative: float | None, way_out: str
+    kind: CertificateKind, violation: str, eigenvalue: float | None, relative: float | None, way_out: str
 ) -> str:
     """Two or three sentences for an engineer."""
     sure = "equilibrium alone fixes it" if eigenvalue is None else f"its smallest eigenvalue is {eigenvalue:.2e}"
@@ -212,7 +212,7 @@ def _certificate_sentence(
                 f"far from this one, satisfy them too ({sure}).{error} Look in the mesh for very short elements."
             )
         case CertificateKind.NOT_A_SOLUTION:
-            return f"This is not the contact state: {complaint}.{error} {way_out}"
+            return f"This is not the contact state: {violation}.{error} {way_out}"
 
 
 def advice(solution: ContactSolution) -> str:

@@ -180,7 +180,7 @@ def _why_not(solution: ContactSolution, certificate: Certificate, reached: Reach
         Status.LOCAL_MINIMUM: "stationary but not the solution",
     }.get(solution.status, solution.status.words)
     objective = "" if reached is None else f": {reached}"
-    return f"{ended}{objective}; {certificate.complaint}."
+    return f"{ended}{objective}; {certificate.violation}."
 
 
 def _of_weights(matrices: WeightedCompliance, tributary: WeightedCompliance) -> str:

@@ -167,8 +167,8 @@ def each_case(body: Body) -> Iterator[Body]:
 def ensure_held(body: Body) -> None:
     """Refuse loads that contact cannot hold, with the `ProblemError` of `body_of`."""
     try:
-        if complaint := body.pinned.complaint(body.factors, body.forces):
-            raise ProblemError(complaint)
+        if violation := body.pinned.violation(body.factors, body.forces):
+            raise ProblemError(violation)
         _check_support(body)
     except ProblemError as error:
         case = body.problem.case

@@ -288,8 +288,8 @@ class CondensedContact(MotionAlgebra):
 
     def balanced(self) -> Self:
         """Refuse loads along a motion that nothing resists, with a `ProblemError`."""
-        if complaint := self.pinned.complaint(np.append(1.0, self.cases.factors), self.tools.force):
-            raise ProblemError(complaint)
+        if violation := self.pinned.violation(np.append(1.0, self.cases.factors), self.tools.force):
+            raise ProblemError(violation)
         return self
 
     def stepped(self, factors: Array, position: Array, force: Array) -> Self:
@@ -319,13 +319,13 @@ class CondensedContact(MotionAlgebra):
             for name, offset, load, alone, force in zip(
                 cases.names, offsets.T, loads.T, unit, cases.force.T, strict=True
             )
-            if pinned.complaint(alone, force) is None
+            if pinned.violation(alone, force) is None
         }
         moves = zip(tools.keys, np.where(tools.free, 0.0, tools.motions).T, tools.amplitudes, units, strict=True)
         return of_cases | {
             key: Change(offset, load)
             for key, offset, load, alone in moves
-            if (offset.any() or load.any()) and pinned.complaint(np.zeros(1 + len(cases)), alone) is None
+            if (offset.any() or load.any()) and pinned.violation(np.zeros(1 + len(cases)), alone) is None
         }
 
     @cached_property

@@ -165,7 +165,7 @@ class Pinned:
         x, y, moment = force.reshape(-1, 3).T
         return float(self.magnitude @ abs(factors) + (np.hypot(x, y) + abs(moment) / self.length).sum())
 
-    def complaint(self, factors: Array, force: Array) -> str | None:
+    def violation(self, factors: Array, force: Array) -> str | None:
         """Describe a motion that the loads drive and nothing resists; None if the loads balance."""
         work, total = self.load @ factors + self.tools.T @ force, self.total(factors, force)
         for motion, turns, done in zip(self.motions, self.turns, work, strict=True):

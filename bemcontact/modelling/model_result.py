@@ -114,7 +114,7 @@ def judged(contact: CondensedContact, solution: ContactSolution, *, added: bool)
     return ModelResult(
         status=solution.status,
         words=_words(solution.status, certificate, recomputed, added=added),
-        contact_state=not certificate.complaint,
+        contact_state=not certificate.violation,
         objective=float(contact.weights @ (solution.pressure * gap)),
         pressure=solution.pressure,
         gap=gap,
@@ -155,8 +155,8 @@ def _without_optimum(contact: CondensedContact, status: Status, *, added: bool) 
 def _words(status: Status, certificate: Certificate, recomputed: Residuals, *, added: bool) -> str:
     """The assessment in words."""
     cut = "" if status is Status.SOLVED else f" The solver {status.words}."
-    if certificate.complaint and added:
-        return f"This is the {NOT_CONTACT}: {certificate.complaint}.{cut}"
+    if certificate.violation and added:
+        return f"This is the {NOT_CONTACT}: {certificate.violation}.{cut}"
     if added:
         return (
             "What was added leaves a contact state, to the solver's tolerance (residual of complementarity "

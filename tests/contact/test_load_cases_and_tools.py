@@ -177,4 +177,4 @@ def test_forces_that_nothing_resists_are_refused_after_condensing_too():
 
 def test_none_is_empty():
     assert len(Tools.none(4, 2)) == len(LoadCases.none(4, 2, 0)) == 0
-    assert Pinned.none(2, 1).complaint(np.ones(3), np.ones(3)) is None
+    assert Pinned.none(2, 1).violation(np.ones(3), np.ones(3)) is None
