@@ -129,4 +129,4 @@ def test_complaints_are_heard(chromium: Browser, tmp_path: Path):
     with opened(chromium, bad, width=380) as (_, complaints):
         pass
     for expected in ("a warning", "nothing is not defined", "none.png: net::ERR_FILE_NOT_FOUND"):
-        assert any(expected in violation for violation in complaints)
+        assert any(expected in complaint for complaint in complaints)
