@@ -118,8 +118,8 @@ def test_one_random_start_is_the_first_of_many():
     [
         ({"formulation": "qp3", "start": "random"}, "no use for the option 'start'"),
         ({"formulation": "complementarity", "start": "random"}, "no use for the option 'start'"),
-        ({"formulation": "qp3", "starts": 3}, "no use for the option 'start'"),
-        ({"formulation": "complementarity", "seed": 3}, "no use for the option 'start'"),
+        ({"formulation": "qp3", "starts": 3}, "no use for the option 'starts'"),
+        ({"formulation": "complementarity", "seed": 3}, "no use for the option 'seed'"),
         ({"formulation": "qp1", "start": "null", "seed": 1}, "leave out the other start"),
         ({"formulation": "qp1", "start": "null", "starts": 3}, "leave out the other start"),
         (
@@ -215,7 +215,7 @@ def test_a_start_of_no_meaning_is_refused(pressure, displacement):
 
 
 def test_random_starts_are_for_local_solvers():
-    with pytest.raises(OptionError, match="no use for the option 'start'"):
+    with pytest.raises(OptionError, match="no use for the option 'starts'"):
         bemcontact.random_starts(resting(), "qp3")
 
 
