@@ -16,7 +16,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.problem import Polyline, Spline
 
-PUNCH = (Path(__file__).parents[2] / "models" / "gallery" / "flat_punch.yaml").read_text(encoding="utf-8")
+PUNCH = (Path(__file__).parents[3] / "models" / "gallery" / "flat_punch.yaml").read_text(encoding="utf-8")
 LOAD = "{pressure: 5}"
 PLANE = "    surface: {kind: plane, point: [0, 0], normal: [0, -1]}\n"
 

@@ -20,7 +20,7 @@ from bemcontact.formulations import complementarity
 from bemcontact.modelling.gap_design.designed_gap import relieved
 from bemcontact.modelling.gap_design.relief import Profiles
 
-GALLERY = Path(__file__).parents[2] / "models" / "gallery"
+GALLERY = Path(__file__).parents[3] / "models" / "gallery"
 POWERS = [lambda s, k=k: (1 - s / 5) ** k for k in (2, 4, 8)]
 """Shapes for half a punch, from its edge (s = 0) to its middle (s = 5)."""
 

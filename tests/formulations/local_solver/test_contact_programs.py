@@ -20,7 +20,7 @@ from bemcontact.formulations.scaling import scaled
 from bemcontact.formulations.search import draw_starts
 from bemcontact.options import SolveOptions
 
-CYLINDER = Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml"
+CYLINDER = Path(__file__).parents[3] / "models" / "cylinder_on_plane.yaml"
 SIZES = (11, 21, 41)
 MODULI = (1e3, 2e6, 2e11)
 RIGHT = 1e-8
