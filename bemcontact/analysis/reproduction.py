@@ -15,7 +15,7 @@ from bemcontact.contact.record import UnitsRecord
 from bemcontact.errors import SpecError
 from bemcontact.options import ComparisonOptions, FormulationName
 from bemcontact.problem import Problem, Table, Units, Values
-from bemcontact.reference.paper import PROBLEMS, PaperProblem, Quantity, Statement
+from bemcontact.reference.paper import PROBLEMS, PaperProblem, PaperQuantity, PaperStatement
 from bemcontact.reference.positions import coordinates
 from bemcontact.serialization import Record, Recorded, Vector
 
@@ -321,26 +321,26 @@ def extent(level: MeshLevel, axis: Values | Table) -> Reading:
     return (0.0 if abs(low) <= LEVEL * abs(high) else low, high)
 
 
-def reading(statement: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+def reading(statement: PaperStatement, level: MeshLevel, axis: Values | Table) -> Reading:
     """Quantity of a statement in a comparison; empty where it does not exist, such as the ends of no contact."""
     return READERS[statement.quantity](statement, level, axis)
 
 
-def unit_of(statement: Statement, axis: Values | Table, units: Units) -> str:
+def unit_of(statement: PaperStatement, axis: Values | Table, units: Units) -> str:
     """Label of the unit of the quantity of a statement."""
     match statement.quantity:
-        case Quantity.PRESSURE | Quantity.PEAK:
+        case PaperQuantity.PRESSURE | PaperQuantity.PEAK:
             return units.stress
-        case Quantity.FORCE:
+        case PaperQuantity.FORCE:
             return f"{units.force}/{units.length}" if units.stress else ""
-        case Quantity.CONTACT if axis.against == "angle":
+        case PaperQuantity.CONTACT if axis.against == "angle":
             return "°"
-        case Quantity.CONTACT | Quantity.LEAST_GAP:
+        case PaperQuantity.CONTACT | PaperQuantity.LEAST_GAP:
             return units.length
     return ""
 
 
-def _pressure(statement: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+def _pressure(statement: PaperStatement, level: MeshLevel, axis: Values | Table) -> Reading:
     """Smallest and largest pressure in a range; one number for one point."""
     here, pressure = positions(level, axis), level.answer.solution.pressure
     if statement.between is not None:
@@ -351,39 +351,39 @@ def _pressure(statement: Statement, level: MeshLevel, axis: Values | Table) -> R
     return ends[: len(pressure)]
 
 
-def _peak(_: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+def _peak(_: PaperStatement, level: MeshLevel, axis: Values | Table) -> Reading:
     peak = level.answer.footprint.peak
     return () if peak is None else (peak.pressure,)
 
 
-def _open_points(_: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+def _open_points(_: PaperStatement, level: MeshLevel, axis: Values | Table) -> Reading:
     return (float(np.count_nonzero(~level.answer.touching)),)
 
 
-def _least_gap(_: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+def _least_gap(_: PaperStatement, level: MeshLevel, axis: Values | Table) -> Reading:
     """The smallest gap; round-off is zero."""
     contact = level.answer.contact
     gap = float((contact.initial_gap + level.answer.solution.displacement).min())
     return (0.0 if abs(gap) <= LEVEL * contact.scales.displacement else gap,)
 
 
-def _force(statement: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+def _force(statement: PaperStatement, level: MeshLevel, axis: Values | Table) -> Reading:
     return (abs(float(np.dot(level.answer.footprint.resultant.force, statement.direction))),)
 
 
-def _difference(_: Statement, level: MeshLevel, axis: Values | Table) -> Reading:
+def _difference(_: PaperStatement, level: MeshLevel, axis: Values | Table) -> Reading:
     compared = level.comparison
     differences = [item.unpolished for item in compared.differences if item.other == compared.reference.label]
     return (max(differences),) if differences else ()
 
 
-READERS: dict[Quantity, Callable[[Statement, MeshLevel, Values | Table], Reading]] = {
-    Quantity.PRESSURE: _pressure,
-    Quantity.PEAK: _peak,
-    Quantity.CONTACT: lambda _, level, axis: extent(level, axis),
-    Quantity.OPEN_POINTS: _open_points,
-    Quantity.LEAST_GAP: _least_gap,
-    Quantity.FORCE: _force,
-    Quantity.DIFFERENCE: _difference,
+READERS: dict[PaperQuantity, Callable[[PaperStatement, MeshLevel, Values | Table], Reading]] = {
+    PaperQuantity.PRESSURE: _pressure,
+    PaperQuantity.PEAK: _peak,
+    PaperQuantity.CONTACT: lambda _, level, axis: extent(level, axis),
+    PaperQuantity.OPEN_POINTS: _open_points,
+    PaperQuantity.LEAST_GAP: _least_gap,
+    PaperQuantity.FORCE: _force,
+    PaperQuantity.DIFFERENCE: _difference,
 }
 """Quantity -> function that computes it."""

@@ -70,7 +70,7 @@ class Collocation:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Block:
+class InfluenceRows:
     """Some rows of F and G: the x and y equations of the R collocation points `rows`, which the last axis counts.
 
     Parameters
@@ -158,7 +158,7 @@ class Influence:
         from_middle = self.element_nodes - self.element_nodes[:, 1:2]
         return [(rule, rule.derivatives.T @ from_middle.T) for rule in rules]
 
-    def each_block(self, collocation: Collocation, use: Callable[[Block], None]) -> None:
+    def each_block(self, collocation: Collocation, use: Callable[[InfluenceRows], None]) -> None:
         """Compute rows of F and G for all points and pass them to `use`, block by block, on all processors.
 
         `use` is called from other threads and in any order; it must not keep the block. BLAS uses one thread meanwhile,
@@ -180,14 +180,14 @@ class Influence:
             for _ in pool.map(work, [blocks[first::workers] for first in range(workers)]):
                 pass
 
-    def block(self, collocation: Collocation, rows: slice) -> Block:
+    def block(self, collocation: Collocation, rows: slice) -> InfluenceRows:
         """Rows of F and G for neighboring points."""
         return self._block(collocation, rows, self._space(rows.stop - rows.start))
 
     def _space(self, size: int) -> _Space:
         return _Space(np.empty(4 * len(self.nodes) * size), np.empty(9 * len(self.traction_elements) * size))
 
-    def _block(self, collocation: Collocation, rows: slice, space: _Space) -> Block:
+    def _block(self, collocation: Collocation, rows: slice, space: _Space) -> InfluenceRows:
         """Rows of F and G in given memory, which the result keeps."""
         origin = collocation.base[rows.start]  # the digits of short elements are in differences to nodes of their own
         z = (collocation.base[rows] - origin) + collocation.offset[rows]
@@ -227,7 +227,7 @@ class Influence:
         large = self.mesh.degrees_of_freedom >= WORTH_COMPILING
         return compiled.far_sums() if (large if self.by_numba is None else self.by_numba) else None
 
-    def _far(self, rows: slice, z: ComplexArray, nodes: ComplexArray, tiers: IntArray, space: _Space) -> Block:
+    def _far(self, rows: slice, z: ComplexArray, nodes: ComplexArray, tiers: IntArray, space: _Space) -> InfluenceRows:
         """A block with the influence of far elements on its points, by one Gauss rule each; tier -1 leaves one out."""
         columns = len(self.traction_elements)
         if (tiers < 0).all():
@@ -238,19 +238,19 @@ class Influence:
         for run in self._runs(tiers):
             if tiers[run.start] >= 0:
                 by_run(part, z[few.at], nodes[run], int(tiers[run.start]), run)
-        return Block(
+        return InfluenceRows(
             rows=rows,
             F=few.extend(part.F, space.F),
             G=few.extend(part.G[:, :, self._slot[self.traction_elements]], space.G),
             known=_sums(self._known[..., self._loaded], part.G) @ few.weights,
         )
 
-    def _zero(self, rows: slice, points: int, columns: int) -> Block:
+    def _zero(self, rows: slice, points: int, columns: int) -> InfluenceRows:
         """A block of zeros for a number of points, with G for a number of elements."""
         F, G = np.zeros((4, len(self.nodes), points)), np.zeros((3, 3, columns, points))
-        return Block(rows=rows, F=F, G=G, known=np.zeros((len(self.known), 2, points)))
+        return InfluenceRows(rows=rows, F=F, G=G, known=np.zeros((len(self.known), 2, points)))
 
-    def _far_by_loops(self, block: Block, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice) -> None:
+    def _far_by_loops(self, block: InfluenceRows, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice) -> None:
         """Every point with every element of a run, by one Gauss rule, in machine code."""
         assert self._far_sums is not None
         rule, tangent = self._rules[tier]
@@ -259,7 +259,9 @@ class Influence:
             rule.shapes.T @ nodes.T, tangent[:, run], rule.weighted, self._factors,
         )  # fmt: skip
 
-    def _far_by_products(self, block: Block, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice) -> None:
+    def _far_by_products(
+        self, block: InfluenceRows, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice
+    ) -> None:
         """Every point with every element of a run by products of matrices, in parts that fit into the cache."""
         rule, tangent = self._rules[tier]
         middle, _ = disc(z)
@@ -277,7 +279,7 @@ class Influence:
             if result.U is not None:
                 block.G[:, :, _successive(self._slot[part])] = result.U
 
-    def _near(self, block: Block, collocation: Collocation, element: IntArray) -> None:
+    def _near(self, block: InfluenceRows, collocation: Collocation, element: IntArray) -> None:
         """Every point of the block with some elements, each pair by the rule for its own root."""
         base, offset = collocation.base[block.rows], collocation.offset[block.rows]
         tau = ((self.element_nodes[element, None] - base[:, None]) - offset[:, None]).reshape(-1, 3)
@@ -310,7 +312,9 @@ class Influence:
         integrands = kernels.numerators(rule.shapes.T @ tau.T, rule.derivatives.T @ tau.T)
         return kernels.regular(integrands, rule, self._factors, with_U=True)
 
-    def _on_elements(self, block: Block, collocation: Collocation, element: IntArray) -> tuple[IntArray, Components]:
+    def _on_elements(
+        self, block: InfluenceRows, collocation: Collocation, element: IntArray
+    ) -> tuple[IntArray, Components]:
         """Pairs whose point lies on the element: their places among all of (element, point), and their integrals."""
         point = collocation.on_point
         on = np.flatnonzero((point >= block.rows.start) & (point < block.rows.stop))
@@ -319,14 +323,14 @@ class Influence:
         at = np.searchsorted(element, their) * block.F.shape[-1] + row
         return at, kernels.components(kernels.singular(self.element_nodes[their], local), self._factors)
 
-    def _add_to_rows(self, block: Block, element: IntArray | slice, T: Array) -> None:
+    def _add_to_rows(self, block: InfluenceRows, element: IntArray | slice, T: Array) -> None:
         """Add the integrals of T over some elements (4, 3, e, R)."""
         start, middle, end = self.mesh.elements[element].T
         block.F[:, _successive(start)] += T[:, 0]
         block.F[:, _successive(middle)] = T[:, 1]
         block.F[:, _successive(end)] += T[:, 2]
 
-    def _turn_corners(self, block: Block, collocation: Collocation) -> None:
+    def _turn_corners(self, block: InfluenceRows, collocation: Collocation) -> None:
         """The free term at nodes between two elements: -i times the interior angle."""
         corner = collocation.corner[block.rows]
         row = np.flatnonzero(corner >= 0)

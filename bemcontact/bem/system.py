@@ -18,7 +18,7 @@ from scipy import sparse
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, reference_element
 from bemcontact.bem.contact_points import ContactPoints
-from bemcontact.bem.influence import Block, Collocation, Influence
+from bemcontact.bem.influence import Collocation, Influence, InfluenceRows
 from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
@@ -75,7 +75,7 @@ def _continues_straight(mesh: Mesh) -> BoolArray:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Equations:
+class SystemEquations:
     """Rows of the system: x equations of the collocation points, then y equations.
 
     Parameters
@@ -88,7 +88,7 @@ class Equations:
     row: IntArray
 
 
-def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Equations:
+def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> SystemEquations:
     """Put collocation points at the nodes (N,), or inside both elements where a node has two unknown tractions.
 
     A node has one equation along each axis for its one unknown there. Where two elements meet with an unknown traction
@@ -125,7 +125,7 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Equa
     active = np.concatenate([wanted[at_nodes], np.repeat(double[split], 2, axis=0)])
     row = np.full(active.shape, -1)
     row.T[active.T] = np.arange(np.count_nonzero(active))
-    return Equations(collocation=collocation, row=row)
+    return SystemEquations(collocation=collocation, row=row)
 
 
 class _Carried(NamedTuple):
@@ -139,7 +139,7 @@ class _Carried(NamedTuple):
         return self.matrix @ G[self.at]
 
 
-class Rows(NamedTuple):
+class SystemRows(NamedTuple):
     """Some rows of the system, transposed: pieces (…, q) of A one below the other, and the b and b_i (s + n, q)."""
 
     at: slice
@@ -191,7 +191,7 @@ class System:
         return number_unknowns(self.mesh, self.values)
 
     @cached_property
-    def equations(self) -> Equations:
+    def equations(self) -> SystemEquations:
         """The rows."""
         return place_equations(self.mesh, self.unknowns, self.influence.nodes)
 
@@ -247,7 +247,7 @@ class System:
         values = self._jacobians.T.ravel()[at] * factors[column]
         return _Carried(at, sparse.csr_array((values, (column, np.arange(len(at)))), shape=(len(factors), len(at))))
 
-    def rows(self, block: Block) -> Iterator[Rows]:
+    def rows(self, block: InfluenceRows) -> Iterator[SystemRows]:
         """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations."""
         F = dict(zip(kernels.T_ORDER, block.F, strict=True))
         G = dict(zip(kernels.U_ORDER, block.G.reshape(3, -1, block.G.shape[-1]), strict=True))
@@ -260,7 +260,7 @@ class System:
             if not used.all():
                 f, g = ([part[:, used] for part in parts] for parts in (f, g))
             first = int(index[used][0])
-            yield Rows(
+            yield SystemRows(
                 slice(first, first + int(used.sum())),
                 [*self._left(f, g)],
                 self._right(f, g, block.known[:, axis, used]),
@@ -321,7 +321,7 @@ def assemble(system: System) -> tuple[Array, Array]:
     transposed = matrix.T
     right = np.zeros((system.size, len(system.loadings) + len(system.points)), order="F")
 
-    def place(block: Block) -> None:
+    def place(block: InfluenceRows) -> None:
         for rows in system.rows(block):
             first = 0
             for part in rows.left:
@@ -357,7 +357,7 @@ def residual(system: System, response: Array) -> Array:
     z, s = response[:unknowns], response[unknowns:]
     result = np.zeros_like(response, order="F")
 
-    def place(block: Block) -> None:
+    def place(block: InfluenceRows) -> None:
         for rows in system.rows(block):
             first = 0
             for part in rows.left:

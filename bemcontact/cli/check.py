@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import FigureOption, Outcome, RefineOption, Source, refuse, reported, run, write_json
+from bemcontact.cli.command import CommandOutput, FigureOption, RefineOption, Source, refuse, reported, run, write_json
 from bemcontact.cli.terminal import Report
 
 
@@ -22,7 +22,7 @@ def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1)
       bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
     """
 
-    def work(_: Report) -> Outcome:
+    def work(_: Report) -> CommandOutput:
         from bemcontact.analysis.check import check as checked
         from bemcontact.report import text
 
@@ -31,7 +31,7 @@ def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1)
             from bemcontact.report import figures
 
             figures.save(figures.figure_of_problem(body.problem, body.mesh), figure)
-        return Outcome(summary=lambda: text.problem_summary(body))
+        return CommandOutput(summary=lambda: text.problem_summary(body))
 
     run("checking", work, source=source, files={"--figure": figure})
 
@@ -50,13 +50,13 @@ def condense(
       bemcontact condense models/cylinder_on_plane.yaml --refine 2 --out fine.npz
     """
 
-    def work(_: Report) -> Outcome:
+    def work(_: Report) -> CommandOutput:
         from bemcontact.analysis import solve as analysis
         from bemcontact.report import text
 
         contact = analysis.condense(source.problem(refine))
         contact.save(out)
-        return Outcome(summary=lambda: text.condensed_summary(contact, out))
+        return CommandOutput(summary=lambda: text.condensed_summary(contact, out))
 
     run("condensing", work, source=source, files={"--out": out})
 

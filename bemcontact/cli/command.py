@@ -164,7 +164,7 @@ def several(text: str, option: str, kind: str, read: Callable[[str], Number]) ->
 
 
 @dataclass(frozen=True, kw_only=True)
-class Outcome:
+class CommandOutput:
     """Output of a command: table, JSON, exit status, and the reason of a status that is not 0."""
 
     summary: Callable[[], RenderableType]
@@ -176,7 +176,7 @@ class Outcome:
 
 def run(
     stage: str,
-    work: Callable[[Report], Outcome],
+    work: Callable[[Report], CommandOutput],
     *,
     source: Source | None = None,
     files: Mapping[str, Path | None] | None = None,

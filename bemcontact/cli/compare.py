@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import FitOption, JsonOption, Outcome, Source, names, option, run, several
+from bemcontact.cli.command import CommandOutput, FitOption, JsonOption, Source, names, option, run, several
 from bemcontact.cli.terminal import Report
 from bemcontact.options import ComparisonOptions
 
@@ -46,7 +46,7 @@ def compare(
       bemcontact compare models/cylinder_on_plane.yaml --starts 100
     """
 
-    def work(report: Report) -> Outcome:
+    def work(report: Report) -> CommandOutput:
         from bemcontact.analysis import compare as comparing
         from bemcontact.report import text
 
@@ -59,7 +59,7 @@ def compare(
             from bemcontact.report import folder
 
             folder.save(study, out, source.as_run())
-        return Outcome(
+        return CommandOutput(
             summary=lambda: text.study_summary(study),
             json=study.to_json,
             holds=study.certified,

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import JsonOption, Outcome, RefineOption, Source, run
+from bemcontact.cli.command import CommandOutput, JsonOption, RefineOption, Source, run
 from bemcontact.cli.terminal import Report
 
 
@@ -43,7 +43,7 @@ def path(
       bemcontact path models/gallery/three_zones.yaml --vary conditions.loaded.pressure --to 40 --json - | jq .pivots
     """
 
-    def work(report: Report) -> Outcome:
+    def work(report: Report) -> CommandOutput:
         from bemcontact.analysis.follow import follow
         from bemcontact.report import text
 
@@ -53,7 +53,7 @@ def path(
             from bemcontact.report import folder
 
             folder.save_path(followed, out)
-        return Outcome(
+        return CommandOutput(
             summary=lambda: text.path_summary(followed),
             json=followed.to_json,
             holds=followed.certified,

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import JsonOption, Outcome, run, several
+from bemcontact.cli.command import CommandOutput, JsonOption, run, several
 from bemcontact.cli.terminal import Report
 
 
@@ -30,7 +30,7 @@ def reproduce(
       bemcontact reproduce --refine 1,2,4,8 --json numbers.json
     """
 
-    def work(report: Report) -> Outcome:
+    def work(report: Report) -> CommandOutput:
         from bemcontact.analysis import reproduction as analysis
         from bemcontact.report.reproduction import reproduction_sentence, reproduction_summary
 
@@ -41,7 +41,7 @@ def reproduce(
 
             folder.save_reproduction(reproduction, out)
         record = reproduction.to_dict()
-        return Outcome(
+        return CommandOutput(
             summary=lambda: reproduction_summary(record),
             json=reproduction.to_json,
             holds=reproduction.reproduced,

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import FigureOption, FitOption, JsonOption, Outcome, RefineOption, Source, run
+from bemcontact.cli.command import CommandOutput, FigureOption, FitOption, JsonOption, RefineOption, Source, run
 from bemcontact.cli.terminal import Report
 from bemcontact.errors import OptionError
 from bemcontact.options import SolveOptions
@@ -40,7 +40,7 @@ def solve(
       bemcontact solve models/cylinder_on_plane.yaml --formulation qp2 --starts 20
     """
 
-    def work(report: Report) -> Outcome:
+    def work(report: Report) -> CommandOutput:
         from bemcontact.analysis import load_cases
         from bemcontact.analysis import solve as analysis
         from bemcontact.report import text
@@ -57,7 +57,7 @@ def solve(
                 raise OptionError("--vtk writes the boundary of one load case; name it with --case")
             results = load_cases.solve_cases_with(options, problem, lambda case, _: report("solving", case))
             draw(results)
-            return Outcome(
+            return CommandOutput(
                 summary=lambda: text.cases_summary(results),
                 json=results.to_json,
                 holds=results.certified,
@@ -72,7 +72,7 @@ def solve(
             from bemcontact.report import vtk
 
             vtk.save(result, vtk_file)
-        return Outcome(
+        return CommandOutput(
             summary=lambda: text.result_summary(result),
             json=result.to_json,
             holds=result.certified,

@@ -15,7 +15,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
 from bemcontact.options import FormulationName
-from bemcontact.parametric.pivoting import Line, Trail, follow
+from bemcontact.parametric.pivoting import LinearChange, Trail, follow
 from bemcontact.serialization import Internal, Leaf, Matrix, PairTables, Vector
 
 COMMON = {
@@ -312,12 +312,12 @@ def measure(first: CondensedContact, last: CondensedContact) -> CondensedContact
     return max(loaded or (first, last), key=lambda item: item.scales.displacement)
 
 
-def line_between(unit: CondensedContact, first: CondensedContact, last: CondensedContact) -> Line:
+def line_between(unit: CondensedContact, first: CondensedContact, last: CondensedContact) -> LinearChange:
     """The offsets and loads from one problem to another, over the scales of `unit`."""
     begin, end = (scaled_change(unit, Change(item.offset, item.motion_load)) for item in (first, last))
     largest = np.abs([begin.motion_load, end.motion_load]).max(initial=0.0)
     same = np.abs(end.motion_load - begin.motion_load) <= SAME_LOAD * largest
-    return Line(first=begin, last=Change(end.offset, np.where(same, begin.motion_load, end.motion_load)))
+    return LinearChange(first=begin, last=Change(end.offset, np.where(same, begin.motion_load, end.motion_load)))
 
 
 def _path(start: CondensedContact, end: CondensedContact, trail: Trail, note: str, backwards: bool = False) -> LoadPath:

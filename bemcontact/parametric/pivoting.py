@@ -220,7 +220,7 @@ def is_monotone(contact: ScaledContact) -> bool:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Line:
+class LinearChange:
     """Offset and load between two ends, s = 0 and s = 1, dimensionless."""
 
     first: Change
@@ -266,7 +266,7 @@ class Trail:
     unique: bool
 
 
-def follow(contact: ScaledContact, line: Line, pressure: Array, amplitudes: Array) -> Trail:
+def follow(contact: ScaledContact, line: LinearChange, pressure: Array, amplitudes: Array) -> Trail:
     """Follow a state, p (n,) and a (k,) at s = 0, along the line of offsets and loads, as far as it goes.
 
     The first state of the trail is the limit of those that follow, which differs from the given one where that is not
@@ -306,7 +306,7 @@ def follow(contact: ScaledContact, line: Line, pressure: Array, amplitudes: Arra
     return Trail(states=tuple(states), touching=tuple(touching), escape=escape, stop=stop, unique=unique)
 
 
-def _next(line: Line, s: float, block: ContactBlock) -> State:
+def _next(line: LinearChange, s: float, block: ContactBlock) -> State:
     """Continue with the same points in contact until a pressure or a gap is zero, or to the end of the line."""
     touching, rate = block.touching, line.rate
     pressures, gaps, amplitudes = block.solve(line.at(s), rate)

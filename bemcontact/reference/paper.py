@@ -11,7 +11,7 @@ from types import MappingProxyType
 from bemcontact.options import FormulationName
 
 
-class Quantity(Enum):
+class PaperQuantity(Enum):
     """A quantity that is compared with a statement of the paper."""
 
     PRESSURE = auto()
@@ -31,14 +31,14 @@ class Quantity(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Statement:
+class PaperStatement:
     """A statement of the paper."""
 
     what: str
     """Name of the quantity."""
     says: str
     """The paper's statement, in words."""
-    quantity: Quantity
+    quantity: PaperQuantity
     """Quantity that is computed."""
     between: tuple[float, float] | None = None
     """Range of the coordinate, of a pressure."""
@@ -60,7 +60,7 @@ class PaperProblem:
     """Variants of the file that are run beside it, with their labels."""
     frame: tuple[float, float] | None = None
     """Least and largest pressure on the axis of the figure, where it is a narrow one."""
-    statements: tuple[Statement, ...]
+    statements: tuple[PaperStatement, ...]
     """Statements of the paper."""
     iterations: Mapping[FormulationName, int] = field(default_factory=lambda: MappingProxyType({}))
     """Iterations of QPSOL that the paper prints."""
@@ -74,12 +74,14 @@ CURVED = PaperProblem(
     variants=MappingProxyType({"paper": "5 along", "paper, doubled": "10 along"}),
     frame=(49.99, 50.01),
     statements=(
-        Statement(
-            what="pressure from x = 40 to 95", says="50 ± 0.01", quantity=Quantity.PRESSURE, between=(40.0, 95.0)
+        PaperStatement(
+            what="pressure from x = 40 to 95", says="50 ± 0.01", quantity=PaperQuantity.PRESSURE, between=(40.0, 95.0)
         ),
-        Statement(what="pressure, all along", says="uniform, 50", quantity=Quantity.PRESSURE),
-        Statement(
-            what="the three formulations apart, over the peak", says="nearly identical", quantity=Quantity.DIFFERENCE
+        PaperStatement(what="pressure, all along", says="uniform, 50", quantity=PaperQuantity.PRESSURE),
+        PaperStatement(
+            what="the three formulations apart, over the peak",
+            says="nearly identical",
+            quantity=PaperQuantity.DIFFERENCE,
         ),
     ),
     iterations=MappingProxyType({FormulationName.QP1: 63, FormulationName.QP2: 47, FormulationName.QP3: 70}),
@@ -98,9 +100,9 @@ CYLINDER = PaperProblem(
     figure="Fig. 3",
     variants=MappingProxyType({"paper": "paper's mesh"}),
     statements=(
-        Statement(what="contact", says="good correlation with Hertz", quantity=Quantity.CONTACT),
-        Statement(what="largest pressure", says="good correlation with Hertz", quantity=Quantity.PEAK),
-        Statement(what="force on the half", says="810/2 = 405, the load", quantity=Quantity.FORCE),
+        PaperStatement(what="contact", says="good correlation with Hertz", quantity=PaperQuantity.CONTACT),
+        PaperStatement(what="largest pressure", says="good correlation with Hertz", quantity=PaperQuantity.PEAK),
+        PaperStatement(what="force on the half", says="810/2 = 405, the load", quantity=PaperQuantity.FORCE),
     ),
     differs=(
         "Hertz is not the solution of this problem. His formula needs a contact that is narrow beside the radius, but "
@@ -116,11 +118,14 @@ CRACK = PaperProblem(
     figure="Fig. 4",
     variants=MappingProxyType({"paper": "paper's mesh", "paper, finer crack": "finer crack"}),
     statements=(
-        Statement(what="nodes left open, next to the tip", says="2", quantity=Quantity.OPEN_POINTS),
-        Statement(
-            what="pressure in the middle", says="in the figure only", quantity=Quantity.PRESSURE, between=(0.0, 0.0)
+        PaperStatement(what="nodes left open, next to the tip", says="2", quantity=PaperQuantity.OPEN_POINTS),
+        PaperStatement(
+            what="pressure in the middle",
+            says="in the figure only",
+            quantity=PaperQuantity.PRESSURE,
+            between=(0.0, 0.0),
         ),
-        Statement(what="largest pressure", says="the two meshes agree closely", quantity=Quantity.PEAK),
+        PaperStatement(what="largest pressure", says="the two meshes agree closely", quantity=PaperQuantity.PEAK),
     ),
     differs=(
         "The open nodes at the tip are an effect of the mesh. On the paper's meshes one node is open. It moves to the "
@@ -138,9 +143,11 @@ BOLT = PaperProblem(
     symbol="θ",
     variants=MappingProxyType({"paper": "paper's mesh", "paper, doubled": "doubled"}),
     statements=(
-        Statement(what="contact", says="in the figure only", quantity=Quantity.CONTACT),
-        Statement(what="largest pressure", says="the two meshes agree", quantity=Quantity.PEAK),
-        Statement(what="force along x", says="25 · 3 = 75, the pull", quantity=Quantity.FORCE, direction=(1.0, 0.0)),
+        PaperStatement(what="contact", says="in the figure only", quantity=PaperQuantity.CONTACT),
+        PaperStatement(what="largest pressure", says="the two meshes agree", quantity=PaperQuantity.PEAK),
+        PaperStatement(
+            what="force along x", says="25 · 3 = 75, the pull", quantity=PaperQuantity.FORCE, direction=(1.0, 0.0)
+        ),
     ),
     differs=(
         "The source of the problem was not available, and the text is ambiguous. This is one reading of it: a is half "
@@ -156,9 +163,9 @@ FLAT = PaperProblem(
     figure="Fig. 6",
     variants=MappingProxyType({"printed modulus": "printed E", "paper": "paper's mesh"}),
     statements=(
-        Statement(what="contact", says="from 42.5; ABAQUS 42; beam theory 45.7", quantity=Quantity.CONTACT),
-        Statement(what="largest pressure", says="in the figure only", quantity=Quantity.PEAK),
-        Statement(what="smallest gap", says="0, there is contact", quantity=Quantity.LEAST_GAP),
+        PaperStatement(what="contact", says="from 42.5; ABAQUS 42; beam theory 45.7", quantity=PaperQuantity.CONTACT),
+        PaperStatement(what="largest pressure", says="in the figure only", quantity=PaperQuantity.PEAK),
+        PaperStatement(what="smallest gap", says="0, there is contact", quantity=PaperQuantity.LEAST_GAP),
     ),
     differs=(
         "The printed E = 2e6 kN/cm² must be a misprint: the beam is so stiff that its tip does not reach the plane, "

@@ -10,10 +10,10 @@ import bemcontact
 from bemcontact import spec
 from bemcontact.analysis import reproduction
 from bemcontact.analysis.reproduction import PaperStudy, along, positions, reading, reproduce
-from bemcontact.reference.paper import BOLT, CRACK, PROBLEMS, Quantity
+from bemcontact.reference.paper import BOLT, CRACK, PROBLEMS, PaperQuantity
 
 
-def findings(item: PaperStudy, quantity: Quantity, order: int = 0) -> dict[str, tuple[float, ...]]:
+def findings(item: PaperStudy, quantity: PaperQuantity, order: int = 0) -> dict[str, tuple[float, ...]]:
     """What was found of a quantity (the so-manieth statement on it), by the label of the run."""
     statement = [told for told in item.paper.statements if told.quantity is quantity][order]
     return {run.label: reading(statement, run.level, item.axis) for run in item.runs}
@@ -64,14 +64,14 @@ def test_the_coordinate_is_that_of_the_references():
 def test_curved_surface():
     """50 ± 0.01 from 40 to 95 with ten elements along, not with five; a peak and a fall before."""
     curved = problem("cantilever_curved_surface")
-    away = findings(curved, Quantity.PRESSURE)
+    away = findings(curved, PaperQuantity.PRESSURE)
     good = {label: max(abs(p - 50) for p in ends) < 0.01 for label, ends in away.items()}
     assert good == {"5 along": False, "10 along": True, "base mesh": True}
-    low, high = findings(curved, Quantity.PRESSURE, 1)["base mesh"]
+    low, high = findings(curved, PaperQuantity.PRESSURE, 1)["base mesh"]
     assert low < 20
     assert high == pytest.approx(50.85, rel=1e-3)
     assert dict(curved.paper.iterations) == {"qp1": 63, "qp2": 47, "qp3": 70}
-    assert all(apart < 1e-5 for (apart,) in findings(curved, Quantity.DIFFERENCE).values())
+    assert all(apart < 1e-5 for (apart,) in findings(curved, PaperQuantity.DIFFERENCE).values())
 
 
 def test_the_iterations_on_the_page_of_the_paper_are_measured():
@@ -88,23 +88,23 @@ def test_the_iterations_on_the_page_of_the_paper_are_measured():
 
 def test_forces_are_those_of_equilibrium():
     for model, force in (("cylinder_on_plane", 405), ("bolt_in_plate", 75)):
-        for (size,) in findings(problem(model), Quantity.FORCE).values():
+        for (size,) in findings(problem(model), PaperQuantity.FORCE).values():
             assert size == pytest.approx(force, rel=1e-9)
 
 
 def test_open_nodes_at_the_tip_are_gone_on_the_mesh_that_is_named():
     """As the sentence says: one open on the paper's meshes, which agree on the peak; none on short elements."""
     (crack,) = reproduce((1, 4), problems=[CRACK]).problems
-    opened = findings(crack, Quantity.OPEN_POINTS)
+    opened = findings(crack, PaperQuantity.OPEN_POINTS)
     assert opened["paper's mesh"] == opened["finer crack"] == (1,)
     assert opened["base mesh"] == opened["4 times finer"] == (0,)
-    (coarse,), (finer,) = (findings(crack, Quantity.PEAK)[label] for label in ("paper's mesh", "finer crack"))
+    (coarse,), (finer,) = (findings(crack, PaperQuantity.PEAK)[label] for label in ("paper's mesh", "finer crack"))
     assert coarse == pytest.approx(finer, rel=0.005)
 
 
 def test_doubling_mends_the_mesh_of_the_bolt():
     """The table of the file has 48.56 at 90 degrees: off by some per cent, and by little."""
-    peak = findings(problem("bolt_in_plate"), Quantity.PEAK)
+    peak = findings(problem("bolt_in_plate"), PaperQuantity.PEAK)
     assert peak["paper's mesh"][0] / 48.56 - 1 == pytest.approx(0.04, abs=0.01)
     assert peak["doubled"][0] == pytest.approx(48.56, rel=0.015)
 
@@ -112,10 +112,10 @@ def test_doubling_mends_the_mesh_of_the_bolt():
 def test_flat_surface_and_the_printed_modulus():
     """The tip of a beam sinks by 0.125 of the 1 cm; beam theory is (43), d = (72 E I e/q)^(1/4)."""
     flat = problem("cantilever_flat_surface")
-    contact = findings(flat, Quantity.CONTACT)
+    contact = findings(flat, PaperQuantity.CONTACT)
     assert contact.pop("printed E") == ()
     assert all(start == pytest.approx(42.5, abs=0.25) for start, _ in contact.values())
-    assert findings(flat, Quantity.LEAST_GAP)["printed E"] == pytest.approx((1 - 0.125,), abs=0.005)
+    assert findings(flat, PaperQuantity.LEAST_GAP)["printed E"] == pytest.approx((1 - 0.125,), abs=0.005)
     inertia = 5**3 / 12
     for modulus, distance in ((2.1e4, 45.7), (2e4, 45.2)):
         assert (72 * modulus * inertia * 1 / 3.6) ** 0.25 == pytest.approx(distance, abs=0.05)

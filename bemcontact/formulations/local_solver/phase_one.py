@@ -13,7 +13,7 @@ from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.statement import Sides, Statement
 from bemcontact.formulations.local_solver.working_set import (
     INFINITY,
-    Block,
+    BlockingConstraint,
     WorkingSet,
     nearest,
     side_reached,
@@ -104,7 +104,9 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
     return True
 
 
-def _breakpoint(progress: Progress, signs: Array, along: Array, length: float, furthest: float) -> Block | None:
+def _breakpoint(
+    progress: Progress, signs: Array, along: Array, length: float, furthest: float
+) -> BlockingConstraint | None:
     """The violated constraint at which the sum of infeasibilities stops falling, within a furthest step."""
     statement, falling = progress.statement, -signs * along
     towards = (falling > 1e-10 * length).nonzero()[0]
@@ -130,4 +132,4 @@ def _breakpoint(progress: Progress, signs: Array, along: Array, length: float, f
     else:
         onwards = side_reached(progress, constraint, along)
         side = -onwards if at < towards.size else onwards
-    return Block(constraint, side, step)
+    return BlockingConstraint(constraint, side, step)

@@ -20,7 +20,14 @@ from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, pivoted_cholesky
 from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.statement import EPS, Statement
-from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, Block, WorkingSet, nearest, wrong_sign
+from bemcontact.formulations.local_solver.working_set import (
+    FLAT,
+    TEMPORARY,
+    BlockingConstraint,
+    WorkingSet,
+    nearest,
+    wrong_sign,
+)
 
 
 class ReducedHessian:
@@ -132,7 +139,7 @@ class Ending(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Outcome:
+class PhaseTwoEnd:
     """How phase two stopped; the ray (n,) if the objective seems to fall without end."""
 
     ending: Ending
@@ -169,7 +176,7 @@ class Descent:
         progress.forget()
         self.value = progress.objective
 
-    def run(self) -> Outcome:
+    def run(self) -> PhaseTwoEnd:
         """Walk until no constraint can be dropped with profit, or without end."""
         progress, working, hessian = self.progress, self.working, self.hessian
         while not self.broken:
@@ -177,17 +184,17 @@ class Descent:
                 newton, place = self._next(working.multipliers(progress.gradient))
                 if not newton:
                     if place is None:
-                        return Outcome(ending=Ending.STATIONARY)
+                        return PhaseTwoEnd(ending=Ending.STATIONARY)
                     if self.idle > 2 * working.number + 10:  # multipliers are noise: releases lead nowhere
-                        return Outcome(ending=Ending.INACCURATE)
+                        return PhaseTwoEnd(ending=Ending.INACCURATE)
                     self._release(place)
             if progress.exhausted:
-                return Outcome(ending=Ending.LIMIT)
+                return PhaseTwoEnd(ending=Ending.LIMIT)
             if hessian.pending is None:
                 self._newton_step()
             elif (outcome := self._follow_curvature(hessian.pending)) is not None:
                 return outcome
-        return Outcome(ending=Ending.INACCURATE)
+        return PhaseTwoEnd(ending=Ending.INACCURATE)
 
     def _settled(self) -> bool:
         """Whether there is no Newton step to take, as far as this shows without multipliers."""
@@ -254,7 +261,7 @@ class Descent:
             step = block.step
             self._advance(along, length, step, step * (1.0 - 0.5 * step) * slope, block)
 
-    def _follow_curvature(self, direction: Array) -> Outcome | None:
+    def _follow_curvature(self, direction: Array) -> PhaseTwoEnd | None:
         """Step along the pending direction downhill to the next constraint; None if phase two goes on."""
         progress, working = self.progress, self.working
         slope, curvature = float(progress.gradient.dot(direction)), self.hessian.curvature
@@ -272,11 +279,11 @@ class Descent:
             if back is None or _change(back, -slope, curvature) < _change(block, slope, curvature):
                 direction, along, slope, block = -direction, -along, -slope, back
         if block is None:
-            return Outcome(ending=Ending.UNBOUNDED, ray=direction)
+            return PhaseTwoEnd(ending=Ending.UNBOUNDED, ray=direction)
         self._advance(along, 1.0, block.step, _change(block, slope, curvature), block)
         return None
 
-    def _refuse(self, block: Block | None, step: float) -> None:
+    def _refuse(self, block: BlockingConstraint | None, step: float) -> None:
         """Refuse a constraint that stops the step of its own release: its multiplier is noise until the point moves."""
         if step > 0.0:
             self._refused.clear()
@@ -289,7 +296,9 @@ class Descent:
         of_rows = working.multipliers(self.progress.gradient)[direction.size :]
         return self.progress.level(direction, self.progress.fine_zero(of_rows, working.W, working.N))
 
-    def _advance(self, along: Array, length: float, step: float, change: float, block: Block | None) -> None:
+    def _advance(
+        self, along: Array, length: float, step: float, change: float, block: BlockingConstraint | None
+    ) -> None:
         """Take the step, by which the objective changes, and the constraint that ended it."""
         progress, working, hessian = self.progress, self.working, self.hessian
         nonpositive, added = int(hessian.pending is not None), None
@@ -311,6 +320,6 @@ class Descent:
         self.dropped, self.idle = None, 0
 
 
-def _change(block: Block, slope: float, curvature: float) -> float:
+def _change(block: BlockingConstraint, slope: float, curvature: float) -> float:
     """Change of the objective up to the end of the step."""
     return block.step * (slope + 0.5 * block.step * curvature)

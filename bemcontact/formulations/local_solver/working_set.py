@@ -250,7 +250,7 @@ class WorkingSet:
         return x + N.dot(targets[ids] - W.dot(x))
 
 
-class Block(NamedTuple):
+class BlockingConstraint(NamedTuple):
     """The constraint that ends a step: its number, the side reached (-1 lower, +1 upper, 2 equality), and the step."""
 
     constraint: int
@@ -260,7 +260,7 @@ class Block(NamedTuple):
 
 def nearest(
     progress: Progress, along: Array, length: float, held: BoolArray, working: WorkingSet | None = None
-) -> Block | None:
+) -> BlockingConstraint | None:
     """The first constraint met, those held aside, by Harris' two passes; None if the direction meets none.
 
     The first pass finds the longest step at which nothing is violated beyond its tolerance; the second takes, among the
@@ -280,7 +280,7 @@ def nearest(
     return block
 
 
-def _first(progress: Progress, along: Array, speed: Array, away: BoolArray) -> Block | None:
+def _first(progress: Progress, along: Array, speed: Array, away: BoolArray) -> BlockingConstraint | None:
     """The first constraint met, apart from those marked in `away` (n + m,)."""
     statement, values = progress.statement, progress.values
     # the bound ahead has the quotient that is not negative
@@ -296,7 +296,7 @@ def _first(progress: Progress, along: Array, speed: Array, away: BoolArray) -> B
     else:
         least = steps.item(steps.argmin())
         constraint = int((steps <= least + 1e-13 * max(1.0, least)).argmax())
-    return Block(constraint, side_reached(progress, constraint, along), max(steps.item(constraint), 0.0))
+    return BlockingConstraint(constraint, side_reached(progress, constraint, along), max(steps.item(constraint), 0.0))
 
 
 def side_reached(progress: Progress, constraint: int, along: Array) -> int:

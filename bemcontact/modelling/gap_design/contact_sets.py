@@ -33,7 +33,7 @@ MARGIN = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Piece:
+class BestProfile:
     """The best profile for given contact sets.
 
     Parameters
@@ -126,7 +126,7 @@ class SharedProfile:
             gaps.append(gap)
         return _Program(c, top, relief, pressures, motions, gaps, constraints)
 
-    def best_with(self, touching: BoolArray) -> Piece | None:
+    def best_with(self, touching: BoolArray) -> BestProfile | None:
         """The best profile with given contact sets (loads, n); None if no solution is computed."""
         program = self._stated()
         sets = program.with_contact(touching)
@@ -137,7 +137,7 @@ class SharedProfile:
             return None
         return None if program.top.value is None else self._piece(program, touching, sets.promise())
 
-    def gentlest(self, piece: Piece) -> Piece:
+    def gentlest(self, piece: BestProfile) -> BestProfile:
         """Find, among profiles with these contact sets that are as good, that of the least mean square.
 
         The piece itself is returned if no gentler one is computed.
@@ -155,11 +155,11 @@ class SharedProfile:
         gentler = None if program.top.value is None else self._piece(program, piece.touching, sets.promise())
         return gentler if gentler is not None and gentler.value <= piece.value + 2 * ROOM * abs(piece.value) else piece
 
-    def _piece(self, program: "_Program", touching: BoolArray, promise: Array) -> Piece:
+    def _piece(self, program: "_Program", touching: BoolArray, promise: Array) -> BestProfile:
         """Take the numbers out of a program that has been solved."""
         pressures = np.array([value_of(p) for p in program.pressures]) * self.scales.pressure
         edge = [int(i) for i in np.argsort(-promise, axis=None) if promise.flat[i] > -np.inf]
-        return Piece(
+        return BestProfile(
             value=self.measure(pressures) / self.scales.pressure,
             coefficients=value_of(program.coefficients) * self.scales.displacement,
             pressures=pressures,

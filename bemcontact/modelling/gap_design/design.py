@@ -18,7 +18,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import complementarity
-from bemcontact.modelling.gap_design.contact_sets import Piece, SharedProfile
+from bemcontact.modelling.gap_design.contact_sets import BestProfile, SharedProfile
 from bemcontact.modelling.gap_design.designed_gap import GapDesign, Goal, LoadState, relieved
 from bemcontact.modelling.gap_design.relief import Profiles, Relief
 
@@ -82,7 +82,11 @@ def design_gap(
 
 
 def _carried_out(
-    shared: SharedProfile, states: Sequence[CondensedContact], before: tuple[LoadState, ...], piece: Piece, bound: float
+    shared: SharedProfile,
+    states: Sequence[CondensedContact],
+    before: tuple[LoadState, ...],
+    piece: BestProfile,
+    bound: float,
 ) -> GapDesign:
     """Solve the contact problems with the profile of a piece, and put the design together."""
     profiles = shared.profiles
@@ -155,10 +159,10 @@ def _solved(contact: CondensedContact, profile: Array) -> LoadState:
     )
 
 
-def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> Piece:
+def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> BestProfile:
     """The best end of all starts."""
     known = set[bytes]()
-    ends: list[Piece] = []
+    ends: list[BestProfile] = []
     for sets in _starts(shared, states):
         end = None if sets.tobytes() in known else _descended(shared, sets)
         known.add(sets.tobytes())
@@ -203,7 +207,7 @@ def _state(states: Sequence[CondensedContact], profile: Array) -> tuple[list[Arr
     return [solution.pressure for solution in solutions], np.array(sets)
 
 
-def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:
+def _descended(shared: SharedProfile, touching: BoolArray) -> BestProfile | None:
     """Turn points on the edge of contact as long as the goal gets smaller."""
     piece = shared.best_with(touching)
     for _ in range(STEPS if piece is not None else 0):
@@ -215,7 +219,7 @@ def _descended(shared: SharedProfile, touching: BoolArray) -> Piece | None:
     return piece
 
 
-def _gently_descended(shared: SharedProfile, best: Piece) -> tuple[Piece, Piece]:
+def _gently_descended(shared: SharedProfile, best: BestProfile) -> tuple[BestProfile, BestProfile]:
     """Continue from the gentlest of equally good profiles: others may not be on an edge of contact that leads on."""
     gentlest = shared.gentlest(best)
     for _ in range(STEPS):
@@ -227,7 +231,7 @@ def _gently_descended(shared: SharedProfile, best: Piece) -> tuple[Piece, Piece]
     return best, gentlest
 
 
-def _next(shared: SharedProfile, piece: Piece) -> Piece | None:
+def _next(shared: SharedProfile, piece: BestProfile) -> BestProfile | None:
     """The first better one of: all promising points turned at once, each by itself, each of the others."""
     promising, others = piece.turns[: piece.promising], piece.turns[piece.promising :]
     together = [promising] if len(promising) > 1 else []

@@ -41,7 +41,7 @@ BEYOND = 1.3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Curve:
+class SharedCurve:
     """Curve of contenders with visibly equal values."""
 
     contenders: tuple[Contender, ...]
@@ -149,7 +149,7 @@ class _Along:
         for piece, shift in zip(self.pieces, self.shifts, strict=True):
             yield self.contact.arc_position[piece.index] + shift, values[piece.index]
 
-    def plot(self, axes: Axes, values: Array, curve: Curve, marker: str = "") -> None:
+    def plot(self, axes: Axes, values: Array, curve: SharedCurve, marker: str = "") -> None:
         """Draw values (n,) of a contender."""
         for order, (s, along) in enumerate(self.stretches(values)):
             label = "_" if order else curve.label
@@ -192,7 +192,7 @@ class _Along:
         axes.set_xticks(ticks, labels)
 
 
-def _curves(level: MeshLevel, *, merged: bool = True) -> list[Curve]:
+def _curves(level: MeshLevel, *, merged: bool = True) -> list[SharedCurve]:
     """Curves from the direct solution on, each thinner than the one before; equal ones of a formulation are merged."""
     compared = level.comparison
     everyone = [item for item in (compared.reference, *compared.contenders) if item.assessment is not None]
@@ -204,12 +204,12 @@ def _curves(level: MeshLevel, *, merged: bool = True) -> list[Curve]:
         else:
             alike.append(item)
     widths = [WIDEST, *np.linspace(5.0, THINNEST, max(len(groups) - 1, 1))]
-    curves, seen = list[Curve](), dict[FormulationName, int]()
+    curves, seen = list[SharedCurve](), dict[FormulationName, int]()
     for group, width in zip(groups, widths, strict=False):
         name = group[0].attempt.options.formulation
         order = seen.get(name, 0)
         seen[name] = order + 1
-        curves.append(Curve(contenders=tuple(group), width=float(width), dashes=DASHES[order % len(DASHES)]))
+        curves.append(SharedCurve(contenders=tuple(group), width=float(width), dashes=DASHES[order % len(DASHES)]))
     return curves
 
 
