@@ -25,7 +25,7 @@ def names(requirements: list[str]) -> list[str]:
 
 
 @pytest.mark.parametrize("group", GROUPS)
-def test_each_dependency_has_one_line_that_says_what_it_is_for(group: str):
+def test_each_dependency_has_one_line_that_states_what_it_is_for(group: str):
     _, _, chapter = EXPLANATION.partition(f"\n## {group}\n")
     lines = re.findall(r"^- `([\w-]+)`: \w.*\.$", chapter.partition("\n## ")[0], flags=re.MULTILINE)
     assert sorted(lines) == sorted(names(GROUPS[group]))

@@ -41,7 +41,7 @@ def at_the_corner(result: Result) -> float:
 
 
 @pytest.mark.parametrize("angle", [110, 120, 135])
-def test_at_an_obtuse_corner_the_pressure_is_unbounded_as_the_note_says(angle: float):
+def test_at_an_obtuse_corner_the_pressure_is_unbounded_as_the_note_states(angle: float):
     """Williams 1952, wedge of twice the angle α: p ~ r^(λ - 1), sin 2λα + λ sin 2α = 0; h/2 raises p by 2^(1 - λ).
 
     To 1 %, for the second term of the wedge, which is smaller by a power of the shortest element, 0.003 of the block.
@@ -75,7 +75,7 @@ def test_a_corner_that_is_held_beyond_the_zone_is_another_one():
     assert block(120, right={"displacement": {"x": 0}}).notes == ()
 
 
-def test_on_a_smooth_boundary_both_readings_are_told():
+def test_on_a_smooth_boundary_both_readings_are_reported():
     """That of a zone too short, and that of a punch, whose pressure is infinite at its edge."""
     (note,) = bemcontact.solve(bemcontact.load(FOLDER / "flat_punch.yaml")).notes
     assert "(5, 0), where the boundary goes on smoothly; make the zone longer, unless the rigid surface ends" in note
@@ -88,7 +88,7 @@ def notes(problem: bemcontact.Problem, start: str) -> list[str]:
     return [note for note in result.notes if note.startswith(start)]
 
 
-def test_few_points_are_told_of_each_contact():
+def test_few_points_are_reported_of_each_contact():
     """Two feet with a few points each, enough of them together; on finer elements there are enough on each."""
     told = notes(table(), FEW)
     assert len(told) == 2
@@ -102,7 +102,7 @@ def test_points_across_the_seam_are_of_one_contact():
 
 
 @pytest.mark.parametrize(("elements", "told"), [(2, True), (24, False)])
-def test_long_elements_beyond_a_pressed_corner_are_told(elements, told):
+def test_long_elements_beyond_a_pressed_corner_are_reported(elements, told):
     """On the axis: the peak is off by a third beside the long ones, and the fit cures it by halving them."""
     stated = cylinder(24, load=0.01).with_value("boundary.outer.axis.grading.ratio", 1)
     coarse = stated.with_value("boundary.outer.axis.elements", elements)
@@ -118,7 +118,7 @@ def test_long_elements_beyond_a_pressed_corner_are_told(elements, told):
     assert fitted.footprint.peak.pressure == pytest.approx(18.819, rel=3e-3)  # Hertz
 
 
-def test_a_body_that_nothing_presses_floats_and_a_note_says_so():
+def test_a_body_that_nothing_presses_floats_and_a_note_states_so():
     """A block between a floor and a plate that moves away: contact could hold it, but carries no pressure."""
     moves_away = {"press": {"zones": "press", "displacement": {"y": 0.1}}}
     result = bemcontact.solve(

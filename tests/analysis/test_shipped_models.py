@@ -37,6 +37,6 @@ def test_the_wheel_has_the_models_where_they_are_looked_for():
     assert not (ROOT / "bemcontact" / reproduction.FOLDER).exists()
 
 
-def test_a_name_that_does_not_exist_is_told():
+def test_a_name_that_does_not_exist_is_reported():
     with pytest.raises(SpecError, match=r"models/none\.yaml is not where bemcontact is installed"):
         reproduction.shipped_model("none")

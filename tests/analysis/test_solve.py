@@ -293,7 +293,7 @@ def test_notes_say_what_the_certificate_does_not(cylinder):
     assert any("Young's modulus" in note for note in notes)
 
 
-def test_results_are_told_in_a_line(cylinder):
+def test_results_are_reported_in_a_line(cylinder):
     result = bemcontact.solve(cylinder)
     peak = f"{result.footprint.peak.pressure:.6g}"
     assert repr(result) == f"<Result of 'cylinder on a plane' by qp3: certified, peak pressure {peak}>"

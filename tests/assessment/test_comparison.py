@@ -179,7 +179,7 @@ def test_numbers_of_numpy_are_numbers():
     json.loads(result.to_json())
 
 
-def test_labels_tell_penalties_apart():
+def test_labels_distinguish_penalties():
     result = comparing.compare(random_contact(1, 5, 0), ["qp2"], penalties=[1.0, 0.001, 0.0010000001])
     assert [item.label for item in result.contenders] == ["QP2 (μ = 1)", "QP2 (μ = 0.001)", "QP2 (μ = 0.0010000001)"]
     assert len(result.differences) == 6

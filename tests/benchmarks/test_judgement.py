@@ -102,7 +102,7 @@ def test_repeated_eigenvalue_inside_the_cone():
     assert descends(-np.eye(4), np.zeros((0, 4)), np.eye(4))
 
 
-def test_a_search_cut_short_says_so():
+def test_a_search_cut_short_states_so():
     """Motzkin and Straus: with C a pentagon plus 9 isolated points, 2(A + I) - eeᵀ is copositive on 14 variables."""
     n = 14
     adjacent = np.zeros((n, n))

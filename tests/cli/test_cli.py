@@ -94,13 +94,13 @@ def test_help_of_each_command_teaches_by_examples(command: str):
     assert f"bemcontact {command}" in answer.stdout
 
 
-def test_version_is_said():
+def test_version_is_stated():
     answer = run("--version")
     assert answer.exit_code == 0
     assert answer.stdout.startswith("bemcontact")
 
 
-def test_solve_says_it_in_a_short_table(block: Path):
+def test_solve_states_it_in_a_short_table(block: Path):
     answer = run("solve", block)
     assert answer.exit_code == 0, answer.stderr
     assert answer.stderr == ""
@@ -186,7 +186,7 @@ def test_a_contour_that_cannot_be_found_is_located(block: Path):
     assert f"block.yaml:{line}:19: contact_zones.foot.surface.conditions: with these" in " ".join(answer.stderr.split())
 
 
-def test_check_says_what_it_sees(block: Path):
+def test_check_states_what_it_sees(block: Path):
     answer = run("check", block, "--set", "boundary.outer[0].elements=5")
     assert answer.exit_code == 0, answer.stderr
     for word in ("bottom", "right", "top", "left", "foot", "plane", "pressure", "translation", "contact"):
@@ -259,7 +259,7 @@ def interrupted(*_: object, **__: object) -> None:
     raise KeyboardInterrupt
 
 
-def test_an_interrupt_says_that_nothing_was_written(block: Path, monkeypatch: pytest.MonkeyPatch):
+def test_an_interrupt_states_that_nothing_was_written(block: Path, monkeypatch: pytest.MonkeyPatch):
     """130 is what shells give to a program that Ctrl-C ended."""
     monkeypatch.setattr(analysis, "solve_with", interrupted)
     old = block.with_name("old.json")
@@ -270,7 +270,7 @@ def test_an_interrupt_says_that_nothing_was_written(block: Path, monkeypatch: py
     assert sorted(path.name for path in block.parent.iterdir()) == sorted([block.name, old.name])
 
 
-def test_an_interrupt_says_what_was_written_already(block: Path, monkeypatch: pytest.MonkeyPatch):
+def test_an_interrupt_states_what_was_written_already(block: Path, monkeypatch: pytest.MonkeyPatch):
     """The boundary is written before the JSON, and a file that was there is replaced."""
     vtu, answer_file = block.with_name("boundary.vtu"), block.with_name("answer.json")
     vtu.write_text("old")
@@ -281,7 +281,7 @@ def test_an_interrupt_says_what_was_written_already(block: Path, monkeypatch: py
     assert not answer_file.exists()
 
 
-def test_an_interrupt_while_the_answer_is_shown_says_no_more(block: Path, monkeypatch: pytest.MonkeyPatch):
+def test_an_interrupt_while_the_answer_is_shown_states_no_more(block: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("bemcontact.report.text.result_summary", interrupted)
     answer = run("solve", block)
     assert (answer.exit_code, answer.output) == (130, "interrupted\n")
@@ -473,7 +473,7 @@ def test_a_condensed_problem_is_written_as_npz_only(block: Path):
     assert_refused(run("condense", block, "--out", block.with_suffix(".txt")), r"--out: .*must end in \.npz")
 
 
-def test_search_and_starts_are_told(block: Path):
+def test_search_and_starts_are_reported(block: Path):
     """Uniform compression; the block is free to rise, so that a start far off may end lifted if that is let happen."""
     options = ("--formulation", "qp2", "--equilibrium", "penalty", "--start", "random", "--seed", 1, "--starts", 12)
     answer = run("solve", block, *options)
@@ -604,7 +604,7 @@ def test_the_program_runs_as_a_module(block: Path):
         assert answer.stdout or answer.stderr
 
 
-def test_progress_tells_the_start_and_reaches_the_terminal(block: Path, monkeypatch: pytest.MonkeyPatch):
+def test_progress_shows_the_start_and_reaches_the_terminal(block: Path, monkeypatch: pytest.MonkeyPatch):
     said = []
 
     @contextmanager
@@ -623,7 +623,7 @@ def test_a_penalty_that_leaves_no_minimum_is_refused(block: Path):
     assert_refused(run("solve", block, *options), "no minimum with consistent weights .* falls without end")
 
 
-def test_weights_are_said_to_mean_nothing_to_complementarity():
+def test_weights_are_stated_to_mean_nothing_to_complementarity():
     assert "complementarity has none" in " ".join(run("solve", "--help").stdout.replace("│", " ").split())
 
 

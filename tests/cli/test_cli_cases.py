@@ -66,7 +66,7 @@ def test_figure_of_all_cases(tmp_path: Path):
         (("check", "--set", "load_cases.raised.tools.table.force.x=1"), "the tool is held along x; add x: 0"),
     ],
 )
-def test_mistakes_are_told_before_any_work(arguments: tuple[str, ...], words: str, tmp_path: Path):
+def test_mistakes_are_reported_before_any_work(arguments: tuple[str, ...], words: str, tmp_path: Path):
     command, *options = arguments
     options = [str(tmp_path / option) if option.endswith(".vtu") else option for option in options]
     answer = run(command, PRESS, *options)

@@ -80,7 +80,7 @@ def test_several_meshes_weights_and_penalties(block: Path):
         assert words in answer.output, words
 
 
-def test_json_holds_what_the_schema_says(block: Path, tmp_path: Path):
+def test_json_holds_what_the_schema_states(block: Path, tmp_path: Path):
     written = tmp_path / "compared.json"
     assert run("compare", block, "--formulations", " QP3 ", "--json", written).exit_code == 0
     printed = json.loads(run("compare", block, "--formulations", "qp3", "--json", "-").output)
@@ -136,7 +136,7 @@ def test_mistakes_end_with_status_2_and_a_sentence(
     assert "Traceback" not in answer.output
 
 
-def test_a_mistake_in_the_spec_is_told_with_its_line(block: Path):
+def test_a_mistake_in_the_spec_is_reported_with_its_line(block: Path):
     block.write_text(SPEC.replace("elements: 3", "elements: -3", 1), encoding="utf-8")
     answer = run("compare", block)
     assert answer.exit_code == 2

@@ -18,7 +18,7 @@ def run(*arguments: object) -> Result:
     return CliRunner().invoke(cli.app, ["path", *map(str, arguments)])
 
 
-def test_table_says_where_points_enter_and_how_the_peak_goes():
+def test_table_states_where_points_enter_and_how_the_peak_goes():
     """The cantilever touches with its tip first, and with its neighbours in turn."""
     answer = run(CANTILEVER, "--vary", TRACTION, "--from", 0, "--to", -3.6)
     assert answer.exit_code == 0, answer.stderr
@@ -29,7 +29,7 @@ def test_table_says_where_points_enter_and_how_the_peak_goes():
     assert answer.stderr == ""
 
 
-def test_path_that_does_not_arrive_is_said_and_has_a_status():
+def test_path_that_does_not_arrive_is_stated_and_has_a_status():
     """Suction lifts the cylinder as soon as the pressure is below zero."""
     answer = run(CYLINDER, "--vary", PRESSURE, "--to", -20)
     assert answer.exit_code == 1

@@ -270,7 +270,7 @@ def test_note_of_a_supported_body_is_none():
 
 
 @pytest.mark.parametrize("k", [0, 1, 2, 3])
-def test_standard_form_says_the_same(k):
+def test_standard_form_states_the_same(k):
     """For any p in equilibrium and any a, J w = q' + M' z with pressure and gap exchanged on k points."""
     rng = np.random.default_rng(2)
     problem = scaled(random_contact(5, 9, k))

@@ -250,7 +250,7 @@ def test_penalised_equilibrium_finds_the_solution_from_near_it():
     np.testing.assert_allclose(solution.pressure, direct.pressure, atol=1e-10 * direct.pressure.max())
 
 
-def test_a_note_says_that_penalized_equilibrium_of_a_held_body_has_no_effect():
+def test_a_note_states_that_penalized_equilibrium_of_a_held_body_has_no_effect():
     solution = qp2.solve(random_contact(0, 5, 0), PENALIZED)
     assert solution.status is Status.SOLVED
     assert "no equilibrium of a free body" in solution.notes[0]

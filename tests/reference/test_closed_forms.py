@@ -126,7 +126,7 @@ def test_punch_about_to_lift_off_is_one_form_from_both_sides():
     )
 
 
-def test_punch_says_nothing_at_its_edges_and_zero_beyond():
+def test_punch_states_nothing_at_its_edges_and_zero_beyond():
     pressure = PunchOnHalfPlane(load=7.0, half_width=2.0).pressure(np.array([-2.0, 0.0, 2.0, 2.1]))
     assert np.isnan(pressure).tolist() == [True, False, True, False]
     assert pressure[[1, 3]] == pytest.approx([7.0 / (2 * pi), 0.0])

@@ -191,7 +191,7 @@ def test_zones_of_a_block():
     assert known["table"].pressure[inside] == pytest.approx(4 - 5 * (y[inside] - 0.2))
 
 
-def test_table_beside_the_contact_says_nothing():
+def test_table_beside_the_contact_states_nothing():
     spec = hertz()
     table = "reference:\n  high: {kind: table, source: s, against: y, pressure: [[5, 1], [6, 2]]}\n"
     one, _ = only(spec[: spec.index("reference:")] + table)

@@ -33,7 +33,7 @@ def test_each_case_has_its_curves_and_its_bar():
     assert [label.get_text() for label in below.get_yticklabels()] == [*found().results]
 
 
-def test_it_says_whether_all_are_certified():
+def test_it_states_whether_all_are_certified():
     title = figures.figure_of(found()).get_suptitle()
     assert title == "free block: all certified"
 

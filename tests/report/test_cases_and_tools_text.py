@@ -49,7 +49,7 @@ def test_the_worst_case_is_named():
     assert "all certified." in told
 
 
-def test_a_note_of_all_cases_is_told_once_and_one_of_some_with_their_names():
+def test_a_note_of_all_cases_is_reported_once_and_one_of_some_with_their_names():
     one = found().results["wind"]
     results = {**found().results, "wind": dataclasses.replace(one, notes=(*one.notes, "the wind turns"))}
     told = printed(text.cases_summary(dataclasses.replace(found(), results=results)))
@@ -57,7 +57,7 @@ def test_a_note_of_all_cases_is_told_once_and_one_of_some_with_their_names():
     assert "wind: the wind turns" in told
 
 
-def test_a_case_that_is_not_certified_is_told_with_the_reason():
+def test_a_case_that_is_not_certified_is_reported_with_the_reason():
     one = found().results["heat"]
     doubtful = dataclasses.replace(one.certificate, kind=CertificateKind.NOT_A_SOLUTION, words="Pressures pull.")
     results = {**found().results, "heat": dataclasses.replace(one, certificate=doubtful)}
@@ -66,7 +66,7 @@ def test_a_case_that_is_not_certified_is_told_with_the_reason():
     assert "NOT all certified. heat: Pressures pull." in told
 
 
-def test_of_several_zones_the_force_of_each_is_told():
+def test_of_several_zones_the_force_of_each_is_reported():
     """A press of 40 on a free block above a table: 40 down on top, 40 up below; nothing is left of both."""
     tools = {"press": {"zones": "press", "force": {"y": -40}}}
     problem = made(BETWEEN, tools=tools, load_cases={"more": {"tools": {"press": {"force": {"y": -10}}}}}, **UNITS)
@@ -89,7 +89,7 @@ def test_where_nothing_touches_nothing_is_worst():
     assert "Largest peak" not in told
 
 
-def test_check_tells_tools_cases_and_combinations():
+def test_check_shows_tools_cases_and_combinations():
     told = printed(text.problem_summary(check(made(HELD, **HELD_CASES))))
     assert "punch, the surface of punch: loaded by y = -40, moment = 3" in told
     assert "table, the surface of table: displaced by y = 0.002, rotation = 0.001" in told
@@ -100,13 +100,13 @@ def test_check_tells_tools_cases_and_combinations():
     assert "rotation counterclockwise about (1.5, 1) of the tool 'punch'" in told
 
 
-def test_check_tells_of_which_case_a_reference_is():
+def test_check_shows_of_which_case_a_reference_is():
     reference = {"it": {"kind": "uniform", "pressure": 1, "zone": "table", "case": "wind"}}
     told = printed(text.problem_summary(check(made(HELD, **HELD_CASES, reference=reference))))
     assert "it: closed form, uniform, load case 'wind'" in told
 
 
-def test_solve_tells_where_the_tools_are_and_what_presses_on_them():
+def test_solve_shows_where_the_tools_are_and_what_presses_on_them():
     """Nothing holds the block but a table and the punch: 40 and 3 on the punch are held up by -40 and -3."""
     result = bemcontact.solve(made(FREE, **UNITS))
     told = " ".join(printed(text.result_summary(result)).split())
@@ -121,7 +121,7 @@ def test_no_line_is_wider_than_the_terminal(width: int):
     assert max(map(len, lines)) <= width
 
 
-def test_check_tells_of_the_case_that_acts_what_it_adds_by_which_factor():
+def test_check_shows_of_the_case_that_acts_what_it_adds_by_which_factor():
     """all: 1.5 wind - 0.5 heat + 2 settle + 4 spin + 0.7 push; on the punch -40 - 0.7 · 30 and 3 - 0.7 · 4."""
     told = printed(text.problem_summary(check(made(HELD, **HELD_CASES, case="all"))))
     assert told.startswith("held block, all\n")

@@ -65,7 +65,7 @@ def test_references_are_dashed_and_grey_where_they_are_out_of_range():
     assert found["Hertz, out of its range"].is_dashed()
 
 
-def test_contenders_that_cannot_be_told_apart_are_one_curve_and_what_is_far_off_is_cut_off_and_named():
+def test_contenders_that_cannot_be_distinguished_are_one_curve_and_what_is_far_off_is_cut_off_and_named():
     """QP1 finds the same with both weights; QP2 with consistent weights and a large penalty has huge pressures."""
     level, axes = of_many_settings().finest, Figure().add_subplot()
     figures.draw_pressures(axes, level)
@@ -92,7 +92,7 @@ def test_gaps_are_drawn_beside_the_initial_gap():
     )
 
 
-def test_gaps_that_are_closed_everywhere_are_told_and_their_round_off_is_not_blown_up():
+def test_gaps_that_are_closed_everywhere_are_reported_and_their_round_off_is_not_blown_up():
     """A block in a corner under uniform pressure touches both planes with all of its edges."""
     problem = spec.load(Path(__file__).parents[2] / "models" / "gallery" / "block_in_corner.yaml")
     level, axes = comparing.study(ComparisonOptions.of(["qp3"]), problem).finest, Figure().add_subplot()
@@ -152,7 +152,7 @@ def test_history_shows_sizes_and_marks_what_is_below_zero():
     assert "objective below zero" in [text.get_text() for text in legend.get_texts()]
 
 
-def test_histories_of_several_settings_are_told_apart():
+def test_histories_of_several_settings_are_distinguished():
     trace = Trace(quantity="residual", first=0, values=(1.0, 1e-3))
     told = [with_history(item, trace) for item in of_many_settings().finest.comparison.contenders[:2]]
     axes = Figure().add_subplot()

@@ -92,7 +92,7 @@ def test_peak_of_each_zone_is_written_with_its_unit(name: str, zones: int):
     assert {unit for _, unit in texts} == {"N/mm²"}
 
 
-def test_fan_of_a_singular_pressure_is_cut_off_and_said_to_be():
+def test_fan_of_a_singular_pressure_is_cut_off_and_stated_to_be():
     """At three times the mean pressure of 200 N/mm²; the mean is that of straight lines between points."""
     axes = drawn(solved("gallery/flat_punch"))
     assert [text.get_text().split(",\n")[1] for text in axes.texts] == ["fan cut off"]

@@ -39,7 +39,7 @@ def test_curves_are_those_of_the_design(design: GapDesign, tmp_path: Path):
     assert (tmp_path / "design.png").stat().st_size > 10_000
 
 
-def test_a_singular_pressure_runs_out_of_the_picture_and_is_told(design: GapDesign):
+def test_a_singular_pressure_runs_out_of_the_picture_and_is_reported(design: GapDesign):
     """7653 without the profile beside 202 with it: the axis ends at three times 202."""
     above = figures.figure_of_design(design).axes[0]
     assert above.get_ylim()[1] == pytest.approx(1.08 * 3 * design.peak)

@@ -109,7 +109,7 @@ def test_sections_go_without_what_there_is_not():
     ("study", "says"),
     [(on_one_mesh, "so there is no other solution"), (not_unique, "proved to be a solution, but not the only one")],
 )
-def test_the_certificate_says_whether_the_solution_is_unique(study: Callable[[], Study], says: str):
+def test_the_certificate_states_whether_the_solution_is_unique(study: Callable[[], Study], says: str):
     text = read(render(report_of(study()), {}, None)).text
     certificate = text.split("Matrices Run ")[1].split(" Certificate ")[-1].split(" The certificate is about")[0]
     assert says in certificate
@@ -149,7 +149,7 @@ def test_the_spec_is_shown_as_it_ran():
     assert block().name in read(page).text
 
 
-def test_the_page_tells_which_load_cases_act_and_where_the_tools_are():
+def test_the_page_shows_which_load_cases_act_and_where_the_tools_are():
     """A press of 40 + 0.5 · 20 on a free block, which the body holds up; one half of "more" and none of the other."""
     cases = {name: {"tools": {"press": {"force": {"y": -20}}}} for name in ("more", "most")}
     tools = {"press": {"zones": "press", "point": [1, 1], "force": {"y": -40}}}

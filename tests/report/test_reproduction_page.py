@@ -46,7 +46,7 @@ def test_the_page_is_whole_and_needs_nothing_else():
     assert "Certified and in agreement with every reference." in reader.text
 
 
-def test_each_problem_stands_there_with_what_the_paper_says():
+def test_each_problem_stands_there_with_what_the_paper_states():
     text = read(render(record(), {})).text
     for item in record()["problems"]:
         for told in (item["name"][1:], *(row["statement"] for row in item["statements"]), *item["differs"]):

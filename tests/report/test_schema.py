@@ -44,7 +44,7 @@ def written(request: pytest.FixtureRequest) -> dict[str, dict]:
 
 
 @pytest.mark.parametrize("kind", RESULTS)
-def test_it_is_a_schema_and_says_of_each_field_what_it_means(kind: str):
+def test_it_is_a_schema_and_states_of_each_field_what_it_means(kind: str):
     """Every object and every key has a description, which is a sentence."""
     stated = schema(kind)
     Draft202012Validator.check_schema(stated)
@@ -98,7 +98,7 @@ def of_each_kind() -> dict[str, list[Any]]:
     }
 
 
-def test_results_of_each_kind_are_what_their_schema_says():
+def test_results_of_each_kind_are_what_their_schema_states():
     results = of_each_kind()
     assert {*results, "report", "reproduction"} == {*RESULTS}
     for kind, several in results.items():

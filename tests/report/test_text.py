@@ -50,7 +50,7 @@ def test_numbers_and_vectors():
     assert formatting.with_unit("0", "mm") == "0"
 
 
-def test_fields_are_said_by_their_values_on_the_edge():
+def test_fields_are_stated_by_their_values_on_the_edge():
     bottom = block().edge("bottom")  # from x = 0 to 40
     assert formatting.field_on(Field(constant=2.5), bottom, "mm") == "2.5 mm"
     assert formatting.field_on(Field(constant=1, x=0.5), bottom) == "1 … 21"
@@ -75,7 +75,7 @@ def test_unit_labels():
     assert formatting.per_thickness(Units(length="mm")) == ""
 
 
-def test_problem_summary_says_what_is_there():
+def test_problem_summary_states_what_is_there():
     lines = printed(text.problem_summary(check(block()))).splitlines()
     facts = {line[:20].strip(): line[20:].strip() for line in lines if line[18:20] == "  "}
     assert facts["Material"] == "E = 2.1e+05 N/mm², Poisson's ratio 0.3, plane strain"
@@ -87,7 +87,7 @@ def test_problem_summary_says_what_is_there():
     assert any(line.split() == ["right", "line", "20", "mm", "2", "free"] for line in lines)
 
 
-def test_result_summary_says_what_was_found(result: analysis.Result):
+def test_result_summary_states_what_was_found(result: analysis.Result):
     answer = printed(text.result_summary(result))
     assert "foot: (0, 0) to (40, 0) mm, 40 mm long" in answer
     assert "3 N/mm² at" in answer
@@ -98,7 +98,7 @@ def test_result_summary_says_what_was_found(result: analysis.Result):
     assert result.certificate.words.split(".")[0] in " ".join(answer.split())
 
 
-def test_a_result_that_is_not_certified_says_so(result: analysis.Result):
+def test_a_result_that_is_not_certified_states_so(result: analysis.Result):
     certificate = dataclasses.replace(result.certificate, kind=CertificateKind.LOCAL, words="Another may exist.")
     solution = dataclasses.replace(result.solution, status=Status.ITERATION_LIMIT)
     doubtful = dataclasses.replace(result, certificate=certificate, solution=solution)
@@ -106,7 +106,7 @@ def test_a_result_that_is_not_certified_says_so(result: analysis.Result):
     assert "NOT certified" in printed(text.result_summary(doubtful))
 
 
-def test_what_deflects_a_contour_is_told():
+def test_what_deflects_a_contour_is_reported():
     zone = {"edges": ["bottom"], "surface": {"kind": "deflected_contour", "direction": [0, 1], "conditions": {
         "top": {"displacement": {"x": 0, "y": -0.25}}, "right": {"traction": {"x": 3}},
     }}}  # fmt: skip
@@ -135,7 +135,7 @@ SEARCH = LocalSearch(
 PENALTY = Penalty(value=1.0, raw=833.41, convexity_limit=13.007, convexity_limit_raw=10840.0, dimension="p/L²")
 
 
-def test_a_search_is_told_with_both_phases_and_all_inertias(result: analysis.Result):
+def test_a_search_is_reported_with_both_phases_and_all_inertias(result: analysis.Result):
     assert formatting.search_in_words(SEARCH, result.contact) == (
         "from the null vector: 136 iterations (1 to a feasible point, 135 from there); 152 changes of the working set; "
         "eigenvalues of the whole Hessian: 89 positive, 1 negative; of the reduced Hessian: 3 positive, "
@@ -155,7 +155,7 @@ def test_a_search_is_told_with_both_phases_and_all_inertias(result: analysis.Res
         ({"convexity_limit": 0.0, "convexity_limit_raw": 0.0}, "penalty 1 (833.41 N/mm⁴), convex for no penalty"),
     ],
 )
-def test_a_penalty_is_told_in_units(result: analysis.Result, changes: dict, sentence: str):
+def test_a_penalty_is_reported_in_units(result: analysis.Result, changes: dict, sentence: str):
     """(1/μ) p² is p L² for the stiffness rows, so that μ is force over L⁴; (1/μ) L² for the others, L² over force."""
     search = dataclasses.replace(SEARCH, penalty=dataclasses.replace(PENALTY, **changes))
     assert formatting.search_in_words(search, result.contact).endswith(f"; {sentence}")
@@ -168,7 +168,7 @@ def test_a_penalty_of_a_held_body_without_units(result: analysis.Result):
     assert told.endswith(f"; penalty 1 (833.41 {raw}), convex up to 13.007 (10840 {raw})")
 
 
-def test_contact_at_one_point_and_all_round_is_said_so(result: analysis.Result):
+def test_contact_at_one_point_and_all_round_is_stated_so(result: analysis.Result):
     """An interval that ends where it starts, and has a length, goes all round."""
     (interval,) = result.footprint.intervals
     point = dataclasses.replace(interval, start=interval.end, start_arc=interval.end_arc)
@@ -186,7 +186,7 @@ def test_round_off_in_a_resultant_is_zero(result: analysis.Result):
     assert "(0, 0) N/mm, of the rigid surfaces" in printed(text.result_summary(balanced))
 
 
-def test_each_number_of_the_certificate_is_said_once(result: analysis.Result):
+def test_each_number_of_the_certificate_is_stated_once(result: analysis.Result):
     answer = " ".join(printed(text.result_summary(result)).split())
     assert answer.count("eigenvalue") == 1
     assert answer.count("of the peak") == 1
@@ -208,7 +208,7 @@ def test_volume_loads_are_listed():
     assert all(line in answer for line in lines)
 
 
-def test_no_contact_is_said(result: analysis.Result):
+def test_no_contact_is_stated(result: analysis.Result):
     footprint = dataclasses.replace(result.footprint, intervals=(), peak=None)
     answer = printed(text.result_summary(dataclasses.replace(result, footprint=footprint)))
     assert "nowhere" in answer

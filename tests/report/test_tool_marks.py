@@ -52,7 +52,7 @@ def test_a_tool_without_a_point_is_drawn_at_the_middle_of_its_surface_and_a_pull
     assert name.text == "punch\ndisplaced by y = 0.01"
 
 
-def test_what_is_told_of_a_tool_is_of_the_case_that_acts():
+def test_what_is_reported_of_a_tool_is_of_the_case_that_acts():
     texts = [text.get_text() for text in picture(made(HELD, **HELD_CASES, **UNITS, case="push")).texts]
     assert "punch\nloaded by y = -70 N/mm, moment = -1 N" in texts
 

@@ -269,7 +269,7 @@ def test_flat_direction_with_a_slope_is_an_unbounded_ray():
 
 
 @pytest.mark.parametrize("size", [5, 8])
-def test_the_horn_form_is_copositive_and_the_bounded_search_says_when_it_stops(size):
+def test_the_horn_form_is_copositive_and_the_bounded_search_states_when_it_stops(size):
     """Horn's form (Hall and Newman 1963) is copositive, but not a sum of a semidefinite and a nonnegative one."""
     row = np.array([1.0, -1.0, 1.0, 1.0, -1.0])
     H = np.eye(size)
@@ -429,7 +429,7 @@ def test_inertia_counts_small_eigenvalues(small):
     assert result.reduced_inertia_end == (1, 2, 0)
 
 
-def test_the_result_says_its_end_in_one_line_and_logs_the_objective_in_the_units_of_the_data():
+def test_the_result_states_its_end_in_one_line_and_logs_the_objective_in_the_units_of_the_data():
     result = minimize_qp(1e6 * np.eye(2), [-4e6, 1e6], bl=[0.0, 0.0])
     phases = f"{result.phase_one_iterations} + {result.phase_two_iterations}"
     assert str(result) == f"local minimizer: objective -8000000 after {phases} iterations (phase 1 + phase 2)"
