@@ -119,12 +119,14 @@ begin = time.monotonic()
 folder.save(study, place, "first")
 longest = 2 * (time.monotonic() - begin)
 names = {path.relative_to(place).as_posix() for path in place.rglob("*")}
-for kill in range(int(sys.argv[2])):
+for kill in range(60):
+    if kill >= int(sys.argv[2]) and len(seen) > 1:
+        break
     child = os.fork()
     if not child:
         for run in range(10**6):
             folder.save(study, place, f"{kill} {run}")
-    time.sleep(chance.uniform(0, longest))
+    time.sleep(chance.uniform(0, longest * (1 + kill / 4)))  # a loaded machine takes longer than the first time
     os.kill(child, signal.SIGKILL)
     os.waitpid(child, 0)
     spec = (place / "spec.yaml").read_text()
