@@ -1,13 +1,14 @@
 """What is put beside the paper is what a run of its own finds, and the sentences on the differences are true."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
 from reproductions import on_base_meshes, problem, with_coarse_mesh_judged
 
 import bemcontact
-from bemcontact import spec
+from bemcontact import SpecError, loads, spec
 from bemcontact.analysis import reproduction
 from bemcontact.analysis.reproduction import PaperStudy, along, positions, reading, reproduce
 from bemcontact.reference.paper import BOLT, CRACK, PROBLEMS, PaperQuantity
@@ -128,3 +129,37 @@ def test_progress_names_the_problem_and_its_stages():
     assert any("QP2" in now for _, now in told)
     with pytest.raises(bemcontact.OptionError, match="different from each other"):
         reproduce((1, 1), problems=[BOLT])
+
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_the_text_is_that_of_the_file():
+    stated = (ROOT / "models" / "cylinder_on_plane.yaml").read_text(encoding="utf-8")
+    assert reproduction.shipped_model("cylinder_on_plane") == stated
+    assert loads(stated).name == "cylinder on a plane"
+
+
+def test_an_installed_package_has_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """As a wheel is laid out; what stands beside the package is somebody else's."""
+    for folder, text in (("site/bemcontact/models", "own"), ("site/models", "foreign")):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "block.yaml").write_text(text, encoding="utf-8")
+    monkeypatch.setattr(reproduction, "files", lambda _: tmp_path / "site" / "bemcontact")
+    assert reproduction.shipped_model("block") == "own"
+
+
+def test_the_wheel_has_the_models_where_they_are_looked_for():
+    wheel = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["hatch"]["build"]["targets"][
+        "wheel"
+    ]
+    assert wheel == {
+        "only-include": ["bemcontact", "models"],
+        "sources": {"models": f"bemcontact/{reproduction.FOLDER}"},
+    }
+    assert not (ROOT / "bemcontact" / reproduction.FOLDER).exists()
+
+
+def test_a_name_that_does_not_exist_is_reported():
+    with pytest.raises(SpecError, match=r"models/none\.yaml is not where bemcontact is installed"):
+        reproduction.shipped_model("none")

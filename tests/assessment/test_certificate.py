@@ -1,16 +1,21 @@
 """The certificate: what it proves, what it refuses, and its error bound against true errors."""
 
+import itertools
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import typer.main
 from contact_problems import random_contact
 
-from bemcontact.assessment.certificate import Certificate, CertificateKind, certify
+from bemcontact import cli
+from bemcontact.assessment.certificate import Certificate, CertificateKind, advice, certify
 from bemcontact.assessment.residual import residuals
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.solution import ContactSolution
+from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.formulations import complementarity, qp3
+from bemcontact.options import FormulationName
 
 
 def judged(problem: CondensedContact, solution: ContactSolution) -> Certificate:
@@ -179,3 +184,34 @@ def test_nothing_but_equilibrium_is_certified(seed):
         assert result.pressure == pytest.approx(expected, rel=1e-9)
     wrong = replace(result, pressure=np.zeros(2))
     assert not certify(problem, wrong, residuals(problem, wrong)).certified
+
+
+def ended(status: Status, formulation: str) -> ContactSolution:
+    none = np.zeros(1)
+    return ContactSolution(
+        formulation=formulation,
+        solver="any",
+        status=status,
+        pressure=none,
+        displacement=none,
+        rigid_amplitudes=np.zeros(0),
+        iterations=7,
+    )
+
+
+@pytest.mark.parametrize(("status", "formulation"), [*itertools.product(Status, FormulationName)])
+def test_advice_can_be_followed(status: Status, formulation: FormulationName):
+    """Its options exist, and it never sends a person to the formulation that was used."""
+    words = advice(ended(status, formulation))
+    solve = typer.main.get_command(cli.app).commands["solve"]  # pyright: ignore[reportAttributeAccessIssue]
+    known = {name for parameter in solve.params for name in parameter.opts}
+    assert {*re.findall(r"--[a-z-]+", words)} <= known
+    assert f"--formulation {formulation}" not in words
+    assert words.endswith(".")
+
+
+def test_advice_goes_by_the_status():
+    assert "Raise the limit (--max-iterations; 7 were done)." in advice(ended(Status.ITERATION_LIMIT, "qp3"))
+    assert "another start" in advice(ended(Status.ITERATION_LIMIT, "qp1"))
+    assert "support" in advice(ended(Status.INFEASIBLE, "qp1"))
+    assert "start" not in advice(ended(Status.NUMERICAL_FAILURE, "qp3"))

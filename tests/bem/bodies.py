@@ -106,3 +106,19 @@ def without_rigid_motion(mesh: Mesh, difference: np.ndarray) -> np.ndarray:
     rows = every.displacement(mesh.nodes).reshape(-1, 3)
     fitted, *_ = np.linalg.lstsq(rows, difference.ravel(), rcond=None)
     return difference - (rows @ fitted).reshape(-1, 2)
+
+
+ABRUPT = np.append(0, np.cumsum([1.0, 35, 1, 35, 35, 1, 1, 35])) / 144
+"""Element ends whose lengths jump by 35, next to corners too."""
+
+
+MESHES = {
+    "rectangle": [rectangle(2, 1, even(6), even(3))],
+    "rectangle, lengths 1:35": [rectangle(2, 1, ABRUPT, ABRUPT)],
+    "circle of four elements": [[("c", arc((0, 0), 1, 0, 360), even(4))]],
+    "circle of eight elements": [[("c", arc((0, 0), 1, 0, 360), even(8))]],
+    "circle, lengths 1:35": [[("c", arc((0, 0), 1, 0, 360), ABRUPT)]],
+    "half disc, lengths 1:35": [[("flat", segment((-1, 0), (1, 0)), even(4)), ("arc", arc((0, 0), 1, 0, 180), ABRUPT)]],
+    "plate with a hole": [rectangle(2, 1, ABRUPT, even(4)), [("hole", arc((1, 0.5), 0.3, 360, 0), even(8))]],
+    "ligament of 0.01": [rectangle(2, 1, even(20), even(10)), [("hole", arc((1, 0.5), 0.49, 360, 0), even(12))]],
+}

@@ -13,7 +13,6 @@ from page_reader import ensure_self_contained, read
 from reproductions import on_base_meshes, with_coarse_mesh_judged
 from rich.console import Console
 
-from bemcontact.report.figures import figures_of_reproduction
 from bemcontact.report.reproduction import render, reproduction_summary
 from bemcontact.report.schema import schema
 
@@ -110,19 +109,3 @@ def test_the_schema_is_what_the_record_holds():
         validate(written, schema("reproduction"), Draft202012Validator)
     with pytest.raises(ValidationError):
         validate({**record(), "extra": 1}, schema("reproduction"), Draft202012Validator)
-
-
-def test_figures_show_curves_and_references():
-    """Of the flat surface the run without contact is left out; Fig. 2 has a second frame, the paper's."""
-    figures = figures_of_reproduction(on_base_meshes())
-    assert len(figures) == 10
-    (axes,) = figures["cantilever-flat-surface-pressure"].axes
-    labels = [str(line.get_label()) for line in axes.lines]
-    assert "printed E" not in labels
-    assert {"paper's mesh", "base mesh", "[SS92], Fig. 6: start 42.5", "finite elements: peak 11.57"} <= {*labels}
-    _, narrow = figures["cantilever-curved-surface-pressure"].axes
-    assert narrow.get_ylim() == (49.99, 50.01)
-    (axes,) = figures["cylinder-on-plane-pressure"].axes
-    assert "Hertz, out of its range" in [line.get_label() for line in axes.lines]
-    (axes,) = figures["bolt-in-plate-pressure"].axes
-    assert axes.get_xlabel() == "θ [°]"

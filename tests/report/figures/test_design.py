@@ -11,7 +11,7 @@ from bemcontact import GapDesign, Relief, design_gap, spec
 from bemcontact.bem import mesh
 from bemcontact.report import figures
 
-FLAT_PUNCH = Path(__file__).parents[2] / "models" / "gallery" / "flat_punch.yaml"
+FLAT_PUNCH = Path(__file__).parents[3] / "models" / "gallery" / "flat_punch.yaml"
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,8 @@
 """The history of a solver: each value is that of the point the solver has when it is stopped there."""
 
-from dataclasses import replace
+import subprocess
+import sys
+from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
 import pytest
@@ -9,11 +11,12 @@ from contact_problems import random_contact
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
+from bemcontact.errors import OptionError
 from bemcontact.formulations import FORMULATIONS, clarabel, complementarity, qp1, qp2, qp3
 from bemcontact.formulations.complementarity import ACCEPTED
 from bemcontact.formulations.scaling import scaled, scaled_point
 from bemcontact.formulations.search import draw_starts
-from bemcontact.options import FormulationName, SolveOptions
+from bemcontact.options import USES, FormulationName, SolveOptions
 
 N = 9
 LOCAL = [
@@ -200,3 +203,38 @@ def test_polish_adds_nothing(name):
     polished, plain = (FORMULATIONS[name](problem, SolveOptions.of(name, polish=polish)) for polish in (True, False))
     assert polished.polished
     assert polished.history == plain.history
+
+
+def test_every_name_has_a_formulation_and_its_options():
+    assert [*FORMULATIONS] == [*USES] == [*FormulationName]
+
+
+@pytest.mark.parametrize("name", FORMULATIONS)
+def test_every_formulation_solves_and_bears_its_name(name):
+    """One point with interference 3 and compliance 2: p = 3/2."""
+    solution = FORMULATIONS[name](CondensedContact.from_compliance([[2.0]], [-3.0]), SolveOptions.of(name))
+    assert solution.formulation == name
+    assert solution.status is Status.SOLVED
+    np.testing.assert_allclose(solution.pressure, [1.5], rtol=1e-14)
+
+
+@pytest.mark.parametrize("limit", [0, -1, 2.5, "many", True])
+def test_a_limit_of_iterations_that_is_no_whole_number_above_zero_is_refused(limit):
+    with pytest.raises(OptionError, match="limit of iterations must be a whole number of at least 1"):
+        SolveOptions(max_iterations=limit)
+
+
+def test_the_repr_of_a_solution_is_one_line():
+    solution = FORMULATIONS["qp1"](CondensedContact.from_compliance([[2.0]], [-3.0]), SolveOptions.of("qp1"))
+    assert repr(solution) == "<ContactSolution by qp1: solved, 1 contact points>"
+
+
+def test_options_do_not_change():
+    with pytest.raises(FrozenInstanceError):
+        SolveOptions().polish = False  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def test_importing_the_formulations_does_not_import_cvxpy():
+    """Half a second that only QP3 has to pay."""
+    code = "import sys, bemcontact.formulations; sys.exit('cvxpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

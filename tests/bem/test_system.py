@@ -1,12 +1,59 @@
-"""Observed orders of convergence against closed forms."""
+"""Fields that the elements represent exactly: constant stress, rigid motion."""
 
 import numpy as np
 import pytest
-from bodies import arc, even, mesh_of, rectangle, solved, system_of, values_of, without_rigid_motion
+from bodies import MESHES, arc, even, mesh_of, rectangle, solved, system_of, values_of, without_rigid_motion
 
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.system import solve
 from bemcontact.problem.problem import Material
+
+MATERIAL = Material(young_modulus=1000, poisson_ratio=0.3)
+STRESS = np.array([[3.0, 1.2], [1.2, -2.0]])
+STRAIN = (STRESS - 0.3 * np.trace(STRESS) * np.eye(2)) / (2 * MATERIAL.shear_modulus)
+"""Plane strain: 2Gε = σ - ν tr(σ) 1."""
+GRADIENT = STRAIN + np.array([[0, -0.001], [0.001, 0]])
+
+
+FIXED = {
+    "traction": lambda names: {},
+    "displacement": lambda names: dict.fromkeys(names, "xy"),
+    "one edge clamped": lambda names: {names[0]: "xy"},
+    "clamp beside roller": lambda names: {names[0]: "xy", names[-1]: "x"},
+    "rollers": lambda names: {names[0]: "y", names[-1]: "x"},
+}
+
+
+def displacement(points):
+    return points @ GRADIENT.T + np.array([0.002, -0.001])
+
+
+def traction(points, normals):
+    return normals @ STRESS
+
+
+def errors(loops, fixed, gradient_scale=1.0):
+    """Relative errors: largest of displacement, and of traction in the mean square along the boundary."""
+    mesh = mesh_of(*loops)
+    u, t, system = solved(mesh, MATERIAL, values_of(mesh, fixed(mesh.edge_names), displacement, traction))
+    du = u - displacement(mesh.nodes)
+    du = without_rigid_motion(mesh, du) if len(system.motions) else du
+    dt = t - traction(mesh.nodes[mesh.elements], mesh.normals)
+    of_stress = np.sqrt(np.sum(mesh.tributary[..., None] * dt**2) / np.sum(mesh.tributary)) / abs(STRESS).max()
+    return abs(du).max() / abs(displacement(mesh.nodes)).max(), of_stress
+
+
+@pytest.mark.parametrize("conditions", FIXED)
+@pytest.mark.parametrize("name", MESHES)
+def test_constant_stress_is_exact(name, conditions):
+    """Interpolating t·J, the method reproduces constant stress on straight and curved elements to round-off."""
+    assert max(errors(MESHES[name], FIXED[conditions])) < 1e-12
+
+
+@pytest.mark.parametrize("conditions", FIXED)
+def test_thin_strip(conditions):
+    """2 x 0.01, elements ten times longer than the strip is thick; bending costs (length/thickness)² of round-off."""
+    assert max(errors([rectangle(2, 0.01, even(20), even(1))], FIXED[conditions])) < 1e-11
 
 
 def order(errors: list[float]) -> float:

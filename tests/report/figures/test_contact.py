@@ -1,20 +1,23 @@
 """The picture of a contact: body and rigid surfaces where they are, and a fan as long as the pressure is large."""
 
+import dataclasses
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from drawings import block_in_a_corner, grey_lines, strokes
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 
 from bemcontact import spec
 from bemcontact.analysis import solve as analysis
+from bemcontact.problem import DeflectedContour
 from bemcontact.report import figures
 from bemcontact.report.figures.page import GREY, VERMILION
 
-MODELS = Path(__file__).parents[2] / "models"
+MODELS = Path(__file__).parents[3] / "models"
 
 
 @cache
@@ -131,3 +134,63 @@ def test_body_that_touches_nothing_is_drawn_without_a_fan():
     axes = drawn(analysis.solve(problem))
     assert lines(axes, VERMILION) == []
     assert not axes.texts
+
+
+def factor_of(axes: Axes) -> float:
+    """Read the stated magnification."""
+    title = axes.get_title(loc="left")
+    return 1.0 if "displacements to scale" in title else float(title.split("× ")[1].split(" ")[0])
+
+
+def test_deformed_outline_is_displaced_by_the_stated_factor(result: analysis.Result):
+    assert result.boundary is not None
+    axes = Figure().add_subplot()
+    figures.draw_deformed(axes, result)
+    elements = [stroke[::4] for stroke in strokes(axes) if len(stroke) == 9]
+    moved = result.boundary.points + factor_of(axes) * result.boundary.displacement
+    assert np.array(elements[len(moved) :]) == pytest.approx(moved, abs=1e-12 * 50)
+
+
+def test_contact_is_marked_on_the_deformed_outline():
+    """The whole floor is in contact: each half of its elements is thick, and its nodes are dotted."""
+    result = analysis.solve(block_in_a_corner())
+    assert result.boundary is not None
+    axes = Figure().add_subplot()
+    figures.draw_deformed(axes, result)
+    halves = [stroke for stroke in strokes(axes) if len(stroke) == 5]
+    on_floor = [half for half in halves if np.abs(half[:, 1]).max() < 1e-9]
+    assert len(on_floor) == 8  # 4 elements
+    assert np.ptp(np.concatenate(on_floor)[:, 0]) > 1.9
+
+
+def test_rigid_surfaces_stand_only_beside_a_body_to_scale(result: analysis.Result):
+    assert result.boundary is not None
+    shown = []
+    for scale in (1e-3, 1.0, 1e3):
+        state = dataclasses.replace(result.boundary, displacement=scale * result.boundary.displacement)
+        axes = Figure().add_subplot()
+        figures.draw_deformed(axes, dataclasses.replace(result, boundary=state))
+        assert bool(grey_lines(axes)) == (factor_of(axes) == 1) != ("not drawn" in axes.get_title(loc="left"))
+        assert result.problem is not None
+        for line in grey_lines(axes):
+            surfaces = [zone.surface for zone in result.problem.contact_zones.values()]
+            gaps = [surface.closest(line)[0] for surface in surfaces if not isinstance(surface, DeflectedContour)]
+            assert min(np.abs(gap).max() for gap in gaps) < 1e-9 * 100
+        shown.append(bool(grey_lines(axes)))
+    assert not shown[0]
+    assert shown[-1]
+
+
+def test_the_largest_displacement_is_magnified_to_be_seen(result: analysis.Result):
+    """To 2 to 5 % of the size by a factor of 1, 2 or 5 times a power of ten; large displacements stay as they are."""
+    assert result.boundary is not None
+    for scale in (1e-9, 1e-3, 1.0, 1e3):
+        state = dataclasses.replace(result.boundary, displacement=scale * result.boundary.displacement)
+        axes = Figure().add_subplot()
+        figures.draw_deformed(axes, dataclasses.replace(result, boundary=state))
+        factor = factor_of(axes)
+        size = np.hypot(*np.ptp(state.points.reshape(-1, 2), axis=0))
+        seen = factor * np.hypot(*state.displacement.reshape(-1, 2).T).max() / size
+        assert factor == 1 or 0.02 <= seen <= 0.05
+        assert seen >= 0.02
+        assert f"{factor:.0e}"[0] in "125"

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
-from bemcontact.report.figures.symbols import Box, centred, crowd, least_crowded, overlap
+from bemcontact.report.figures.symbols import Box, centred, crowd, draw_ground, least_crowded, overlap
 
 NOTHING = np.zeros((0, 2))
 
@@ -27,3 +28,16 @@ def test_the_first_free_place_wins():
     assert least_crowded(centers, (4, 2), [], NOTHING) == 0
     assert least_crowded(centers, (4, 2), [Box(-1, -1, 1, 1)], NOTHING) == 1
     assert least_crowded(centers, (4, 2), [Box(-1, -1, 1, 1)], np.array([[10.0, 0.5]])) == 2
+
+
+def test_ground_is_hatched_on_the_side_away_from_the_normals():
+    axes = Figure().add_subplot()
+    points, up = np.array([[0.0, 0.0], [10.0, 0.0]]), np.array([[0.0, 1.0], [0.0, 1.0]])
+    covered = draw_ground(axes, points, up, 1.0, "black")
+    assert covered[:, 1].max() == 0
+    assert covered[:, 1].min() == pytest.approx(-0.7)
+    (hatching,) = axes.patches
+    hatches = np.asarray(hatching.get_path().vertices).reshape(-1, 2, 2)
+    assert len(hatches) == 16  # 0.6 apart on a length of 10
+    assert (hatches[:, 1, 1] < 0).all()
+    assert (hatches[:, 0, 1] == 0).all()

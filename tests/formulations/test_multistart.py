@@ -5,171 +5,51 @@ state; of a free body likewise where sym(JM) is positive definite on the equilib
 constraint. Both are refuted by a single other point, and each is shown to need what it supposes.
 """
 
+import json
+import re
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
-
-from bemcontact import (
-    CondensedContact,
-    Equilibrium,
-    NotConvexError,
-    QPStatus,
-    RandomStarts,
-    Start,
-    Status,
-    minimize_qp,
-    random_starts,
+from contact_problems import resting
+from enumeration import (
+    PENALTIES,
+    SAME,
+    STATEMENTS,
+    among,
+    contact_states,
+    curvature,
+    definite,
+    dominated,
+    first_order_points_of_qp1,
+    first_order_points_of_qp2,
+    free_body,
+    is_p_matrix,
+    not_p,
+    ring,
 )
+
+import bemcontact
+from bemcontact import NotConvexError, QPStatus, RandomStarts, minimize_qp, random_starts
 from bemcontact.arrays import Array
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import End
-from bemcontact.formulations import qp1, qp2, qp3
+from bemcontact.contact.solution import Status
+from bemcontact.errors import OptionError
+from bemcontact.formulations import complementarity, qp1, qp2, qp3
+from bemcontact.formulations.multistart import multistart
 from bemcontact.formulations.scaling import scaled
-from bemcontact.formulations.search import draw_starts
-from bemcontact.options import SolveOptions
-
-BoolArray = NDArray[np.bool_]
-
-PENALTIES = (0.1, 1.0, 10.0)
-STATEMENTS = [("qp1", 1.0), *(("qp2", penalty) for penalty in PENALTIES)]
-REGULAR = 1e11
-"""Condition number up to which the equations of a face are solved; generic data have no solution on any other."""
-SAME = 1e-9
-"""Difference of two points that are one, over the size of the numbers: round-off times a condition number of 1e6."""
+from bemcontact.formulations.search import Start, draw_starts
+from bemcontact.options import Equilibrium, SolveOptions
 
 
 def ends(problem: CondensedContact, statement: tuple[str, float]) -> RandomStarts:
     """What 15 random starts of a statement find, unpolished."""
     formulation, penalty = statement
     return random_starts(problem, formulation, count=15, seed=1, penalty=penalty)
-
-
-def subsets(m: int) -> BoolArray:
-    """All of m things, (2ᵐ, m), the empty one first."""
-    return (np.arange(2**m)[:, None] >> np.arange(m) & 1).astype(bool)
-
-
-def complementary_points(matrix: Array, vector: Array, free: int = 0) -> list[Array]:
-    """All z >= 0 with w = vector + matrix z >= 0 and z·w = 0, but for the last `free` entries: z free, w = 0."""
-    m = len(vector) - free
-    faces = np.pad(subsets(m), ((0, 0), (0, free)), constant_values=True)
-    systems = np.where(faces[:, :, None], matrix * faces[:, None, :], np.eye(m + free))
-    regular = np.linalg.cond(systems) < REGULAR
-    z = np.linalg.solve(systems[regular], np.where(faces[regular], -vector, 0.0)[..., None])[..., 0]
-    w = vector + z @ matrix.T
-    right = np.minimum(z, w)[:, :m].min(axis=1) >= -SAME * (1 + np.abs(z).max(axis=1))
-    return distinct(list(z[right]))
-
-
-def distinct(points: list[Array]) -> list[Array]:
-    """Each point once."""
-    result: list[Array] = []
-    for point in points:
-        if not among(point, result):
-            result.append(point)
-    return result
-
-
-def among(point: Array, points: list[Array]) -> bool:
-    return any(np.abs(point - other).max() <= SAME * (1 + np.abs(other).max()) for other in points)
-
-
-def contact_states(condensed: CondensedContact) -> list[Array]:
-    """The scaled pressures (n,) of all contact states, from all 2ⁿ contact sets, equilibrium included."""
-    problem = scaled(condensed)
-    n, k = problem.rigid_motions.shape
-    system = np.block([[problem.compliance, problem.rigid_motions], [problem.equilibrium.T, np.zeros((k, k))]])
-    points = complementary_points(system, np.append(problem.offset, problem.motion_load), free=k)
-    return distinct([z[:n] for z in points])
-
-
-def first_order_points_of_qp1(condensed: CondensedContact) -> list[Array]:
-    """The scaled pressures at which min pᵀJ(q + M p), q + M p >= 0, p >= 0 is stationary, of a held body.
-
-    With multipliers λ of the gaps: Jq + (JM + MᵀJ)p - Mᵀλ >= 0 complementary to p, q + M p >= 0 to λ.
-    """
-    problem = scaled(condensed)
-    n, M = condensed.size, problem.compliance
-    weighted = problem.weights[:, None] * M
-    system = np.block([[weighted + weighted.T, -M.T], [M, np.zeros((n, n))]])
-    points = complementary_points(system, np.append(problem.weights * problem.offset, problem.offset))
-    return distinct([z[:n] for z in points])
-
-
-def first_order_points_of_qp2(condensed: CondensedContact, penalty: float) -> list[Array]:
-    """The scaled (δ, p) of a held body at which QP2 is stationary: x >= lower complementary to H x + c >= 0."""
-    program = qp2.statement(condensed, SolveOptions.of("qp2", penalty=penalty))
-    return complementary_points(program.hessian, program.linear + program.hessian @ program.lower)
-
-
-def is_p_matrix(M: Array) -> bool:
-    """Whether all 2ⁿ - 1 principal minors are positive."""
-    return all(np.linalg.det(M[np.ix_(rows, rows)]) > 0 for rows in map(np.flatnonzero, subsets(len(M))[1:]))
-
-
-def curvature(problem: CondensedContact) -> float:
-    """Smallest eigenvalue of JM + MᵀJ on the equilibrium space, scaled."""
-    held = scaled(problem)
-    value = qp3.smallest_eigenvalue(held, np.diag(held.weights))
-    assert value is not None
-    return value
-
-
-def definite(rng: np.random.Generator, n: int) -> CondensedContact:
-    """An unsymmetric M with sym(JM) positive definite."""
-    A, S = rng.standard_normal((2, n, n))
-    J = rng.uniform(0.3, 1.5, n)
-    M = (A @ A.T / n + 0.05 * np.eye(n) + 0.3 * (S - S.T)) / J[:, None]
-    return CondensedContact.from_compliance(M, rng.standard_normal(n), J)
-
-
-def ring(rng: np.random.Generator, n: int) -> CondensedContact:
-    """A P-matrix, and no diagonal D > 0 makes sym(DM) positive definite: I + aC, a > 2, C an odd cycle.
-
-    Its proper principal minors are 1, being triangular up to a permutation, and its determinant is 1 + aⁿ; it has an
-    eigenvalue of negative real part. Even n have a triangular coupling to one point more. Positive factors of rows and
-    columns, and renumbering, leave a P-matrix one.
-    """
-    m = n - 1 + n % 2
-    M = np.eye(n)
-    M[np.arange(m), (np.arange(m) + 1) % m] = rng.uniform(2.2, 4.0, m)
-    M[:m, m:] = rng.normal(0, 3, (m, n - m))
-    order, rows, columns = rng.permutation(n), *rng.uniform(0.5, 2, (2, n))
-    M = rows[:, None] * M[np.ix_(order, order)] * columns
-    return CondensedContact.from_compliance(M, rng.standard_normal(n), rng.uniform(0.3, 1.5, n))
-
-
-def dominated(rng: np.random.Generator, n: int) -> CondensedContact:
-    """A P-matrix by dominant diagonals, with columns of sizes from 1 to 100, drawn until sym(JM) is indefinite."""
-    while True:
-        M = rng.uniform(-1, 1, (n, n))
-        np.fill_diagonal(M, 0)
-        np.fill_diagonal(M, 1.05 * np.abs(M).sum(axis=1))
-        M *= rng.permutation(np.geomspace(1, 100, n))
-        problem = CondensedContact.from_compliance(M, rng.standard_normal(n), rng.uniform(0.3, 1.5, n))
-        if curvature(problem) < -0.05:
-            return problem
-
-
-def not_p(rng: np.random.Generator, n: int) -> CondensedContact:
-    """Some principal minor is negative."""
-    while is_p_matrix(M := rng.standard_normal((n, n)) + 0.5 * np.eye(n)):
-        pass
-    return CondensedContact.from_compliance(M, rng.standard_normal(n), rng.uniform(0.3, 1.5, n))
-
-
-def free_body(rng: np.random.Generator, n: int, k: int) -> CondensedContact:
-    """A body that a plane holds against rising (k = 1) and turning (k = 2), pressed down at some of the points."""
-    held = definite(rng, n)
-    R = np.column_stack([np.ones(n), np.linspace(-1, 1, n)])[:, :k]
-    pressed = rng.uniform(0, 1, n)
-    return CondensedContact.from_compliance(
-        held.compliance, rng.uniform(0, 1, n), held.weights,
-        rigid_motions=R, motion_load=-(held.weights[:, None] * R).T @ pressed,
-    )  # fmt: skip
 
 
 Kind = Callable[[np.random.Generator, int], CondensedContact]
@@ -382,3 +262,134 @@ def test_a_first_order_point_without_a_p_matrix_in_exact_numbers():
     result = minimize_qp(program.hessian, program.linear, A=E, cl=e, cu=e, bl=program.lower, x0=np.array([-0.5, 0.5]))
     assert result.status is QPStatus.LOCAL_MINIMIZER
     assert program.value(result.x) == pytest.approx(0, abs=1e-15)
+
+
+P_MATRIX = np.array([[1.0, -3.0, 0.0], [0.0, 1.0, -3.0], [0.0, 0.0, 1.0]])
+"""Triangular with positive diagonal, so a P-matrix, but far from positive definite."""
+
+
+@pytest.mark.parametrize("formulation", ["qp1", "qp2"])
+def test_a_strictly_monotone_problem_has_one_end(formulation):
+    problem = resting()
+    computed = multistart(problem, SolveOptions.of(formulation, starts=25))
+    (end,) = computed.ends
+    assert (computed.solved, end.count, end.first_start) == (25, 25, 0)
+    assert end.residual < 1e-10
+    assert end.objective == pytest.approx(0, abs=1e-10)
+    direct = complementarity.solve(problem)
+    np.testing.assert_allclose(end.solution.pressure, direct.pressure, atol=1e-10 * direct.pressure.max())
+
+
+def test_penalised_equilibrium_has_a_second_end():
+    """The lifted body: one end wherever it is lifted to, F2 > 0, counted apart and put last."""
+    computed = multistart(resting(), SolveOptions.of("qp2", equilibrium=Equilibrium.PENALTY, starts=60))
+    best, lifted = computed.ends
+    assert best.solution.status is Status.SOLVED
+    assert lifted.solution.status is Status.LOCAL_MINIMUM
+    assert not lifted.solution.pressure.any()
+    assert lifted.objective > 0.1
+    assert best.count + lifted.count == 60
+    assert lifted.count > 0
+    assert str(computed).startswith(f"{best.count} of 60 random starts (seed 0) end at the contact state\n")
+
+
+@pytest.mark.parametrize("formulation", ["qp1", "qp2"])
+def test_a_p_matrix_has_one_end(formulation):
+    """Every first-order point of QP1 and QP2 is the solution for a P-matrix of any definiteness (row sufficient)."""
+    rng = np.random.default_rng(0)
+    for _ in range(3):
+        problem = CondensedContact.from_compliance(P_MATRIX, rng.standard_normal(3))
+        computed = multistart(problem, SolveOptions.of(formulation, starts=15))
+        assert [end.solution.status for end in computed.ends] == [Status.SOLVED]
+        truth = complementarity.solve(problem).pressure
+        np.testing.assert_allclose(computed.ends[0].solution.pressure, truth, atol=1e-9)
+
+
+def test_a_matrix_that_is_not_p_has_all_its_ends_named():
+    """M = [[1, 2], [2, 1]], q = (-1, -1): contact at either point alone or at both; by enumeration, three solutions."""
+    M, q = np.array([[1.0, 2.0], [2.0, 1.0]]), np.array([-1.0, -1.0])
+    truths = []
+    for bits in product([False, True], repeat=2):
+        A = np.flatnonzero(bits)
+        p = np.zeros(2)
+        p[A] = np.linalg.solve(M[np.ix_(A, A)], -q[A])
+        if min(p.min(), (q + M @ p).min()) >= 0:
+            truths.append(p)
+    assert len(truths) == 3
+    computed = multistart(CondensedContact.from_compliance(M, q), SolveOptions.of("qp1", starts=40))
+    assert len(computed.ends) > 1
+    for end in computed.ends:
+        assert end.solution.status is Status.SOLVED
+        assert any(np.abs(end.solution.pressure - truth).max() < 1e-10 for truth in truths)
+
+
+def test_the_library_function_and_the_option_agree():
+    problem = resting()
+    computed = bemcontact.random_starts(problem, "qp2", count=10, seed=2, equilibrium="penalty")
+    result = bemcontact.solve(problem, "qp2", equilibrium="penalty", start="random", seed=2, starts=10)
+    assert result.certified
+    assert result.starts is not None
+    assert [end.count for end in result.starts.ends] == [end.count for end in computed.ends]
+    data = json.loads(result.to_json())
+    assert data["starts"]["solved"] == computed.solved
+    assert sum(end["count"] for end in data["starts"]["ends"]) == 10
+    assert data["search"]["start"] == f"random point {computed.ends[0].first_start}, seed 2"
+
+
+@pytest.mark.parametrize(
+    ("asked", "pattern"),
+    [
+        ({"seed": None}, "seed must be a whole number of at least 0; found None"),
+        ({"count": 2.5}, "number of starts must be a whole number of at least 1; found 2.5"),
+        ({"count": True}, "number of starts"),
+        ({"penalty": 1e13, "formulation": "qp2"}, "from 1e-08 to"),
+    ],
+)
+def test_what_random_starts_cannot_be_asked_is_refused(asked, pattern):
+    with pytest.raises(OptionError, match=pattern):
+        bemcontact.random_starts(resting(), **asked)
+
+
+def test_a_limit_of_iterations_reaches_every_search():
+    computed = bemcontact.random_starts(resting(), "qp1", count=3, max_iterations=2)
+    assert {end.solution.status for end in computed.ends} == {Status.ITERATION_LIMIT}
+    assert max(end.iterations[1] for end in computed.ends) <= 2
+    result = bemcontact.solve(resting(), "qp1", max_iterations=2)
+    assert result.solution.status is Status.ITERATION_LIMIT
+    assert "--max-iterations; 2 were done" in result.certificate.words
+
+
+def test_progress_counts_what_is_done():
+    done = []
+    bemcontact.random_starts(resting(), "qp1", count=4, progress=done.append)
+    bemcontact.solve(resting(), "qp1", starts=3, progress=done.append)
+    assert done == [1, 2, 3, 4, 1, 2, 3]
+
+
+def test_all_infeasible_ends_are_one():
+    """M = -1, q = -1 has no contact state; where the search saw that means nothing, nor does the objective there."""
+    computed = multistart(CondensedContact.from_compliance([[-1.0]], [-1.0]), SolveOptions.of("qp1", starts=12))
+    (end,) = computed.ends
+    assert (end.count, end.objective, computed.solved) == (12, None, 0)
+    assert re.fullmatch(r"12 x infeasible, (\d+ to )?\d+ iterations?", str(end))
+    assert json.loads(json.dumps(computed.to_dict(), allow_nan=False))["ends"][0]["objective"] is None
+
+
+def test_all_unbounded_ends_are_one():
+    """On δ = 1 + p both grow along p = (1, 1), where pᵀJδ falls as -2p² for J = [[1, -2], [-2, 1]]."""
+    J = np.array([[1.0, -2.0], [-2.0, 1.0]])
+    problem = replace(CondensedContact.from_compliance(np.eye(2), [1.0, 1.0]), consistent_weights=J)
+    computed = multistart(problem, SolveOptions.of("qp1", "consistent", starts=12))
+    assert [end.solution.status for end in computed.ends] == [Status.UNBOUNDED]
+    assert computed.ends[0].count == 12
+
+
+def test_random_starts_are_for_local_solvers():
+    with pytest.raises(OptionError, match="no use for the option 'starts'"):
+        bemcontact.random_starts(resting(), "qp3")
+
+
+def test_nothing_is_polished():
+    """A polish would turn the lifted body into the solution."""
+    computed = multistart(resting(), SolveOptions.of("qp1", polish=True, starts=2))
+    assert not any(end.solution.polished for end in computed.ends)

@@ -9,7 +9,7 @@ import bemcontact
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report import figures, folder, text
 
-MODELS = Path(__file__).parents[2] / "models"
+MODELS = Path(__file__).parents[3] / "models"
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,74 @@
+"""Problems to draw, and what has been drawn on axes."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from bemcontact.problem import Problem
+
+
+def line(name: str, start: list[float], elements: int) -> dict:
+    return {"name": name, "start": start, "elements": elements}
+
+
+def block_in_a_corner() -> Problem:
+    """A square plate with a hole, pressed into the corner of a floor and a wall that recedes below its middle."""
+    hole = {"kind": "arc", "name": "hole", "center": [1, 1], "radius": 0.4, "angles": [360, 0], "elements": 8}
+    bottom, right = line("bottom", [0, 0], 4), line("right", [2, 0], 4)
+    top, left = line("top", [2, 2], 4), line("left", [0, 2], 4)
+    floor = {"kind": "plane", "point": [0, 0], "normal": [0, 2]}
+    wall = {"kind": "polyline", "points": [[0, 3], [0, 1.2], [-0.05, 0]]}
+    return Problem(
+        name="a block, $x$ in a \\corner",
+        units={"length": "mm", "force": "N"},
+        material={"young_modulus": 1000, "poisson_ratio": 0.3},
+        boundary={"outer": [bottom, right, top, left], "holes": [[hole]]},
+        conditions={"top": {"pressure": {"constant": 3, "x": 1}}, "right": {"traction": {"x": -2, "y": 0}}},
+        loads={"gravity": {"density": 1e-3, "acceleration": [0, -9.81]}},
+        contact_zones={"floor": {"edges": "bottom", "surface": floor}, "wall": {"edges": "left", "surface": wall}},
+    )  # pyright: ignore
+
+
+def beam_over_a_circle() -> Problem:
+    """A long clamped beam that bends onto a large circle, with a symmetry condition at its end."""
+    outer = [line("under", [0, 0], 12), line("end", [50, 0], 2), line("top", [50, 5], 10), line("clamp", [0, 5], 2)]
+    surface = {"kind": "circle", "center": [50, -101], "radius": 100, "body": "outside"}
+    return Problem(
+        name="beam",
+        material={"young_modulus": 2e4, "poisson_ratio": 0.29},
+        boundary={"outer": outer},
+        conditions={
+            "clamp": {"displacement": {"x": 0, "y": 0}},
+            "end": {"displacement": {"x": 0}},
+            "top": {"traction": {"y": -3.6}},
+        },
+        contact_zones={"drum": {"edges": ["under"], "surface": surface}},
+    )  # pyright: ignore
+
+
+def strokes(axes: Axes) -> Iterator[np.ndarray]:
+    for collection in axes.collections:
+        if isinstance(collection, LineCollection):
+            yield from map(np.asarray, collection.get_segments())
+
+
+def only_axes(figure: Figure) -> Axes:
+    (axes,) = figure.axes
+    return axes
+
+
+def grey_lines(axes: Axes) -> list[np.ndarray]:
+    return [np.column_stack(line.get_data()) for line in axes.lines if line.get_color() == "#7d838c"]
+
+
+def curves(axes: Axes) -> dict[str, Line2D]:
+    """What the legend names."""
+    return {str(line.get_label()): line for line in axes.lines if not str(line.get_label()).startswith("_")}
+
+
+def drawn(line: Line2D) -> np.ndarray:
+    return np.asarray(line.get_ydata(), float)

@@ -1,0 +1,86 @@
+"""Pages of all pictures: their files, sizes, colors, and a page written twice is the same."""
+
+import re
+from pathlib import Path
+
+import matplotlib.colors
+import matplotlib.image
+import numpy as np
+import pytest
+from drawings import beam_over_a_circle, block_in_a_corner
+from matplotlib.figure import Figure
+from studies import (
+    on_one_mesh,
+)
+
+from bemcontact.analysis import solve as analysis
+from bemcontact.bem import mesh
+from bemcontact.problem import Problem
+from bemcontact.report import figures
+
+
+@pytest.mark.parametrize("name", ["long words " * 60, "x" * 900, "方块"])
+def test_long_and_foreign_names_fit(name: str, tmp_path: Path):
+    problem = Problem(**{**block_in_a_corner().model_dump(), "name": name})
+    figures.save(figures.figure_of_problem(problem, mesh.build(problem)), tmp_path / "problem.png")
+    figures.save(figures.figure_of_result(analysis.solve(problem)), tmp_path / "result.png")
+    for path in tmp_path.iterdir():
+        height, width = matplotlib.image.imread(path).shape[:2]
+        assert width < 13 * 160
+        assert height < 10 * 160
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_a_figure_written_twice_is_the_same(tmp_path: Path, ending: str):
+    problem = beam_over_a_circle()
+    for name in ("a", "b"):
+        figures.save(figures.figure_of_problem(problem, mesh.build(problem)), tmp_path / f"{name}.{ending}")
+    assert (tmp_path / f"a.{ending}").read_bytes() == (tmp_path / f"b.{ending}").read_bytes()
+
+
+@pytest.mark.parametrize(("ending", "magic"), [(".png", b"\x89PNG"), (".SVG", b"<?xml"), (".pdf", b"%PDF")])
+def test_saved_in_the_format_of_the_ending(problem: Problem, tmp_path: Path, ending: str, magic: bytes):
+    path = tmp_path / f"figure{ending}"
+    figures.save(figures.figure_of_problem(problem, mesh.build(problem)), path)
+    assert path.read_bytes().startswith(magic)
+    assert [*tmp_path.iterdir()] == [path]
+
+
+def test_unknown_format_is_refused(tmp_path: Path):
+    with pytest.raises(ValueError, match=r"\.png, \.svg or \.pdf"):
+        figures.save(Figure(), tmp_path / "figure.gif")
+    assert [*tmp_path.iterdir()] == []
+
+
+def test_every_colour_has_contrast_on_paper_and_in_the_dark():
+    """Lines and text against white and the dark page, 3 to 1 as WCAG asks of graphics; fills are only fills."""
+    text = figures.vector_graphic(figures.figures_of(on_one_mesh())["pressure"]).decode()
+    dark = dict(re.findall(r'\[style\*="stroke: (#\w{6})"\] \{ stroke: (#\w{6})', text))
+    page = dark.pop("#ffffff")
+    dark.pop("#e8ecf2")
+    assert len(dark) == 7
+    for there in dark.values():
+        assert contrast(there, page) > 4.5
+    strokes = {colour for colour in re.findall(r"stroke: (#\w{6})", text.split("</style>")[1]) if colour != "#ffffff"}
+    for here in strokes - {"#cc79a7"}:  # of a reference, which is dashed
+        assert contrast(here, "#ffffff") > 3
+
+
+def contrast(one: str, other: str) -> float:
+    """Ratio of relative luminances, WCAG 2.2."""
+
+    def luminance(colour: str) -> float:
+        rgb = np.array(matplotlib.colors.to_rgb(colour))
+        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        return float(linear @ (0.2126, 0.7152, 0.0722))
+
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+def test_a_picture_has_no_background_and_paths_are_rounded():
+    text = figures.vector_graphic(figures.figures_of(on_one_mesh())["gap"]).decode()
+    (patch,) = re.findall(r'<g id="patch_1">\s*<path[^>]*style="([^"]*)"', text)
+    assert "fill: none" in patch
+    assert not re.search(r' d="[^"]*\d\.\d{3}', text)
+    assert "screen and (prefers-color-scheme: dark)" in text

@@ -1,0 +1,167 @@
+"""Pictures: everything has its name, nothing covers another name, hatching is on the rigid side, scales are stated."""
+
+import numpy as np
+import pytest
+from drawings import beam_over_a_circle, block_in_a_corner, grey_lines, only_axes, strokes
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.quiver import Quiver
+from matplotlib.text import Annotation
+from tool_problems import HELD, HELD_CASES, made
+
+from bemcontact.analysis import solve as analysis
+from bemcontact.bem import mesh
+from bemcontact.problem import DeflectedContour, Problem
+from bemcontact.report import figures
+from bemcontact.report.figures.problem import draw_tools
+
+
+def test_each_edge_is_named_and_no_name_covers_another(problem: Problem):
+    figure = figures.figure_of_problem(problem, mesh.build(problem))
+    axes = only_axes(figure)
+    figure.draw_without_rendering()
+    names = axes.texts[: len(problem.boundary.edges)]
+    assert [text.get_text().split("\n")[0] for text in names] == [edge.name for edge in problem.boundary.edges]
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+    assert all(figure.bbox.contains(*box.min) and figure.bbox.contains(*box.max) for box in boxes)
+    assert axes.get_aspect() == 1
+
+
+def test_what_is_prescribed_stands_at_the_edge():
+    problem = block_in_a_corner()
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    told = {text.get_text().split("\n")[0]: text.get_text().split("\n")[1:] for text in axes.texts}
+    assert told["top"] == ["pressure 3 … 5 N/mm²"]
+    assert told["right"] == ["$t_x$ = -2 N/mm²", "$t_y$ = 0"]
+    assert told["left"] == ["may touch in wall"]
+    assert told["hole"] == []
+
+
+def test_mesh_passes_through_all_nodes(problem: Problem):
+    meshed = mesh.build(problem)
+    axes = only_axes(figures.figure_of_problem(problem, meshed))
+    elements = [stroke for stroke in strokes(axes) if len(stroke) == 9]
+    assert len(elements) == len(meshed.elements)
+    for stroke, nodes in zip(elements, meshed.nodes[meshed.elements], strict=True):
+        assert stroke[[0, 4, 8]] == pytest.approx(nodes, abs=1e-12 * meshed.size)
+
+
+def test_rigid_surfaces_are_drawn_where_they_are():
+    problem = beam_over_a_circle()
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    points = np.concatenate([np.column_stack(line.get_data()) for line in axes.lines if line.get_color() == "#7d838c"])
+    surface = problem.contact_zones["drum"].surface
+    assert not isinstance(surface, DeflectedContour)
+    gap, _ = surface.closest(points)
+    assert gap == pytest.approx(0, abs=1e-12 * 100)
+
+
+def test_a_deflected_contour_is_drawn_as_far_from_the_edge_as_the_gap_is():
+    contour = {"kind": "deflected_contour", "conditions": {"top": {"traction": {"y": -1.2}}}, "direction": [0, 1]}
+    problem = beam_over_a_circle().with_value("contact_zones.drum.surface", contour)
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    gap = analysis.condense(problem).initial_gap  # without the clamped node, which does not move
+    (ground,) = (line for line in grey_lines(axes) if len(line) == len(gap) + 1)
+    assert ground[:, 1] == pytest.approx(np.append(0.0, -gap), abs=1e-12 * 50)
+
+
+def test_volume_loads_are_drawn():
+    """An arrow down for the weight, the sense of the rotation, and all in words in the legend."""
+    loads = {
+        "gravity": {"density": 1e-3, "acceleration": [0, -9.81]},
+        "centrifugal": {"density": 1e-3, "angular_velocity": -3, "center": [1, 1]},
+        "temperature": {"expansion": 1e-5, "change": 20},
+    }
+    problem = Problem(**{**block_in_a_corner().model_dump(), "loads": loads})
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    (gravity,) = [text for text in axes.texts if isinstance(text, Annotation)]
+    assert gravity.get_text() == "$g$"
+    (x0, y0), (x1, y1) = gravity.xyann, gravity.xy
+    assert (x1 - x0, np.sign(y1 - y0)) == (pytest.approx(0, abs=1e-9), -1)
+    assert any("circlearrowright" in text.get_text() for text in axes.texts)
+    legend = axes.get_legend()
+    assert legend is not None
+    said = [text.get_text() for text in legend.get_texts()]
+    assert said[-3:] == ["gravity (0, -9.81)", "rotation -3 about (1, 1)", "temperature change 20"]
+
+
+def test_names_stand_on_their_own_side_of_a_slender_body():
+    """A name beyond the far edge of a beam would belong to the wrong one."""
+    problem = beam_over_a_circle()
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    heights = {text.get_text().split("\n")[0]: text.get_position()[1] for text in axes.texts}
+    assert heights["top"] > 0  # the beam lies between 0 and 5
+    assert heights["under"] < 5
+
+
+def test_tractions_along_an_edge_stand_beside_it_one_after_the_other():
+    problem = beam_over_a_circle().model_dump()
+    problem["conditions"]["top"] = {"traction": {"x": 2}}
+    loaded = Problem(**problem)
+    axes = only_axes(figures.figure_of_problem(loaded, mesh.build(loaded)))
+    arrows = next(item for item in axes.collections if isinstance(item, Quiver) and np.ravel(item.U).max() > 0)
+    tails = np.asarray(arrows.get_offsets())
+    assert (tails[:, 1] > 5).all()
+    assert np.abs(np.diff(np.sort(tails[:, 0]))).min() > np.ravel(arrows.U).max()
+
+
+UNITS = {"units": {"length": "mm", "force": "N"}}
+
+
+def rows(axes: Axes) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Tails (k, 2) and vectors (k, 2) of each row of arrows."""
+    quivers = [item for item in axes.collections if isinstance(item, Quiver)]
+    return [(np.asarray(item.XY), np.column_stack([np.asarray(item.U), np.asarray(item.V)])) for item in quivers]
+
+
+def arrows(axes: Axes) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Tail (2,) and vector (2,) of each arrow that stands alone."""
+    return [(tails[0], vectors[0]) for tails, vectors in rows(axes) if len(tails) == 1]
+
+
+def picture(problem: Problem) -> Axes:
+    return figures.figure_of_problem(problem, mesh.build(problem)).axes[0]
+
+
+def test_a_force_ends_at_the_point_of_the_tool_and_a_displacement_too():
+    """The punch at (1.5, 1) presses down, the table at (0, 0) is displaced up, both into the body."""
+    axes = Figure().add_subplot()
+    drawn = [*draw_tools(axes, made(HELD))]
+    tips = [np.add(tail, vector) for tail, vector in arrows(axes)]
+    assert np.array(tips) == pytest.approx(np.array([[1.5, 1.0], [0.0, 0.0]]))
+    assert [vector[0] for _, vector in arrows(axes)] == [0, 0]
+    assert len(drawn) == 2
+
+
+def test_a_tool_without_a_point_is_drawn_at_the_middle_of_its_surface_and_a_pull_starts_there():
+    """The round punch (1.6, 7), radius 6, is nearest to the middle (1.5, 1) of the edge at 7 - 6 = 1."""
+    axes = Figure().add_subplot()
+    tools = {"punch": {"zones": "punch", "displacement": {"y": 0.01}}}
+    [(_, name)] = draw_tools(axes, made(HELD, tools=tools))
+    [(tail, vector)] = arrows(axes)
+    direction = np.array([1.5 - 1.6, 1 - 7]) / np.hypot(0.1, 6)
+    assert tail == pytest.approx(np.array([1.6, 7]) + 6 * direction)
+    assert vector[1] > 0
+    assert name.text == "punch\ndisplaced by y = 0.01"
+
+
+def test_what_is_reported_of_a_tool_is_of_the_case_that_acts():
+    texts = [text.get_text() for text in picture(made(HELD, **HELD_CASES, **UNITS, case="push")).texts]
+    assert "punch\nloaded by y = -70 N/mm, moment = -1 N" in texts
+
+
+def test_the_picture_shows_the_conditions_of_the_case_that_acts():
+    axes = picture(made(HELD, **HELD_CASES, **UNITS, case="wind"))
+    texts = [text.get_text() for text in axes.texts]
+    assert axes.get_title(loc="left") == "held block, wind"
+    assert "top\npressure 1.5 N/mm² (wind)" in texts
+    assert "right\npressure 2 N/mm²\n$t_x$ = 1 N/mm² (wind)\n$t_y$ = -2 N/mm² (wind)" in texts
+
+
+def test_forces_on_an_edge_add_up_in_the_picture():
+    """A pressure of 2 and a traction of (1, -2) on the right side are (-1, -2) together."""
+    axes = picture(made(HELD, **HELD_CASES, case="wind"))
+    [right] = [vectors for tails, vectors in rows(axes) if len(tails) > 1 and tails[:, 0].min() >= 2]
+    assert (right[:, 0] < 0).all()
+    assert right[:, 1] == pytest.approx(2 * right[:, 0])

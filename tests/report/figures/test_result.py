@@ -1,0 +1,107 @@
+"""The picture of several load cases: each has its curve, its bar and its name."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from drawings import block_in_a_corner
+from matplotlib.figure import Figure
+from tool_problems import FREE, FREE_CASES, made
+
+import bemcontact
+from bemcontact.analysis import solve as analysis
+from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.problem import Problem
+from bemcontact.report import figures
+
+
+@cache
+def found() -> CaseResults:
+    return bemcontact.solve_cases(made(FREE, **FREE_CASES))
+
+
+def test_each_case_has_its_curves_and_its_bar():
+    """Two pieces of boundary for each case, with the pressures of its own; bars as long as the peaks."""
+    above, below = figures.figure_of(found()).axes
+    curves = [line for line in above.lines if len(line.get_xdata()) > 2]
+    assert len(curves) == 2 * len(found().results)
+    pressures = [max(line.get_ydata()) for line in curves]
+    for number, result in enumerate(found().results.values()):
+        assert max(pressures[2 * number : 2 * number + 2]) == pytest.approx(result.solution.pressure.max())
+    legend = above.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == [*found().results]
+    assert [bar.get_width() for bar in below.patches] == pytest.approx(
+        [result.solution.pressure.max() for result in found().results.values()]
+    )
+    assert [label.get_text() for label in below.get_yticklabels()] == [*found().results]
+
+
+def test_it_states_whether_all_are_certified():
+    title = figures.figure_of(found()).get_suptitle()
+    assert title == "free block: all certified"
+
+
+@pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
+def test_it_is_saved_in_each_format(ending: str, tmp_path: Path):
+    figures.save(figures.figure_of(found()), tmp_path / f"cases{ending}")
+    assert (tmp_path / f"cases{ending}").stat().st_size > 1000
+
+
+def test_one_result_has_its_own_figure():
+    one = found().results["wind"]
+    assert "wind" in figures.figure_of(one).get_suptitle()
+
+
+def test_result_page_has_contact_pressure_gap_and_shape(result: analysis.Result):
+    contact, pressure, gap, shape = figures.figure_of_result(result).axes
+    assert contact.get_title(loc="left") == "contact pressure, displacements to scale"
+    assert contact.get_aspect() == 1
+    assert "per undeformed length" in pressure.get_ylabel()
+    assert gap.get_ylabel().startswith("gap")
+    assert "deformed shape" in shape.get_title(loc="left")
+    assert shape.get_aspect() == 1
+    drawn = [np.asarray(line.get_ydata()) for line in pressure.lines if len(line.get_xdata()) > 2]
+    assert np.sort(np.concatenate(drawn)) == pytest.approx(np.sort(result.solution.pressure))
+    drawn = [np.asarray(line.get_ydata()) for line in gap.lines if len(line.get_xdata()) > 2]
+    assert np.sort(np.concatenate(drawn)) == pytest.approx(
+        np.sort(result.contact.initial_gap + result.solution.displacement),
+        abs=1e-9 * result.contact.scales.displacement,
+    )
+
+
+def test_round_off_in_the_gap_is_drawn_as_closed():
+    problem = block_in_a_corner().model_dump()
+    problem["contact_zones"].pop("wall")
+    problem["conditions"].pop("right")
+    problem["conditions"]["left"] = {"displacement": {"x": 0}}
+    problem["conditions"]["top"] = {"pressure": 3}
+    problem["loads"] = {}
+    problem["boundary"]["holes"] = []
+    result = analysis.solve(Problem(**problem))  # uniform compression
+    axes = Figure().add_subplot()
+    figures.draw_gap(axes, result)
+    assert [text.get_text() for text in axes.texts] == ["closed everywhere"]
+    assert axes.get_ylim()[1] == result.contact.scales.displacement
+
+
+def test_zones_with_equal_pressures_are_both_seen():
+    """The wall's line is thinner than the floor's and dashed; the legend is above the axes."""
+    axes = Figure().add_subplot()
+    figures.draw_pressure(axes, analysis.solve(block_in_a_corner()))
+    first, second = (line for line in axes.lines if len(line.get_xdata()) > 2)
+    assert first.get_linewidth() > second.get_linewidth()
+    assert (first.get_linestyle(), second.get_linestyle()) == ("-", "--")
+    legend = axes.get_legend()
+    assert legend is not None
+    assert legend.get_window_extent().y0 >= axes.get_window_extent().y1
+
+
+def test_result_of_a_condensed_problem_has_no_shape():
+    result = analysis.solve(analysis.condense(block_in_a_corner()))
+    assert len(figures.figure_of_result(result).axes) == 2
+    with pytest.raises(ValueError, match="no boundary"):
+        figures.draw_deformed(Figure().add_subplot(), result)
+    with pytest.raises(ValueError, match="no boundary"):
+        figures.draw_contact(Figure().add_subplot(), result)
