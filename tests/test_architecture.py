@@ -1,4 +1,4 @@
-"""The rules of the house, read off the syntax tree: who may import whom, where, and what every public name owes."""
+"""The rules of the house: who may import whom and where, what every public name owes, where tests stand."""
 
 import ast
 from collections.abc import Callable, Iterator
@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).parents[1] / "bemcontact"
+TESTS = Path(__file__).parent
+PACKAGE = TESTS.parent / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
@@ -305,3 +306,44 @@ def test_a_ring_is_found():
     }
     graph = import_graph({name: ast.parse(text) for name, text in sources.items()})
     assert cycle(graph) == ["bemcontact.a", "bemcontact.b", "bemcontact.c", "bemcontact.d"]
+
+
+BESIDE = {
+    "benchmarks": "the code that judges in benchmarks",
+    "docs": "the pages and the code that makes them",
+    "models": "the shipped problems",
+}
+"""Folder of tests that mirrors no folder of the package -> what it tests."""
+
+WITHOUT_MODULE = {
+    "test_architecture.py": "the package as a whole",
+    "test_packaging.py": "the wheel",
+    "formulations/local_solver/test_contact_programs.py": "QP1 and QP2 by the local solver alone and by formulations",
+    "report/test_browser.py": "the pages of a study and of the reproduction in a browser",
+}
+"""File of tests that is named after no module -> what it tests."""
+
+
+def module_of(test: Path) -> Path | None:
+    """File of the package that a file of tests is named after: a module, a room, or the room in which it stands."""
+    name, room = test.stem.removeprefix("test_"), PACKAGE / test.parent
+    places = [room / f"{name}.py", room / name / "__init__.py"]
+    if name == room.name:
+        places.append(room / "__init__.py")
+    return next((place for place in places if place.is_file()), None)
+
+
+def test_each_file_of_tests_is_named_after_what_it_tests():
+    tests = [path.relative_to(TESTS) for path in TESTS.rglob("test_*.py")]
+    inside = [test for test in tests if test.parts[0] not in BESIDE]
+    assert {test.as_posix() for test in inside if not module_of(test)} == WITHOUT_MODULE.keys()
+
+
+@pytest.mark.parametrize("name", ["bem/test_nothing.py", "cli/test_bem.py", "test_mesh.py", "bem/test_solve.py"])
+def test_a_file_of_tests_without_a_module_is_found(name: str):
+    assert module_of(Path(name)) is None
+
+
+@pytest.mark.parametrize("name", ["bem/test_mesh.py", "cli/test_cli.py", "report/test_figures.py", "test_options.py"])
+def test_a_file_of_tests_may_bear_the_name_of_a_module_or_a_room(name: str):
+    assert module_of(Path(name)) is not None

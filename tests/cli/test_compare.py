@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from command_line import PRESS
 from jsonschema import validate
 from typer.testing import CliRunner, Result
 
@@ -141,3 +142,11 @@ def test_a_mistake_in_the_spec_is_reported_with_its_line(block: Path):
     answer = run("compare", block)
     assert answer.exit_code == 2
     assert "block.yaml:6:" in answer.stderr
+
+
+def test_compare_judges_the_references_of_the_case():
+    answer = run("compare", PRESS, "--case", "edge of the kern", "--json", "-")
+    assert answer.exit_code == 0, answer.stderr
+    (level,) = json.loads(answer.stdout)["levels"]
+    assert {score["reference"] for score in level["scores"]} == {"edge of the kern", "press", "table"}
+    assert all(score["judged"] and score["holds"] for score in level["scores"])

@@ -1,0 +1,103 @@
+"""The program as a whole: help, version, encodings, closed pipes, full disks."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from command_line import BLOCK, in_a_process, run
+
+import bemcontact
+from bemcontact import spec
+
+
+@pytest.mark.parametrize("arguments", [(), ("--help",), ("solve", "--help"), ("--version",)])
+def test_help_answers_without_the_numerical_half(arguments: tuple[str, ...]):
+    slow = "numpy", "scipy", "cvxpy", "matplotlib", "yaml"
+    answer = in_a_process(*arguments, code=f"print([m for m in {slow} if m in sys.modules], file=sys.stderr)")
+    assert answer.stderr == "[]\n"
+    assert "bemcontact" in answer.stdout
+
+
+@pytest.mark.parametrize("command", ["check", "solve", "condense", "schema"])
+def test_help_of_each_command_teaches_by_examples(command: str):
+    answer = run(command, "--help")
+    assert answer.exit_code == 0
+    assert "Examples" in answer.stdout
+    assert f"bemcontact {command}" in answer.stdout
+
+
+def test_version_is_stated():
+    answer = run("--version")
+    assert answer.exit_code == 0
+    assert answer.stdout.startswith("bemcontact")
+
+
+def test_a_closed_pipe_is_no_traceback(block: Path):
+    root = str(Path(bemcontact.__file__).parents[1])
+    program = f"{sys.executable} -c 'from bemcontact.cli import main; main()'"
+    for command in ("schema", f"solve {block} --json -", "--help"):
+        answer = subprocess.run(
+            ["bash", "-c", f"{program} {command} | head -c 1"],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=True,
+            env={**os.environ, "PYTHONPATH": root},
+        )
+        assert answer.stderr == ""
+
+
+@pytest.mark.parametrize("command", ["check BLOCK", "solve BLOCK", "solve BLOCK --json -", "schema"])
+def test_a_full_disk_is_one_clear_error(block: Path, command: str):
+    with Path("/dev/full").open("w") as full:
+        answer = in_a_process(*command.replace("BLOCK", str(block)).split(), stdout=full)
+    assert (answer.returncode, answer.stderr) == (2, "error: standard output: No space left on device\n")
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+@pytest.mark.parametrize("command", ["check", "solve"])
+def test_a_terminal_that_lacks_letters_gets_the_others(block: Path, command: str, encoding: str):
+    block.write_text(BLOCK.replace("block on a table", "блок on a table"), encoding="utf-8")
+    answer = in_a_process(command, block, PYTHONIOENCODING=encoding, PYTHONUTF8="0")
+    assert (answer.returncode, answer.stderr) == (0, "")
+    assert answer.stdout.startswith("???? on a table\n")
+
+
+def test_json_is_utf_8_whatever_the_terminal_speaks(block: Path):
+    answer = in_a_process("solve", block, "--json", "-", PYTHONIOENCODING="cp1252", encoding="utf-8")
+    assert json.loads(answer.stdout)["name"] == "block on a table"
+    schema = in_a_process("schema", PYTHONIOENCODING="cp1252", encoding="utf-8")
+    assert json.loads(schema.stdout) == spec.schema()
+
+
+@pytest.mark.parametrize("command", ["check", "solve"])
+def test_no_line_ends_in_blanks(block: Path, command: str):
+    lines = run(command, block).stdout.splitlines()
+    assert lines == [line.rstrip() for line in lines]
+
+
+def test_the_program_runs_as_a_module(block: Path):
+    root = str(Path(bemcontact.__file__).parents[1])
+    for arguments, status in (("--version",), 0), (("check", str(block)), 0), (("solve", "none.yaml"), 2):
+        answer = subprocess.run(
+            [sys.executable, "-m", "bemcontact", *arguments],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+            env={**os.environ, "PYTHONPATH": root},
+        )
+        assert answer.returncode == status
+        assert answer.stdout or answer.stderr
+
+
+def test_no_color_is_respected(block: Path):
+    coloured = in_a_process("check", block, FORCE_COLOR="1", NO_COLOR="")
+    plain = in_a_process("check", block, FORCE_COLOR="1", NO_COLOR="1")
+    colour = re.compile(r"\x1b\[[0-9;]*3[0-9]")
+    assert colour.search(coloured.stdout)
+    assert not colour.search(plain.stdout)

@@ -1,0 +1,215 @@
+"""Common parts of all commands: refusals, outputs, interrupts, exit statuses."""
+
+import os
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from command_line import BLOCK, assert_refused, run
+
+import bemcontact
+from bemcontact.analysis import solve as analysis
+from bemcontact.errors import NotConvexError, SingularSystemError
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+@pytest.mark.parametrize("command", ["check", "solve"])
+def test_figures_are_written_by_their_ending(block: Path, tmp_path: Path, command: str, ending: str):
+    figure = tmp_path / f"figure.{ending}"
+    answer = run(command, block, "--figure", figure)
+    assert answer.exit_code == 0, answer.stderr
+    magic = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
+    assert figure.read_bytes().startswith(magic[ending])
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["block.yaml", figure.name]
+
+
+def test_a_program_that_is_not_convex_ends_with_status_2(block: Path, monkeypatch: pytest.MonkeyPatch):
+    def not_convex(*_: object, **__: object) -> None:
+        raise NotConvexError("smallest eigenvalue -0.5", smallest_eigenvalue=-0.5)
+
+    monkeypatch.setattr(analysis, "solve_with", not_convex)
+    assert_refused(run("solve", block), "smallest eigenvalue -0.5")
+
+
+def test_a_solver_that_breaks_down_ends_with_status_1(block: Path, monkeypatch: pytest.MonkeyPatch):
+    def breaks_down(*_: object, **__: object) -> None:
+        raise SingularSystemError("the system is singular")
+
+    monkeypatch.setattr(analysis, "solve_with", breaks_down)
+    answer = run("solve", block)
+    assert (answer.exit_code, answer.stdout, answer.stderr) == (1, "", "failed: the system is singular\n")
+
+
+def interrupted(*_: object, **__: object) -> None:
+    raise KeyboardInterrupt
+
+
+def test_an_interrupt_states_that_nothing_was_written(block: Path, monkeypatch: pytest.MonkeyPatch):
+    """130 is what shells give to a program that Ctrl-C ended."""
+    monkeypatch.setattr(analysis, "solve_with", interrupted)
+    old = block.with_name("old.json")
+    old.write_text("{}")
+    answer = run("solve", block, "--json", old, "--figure", block.with_name("new.svg"))
+    assert (answer.exit_code, answer.stdout) == (130, "")
+    assert answer.stderr == "interrupted; nothing was written\n"
+    assert sorted(path.name for path in block.parent.iterdir()) == sorted([block.name, old.name])
+
+
+def test_an_interrupt_states_what_was_written_already(block: Path, monkeypatch: pytest.MonkeyPatch):
+    """The boundary is written before the JSON, and a file that was there is replaced."""
+    vtu, answer_file = block.with_name("boundary.vtu"), block.with_name("answer.json")
+    vtu.write_text("old")
+    monkeypatch.setattr(bemcontact.Result, "to_json", interrupted)
+    answer = run("solve", block, "--vtk", vtu, "--json", answer_file)
+    assert (answer.exit_code, answer.stderr) == (130, f"interrupted; {vtu} was written\n")
+    assert "VTKFile" in vtu.read_text()
+    assert not answer_file.exists()
+
+
+def test_an_interrupt_while_the_answer_is_shown_states_no_more(block: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("bemcontact.report.text.result_summary", interrupted)
+    answer = run("solve", block)
+    assert (answer.exit_code, answer.output) == (130, "interrupted\n")
+
+
+BROKEN = {
+    "wrong key": ("young_modulus", "youngs_modulus", "young_modulus"),
+    "wrong type": ("poisson_ratio: 0.3", "poisson_ratio: steel", "poisson_ratio"),
+    "duplicate key": ("  poisson_ratio: 0.3\n", "  poisson_ratio: 0.3\n  poisson_ratio: 0.2\n", "poisson_ratio"),
+    "open loop": ("start: [40, 0]", "start: [40, 0], end: [40, 19]", "open"),
+    "crossing loop": ("start: [40, 20]", "start: [20, -10]", "cross"),
+    "clockwise loop": (BLOCK.split("conditions")[0], BLOCK.split("conditions")[0].replace("[40", "[-40"), "order"),
+    "unknown edge in a condition": ("  top: {pressure", "  topp: {pressure", "top"),
+    "unknown edge in a zone": ("edges: bottom", "edges: botom", "bottom"),
+    "contact edge with a load": ("  top: {pressure: 3}", "  bottom: {pressure: 3}", "bottom"),
+    "ν too large": ("poisson_ratio: 0.3", "poisson_ratio: 0.6", "0.5"),
+    "E zero": ("young_modulus: 210e3", "young_modulus: 0", "young_modulus"),
+    "no elements": (", elements: 4}", "}", "elements"),
+    "fractional elements": ("elements: 4", "elements: 4.5", "4.5"),
+    "pulled off its support": ("pressure: 3", "pressure: -3", "off|away|lift|pull"),
+    "held by nothing": ("left: {displacement: {x: 0}}", "left: {traction: {x: 1}}", "h[oe]ld|resist"),
+    "empty condition": ("{pressure: 3}", "{}", "the condition is empty"),
+    "normal away from the body": ("normal: [0, 1]", "normal: [0, -1]", "normal"),
+    "unknown kind": ("kind: plane", "kind: plain", "plane"),
+    "infinite number": ("pressure: 3", "pressure: .inf", "finite"),
+    "not YAML": ("boundary:\n", "boundary: [\n", "yaml|YAML"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "pattern"), BROKEN.values(), ids=BROKEN)
+def test_a_broken_spec_is_one_clear_error(block: Path, old: str, new: str, pattern: str):
+    text = BLOCK.replace(old, new, 1)
+    assert text != BLOCK
+    block.write_text(text, encoding="utf-8")
+    assert_refused(run("solve", block), pattern)
+
+
+@pytest.mark.parametrize("text", ["", "# nothing\n", "- 1\n", "just words\n", "\t- x: y: z\n", "\x00"])
+def test_a_file_that_is_no_spec_is_one_clear_error(block: Path, text: str):
+    block.write_text(text, encoding="utf-8")
+    assert_refused(run("solve", block), "block.yaml")
+
+
+def test_no_contact_zone_is_one_clear_error(block: Path):
+    block.write_text(BLOCK[: BLOCK.index("contact_zones")], encoding="utf-8")
+    assert_refused(run("solve", block), "contact_zones|contact zone")
+
+
+def test_errors_name_file_line_and_column(block: Path):
+    block.write_text(BLOCK.replace("210e3", "-1"), encoding="utf-8")
+    line = BLOCK[: BLOCK.index("210e3")].count("\n") + 1
+    column = len("  young_modulus: ") + 1
+    assert_refused(run("check", block), re.escape(f"{block}:{line}:{column}: material.young_modulus: "))
+
+
+@pytest.mark.parametrize("setting", ["material.young_modulus=-1", "material.young=1", "no equals sign", "a..b=1"])
+def test_a_bad_setting_is_one_clear_error(block: Path, setting: str):
+    assert_refused(run("solve", block, "--set", setting), "--set")
+
+
+def test_a_missing_file_is_one_clear_error(tmp_path: Path):
+    assert_refused(run("solve", tmp_path / "none.yaml"), "none.yaml")
+    assert_refused(run("solve", tmp_path), re.escape(tmp_path.name))
+
+
+def test_text_of_a_user_is_never_read_as_markup(tmp_path: Path):
+    path = tmp_path / "[red]a[bold].yaml"
+    path.write_text(BLOCK.replace("kind: plane", "kind: '[/bold]plane'"), encoding="utf-8")
+    answer = run("solve", path)
+    assert_refused(answer, re.escape("[/bold]plane"))
+    assert str(path) in answer.stderr
+
+
+def test_names_of_a_user_are_never_read_as_markup(block: Path):
+    block.write_text(BLOCK.replace("block on a table", "'a :smile: $x$ block'").replace("foot", "foot $y_"))
+    for command in ("solve", "check"):
+        answer = run(command, block, "--figure", block.with_suffix(".png"))
+        assert answer.exit_code == 0, answer.stderr
+        assert "a :smile: $x$ block" in answer.stdout
+        assert "foot $y_" in answer.stdout
+
+
+OUTPUTS = [
+    ("solve", "--figure", "f.png"),
+    ("solve", "--json", "f.json"),
+    ("condense", "--out", "f.npz"),
+    ("check", "--figure", "f.svg"),
+]
+
+
+@pytest.mark.parametrize(("command", "option", "name"), OUTPUTS)
+def test_a_file_that_cannot_be_written_is_found_out_before_any_work(
+    block: Path, command: str, option: str, name: str, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(analysis, "solve_with", None)
+    monkeypatch.setattr(analysis, "condense", None)
+    assert_refused(run(command, block, option, block.parent / "nowhere" / name), "nowhere")
+    (block.parent / name).mkdir()
+    assert_refused(run(command, block, option, block.parent / name), "is a directory")
+    (block.parent / name).rmdir()
+    os.mkfifo(block.parent / name)
+    assert_refused(run(command, block, option, block.parent / name), "not a regular file")
+
+
+def test_an_unknown_figure_format_lists_the_known_ones(block: Path):
+    assert_refused(run("solve", block, "--figure", block.with_suffix(".bmp")), r"\.png, \.svg or \.pdf")
+
+
+def test_no_file_overwrites_another(block: Path):
+    assert_refused(run("solve", block, "--json", block), "overwrite the spec")
+    figure = block.with_suffix(".svg")
+    assert_refused(run("solve", block, "--json", figure, "--figure", figure), "overwrite the file of --figure")
+    assert block.read_text(encoding="utf-8") == BLOCK
+
+
+@pytest.mark.parametrize("option", [("--refine", "0"), ("--formulation", "qp9"), ("--weights", "x"), ("--nonsense",)])
+def test_bad_options_end_with_status_2(block: Path, option: tuple[str, ...]):
+    answer = run("solve", block, *option)
+    assert answer.exit_code == 2
+    assert "Traceback" not in answer.stderr
+
+
+@pytest.mark.parametrize("command", ["check", "solve", "condense"])
+@pytest.mark.parametrize(
+    ("old", "new"), [("pressure: 3", "pressure: -3"), ("left: {displacement: {x: 0}}", "left: {traction: {x: 1}}")]
+)
+def test_errors_found_after_reading_name_the_file(block: Path, command: str, old: str, new: str):
+    block.write_text(BLOCK.replace(old, new), encoding="utf-8")
+    options = ("--out", block.with_suffix(".npz")) if command == "condense" else ()
+    answer = run(command, block, *options)
+    assert answer.exit_code == 2
+    assert answer.stderr.startswith(f"error: {block}: ")
+
+
+def test_progress_shows_the_start_and_reaches_the_terminal(block: Path, monkeypatch: pytest.MonkeyPatch):
+    said = []
+
+    @contextmanager
+    def listening() -> Iterator[Callable[[str, str], None]]:
+        yield lambda stage, now: said.append((stage, now))
+
+    monkeypatch.setattr("bemcontact.cli.command.stages", listening)
+    run("solve", block, "--formulation", "qp1", "--starts", 3)
+    assert said == [("solving", ""), *(("solving", f"start {number} of 3") for number in (2, 3, 3))]
