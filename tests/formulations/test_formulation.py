@@ -1,7 +1,5 @@
 """The list of formulations and their options."""
 
-import subprocess
-import sys
 from dataclasses import FrozenInstanceError
 
 import numpy as np
@@ -41,9 +39,3 @@ def test_the_repr_of_a_solution_is_one_line():
 def test_options_do_not_change():
     with pytest.raises(FrozenInstanceError):
         SolveOptions().polish = False  # pyright: ignore[reportAttributeAccessIssue]
-
-
-def test_importing_the_formulations_does_not_import_cvxpy():
-    """Half a second that only QP3 has to pay."""
-    code = "import sys, bemcontact.formulations; sys.exit('cvxpy' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
