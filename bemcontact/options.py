@@ -163,8 +163,8 @@ class SolveOptions:
     """
 
     formulation: FormulationName = _option(
-        FormulationName.QP3,
-        "Statement of the contact problem: qp3 (convex program), complementarity (direct solver), or qp1 and qp2 "
+        FormulationName.COMPLEMENTARITY,
+        "Statement of the contact problem: complementarity (direct solver), qp3 (convex program), or qp1 and qp2 "
         "(local solver over pressures and displacements).",
         noun="formulation",
     )
@@ -240,7 +240,7 @@ class SolveOptions:
     @classmethod
     def of(
         cls,
-        formulation: FormulationName | str = FormulationName.QP3,
+        formulation: FormulationName | str = FormulationName.COMPLEMENTARITY,
         weights: Weights | str = Weights.TRIBUTARY,
         **options: Unpack[SolveKeywords],
     ) -> "SolveOptions":
@@ -286,7 +286,11 @@ class SolveOptions:
             if is_set:
                 stated = [name for name in ("starts", "seed") if option == "start" and getattr(self, name) is not None]
                 given = stated[0] if stated else option
-                raise OptionError(f"{self.formulation} has no use for the option '{given}'; {takes}leave it out")
+                owners = ", ".join(name for name, names in USES.items() if option in names)
+                raise OptionError(
+                    f"{self.formulation} has no use for the option '{given}'; {takes}leave it out, or name a "
+                    f"formulation that takes it: {owners}"
+                )
 
 
 class ComparisonKeywords(TypedDict, total=False):

@@ -44,7 +44,7 @@ def test_keywords_are_the_fields_of_the_options_with_their_types(keywords, optio
         (bemcontact.random_starts, {"polish": True}, "there is no option 'polish'; choose from penalty, rows"),
         (bemcontact.random_starts, {"start": "null"}, "there is no option 'start'"),
         (bemcontact.solve, {"polish": "no"}, "polish must be True or False; found 'no'"),
-        (bemcontact.solve, {"starts": 3}, "qp3 has no use for the option 'starts'"),
+        (bemcontact.solve, {"starts": 3}, "complementarity has no use for the option 'starts'"),
     ],
 )
 def test_an_option_that_does_not_exist_or_has_no_use_is_refused_by_its_name(call, options, words):

@@ -77,7 +77,7 @@ class CaseResults(Recorded):
 
 def solve_cases(
     problem: Problem,
-    formulation: FormulationName | str = FormulationName.QP3,
+    formulation: FormulationName | str = FormulationName.COMPLEMENTARITY,
     weights: Weights | str = Weights.TRIBUTARY,
     **options: Unpack[SolveKeywords],
 ) -> CaseResults:

@@ -106,7 +106,7 @@ def ensure_acting(problem: Problem | CondensedContact) -> None:
 
 def solve(
     problem: Problem | CondensedContact,
-    formulation: FormulationName | str = FormulationName.QP3,
+    formulation: FormulationName | str = FormulationName.COMPLEMENTARITY,
     weights: Weights | str = Weights.TRIBUTARY,
     *,
     progress: Callable[[int], object] | None = None,
@@ -117,8 +117,8 @@ def solve(
     Parameters
     ----------
     problem : Problem or CondensedContact
-    formulation : "qp3", "complementarity", "qp1" or "qp2"
-    weights : of the objective, a `Weights` or its name
+    formulation : "complementarity", the direct solver, or "qp3", "qp1" or "qp2"
+    weights : of the objective of QP1, QP2 and QP3, a `Weights` or its name
     progress : called after the search from each of several random starts with the number of those done
     options : penalty, rows, equilibrium, start, seed, starts, max_iterations, polish; `bemcontact.SolveOptions` says
         what each means, and its default

@@ -10,7 +10,6 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
-from clarabel import DefaultSettings, DefaultSolver  # pyright: ignore (has no stubs)
 from numpy.typing import NDArray
 from scipy.sparse import csc_array, diags_array, triu
 
@@ -74,6 +73,7 @@ def minimize(problem: Any, max_iterations: int | None = None, *, equilibrate: bo
 
 def _solve(data: dict[str, Any], tolerance: float, max_iterations: int) -> tuple[Any, Array]:
     """Clarabel's solution of the cone program of cvxpy, and its progress as of `minimize`."""
+    from clarabel import DefaultSettings, DefaultSolver  # pyright: ignore (has no stubs)
     from cvxpy.reductions.solvers.conic_solvers.clarabel_conif import dims_to_solver_cones
 
     settings = DefaultSettings()

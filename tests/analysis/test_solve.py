@@ -1,6 +1,8 @@
 """The main job on real problems: the paper's cylinder, invariances, agreement of the formulations."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -257,7 +259,7 @@ def test_saved_problem_gives_the_same(cylinder, tmp_path):
 
 def test_result_as_numbers(cylinder):
     """What programs read: every key that is promised, numbers finite, lists of one length."""
-    data = bemcontact.solve(cylinder).to_dict()
+    data = bemcontact.solve(cylinder, "qp3").to_dict()
     promised = (
         "name formulation status certified units dof contact_nodes free_rigid_motions nodes normals zone pressure gap "
         "normal_displacement resultant intervals peak objective residuals certificate boundary seconds version"
@@ -296,7 +298,7 @@ def test_notes_say_what_the_certificate_does_not(cylinder):
 def test_results_are_reported_in_a_line(cylinder):
     result = bemcontact.solve(cylinder)
     peak = f"{result.footprint.peak.pressure:.6g}"
-    assert repr(result) == f"<Result of 'cylinder on a plane' by qp3: certified, peak pressure {peak}>"
+    assert repr(result) == f"<Result of 'cylinder on a plane' by complementarity: certified, peak pressure {peak}>"
     assert repr(result.contact) == "<CondensedContact 'cylinder on a plane': 45 points in foot; 1 free motions>"
 
 
@@ -333,8 +335,7 @@ def test_wide_gaps_do_not_drown_the_pressure(formulation):
 
 def test_polish_leaves_no_dust_of_the_solver():
     """A wheel laid far into a groove, three free motions: p is exactly zero off two contacts, and no note is wrong."""
-    result = bemcontact.solve(bemcontact.loads(WHEEL))
-    direct = bemcontact.solve(bemcontact.loads(WHEEL), "complementarity")
+    result, direct = bemcontact.solve(bemcontact.loads(WHEEL), "qp3"), bemcontact.solve(bemcontact.loads(WHEEL))
     assert result.certified
     assert result.solution.polished
     assert len(result.footprint.intervals) == 2
@@ -342,3 +343,28 @@ def test_polish_leaves_no_dust_of_the_solver():
     assert all(note.startswith("pressure acts on only 4 contact points") for note in result.notes)  # of either contact
     # the weight 2e4 π and a tenth of it sideways, on the mesh's own area: 90 parabolas, error below 1e-5
     assert result.footprint.resultant.force == pytest.approx([-2e3 * np.pi, 2e4 * np.pi], rel=1e-5)
+
+
+def test_the_default_imports_no_optimization_package():
+    """Each answer but QP3 and models, on a fitted mesh too: cvxpy takes half a second, and nothing here needs it."""
+    code = """
+import sys
+import bemcontact
+problem = bemcontact.load("models/gallery/three_zones.yaml")
+assert bemcontact.solve(problem).certified
+bemcontact.sensitivities(problem)
+cases = bemcontact.load("models/gallery/roller_in_v_block.yaml")
+assert bemcontact.solve_cases(cases).certified
+fitted = bemcontact.load("models/cylinder_on_plane.yaml").with_value("mesh.fit_contact_edges", True)
+assert bemcontact.solve(fitted).certified
+print([name for name in ("cvxpy", "clarabel", "osqp", "scs", "highspy", "quadprog") if name in sys.modules])
+"""
+    answer = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert answer.stdout == "[]\n"
+
+
+@pytest.mark.parametrize(("formulation", "solver"), [(None, "primal-dual active set"), ("qp3", "Clarabel")])
+def test_the_direct_solver_is_the_default(cylinder, formulation, solver):
+    result = bemcontact.solve(cylinder) if formulation is None else bemcontact.solve(cylinder, formulation)
+    assert result.solution.solver == solver
+    assert result.solution.formulation == (formulation or "complementarity")

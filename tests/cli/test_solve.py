@@ -151,12 +151,12 @@ def test_a_file_that_is_no_start_is_refused(block: Path, tmp_path: Path, content
 @pytest.mark.parametrize(
     ("options", "pattern"),
     [
-        (("--penalty", "2"), "qp3 has no use for the option 'penalty'"),
+        (("--penalty", "2"), "complementarity has no use for the option 'penalty'"),
         (("--formulation", "qp1", "--penalty", "2"), "qp1 has no use for the option 'penalty'"),
         (("--formulation", "qp1", "--equilibrium", "penalty"), "no use for the option 'equilibrium'"),
         (("--formulation", "complementarity", "--weights", "consistent"), "no use for the option 'weights'"),
-        (("--start", "random"), "qp3 has no use for the option 'start'"),
-        (("--starts", "4"), "qp3 has no use for the option 'starts'"),
+        (("--start", "random"), "complementarity has no use for the option 'start'"),
+        (("--starts", "4"), "complementarity has no use for the option 'starts'"),
         (("--formulation", "qp1", "--starts", "4", "--start", "null"), "leave out the other start"),
         (("--formulation", "qp1", "--seed", "4", "--start", "START"), "leave out the other start"),
         (("--formulation", "qp2", "--penalty", "0"), "from 1e-08 to"),
