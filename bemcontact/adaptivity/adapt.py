@@ -1,0 +1,360 @@
+"""A mesh that nobody makes: solve, bisect, compare, and refine until the error bars are below the accuracy asked."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+import numpy as np
+
+from bemcontact.adaptivity.error_bars import ErrorBar, contact_beside, error_bars, near_singularities
+from bemcontact.adaptivity.fields import Answer, Difference, Solved, norm_squared, solved
+from bemcontact.adaptivity.first_sizes import Outline, outline, surface_sizes
+from bemcontact.adaptivity.singularities import Place, Singularity, Watch, elements_at
+from bemcontact.adaptivity.sizes import Layers, Limit, Loop
+from bemcontact.adaptivity.zone_runs import ZoneRun
+from bemcontact.arrays import Array
+from bemcontact.bem import reference_element
+from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.rigid_surface import DeflectedContour
+
+LAYERS = 5.0
+"""Layers of elements in contact beside an end of contact, at first."""
+MORE_LAYERS = 1.25
+"""Factor of the layers where the end of contact is what limits."""
+END_SHARE = 0.1
+"""Part of the change of the pressure that the layers of an end may have."""
+BESIDE_END = 0.25
+"""Part of the width of the layers in which the change of pressure belongs to the end."""
+NARROW = 1 / 8
+"""Element over contact that fewer points feel than one element has."""
+REFITS, NARROW_REFITS = 5, 12
+"""Largest number of meshes fitted to the ends of contact in one pass, and while contact is narrow."""
+ENERGY_SHARE, PRESSURE_SHARE = 0.8, 0.5
+"""Parts of the changes of energy and pressure whose elements are bisected."""
+TIP = 1 / 8
+"""Factor of the element at an infinite pressure."""
+BETWEEN = 17
+"""Points of an open element where the gap is looked at."""
+PENETRATION = 1e-3
+"""Penetration between nodes, over the largest displacement, that a mesh must resolve."""
+SPOT = 1 / 4
+"""Factor of an element under which something penetrates between nodes."""
+MOST_PASSES = 14
+MOST_UNKNOWNS = 4000
+"""Largest number of unknowns of the finer mesh."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _End:
+    """An end of contact on a loop."""
+
+    loop: int
+    position: float
+    after: bool
+    width: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Adapted:
+    """A problem on the mesh that was found for it, with its error bars."""
+
+    problem: Problem
+    fine: Solved
+    passes: int
+    solves: int
+    bars: tuple[tuple[ErrorBar, ...], ...]
+    met: bool
+    end: str
+
+
+@dataclass(kw_only=True)
+class _Loop:
+    """State of the search for a mesh."""
+
+    problem: Problem
+    accuracy: float
+    progress: Callable[[str], object]
+    outline: Outline
+    sources: list[list[Limit]]
+    marks: list[list[float]]
+    corners: list[Place] = field(default_factory=list)
+    layers: list[tuple[_End, float]] = field(default_factory=list)
+    spots: list[tuple[int, Limit]] = field(default_factory=list)
+    watch: Watch = field(default_factory=Watch)
+    solves: list[int] = field(default_factory=list)
+
+    def mesh(self, refine: int) -> Problem:
+        """The problem with elements as the sources ask, cut into equal parts."""
+        ends: dict[str, tuple[float, ...]] = {}
+        for number, loop in enumerate(self.outline.loops):
+            own = [(end, count) for end, count in self.layers if end.loop == number]
+            layers = [Layers(position=e.position, width=e.width, count=n, after=e.after) for e, n in own]
+            narrow = [limit for at, limit in self.spots if at == number]
+            marks = [*self.marks[number], *(end.position for end, _ in own)]
+            ends |= loop.element_ends(np.array([*self.sources[number], *narrow]), layers, marks)
+        return _cut(self.problem.with_element_ends(ends), refine)
+
+    def solve(self, refine: int) -> Solved:
+        answer = solved(self.mesh(refine))
+        self.solves.append(answer.degrees_of_freedom)
+        return answer
+
+    def fitted(self) -> Solved:
+        """Solve on meshes fitted to the ends of contact until these rest."""
+        coarse = self.solve(1)
+        for count in range(NARROW_REFITS):
+            ends, spots = self._found(coarse)
+            between = [*self._between(coarse)]
+            resting = self._resting(ends) and not between
+            if resting and not spots:
+                return coarse
+            if count >= REFITS and not spots and not between:
+                return coarse
+            self.layers = self._with_counts(ends)
+            self.spots = spots
+            for number, limit in between:
+                self.sources[number].append(limit)
+            coarse = self.solve(1)
+        return coarse
+
+    def _found(self, answer: Solved) -> tuple[list[_End], list[tuple[int, Limit]]]:
+        """Ends of contact under all load cases, and contact that is narrower than an element."""
+        ends: list[_End] = []
+        narrow: list[tuple[int, Limit]] = []
+        for case in answer.answers:
+            for run in answer.runs:
+                loop, start = self._start(run)
+                for item in case.stretches[run.number]:
+                    width = item.end - item.start
+                    if item.narrow:
+                        limit = Limit(low=start + item.start, high=start + item.end, size=NARROW * width)
+                        narrow.append((loop, limit))
+                        continue
+                    for position, free, after in (
+                        (item.start, item.start_free, True), (item.end, item.end_free, False),
+                    ):  # fmt: skip
+                        if free:
+                            at = (start + position) % self.outline.loops[loop].length
+                            layer = min(width / 2, self.outline.thickness_at(loop, at))
+                            ends.append(_End(loop=loop, position=at, after=after, width=layer))
+        kept: list[_End] = []
+        for end in ends:
+            first = end.width / LAYERS**3
+            joints = self.outline.loops[end.loop].joints
+            nearest = float(joints[np.argmin(np.abs(joints - end.position))])
+            if abs(nearest - end.position) < first / 2:
+                end = replace(end, position=nearest)
+            if not any(self._same(end, other, first) for other in kept):
+                kept.append(end)
+        return kept, narrow
+
+    def _start(self, run: ZoneRun) -> tuple[int, float]:
+        """Loop of a run, and position of its start there."""
+        for number, loop in enumerate(self.outline.loops):
+            if run.edges[0].name in loop.start_of:
+                return number, loop.start_of[run.edges[0].name]
+        raise AssertionError(run.edges[0].name)
+
+    def _same(self, end: _End, other: _End, near: float) -> bool:
+        """Whether two ends of contact are of one kind and nearer than a length."""
+        if end.loop != other.loop or end.after != other.after:
+            return False
+        away = abs(end.position - other.position)
+        return min(away, self.outline.loops[end.loop].length - away) <= near
+
+    def _with_counts(self, ends: Sequence[_End]) -> list[tuple[_End, float]]:
+        """Give each end the layers that it had."""
+        return [(end, self._count(end)) for end in ends]
+
+    def _count(self, end: _End) -> float:
+        alike = [(abs(other.position - end.position), n) for other, n in self.layers if self._same(end, other, end.width)]
+        return min(alike)[1] if alike else LAYERS
+
+    def _resting(self, ends: Sequence[_End]) -> bool:
+        """Whether the ends of contact are within the first element of those that the mesh is fitted to."""
+        if len(ends) != len(self.layers):
+            return False
+        for end in ends:
+            near = [n for other, n in self.layers if self._same(end, other, end.width * (n / 1.5) ** -3)]
+            if not near:
+                return False
+        return True
+
+    def _between(self, answer: Solved) -> Iterator[tuple[int, Limit]]:
+        """Limits for open elements through which a surface passes between the nodes."""
+        for case in answer.answers:
+            for element, depth in penetrations(answer, case):
+                name = answer.mesh.edge_names[answer.mesh.edge[element]]
+                for number, loop in enumerate(self.outline.loops):
+                    if name in loop.start_of:
+                        low, high = _stretch(answer, element)
+                        start, length = loop.start_of[name], answer.body.problem.edge(name).length
+                        size = SPOT * (high - low) * length
+                        yield number, Limit(low=start + low * length, high=start + high * length, size=size)
+
+    def refine(self, differences: Sequence[Difference], singular: Sequence[Sequence[Singularity]]) -> bool:
+        """Limit the size of elements where bisecting them changes most; whether the mesh will grow."""
+        coarse = differences[0].coarse
+        m = len(coarse.mesh.elements)
+        wanted = np.zeros(m, bool)
+        factor = np.full(m, 0.5)
+        for difference, its in zip(differences, singular, strict=True):
+            one, two = difference.pair
+            wanted |= _largest(difference.energy, ENERGY_SHARE)
+            change = difference.pressure_squared.copy()
+            norm = norm_squared(coarse, one.pressure)
+            for zone in range(len(coarse.body.problem.contact_zones)):
+                own = coarse.zone_of == zone
+                if (total := norm[own].sum()) > 0:
+                    change[own] /= total
+            change[near_singularities(coarse, one, its)] = 0.0
+            total = change.sum()
+            beside = self._beside_ends(coarse)
+            for number, elements in enumerate(beside):
+                if total > 0 and change[elements].sum() > END_SHARE * total:
+                    end, count = self.layers[number]
+                    self.layers[number] = end, count * MORE_LAYERS
+                change[elements] = 0.0
+            wanted |= _largest(change, PRESSURE_SHARE)
+            for item in its:
+                if not item.like_a_kink:
+                    tip = elements_at(coarse, coarse.runs[item.place.run], item.place.position)
+                    wanted[tip], factor[tip] = True, TIP
+        for element in np.flatnonzero(wanted):
+            self._limit(coarse, int(element), float(factor[element]))
+        self.sources = [_useful(*pair) for pair in zip(self.outline.loops, self.sources, strict=True)]
+        return bool(wanted.any())
+
+    def _limit(self, answer: Solved, element: int, factor: float) -> None:
+        """Limit the size where an element is."""
+        name = answer.mesh.edge_names[answer.mesh.edge[element]]
+        low, high = _stretch(answer, element)
+        length = answer.body.problem.edge(name).length
+        for number, loop in enumerate(self.outline.loops):
+            if name in loop.start_of:
+                start = loop.start_of[name]
+                size = factor * (high - low) * length
+                self.sources[number].append(Limit(low=start + low * length, high=start + high * length, size=size))
+
+    def _beside_ends(self, answer: Solved) -> list[Array]:
+        """Elements whose change of pressure belongs to each end of contact."""
+        middles, loops = _middles(answer, self.outline)
+        return [
+            np.flatnonzero(
+                (loops == end.loop)
+                & (_around(middles - end.position, self.outline.loops[end.loop].length) <= BESIDE_END * end.width)
+            )
+            for end, _ in self.layers
+        ]
+
+
+def _useful(loop: Loop, limits: Sequence[Limit]) -> list[Limit]:
+    """The limits without those that others make idle."""
+    return [Limit(*row) for row in loop.without_idle(np.array(limits)).tolist()]
+
+
+def _cut(problem: Problem, refine: int) -> Problem:
+    mesh = problem.mesh.model_copy(update={"refine": refine})
+    return problem.model_copy(update={"mesh": mesh})
+
+
+def _around(away: Array, length: float) -> Array:
+    away = np.mod(np.abs(away), length)
+    return np.minimum(away, length - away)
+
+
+def _stretch(answer: Solved, element: int) -> tuple[float, float]:
+    """Fractions of its edge where an element begins and ends."""
+    mesh = answer.mesh
+    first = int(np.flatnonzero(mesh.edge == mesh.edge[element])[0])
+    edge = answer.body.problem.edge(mesh.edge_names[mesh.edge[element]])
+    ends = edge.breakpoints(answer.body.problem.mesh.refine)
+    return float(ends[element - first]), float(ends[element - first + 1])
+
+
+def _middles(answer: Solved, outline: Outline) -> tuple[Array, Array]:
+    """Position of the middle of each element on its loop, and the number of the loop."""
+    positions, loops = [], []
+    for number, loop in enumerate(outline.loops):
+        for edge in loop.edges:
+            ends = answer.body.problem.edge(edge.name).breakpoints(answer.body.problem.mesh.refine)
+            positions.append(loop.start_of[edge.name] + edge.length * (ends[:-1] + ends[1:]) / 2)
+            loops.append(np.full(len(ends) - 1, number))
+    return np.concatenate(positions), np.concatenate(loops)
+
+
+def _largest(values: Array, share: float) -> Array:
+    """Fewest elements that have a share of the sum."""
+    order = np.argsort(-values)
+    total = np.cumsum(values[order])
+    marked = np.zeros(len(values), bool)
+    if len(values) and total[-1] > 0:
+        marked[order[: int(np.searchsorted(total, share * total[-1])) + 1]] = True
+    return marked & (values > 0)
+
+
+def penetrations(answer: Solved, case: Answer) -> Iterator[tuple[int, float]]:
+    """Open elements through which a surface passes between the nodes, with the depth [L]."""
+    body, points = answer.body, answer.body.points
+    contact = case.condensation.contact
+    total = contact.initial_gap + case.solution.displacement
+    own = np.zeros((len(answer.mesh.elements), 3))
+    own[points.element, points.local] = total[points.point]
+    size = float(np.hypot(*np.moveaxis(case.displacement, 2, 0)).max())
+    xi = np.linspace(-1, 1, BETWEEN)[1:-1]
+    shapes = reference_element.values(xi)
+    nodes = answer.mesh.nodes[answer.mesh.elements]
+    for number, zone in enumerate(body.problem.contact_zones.values()):
+        if isinstance(zone.surface, DeflectedContour):
+            continue
+        elements = np.flatnonzero((answer.zone_of == number) & ~(case.pressure > 0).any(axis=1))
+        if not len(elements):
+            continue
+        at_nodes = zone.surface.closest(nodes[elements].reshape(-1, 2)).gap.reshape(-1, 3)
+        moved = own[elements] - at_nodes
+        inside = zone.surface.closest((shapes @ nodes[elements]).reshape(-1, 2)).gap.reshape(len(elements), -1)
+        gap = inside + moved @ shapes.T
+        for element, least in zip(elements.tolist(), gap.min(axis=1).tolist(), strict=True):
+            if least < -PENETRATION * size:
+                yield element, -least
+
+
+def adapted(problem: Problem, accuracy: float, progress: Callable[[str], object] | None = None) -> Adapted:
+    """Find a mesh on which all error bars are below an accuracy, and solve on it."""
+    shape = outline(problem)
+    limits, marks = surface_sizes(problem, shape)
+    search = _Loop(
+        problem=problem, accuracy=accuracy, progress=progress or (lambda _: None), outline=shape,
+        sources=[_useful(loop, [*shape.sizes(i), *limits.get(i, [])]) for i, loop in enumerate(shape.loops)],
+        marks=[marks.get(i, []) for i in range(len(shape.loops))],
+    )  # fmt: skip
+    best: Adapted | None = None
+    end = "passes"
+    for number in range(1, MOST_PASSES + 1):
+        try:
+            coarse = search.fitted()
+            if 2 * coarse.degrees_of_freedom > MOST_UNKNOWNS:
+                end = f"N would exceed {MOST_UNKNOWNS}"
+                break
+            fine = search.solve(2)
+        except (ProblemError, SingularSystemError) as error:
+            if best is None:
+                raise
+            end = str(error)
+            break
+        differences = [Difference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
+        singular = [search.watch.look(item, search.corners) for item in differences]
+        bars = tuple(error_bars(item, its) for item, its in zip(differences, singular, strict=True))
+        worst = max((bar.bar if bar.bar is not None else np.inf) for case in bars for bar in case
+                    if bar.promised and bar.value is not None and not (bar.quantity == "force" and bar.value == 0))
+        met = bool(worst <= accuracy)
+        best = Adapted(problem=fine.body.problem, fine=fine, passes=number, solves=len(search.solves), bars=bars,
+                       met=met, end=f"{worst:.3g}")
+        search.progress(f"pass {number}: {fine.degrees_of_freedom} unknowns, error at most {worst:.2g}")
+        if met:
+            return best
+        search.layers = search._with_counts(search._found(fine)[0])
+        search.refine(differences, singular)
+    assert best is not None
+    return replace(best, end=end + ", " + best.end)

@@ -1,0 +1,206 @@
+"""The answer on one mesh: pressure, traction and displacement by element, and the stretches of contact."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import groupby
+
+import numpy as np
+
+from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun, contact_stretches, zone_runs
+from bemcontact.arrays import Array, IntArray
+from bemcontact.assessment.footprint import footprint
+from bemcontact.bem import reference_element
+from bemcontact.bem.body import Body, body_of
+from bemcontact.bem.condense import Condensation, boundary_state
+from bemcontact.bem.condense import condense as condense_body
+from bemcontact.bem.mesh import Mesh
+from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.errors import ProblemError
+from bemcontact.formulations import complementarity
+from bemcontact.problem.problem import Problem
+
+SLIT = 1e-3
+"""Open length between two stretches of contact, over the shorter of these, that is not taken for an opening."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Answer:
+    """The contact state under one load case on one mesh.
+
+    Parameters
+    ----------
+    condensation : with the load case that acts
+    solution : of its contact problem
+    stretches : stretches of contact by run; two with a slit between them are one
+    pressure : (m, 3) [p] by element and local node, zero outside the zones
+    traction : (m, 3, 2) [p]
+    displacement : (m, 3, 2) less the motions that nothing determines [L]
+    """
+
+    condensation: Condensation
+    solution: ContactSolution
+    stretches: Mapping[int, tuple[Stretch, ...]]
+    pressure: Array
+    traction: Array
+    displacement: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Solved:
+    """One mesh: the contact state under each load case, and the runs of the zones."""
+
+    body: Body
+    runs: tuple[ZoneRun, ...]
+    answers: tuple[Answer, ...]
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh."""
+        return self.body.mesh
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Number of unknowns, two for each node."""
+        return self.mesh.degrees_of_freedom
+
+    @cached_property
+    def zone_of(self) -> IntArray:
+        """Number (m,) of the zone of each element, -1 for none."""
+        zone = np.full(len(self.mesh.elements), -1)
+        points = self.body.points
+        zone[points.element] = points.zone[points.point]
+        return zone
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights (m, 3) of Gauss-Legendre integration along each element [L]."""
+        xi, weights = reference_element.gauss_legendre(3)
+        tangents = self.mesh.tangents_at(xi)
+        return np.hypot(tangents[..., 0], tangents[..., 1]) * weights
+
+
+def solved(problem: Problem) -> Solved:
+    """Solve a problem on its mesh, under the case that acts or under each one; `ProblemError` where there is no answer."""
+    body = body_of(problem)
+    condensation = condense_body(body)
+    runs = tuple(zone_runs(body))
+    names = (None,) if problem.case is not None or not problem.load_cases else problem.case_names
+    answers = tuple(_answer(condensation.acting(name), runs) for name in names)
+    return Solved(body=body, runs=runs, answers=answers)
+
+
+def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> Answer:
+    """Solve the contact problem of one load case."""
+    contact, body = condensation.contact, condensation.body
+    solution = complementarity.solve(contact)
+    if solution.status is not Status.SOLVED:
+        raise ProblemError(f"no contact state was found on a mesh: {solution.status.words}")
+    intervals = footprint(contact, solution).intervals
+    state = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
+    points = body.points
+    pressure = np.zeros((len(body.mesh.elements), 3))
+    pressure[points.element, points.local] = solution.pressure[points.point]
+    return Answer(
+        condensation=condensation,
+        solution=solution,
+        stretches={
+            run.number: _without_slits(contact_stretches(run, contact, solution, intervals)) for run in runs
+        },
+        pressure=pressure,
+        traction=state.traction,
+        displacement=_less_undetermined(body, state.displacement),
+    )
+
+
+def _less_undetermined(body: Body, displacement: Array) -> Array:
+    """Displacement (m, 3, 2) less its part in the free motions that neither gaps nor loads determine."""
+    motions = body.unseen.body
+    if not len(motions):
+        return displacement
+    mesh = body.mesh
+    root = np.sqrt(mesh.tributary)[..., None]
+    columns = (root[..., None] * motions.displacement(mesh.nodes[mesh.elements])).reshape(-1, len(motions))
+    amount = np.linalg.lstsq(columns, (root * displacement).ravel(), rcond=None)[0]
+    return displacement - motions.displacement(mesh.nodes[mesh.elements]) @ amount
+
+
+def _without_slits(stretches: Sequence[Stretch]) -> tuple[Stretch, ...]:
+    """Join stretches of contact between which almost nothing is open."""
+    joined: list[Stretch] = []
+    for item in stretches:
+        if joined:
+            last = joined[-1]
+            if item.start - last.end <= SLIT * min(item.end - item.start, last.end - last.start):
+                joined[-1] = replace(last, end=item.end, end_free=item.end_free, narrow=False)
+                continue
+        joined.append(item)
+    return tuple(joined)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Difference:
+    """What bisecting every element changes: `fine` is on the halves of the elements of `coarse`; one load case.
+
+    Parameters
+    ----------
+    coarse, fine : one mesh, and the same with every element in two
+    number : of the load case
+    """
+
+    coarse: Solved
+    fine: Solved
+    number: int
+
+    @property
+    def pair(self) -> tuple[Answer, Answer]:
+        """Coarse and fine answer."""
+        return self.coarse.answers[self.number], self.fine.answers[self.number]
+
+    @cached_property
+    def pressure(self) -> Array:
+        """Change (2 m, 3) of the pressure at Gauss points of the halves [p]."""
+        one, two = self.pair
+        return _at_gauss(two.pressure - halves(one.pressure))
+
+    @cached_property
+    def energy(self) -> Array:
+        """Change (m,) of the energy of each coarse element, h/G ∫|Δt|² + G h ∫|Δu'|², per thickness [p L³]."""
+        one, two = self.pair
+        mesh, weights = self.fine.mesh, self.fine.weights
+        shear = self.fine.body.problem.material.shear_modulus
+        length = weights.sum(axis=1)
+        traction = _at_gauss(two.traction - halves(one.traction))
+        xi, _ = reference_element.gauss_legendre(3)
+        slope = reference_element.derivatives(xi) @ (two.displacement - halves(one.displacement))
+        tangents = mesh.tangents_at(xi)
+        rate = slope / np.hypot(tangents[..., 0], tangents[..., 1])[..., None]
+        both = (traction**2).sum(axis=2) / shear + shear * (rate**2).sum(axis=2)
+        return _by_pairs(2 * length * (weights * both).sum(axis=1))
+
+    @cached_property
+    def pressure_squared(self) -> Array:
+        """∫Δp² (m,) of each coarse element [p² L]."""
+        return _by_pairs((self.fine.weights * self.pressure**2).sum(axis=1))
+
+
+def norm_squared(solved: Solved, values: Array) -> Array:
+    """∫ values² ds (m,) of nodal values (m, 3) on each element."""
+    return (solved.weights * _at_gauss(values) ** 2).sum(axis=1)
+
+
+def halves(values: Array) -> Array:
+    """Nodal values (2 m, 3, …) on the halves of elements from those (m, 3, …) on the elements."""
+    first = reference_element.values(np.array([-1.0, -0.5, 0.0])) @ values.reshape(len(values), 3, -1)
+    second = reference_element.values(np.array([0.0, 0.5, 1.0])) @ values.reshape(len(values), 3, -1)
+    return np.stack([first, second], axis=1).reshape(2 * len(values), *values.shape[1:])
+
+
+def _at_gauss(values: Array) -> Array:
+    """Values (m, 3, …) at three Gauss points from those at the nodes."""
+    xi, _ = reference_element.gauss_legendre(3)
+    return (reference_element.values(xi) @ values.reshape(len(values), 3, -1)).reshape(values.shape)
+
+
+def _by_pairs(values: Array) -> Array:
+    return values.reshape(-1, 2).sum(axis=1)

@@ -1,0 +1,168 @@
+"""Element sizes from the geometry alone: curvature, edges, corners, thickness, and where the surface comes near."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from math import pi
+
+import numpy as np
+
+from bemcontact.adaptivity.sizes import Limit, Loop
+from bemcontact.arrays import Array
+from bemcontact.problem.curves import Edge
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.rigid_surface import DeflectedContour, Polyline, Shape
+
+TURN = pi / 6
+"""Angle [rad] by which an element may turn."""
+PART = 0.5
+"""Largest element over its edge."""
+CORNER = 0.2
+"""Angle [rad] by which the boundary turns from which a joint of two edges is a corner."""
+OPPOSED = -0.3
+"""Cosine of the angle between two outward normals below which two parts of the boundary face each other."""
+ACROSS = 0.5
+"""Cosine of the largest angle to the inward normal under which a part of the boundary faces another one."""
+SAMPLES = 800
+"""Samples of the whole boundary, and of an edge under a rigid surface."""
+LEAST_SAMPLES = 24
+"""Samples of an edge."""
+NARROW = 0.01
+"""Least element over its edge where a surface comes near."""
+AT_CORNER = 0.1
+"""Element at a corner of the rigid surface over its edge."""
+FOCUS = 5
+"""Times that the samples are made finer about a least gap, each by a tenth."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Outline:
+    """All loops of a body, sampled, with the thickness of the body at each sample."""
+
+    loops: tuple[Loop, ...]
+
+    @cached_property
+    def _samples(self) -> list[tuple[int, Edge, Array]]:
+        """Number of the loop, edge, and fractions of its samples."""
+        total = sum(loop.length for loop in self.loops)
+        return [
+            (number, edge, (np.arange(count) + 0.5) / count)
+            for number, loop in enumerate(self.loops)
+            for edge in loop.edges
+            for count in [max(LEAST_SAMPLES, round(SAMPLES * edge.length / total))]
+        ]
+
+    @cached_property
+    def positions(self) -> tuple[Array, ...]:
+        """Positions of the samples on each loop [L]."""
+        return tuple(
+            np.concatenate(
+                [loop.start_of[edge.name] + at * edge.length for i, edge, at in self._samples if i == number]
+            )
+            for number, loop in enumerate(self.loops)
+        )
+
+    @cached_property
+    def thickness(self) -> tuple[Array, ...]:
+        """Distance [L] from each sample through the body to the boundary that faces it; infinite without one."""
+        points = np.vstack([edge.points(at) for _, edge, at in self._samples])
+        normals = np.vstack([edge.normals(at) for _, edge, at in self._samples])
+        away = points[None] - points[:, None]
+        distance = np.hypot(away[..., 0], away[..., 1])
+        inward = -np.einsum("ijx,ix->ij", away, normals)
+        faces = (inward >= ACROSS * distance) & (normals @ normals.T < OPPOSED) & (distance > 0)
+        least = np.where(faces, distance, np.inf).min(axis=1)
+        return tuple(np.split(least, np.cumsum([len(own) for own in self.positions])[:-1]))
+
+    def thickness_at(self, loop: int, position: float) -> float:
+        """Thickness [L] at a position of a loop."""
+        away = np.abs(self.positions[loop] - position % self.loops[loop].length)
+        return float(self.thickness[loop][np.argmin(away)])
+
+    def sizes(self, loop: int) -> Iterator[Limit]:
+        """Limits of the element size along a loop that do not depend on what it touches."""
+        own = self.loops[loop]
+        for edge, start, stop in zip(own.edges, own.joints[:-1], own.joints[1:], strict=True):
+            yield Limit(low=start, high=stop, size=PART * edge.length)
+            yield from _curvature(edge, start)
+        for position, thickness in zip(self.positions[loop], self.thickness[loop], strict=True):
+            if np.isfinite(thickness):
+                yield Limit(low=position, high=position, size=float(thickness))
+        known = [*_least_at_joints(own, self.positions[loop], self.thickness[loop])]
+        yield from known
+
+
+def outline(problem: Problem) -> Outline:
+    """The boundary of a problem, whatever its elements are."""
+    return Outline(loops=tuple(Loop(edges=edges) for edges in problem.boundary.loops))
+
+
+def _curvature(edge: Edge, start: float) -> Iterator[Limit]:
+    """Limits by which no element turns by more than `TURN`."""
+    at = np.linspace(0, 1, LEAST_SAMPLES + 1)
+    angle = edge.curve.tangent_angle(at)
+    for (low, high), turn in zip(pairwise(at), np.abs(np.diff(angle)), strict=True):
+        if turn > 0:
+            size = (high - low) * edge.length / turn * TURN
+            yield Limit(low=start + low * edge.length, high=start + high * edge.length, size=float(size))
+
+
+def _least_at_joints(loop: Loop, positions: Array, thickness: Array) -> Iterator[Limit]:
+    """Half of the size at corners."""
+    for before, after, position in zip((loop.edges[-1], *loop.edges), loop.edges, loop.joints, strict=False):
+        turn = after.curve.tangent_angle(np.zeros(1))[0] - before.curve.tangent_angle(np.ones(1))[0]
+        if abs((turn + pi) % (2 * pi) - pi) > CORNER:
+            away = np.abs(positions - position)
+            nearest = np.argsort(np.minimum(away, loop.length - away))[:2]
+            size = min(PART * before.length, PART * after.length, *thickness[nearest].tolist()) / 2
+            yield Limit(low=position, high=position, size=float(size))
+
+
+def surface_sizes(problem: Problem, outline: Outline) -> tuple[dict[int, list[Limit]], dict[int, list[float]]]:
+    """Limits of the size where surfaces come near, and places where elements must end, both by loop."""
+    limits: dict[int, list[Limit]] = {}
+    marks: dict[int, list[float]] = {}
+    for zone in problem.contact_zones.values():
+        if isinstance(zone.surface, DeflectedContour):
+            continue
+        for number, loop in enumerate(outline.loops):
+            for edge in loop.edges:
+                if edge.name in zone.edges:
+                    start = loop.start_of[edge.name]
+                    limits.setdefault(number, []).extend(_near(edge, start, zone.surface))
+                    for fraction in _corners(edge, zone.surface):
+                        place = start + fraction * edge.length
+                        marks.setdefault(number, []).append(place)
+                        limits[number].append(Limit(low=place, high=place, size=AT_CORNER * edge.length))
+    return limits, marks
+
+
+def _near(edge: Edge, start: float, surface: Shape) -> Iterator[Limit]:
+    """Limits at each local least of the initial gap: half of the radius of the relative curvature."""
+    at = np.linspace(0, 1, SAMPLES + 1)
+    gap = surface.closest(edge.points(at)).gap
+    inner = np.flatnonzero((gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])) + 1
+    for i in inner:
+        middle, step = at[i], at[1]
+        for _ in range(FOCUS):
+            fine = np.clip(middle + step * np.linspace(-1, 1, 21), 0, 1)
+            values = surface.closest(edge.points(fine)).gap
+            middle, step = fine[np.argmin(values)], step / 5
+        step = max(step, 1e-4)
+        three = np.clip(middle + step * np.array([-1.0, 0.0, 1.0]), 0, 1)
+        values = surface.closest(edge.points(three)).gap
+        curvature = (values[0] - 2 * values[1] + values[2]) / (step * edge.length) ** 2
+        if curvature > 0:
+            place = start + middle * edge.length
+            yield Limit(low=place, high=place, size=float(max(0.5 / curvature, NARROW * edge.length)))
+
+
+def _corners(edge: Edge, surface: Shape) -> Iterator[float]:
+    """Fractions of the length where an edge is nearest to a corner of a polyline, if that is inside."""
+    if not isinstance(surface, Polyline):
+        return
+    for corner in surface.points[1:-1]:
+        fraction = edge.curve.fraction_at(corner)
+        if 1e-6 < fraction < 1 - 1e-6:
+            yield fraction

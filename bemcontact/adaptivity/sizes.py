@@ -1,0 +1,153 @@
+"""Element sizes along the closed loops of the boundary, and the element ends that follow from them."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+
+from bemcontact.arrays import Array
+from bemcontact.problem.curves import Edge
+
+GROWTH = 1.2
+"""Growth of the element size with the distance along the boundary: neighbors up to 3.3 times as long."""
+OUTSIDE = 1.5
+"""Ratio of the layers in contact to those outside, beside an end of contact."""
+SHORTEST = 5e-4
+"""Least element beside an end of contact, over the width of the layers."""
+LEAST = 2
+"""Least number of elements of an edge."""
+ROUNDING = 0.05
+"""Part of an element that is not worth an element."""
+RESOLUTION = 0.5
+"""Largest step of the samples of the size, over the size."""
+
+
+class Limit(NamedTuple):
+    """A limit of the element size between two positions [L]; beyond them it grows with the distance."""
+
+    low: float
+    high: float
+    size: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layers:
+    """Elements that end at w (i/n)³ from an end of contact: n in contact, fewer outside.
+
+    Parameters
+    ----------
+    position : of the end of contact [L]
+    width : w, of the layers [L]
+    count : n
+    after : whether contact is after the end, in the order of the boundary
+    """
+
+    position: float
+    width: float
+    count: float
+    after: bool
+
+    @property
+    def shortest(self) -> float:
+        """Length of the first element in contact [L]."""
+        return self.width * max(self.count**-3, SHORTEST)
+
+    def at(self, beyond: Array) -> Array:
+        """Size at distances (k,) from the end of contact; negative ones are before it."""
+        d, w = np.abs(beyond), self.width
+        n = np.where((beyond > 0) == self.after, self.count, self.count / OUTSIDE)
+        inside = np.maximum.reduce([w / n**3, np.full_like(d, SHORTEST * w), 3 / n * np.cbrt(w * np.minimum(d, w) ** 2)])
+        return inside + GROWTH * np.maximum(d - w, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Loop:
+    """A closed loop of edges; positions on it are arc lengths from its start [L]."""
+
+    edges: tuple[Edge, ...]
+
+    @cached_property
+    def joints(self) -> Array:
+        """Positions (k + 1,) where the k edges begin and end."""
+        return np.concatenate([[0.0], np.cumsum([edge.length for edge in self.edges])])
+
+    @property
+    def length(self) -> float:
+        """Length of all edges [L]."""
+        return float(self.joints[-1])
+
+    @cached_property
+    def start_of(self) -> dict[str, float]:
+        """Position of the start of each edge by its name."""
+        return dict(zip((edge.name for edge in self.edges), self.joints.tolist(), strict=False))
+
+    def size_at(self, positions: Array, limits: Array, layers: Sequence[Layers]) -> Array:
+        """Element size (k,) at positions (k,): the least that any limit, a row of (l, 3), and the layers allow."""
+        if not len(positions):
+            return np.zeros(0)
+        low, high, size = limits.T
+        offset = np.mod(positions[:, None] - low, self.length)  # from the first position on
+        beyond = np.maximum(np.minimum(offset - (high - low), self.length - offset), 0.0)
+        least = np.min(size + GROWTH * beyond, axis=1)
+        for layer in layers:
+            offset = np.mod(positions - layer.position, self.length)
+            after = offset <= self.length / 2
+            np.minimum(least, layer.at(np.where(after, offset, offset - self.length)), out=least)
+        return least
+
+    def without_idle(self, limits: Array) -> Array:
+        """The limits (l, 3) without those that others make idle, the smallest first."""
+        order = limits[np.argsort(limits[:, 2], kind="stable")]
+        kept = order[:1]
+        for limit in order[1:]:
+            ends = np.linspace(limit[0], limit[1], 3)
+            if (self.size_at(ends, kept, ()) > limit[2]).any():
+                kept = np.vstack([kept, limit])
+        return kept
+
+    def element_ends(
+        self, limits: Array, layers: Sequence[Layers], marks: Iterable[float]
+    ) -> dict[str, tuple[float, ...]]:
+        """Fractions of the length of each edge where elements end inside it: at the marks, and in equal steps of ∫ds/h.
+
+        Parameters
+        ----------
+        limits, layers : of the element size h, see `size_at`
+        marks : positions [L] at which elements end besides the joints
+        """
+        inside = np.mod([*marks], self.length)
+        ends: dict[str, tuple[float, ...]] = {}
+        for edge, start, stop in zip(self.edges, self.joints[:-1], self.joints[1:], strict=True):
+            same = 1e-9 * (stop - start)
+            own = np.unique(inside[(inside > start + same) & (inside < stop - same)])
+            own = own[np.diff(own, prepend=start) > same]
+            ends[edge.name] = tuple(((self._divided(start, stop, own, limits, layers) - start) / (stop - start)).tolist())
+        return ends
+
+    def _divided(self, start: float, stop: float, marks: Array, limits: Array, layers: Sequence[Layers]) -> Array:
+        """Positions of the element ends inside an edge."""
+        corners = np.concatenate([[start], marks, [stop]])
+        known = np.mod(np.append(limits[:, :2].ravel(), [layer.position for layer in layers]), self.length)
+        samples = np.unique([*corners, *known[(known > start) & (known < stop)]])
+        size = self.size_at(samples, limits, layers)
+        for _ in range(60):
+            step = np.diff(samples)
+            coarse = step > RESOLUTION * np.minimum(size[:-1], size[1:])
+            if not coarse.any():
+                break
+            middle = (samples[:-1] + samples[1:])[coarse] / 2
+            at = np.flatnonzero(coarse) + 1
+            samples, size = np.insert(samples, at, middle), np.insert(size, at, self.size_at(middle, limits, layers))
+        count = np.concatenate([[0.0], np.cumsum(np.diff(samples) * (1 / size[:-1] + 1 / size[1:]) / 2)])
+        at_corner = np.interp(corners, samples, count)
+        least = LEAST if len(corners) == 2 else 1
+        pieces = []
+        for number, (low, high) in enumerate(zip(at_corner[:-1], at_corner[1:], strict=True)):
+            elements = max(ceil(high - low - ROUNDING), least)
+            inner = np.interp(np.linspace(low, high, elements + 1)[1:], count, samples)
+            inner[-1] = corners[number + 1]
+            pieces.append(inner)
+        return np.concatenate(pieces)[:-1]
