@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bemcontact.adaptivity.error_bars import ErrorBar, contact_beside, error_bars, near_singularities
+from bemcontact.adaptivity.error_bars import Accuracy, error_bars, near_singularities
 from bemcontact.adaptivity.fields import Answer, Difference, Solved, norm_squared, solved
 from bemcontact.adaptivity.first_sizes import Outline, outline, surface_sizes
 from bemcontact.adaptivity.singularities import Place, Singularity, Watch, elements_at
@@ -14,6 +14,8 @@ from bemcontact.adaptivity.sizes import Layers, Limit, Loop
 from bemcontact.adaptivity.zone_runs import ZoneRun
 from bemcontact.arrays import Array
 from bemcontact.bem import reference_element
+from bemcontact.bem.body import body_of
+from bemcontact.bem.condense import Condensation, condense
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
@@ -56,25 +58,19 @@ class _End:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Adapted:
-    """A problem on the mesh that was found for it, with its error bars."""
+class Meshed:
+    """A problem on the mesh that was found for it or stated, condensed, with the accuracy under each load case."""
 
     problem: Problem
-    fine: Solved
-    passes: int
-    solves: int
-    bars: tuple[tuple[ErrorBar, ...], ...]
-    met: bool
-    end: str
+    condensation: Condensation
+    accuracies: tuple[Accuracy, ...]
 
 
 @dataclass(kw_only=True)
-class _Loop:
+class _Search:
     """State of the search for a mesh."""
 
     problem: Problem
-    accuracy: float
-    progress: Callable[[str], object]
     outline: Outline
     sources: list[list[Limit]]
     marks: list[list[float]]
@@ -104,21 +100,21 @@ class _Loop:
         """Solve on meshes fitted to the ends of contact until these rest."""
         coarse = self.solve(1)
         for count in range(NARROW_REFITS):
-            ends, spots = self._found(coarse)
+            ends, spots = self.ends_of_contact(coarse)
             between = [*self._between(coarse)]
             resting = self._resting(ends) and not between
             if resting and not spots:
                 return coarse
             if count >= REFITS and not spots and not between:
                 return coarse
-            self.layers = self._with_counts(ends)
+            self.layers = self.with_counts(ends)
             self.spots = spots
             for number, limit in between:
                 self.sources[number].append(limit)
             coarse = self.solve(1)
         return coarse
 
-    def _found(self, answer: Solved) -> tuple[list[_End], list[tuple[int, Limit]]]:
+    def ends_of_contact(self, answer: Solved) -> tuple[list[_End], list[tuple[int, Limit]]]:
         """Ends of contact under all load cases, and contact that is narrower than an element."""
         ends: list[_End] = []
         narrow: list[tuple[int, Limit]] = []
@@ -163,7 +159,7 @@ class _Loop:
         away = abs(end.position - other.position)
         return min(away, self.outline.loops[end.loop].length - away) <= near
 
-    def _with_counts(self, ends: Sequence[_End]) -> list[tuple[_End, float]]:
+    def with_counts(self, ends: Sequence[_End]) -> list[tuple[_End, float]]:
         """Give each end the layers that it had."""
         return [(end, self._count(end)) for end in ends]
 
@@ -320,41 +316,91 @@ def penetrations(answer: Solved, case: Answer) -> Iterator[tuple[int, float]]:
                 yield element, -least
 
 
-def adapted(problem: Problem, accuracy: float, progress: Callable[[str], object] | None = None) -> Adapted:
-    """Find a mesh on which all error bars are below an accuracy, and solve on it."""
-    shape = outline(problem)
-    limits, marks = surface_sizes(problem, shape)
-    search = _Loop(
-        problem=problem, accuracy=accuracy, progress=progress or (lambda _: None), outline=shape,
-        sources=[_useful(loop, [*shape.sizes(i), *limits.get(i, [])]) for i, loop in enumerate(shape.loops)],
-        marks=[marks.get(i, []) for i in range(len(shape.loops))],
-    )  # fmt: skip
-    best: Adapted | None = None
-    end = "passes"
+def meshed(problem: Problem, progress: Callable[[str], object] | None = None) -> Meshed:
+    """Condense a problem on the mesh that it states, or on one that is found for the accuracy asked.
+
+    Errors are estimated in both cases, unless no accuracy is asked for.
+
+    Raises
+    ------
+    ProblemError
+        If the problem has no answer.
+    SingularSystemError
+        If the equations of the body have no unique solution.
+    """
+    progress = progress or (lambda _: None)
+    if problem.adapts:
+        return _found(problem, progress)
+    asked, refine = problem.asked_accuracy, problem.mesh.refine
+    if asked is None:
+        condensation = condense(body_of(problem))
+        count = max(1, len(problem.case_names) if problem.case is None else 1)
+        return Meshed(problem=problem, condensation=condensation, accuracies=(Accuracy(asked=None),) * count)
+    progress("mesh as stated")
+    coarse = solved(problem)
+    try:
+        unknowns = 2 * coarse.degrees_of_freedom
+        if unknowns > MOST_UNKNOWNS:
+            raise ProblemError(f"with every element in two the mesh has {unknowns} unknowns, more than {MOST_UNKNOWNS}")
+        progress("every element in two")
+        fine = solved(_cut(problem, 2 * refine))
+        bars = [error_bars(Difference(coarse=coarse, fine=fine, number=i), (), of_fine=False)
+                for i in range(len(fine.answers))]
+        accuracies = [Accuracy.of(asked, 1, its) for its in bars]
+    except (ProblemError, SingularSystemError) as error:
+        accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(coarse.answers)
+    return Meshed(problem=problem, condensation=coarse.condensation, accuracies=tuple(accuracies))
+
+
+def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
+    """Find a mesh on which all error bars are below the accuracy asked, and solve on it."""
+    asked = problem.asked_accuracy
+    assert asked is not None
+    search = _search(problem)
+    best: Meshed | None = None
+    reason = f"after {MOST_PASSES} passes"
     for number in range(1, MOST_PASSES + 1):
         try:
             coarse = search.fitted()
             if 2 * coarse.degrees_of_freedom > MOST_UNKNOWNS:
-                end = f"N would exceed {MOST_UNKNOWNS}"
-                break
+                raise ProblemError(f"a finer mesh would have more than {MOST_UNKNOWNS} unknowns")
             fine = search.solve(2)
         except (ProblemError, SingularSystemError) as error:
             if best is None:
                 raise
-            end = str(error)
+            reason = str(error).splitlines()[0]
             break
         differences = [Difference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
         singular = [search.watch.look(item, search.corners) for item in differences]
-        bars = tuple(error_bars(item, its) for item, its in zip(differences, singular, strict=True))
-        worst = max((bar.bar if bar.bar is not None else np.inf) for case in bars for bar in case
-                    if bar.promised and bar.value is not None and not (bar.quantity == "force" and bar.value == 0))
-        met = bool(worst <= accuracy)
-        best = Adapted(problem=fine.body.problem, fine=fine, passes=number, solves=len(search.solves), bars=bars,
-                       met=met, end=f"{worst:.3g}")
-        search.progress(f"pass {number}: {fine.degrees_of_freedom} unknowns, error at most {worst:.2g}")
-        if met:
+        bars = [error_bars(item, its) for item, its in zip(differences, singular, strict=True)]
+        best = Meshed(
+            problem=fine.body.problem, condensation=fine.condensation,
+            accuracies=tuple(Accuracy.of(asked, number, its) for its in bars),
+        )  # fmt: skip
+        worst = max((item.worst for item in best.accuracies), default=0.0)
+        progress(f"pass {number}, {fine.degrees_of_freedom} unknowns, error at most {100 * worst:.2g} %")
+        if all(item.met for item in best.accuracies):
             return best
-        search.layers = search._with_counts(search._found(fine)[0])
+        search.layers = search.with_counts(search.ends_of_contact(fine)[0])
         search.refine(differences, singular)
     assert best is not None
-    return replace(best, end=end + ", " + best.end)
+    return replace(best, accuracies=tuple(replace(item, reason=reason) for item in best.accuracies))
+
+
+def _search(problem: Problem) -> _Search:
+    """Begin with sizes from the geometry, the surfaces, and the elements that are stated."""
+    shape = outline(problem)
+    near, corners = surface_sizes(problem, shape)
+    limits: list[list[Limit]] = []
+    marks: list[list[float]] = []
+    for number, loop in enumerate(shape.loops):
+        own, ends = [*shape.sizes(number), *near.get(number, [])], [*corners.get(number, [])]
+        for edge in loop.edges:
+            start, length = loop.start_of[edge.name], edge.length
+            ends += [start + place * length for place in edge.ends_at]
+            if edge.elements is not None:
+                at = start + length * edge.breakpoints(problem.mesh.refine)
+                own += [Limit(low=low, high=high, size=high - low) for low, high in pairwise(at.tolist())]
+        limits.append(_useful(loop, own))
+        marks.append(ends)
+    return _Search(problem=problem, outline=shape, sources=limits, marks=marks)

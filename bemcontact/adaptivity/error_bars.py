@@ -4,7 +4,8 @@ A single quantity may change little by accident, where its error passes through 
 """
 
 from collections.abc import Iterator, Sequence
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Literal, Self
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem import reference_element
 from bemcontact.serialization import Leaf
-from dataclasses import dataclass
 
 SAFETY = 1.5
 """Error bar over the change."""
@@ -50,26 +50,88 @@ class ErrorBar(Leaf):
 
     @property
     def promised(self) -> bool:
-        """Whether the accuracy asked for applies to it."""
-        return self.quantity != "intensity"
+        """Whether the accuracy asked for applies to it: not to intensities, nor where there is nothing to estimate."""
+        return self.quantity != "intensity" and bool(self.value)
 
 
-def error_bars(difference: Difference, singularities: Sequence[Singularity]) -> tuple[ErrorBar, ...]:
-    """Error bars of all quantities of one load case on the fine mesh."""
-    whole = _displacement_change(difference)
+@dataclass(frozen=True, kw_only=True)
+class Accuracy(Leaf):
+    """Accuracy that was asked for, and what was reached."""
+
+    asked: float | None
+    """Relative accuracy asked for; null if none is."""
+    met: bool | None = None
+    """Whether all error bars are below it but those of intensities; null if errors were not estimated."""
+    passes: int = 0
+    """Number of meshes whose errors were estimated; 1 for a mesh that was stated."""
+    bars: tuple[ErrorBar, ...] = ()
+    """Error bars of all quantities."""
+    reason: str = ""
+    """Why no better accuracy was reached, or why errors were not estimated."""
+
+    @classmethod
+    def of(cls, asked: float, passes: int, bars: Sequence[ErrorBar]) -> Self:
+        """Judge error bars."""
+        judged = cls(asked=asked, passes=passes, bars=tuple(bars))
+        return replace(judged, met=bool(judged.worst <= asked))
+
+    @property
+    def worst(self) -> float:
+        """Largest error bar of those to which the accuracy applies; infinite if one is unknown."""
+        judged = [item for item in self.bars if item.promised]
+        return max((np.inf if item.bar is None else item.bar for item in judged), default=0.0)
+
+
+def error_bars(
+    difference: Difference, singularities: Sequence[Singularity], *, of_fine: bool = True
+) -> tuple[ErrorBar, ...]:
+    """Error bars of all quantities of one load case on the fine mesh, or on the coarse one.
+
+    The error on the coarse mesh is at most the change, plus the error on the fine one.
+    """
     slow = max((item.exponent for item in singularities), default=0.5)
-    factor = SAFETY / (2 ** (2 * (1 - slow)) - 1) if slow > 0.5 else SAFETY
+    estimate = _Estimate(difference, SAFETY / (2 ** (2 * (1 - slow)) - 1) if slow > 0.5 else SAFETY, of_fine)
     bars: list[ErrorBar] = []
-    changes = []
+    changes = [0.0]
     for number, name in enumerate(difference.fine.body.problem.contact_zones):
         its = [item for item in singularities if item.place.zone == name]
         m = pressure_change(difference, number, its)
+        if m is None:
+            bars.append(ErrorBar(quantity="force", zone=name, value=0.0, bar=None, note="no contact in this zone"))
+            continue
         changes.append(m)
-        bars += [*_zone_bars(difference, number, name, m, factor, its)]
-    largest, change = whole
-    m = max((m for m in changes if m is not None), default=0.0)
-    bars.append(ErrorBar(quantity="displacement", zone=None, value=largest, bar=factor * max(change, m)))
+        bars += _zone_bars(estimate, number, name, m, its)
+    sizes = [float(np.hypot(*np.moveaxis(answer.displacement, 2, 0)).max()) for answer in difference.pair]
+    bars.append(
+        ErrorBar(
+            quantity="displacement", zone=None, value=estimate.value(*sizes),
+            bar=estimate.bar(max(_change(*sizes), *changes)),
+        )
+    )  # fmt: skip
     return tuple(bars)
+
+
+@dataclass(frozen=True, eq=False)
+class _Estimate:
+    """Which of two meshes the answer is taken from, and the error bar that follows from their difference."""
+
+    difference: Difference
+    factor: float
+    of_fine: bool
+
+    def value(self, coarse: float, fine: float) -> float:
+        """The value that is reported."""
+        return fine if self.of_fine else coarse
+
+    def bar(self, change: float, *, smooth: bool = False) -> float:
+        """Error bar for a relative change; `smooth` tells that singularities elsewhere do not slow its convergence."""
+        return (SAFETY if smooth else self.factor) * change + (0.0 if self.of_fine else change)
+
+    @property
+    def reported(self) -> tuple[Solved, Answer]:
+        """Mesh and answer that are reported."""
+        one, two = self.difference.pair
+        return (self.difference.fine, two) if self.of_fine else (self.difference.coarse, one)
 
 
 def pressure_change(difference: Difference, zone: int, singularities: Sequence[Singularity]) -> float | None:
@@ -112,35 +174,37 @@ def contact_beside(run: ZoneRun, stretches: Sequence[Stretch], position: float) 
 
 
 def _zone_bars(
-    difference: Difference, number: int, name: str, m: float | None, factor: float, its: Sequence[Singularity]
+    estimate: _Estimate, number: int, name: str, m: float, its: Sequence[Singularity]
 ) -> Iterator[ErrorBar]:
-    """Error bars of a zone: peak, force, ends of contact, pressure, intensities."""
-    coarse, fine = difference.coarse, difference.fine
-    one, two = difference.pair
-    zones = [solved.zone_of == number for solved in (coarse, fine)]
-    if m is None:
-        yield ErrorBar(quantity="force", zone=name, value=0.0, bar=None, note="no contact in this zone")
-        return
-    peaks = [float(answer.pressure[zone].max()) for answer, zone in zip((one, two), zones, strict=True)]
+    """Error bars of a zone under pressure: peak, force, ends of contact, pressure, intensities."""
+    both = [*zip((estimate.difference.coarse, estimate.difference.fine), estimate.difference.pair, strict=True)]
+    peaks = [float(answer.pressure[solved.zone_of == number].max()) for solved, answer in both]
     if its:
-        note = "infinite at an end of its zone; make the zone longer" if any(i.place.end for i in its) else "infinite"
-        yield ErrorBar(quantity="peak", zone=name, value=None, bar=None, note=note)
+        yield ErrorBar(quantity="peak", zone=name, value=None, bar=None, note=_infinite(its))
     else:
-        yield ErrorBar(quantity="peak", zone=name, value=peaks[1], bar=SAFETY * max(_change(*peaks), PEAK * m))
+        bar = estimate.bar(max(_change(*peaks), PEAK * m), smooth=True)
+        yield ErrorBar(quantity="peak", zone=name, value=estimate.value(*peaks), bar=bar)
     forces = [
-        float((solved.mesh.tributary * answer.pressure)[zone].sum())
-        for solved, answer, zone in zip((coarse, fine), (one, two), zones, strict=True)
+        float((solved.mesh.tributary * answer.pressure)[solved.zone_of == number].sum()) for solved, answer in both
     ]
-    yield ErrorBar(quantity="force", zone=name, value=forces[1], bar=factor * max(_change(*forces), FORCE * m))
-    yield from _end_bars(difference, name, m, factor)
-    square = norm_squared(fine, two.pressure)[zones[1]].sum() / fine.weights[zones[1]].sum()
-    yield ErrorBar(
-        quantity="pressure", zone=name, value=float(np.sqrt(square)), bar=factor * m,
-        note="away from infinite pressures" if its else "",
-    )  # fmt: skip
+    bar = estimate.bar(max(_change(*forces), FORCE * m))
+    yield ErrorBar(quantity="force", zone=name, value=estimate.value(*forces), bar=bar)
+    yield from _end_bars(estimate, name, m)
+    solved, answer = estimate.reported
+    zone = solved.zone_of == number
+    square = norm_squared(solved, answer.pressure)[zone].sum() / solved.weights[zone].sum()
+    note = "away from infinite pressures" if its else ""
+    yield ErrorBar(quantity="pressure", zone=name, value=float(np.sqrt(square)), bar=estimate.bar(m), note=note)
     for item in its:
         if not item.like_a_kink:
-            yield _intensity_bar(difference, item)
+            yield _intensity_bar(estimate.difference, item)
+
+
+def _infinite(its: Sequence[Singularity]) -> str:
+    """Say why a peak is infinite."""
+    if any(item.place.end for item in its):
+        return "infinite where contact reaches the end of its zone: a corner of the surface, or else a zone too short"
+    return "infinite at a corner or a kink"
 
 
 def _change(before: float, after: float) -> float:
@@ -148,31 +212,29 @@ def _change(before: float, after: float) -> float:
     return abs(after - before) / abs(after) if after else 0.0
 
 
-def _end_bars(difference: Difference, name: str, m: float, factor: float) -> Iterator[ErrorBar]:
+def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
     """Error bars of the ends of all contact intervals of a zone."""
-    one, two = difference.pair
+    one, two = estimate.difference.pair
+    solved, answer = estimate.reported
     count = 0
-    for run in difference.fine.runs:
+    for run in solved.runs:
         if run.zone != name:
             continue
-        stretches, before = two.stretches[run.number], one.stretches[run.number]
-        alike = len(stretches) == len(before)
-        for i, item in enumerate(stretches):
-            length = item.end - item.start
+        before, after = one.stretches[run.number], two.stretches[run.number]
+        for i, item in enumerate(answer.stretches[run.number]):
             for which, free in (("start", item.start_free), ("end", item.end_free)):
-                position = getattr(item, which)
-                if not alike:
-                    note = "the number of contact intervals changed when the mesh was bisected"
-                    yield ErrorBar(quantity=which, zone=name, interval=count, value=position, bar=None, note=note)
-                    continue
-                if not free:
-                    note = "contact reaches a corner or the end of its zone"
-                    yield ErrorBar(quantity=which, zone=name, interval=count, value=position, bar=0.0, note=note)
-                    continue
-                moved = abs(position - getattr(before[i], which))
-                moved = min(moved, abs(run.length - moved)) if run.closed else moved
-                change = max(moved / length, END * m, _spacing(run, position) / length)
-                yield ErrorBar(quantity=which, zone=name, interval=count, value=position, bar=factor * change)
+                position = float(getattr(item, which))
+                bar, note = 0.0, "contact reaches a corner or the end of its zone"
+                if len(before) != len(after):
+                    bar, note = None, "the number of contact intervals changes when every element is bisected"
+                elif free:
+                    moved = abs(getattr(after[i], which) - getattr(before[i], which))
+                    moved = min(moved, abs(run.length - moved)) if run.closed else moved
+                    length = item.end - item.start
+                    change = max(moved / length, END * m)
+                    bar = max(estimate.bar(change), estimate.factor * _spacing(run, position) / length)
+                    note = ""
+                yield ErrorBar(quantity=which, zone=name, interval=count, value=position, bar=bar, note=note)
             count += 1
 
 
@@ -181,12 +243,6 @@ def _spacing(run: ZoneRun, position: float) -> float:
     at = position % run.length if run.closed else position
     i = int(np.clip(np.searchsorted(run.ends, at) - 1, 0, len(run.ends) - 2))
     return float(run.ends[i + 1] - run.ends[i]) / 2
-
-
-def _displacement_change(difference: Difference) -> tuple[float, float]:
-    """Largest displacement [L], and its relative change."""
-    sizes = [float(np.hypot(*np.moveaxis(answer.displacement, 2, 0)).max()) for answer in difference.pair]
-    return sizes[1], _change(*sizes)
 
 
 def _intensity_bar(difference: Difference, item: Singularity) -> ErrorBar:

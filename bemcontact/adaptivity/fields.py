@@ -50,9 +50,14 @@ class Answer:
 class Solved:
     """One mesh: the contact state under each load case, and the runs of the zones."""
 
-    body: Body
+    condensation: Condensation
     runs: tuple[ZoneRun, ...]
     answers: tuple[Answer, ...]
+
+    @property
+    def body(self) -> Body:
+        """The body on the mesh."""
+        return self.condensation.body
 
     @property
     def mesh(self) -> Mesh:
@@ -87,7 +92,7 @@ def solved(problem: Problem) -> Solved:
     runs = tuple(zone_runs(body))
     names = (None,) if problem.case is not None or not problem.load_cases else problem.case_names
     answers = tuple(_answer(condensation.acting(name), runs) for name in names)
-    return Solved(body=body, runs=runs, answers=answers)
+    return Solved(condensation=condensation, runs=runs, answers=answers)
 
 
 def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> Answer:

@@ -23,8 +23,8 @@ JOINT_TOLERANCE = 1e-9
 """Distance of two edge ends, relative to the size of the body, up to which they are one point."""
 ON_EDGE = 1e-3
 """Distance of a point from an edge, relative to its length, up to which the point is on it: users round."""
-APART = 5e-7
-"""Difference of two fractions of the length of an edge below which no element fits between them."""
+APART = 1e-10
+"""Difference of two fractions of the length of an edge below which no element fits between them: round-off of nodes."""
 ROUND_OFF = 1e-12
 """Difference of two fractions of the length of an edge below which they are the same."""
 TOUCHING = 1e-9
@@ -92,6 +92,11 @@ class Boundary(SpecModel):
     def edges(self) -> tuple[Edge, ...]:
         """All edges in order of the loops."""
         return tuple(edge for loop in self.loops for edge in loop)
+
+    @property
+    def meshed(self) -> bool:
+        """Whether all edges state their elements."""
+        return all(edge.elements is not None for edge in self.edges)
 
     @cached_property
     def size(self) -> float:
@@ -237,7 +242,7 @@ def _misplaced_ends(path: KeyPath, loop: Sequence[AnyEdge], joined: Sequence[Edg
                 message = f"an element of '{edge.name}' ends {where}; leave this place out, or take another one"
                 yield Issue(path=(*path, i, *key), message=message)
             taken.append(fraction)
-        if edge.elements < len(taken) - 1:
+        if edge.elements is not None and edge.elements < len(taken) - 1:
             needed = f"the {len(taken) - 2} element ends of '{edge.name}' need at least {len(taken) - 1} elements"
             yield Issue(path=(*path, i, "elements"), message=f"{needed}, found {edge.elements}")
 

@@ -21,6 +21,8 @@ from bemcontact.problem.validation import KeyIssue, unknown_word
 LARGEST_TURNING = radians(60)
 """Largest angle by which a quadratic element may turn; beyond it the element deviates visibly from its arc."""
 
+SAMPLES = 128
+"""Number of steps along an edge at which the direction of a surface is looked at."""
 ALONG = 0.5
 """Cosine of the angle between two normals above which they point the same way."""
 
@@ -192,7 +194,7 @@ def _needs_one_zone(reference: RawValue) -> bool:
 
 def mesh_issues(boundary: Boundary, path: KeyPath, refine: int) -> list[Issue]:
     """Issues of a mesh with too many elements for a dense matrix, or too few for its curves."""
-    total = refine * sum(edge.elements for edge in boundary.edges)
+    total = refine * sum(edge.elements or 0 for edge in boundary.edges)
     if total > MOST_ELEMENTS:
         message = f"{total} elements are too many for a dense matrix; take at most {MOST_ELEMENTS}"
         return [Issue(path=("mesh", "refine") if refine > 1 else path, message=message)]
@@ -200,7 +202,7 @@ def mesh_issues(boundary: Boundary, path: KeyPath, refine: int) -> list[Issue]:
         Issue(path=(*path, *loop_path, i, "elements"), message=_too_few_elements(edge, refine))
         for loop_path, loop in zip(boundary.loop_paths, boundary.loops, strict=True)
         for i, edge in enumerate(loop)
-        if edge.turning(refine) > LARGEST_TURNING * (1 + 1e-9)
+        if edge.elements is not None and edge.turning(refine) > LARGEST_TURNING * (1 + 1e-9)
     ]
 
 
@@ -208,7 +210,8 @@ def _too_few_elements(edge: Edge, refine: int) -> str:
     """Say by how much one element turns, and how many elements are enough."""
     turning, limit = f"{degrees(edge.turning(refine)):.0f}", f"{degrees(LARGEST_TURNING):.0f}"
     start = f"'{edge.name}' has too few elements: one of them turns by {turning} degrees, more than {limit}"
-    for elements in range(edge.elements + 1, edge.elements + 200):
+    stated = edge.elements or 1
+    for elements in range(stated + 1, stated + 200):
         if replace(edge, elements=elements).turning(refine) <= LARGEST_TURNING * (1 + 1e-9):
             return f"{start}; give it {elements} elements or more"
     return f"{start}; give it more elements, and grade them towards the bend"
@@ -234,7 +237,7 @@ def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> l
 
 def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:
     """Least distance between edge and surface, and there the cosine between outward normal and surface normal."""
-    fractions = np.linspace(0, 1, 8 * edge.elements + 1)
+    fractions = np.linspace(0, 1, SAMPLES + 1)
     gap, normals = surface.closest(edge.points(fractions))
     cosine = np.einsum("ki,ki->k", normals, edge.normals(fractions))
     closest = np.argmin(np.abs(gap))
@@ -243,7 +246,7 @@ def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:
 
 def _outward(edge: Edge, surface: DeflectedContour) -> float:
     """Largest cosine between an outward normal of the edge and the direction of the contour."""
-    return float((edge.normals(np.linspace(0, 1, 8 * edge.elements + 1)) @ surface.unit_direction).max())
+    return float((edge.normals(np.linspace(0, 1, SAMPLES + 1)) @ surface.unit_direction).max())
 
 
 def _faces_away(edge: str, surface: RigidSurface) -> str:

@@ -192,7 +192,7 @@ class Edge:
     name : name of the edge
     curve : shape of the edge
     start, end : ends [L]; exactly equal to those of the neighboring edges
-    elements : number of elements
+    elements : number of elements, None if the mesh is still to be found
     ratio : ratio of the longest element to the shortest, in geometric progression
     towards : place of the short elements: "start", "end", "both", "middle", or a fraction of the arc length
     ends_at : fractions of the arc length at which elements end besides 0 and 1, ascending
@@ -202,7 +202,7 @@ class Edge:
     curve: Curve
     start: Pair
     end: Pair
-    elements: int
+    elements: int | None
     ratio: float = 1.0
     towards: str | float = "start"
     ends_at: tuple[float, ...] = ()
@@ -232,6 +232,7 @@ class Edge:
 
     @cached_property
     def _coarse_breakpoints(self) -> Array:
+        assert self.elements is not None, f"no mesh was found for edge '{self.name}' yet"
         return graded_ends(self.elements, self.ratio, self.towards, self.ends_at)
 
     def breakpoints(self, refine: int = 1) -> Array:

@@ -85,13 +85,21 @@ class _EdgeBase(SpecModel):
 
     name: Name
     """The name of the edge, by which conditions and contact zones refer to it."""
-    elements: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)]
-    """The number of boundary elements along the edge, such as elements: 8."""
+    elements: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] | None = None
+    """The number of boundary elements along the edge, such as elements: 8. Leave it out: the mesh is then found for the
+    accuracy asked."""
     grading: Grading | None = None
-    """The grading of the element lengths; equal lengths if left out."""
+    """The grading of the stated elements; equal lengths if left out."""
     ends_at: tuple[Place, ...] = ()
     """The places where elements must end: fractions of the length of the edge, or points [x, y] on it. The nearest
     element ends move to these places, and the others in proportion."""
+
+    @model_validator(mode="after")
+    def _graded_elements(self) -> Self:
+        """Refuse a grading of elements that are not stated."""
+        if self.elements is None and self.grading is not None:
+            raise invalid("grading needs elements; give a number of elements, or leave grading out")
+        return self
 
     @property
     def places(self) -> tuple[tuple[KeyPath, Place], ...]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
+    Strict,
     AfterValidator,
     Field,
     ModelWrapValidatorHandler,
@@ -91,13 +92,18 @@ class Units(SpecModel):
         return f"{self.force}/{self.length}²" if self.force and self.length else ""
 
 
+ACCURACY = 0.01
+"""Relative accuracy that is asked for by default."""
+
+
 class MeshDensity(SpecModel):
     """The refinement of the mesh that the edges define."""
 
     refine: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] = 1
     """The number of equal parts into which each element is cut."""
-    fit_contact_edges: Flag = False
-    """Whether to compute the ends of contact first, and grade the elements of the contact zones towards them."""
+    adapt: Flag | None = None
+    """Whether a mesh is found for the accuracy, and the stated elements are its coarsest. If left out, the mesh is taken
+    as it is stated if all edges state their elements and no accuracy is stated; else it is found."""
 
 
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
@@ -183,6 +189,9 @@ class Problem(SpecModel):
     """The combinations by name: sums of load cases, each with a factor."""
     case: Name | None = None
     """The load case or combination to solve; if left out, all of them are solved one after the other."""
+    accuracy: Annotated[float, Strict(), Field(gt=0, lt=1)] | Literal["default"] | None = "default"
+    """The accuracy to reach, relative: 0.003 is 0.3 %; default is 1 %. With null no accuracy is asked for, and errors
+    are not estimated."""
     mesh: MeshDensity = MeshDensity()
     """The refinement of the mesh."""
     reference: dict[NonEmptyText, ReferenceSpec] = Field(default_factory=dict)
@@ -221,7 +230,22 @@ class Problem(SpecModel):
             valid = {item.path: zone for item in zones.each() if (zone := item.read(ContactZone))}
             issues += facing_issues(body, valid)
         density = raw.below(cls, "mesh").read(MeshDensity) or MeshDensity()
+        issues += cls._mesh_choice_issues(raw, body, density)
         return [*issues, *references, *mesh_issues(body, boundary.path, density.refine)]
+
+    @classmethod
+    def _mesh_choice_issues(cls, raw: RawValue, body: Boundary, density: MeshDensity) -> Iterator[Issue]:
+        """Issues of a mesh that is neither stated nor to be found."""
+        accuracy = raw.below(cls, "accuracy")
+        none_asked = accuracy.value is None and (isinstance(raw.value, Problem) or accuracy.name in raw.value)
+        unmeshed = next((edge.name for edge in body.edges if edge.elements is None), None)
+        if unmeshed is not None and density.adapt is False:
+            message = f"edge '{unmeshed}' states no elements; give their number, or leave adapt out: the mesh is found"
+            yield Issue(path=("mesh", "adapt"), message=message)
+        elif none_asked and (unmeshed is not None or density.adapt):
+            what = f"edge '{unmeshed}' states no elements" if unmeshed else "mesh.adapt is true"
+            message = f"{what}, and a mesh is found for an accuracy; give one such as 0.01, or state all elements"
+            yield Issue(path=accuracy.path, message=message)
 
     @classmethod
     def _action_issues(cls, raw: RawValue, zones: RawValue) -> list[Issue]:
@@ -244,6 +268,18 @@ class Problem(SpecModel):
     def case_names(self) -> tuple[str, ...]:
         """Names of the load cases, then of the combinations."""
         return (*self.load_cases, *self.combinations)
+
+    @property
+    def asked_accuracy(self) -> float | None:
+        """The relative accuracy to reach; None if none is asked for."""
+        return ACCURACY if self.accuracy == "default" else self.accuracy
+
+    @property
+    def adapts(self) -> bool:
+        """Whether a mesh is to be found for the accuracy."""
+        if self.mesh.adapt is not None:
+            return self.mesh.adapt
+        return not self.boundary.meshed or isinstance(self.accuracy, float)
 
     @property
     def title(self) -> str:
@@ -347,7 +383,7 @@ class Problem(SpecModel):
                 yield from (replace(item, path=("variants", name, *item.path)) for item in error.issues)
 
     def with_element_ends(self, ends: Mapping[str, Sequence[float]]) -> Self:
-        """Copy with all element ends of some edges given, without variants; its mesh is not fitted again.
+        """Copy with all element ends of some edges given, without variants; its mesh is taken as it is.
 
         Parameters
         ----------
@@ -361,7 +397,7 @@ class Problem(SpecModel):
         boundary = self.boundary.with_element_ends(ends)
         if issues := mesh_issues(boundary, ("boundary",), self.mesh.refine):
             raise ProblemError(issues)
-        mesh = self.mesh.model_copy(update={"fit_contact_edges": False})
+        mesh = self.mesh.model_copy(update={"adapt": False})
         return self.model_copy(update={"boundary": boundary, "mesh": mesh, "variants": {}})
 
     def with_value(self, path: str, value: Any) -> Self:
