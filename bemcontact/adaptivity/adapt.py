@@ -9,7 +9,7 @@ import numpy as np
 from bemcontact.adaptivity.error_bars import Accuracy, error_bars, near_singularities
 from bemcontact.adaptivity.fields import Answer, Difference, Solved, norm_squared, solved
 from bemcontact.adaptivity.first_sizes import Outline, outline, surface_sizes
-from bemcontact.adaptivity.singularities import Place, Singularity, Watch, elements_at
+from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
 from bemcontact.adaptivity.sizes import Layers, Limit, Loop
 from bemcontact.adaptivity.zone_runs import ZoneRun
 from bemcontact.arrays import Array
@@ -74,7 +74,6 @@ class _Search:
     outline: Outline
     sources: list[list[Limit]]
     marks: list[list[float]]
-    corners: list[Place] = field(default_factory=list)
     layers: list[tuple[_End, float]] = field(default_factory=list)
     spots: list[tuple[int, Limit]] = field(default_factory=list)
     watch: Watch = field(default_factory=Watch)
@@ -164,7 +163,9 @@ class _Search:
         return [(end, self._count(end)) for end in ends]
 
     def _count(self, end: _End) -> float:
-        alike = [(abs(other.position - end.position), n) for other, n in self.layers if self._same(end, other, end.width)]
+        alike = [
+            (abs(other.position - end.position), n) for other, n in self.layers if self._same(end, other, end.width)
+        ]
         return min(alike)[1] if alike else LAYERS
 
     def _resting(self, ends: Sequence[_End]) -> bool:
@@ -199,11 +200,9 @@ class _Search:
             one, two = difference.pair
             wanted |= _largest(difference.energy, ENERGY_SHARE)
             change = difference.pressure_squared.copy()
-            norm = norm_squared(coarse, one.pressure)
-            for zone in range(len(coarse.body.problem.contact_zones)):
-                own = coarse.zone_of == zone
-                if (total := norm[own].sum()) > 0:
-                    change[own] /= total
+            for zone, own in enumerate(one.pressure):
+                change[zone] /= norm_squared(coarse, own).sum() or 1.0
+            change = change.sum(axis=0)
             change[near_singularities(coarse, one, its)] = 0.0
             total = change.sum()
             beside = self._beside_ends(coarse)
@@ -295,8 +294,8 @@ def penetrations(answer: Solved, case: Answer) -> Iterator[tuple[int, float]]:
     body, points = answer.body, answer.body.points
     contact = case.condensation.contact
     total = contact.initial_gap + case.solution.displacement
-    own = np.zeros((len(answer.mesh.elements), 3))
-    own[points.element, points.local] = total[points.point]
+    own = np.zeros_like(case.pressure)
+    own[points.zone[points.point], points.element, points.local] = total[points.point]
     size = float(np.hypot(*np.moveaxis(case.displacement, 2, 0)).max())
     xi = np.linspace(-1, 1, BETWEEN)[1:-1]
     shapes = reference_element.values(xi)
@@ -304,11 +303,11 @@ def penetrations(answer: Solved, case: Answer) -> Iterator[tuple[int, float]]:
     for number, zone in enumerate(body.problem.contact_zones.values()):
         if isinstance(zone.surface, DeflectedContour):
             continue
-        elements = np.flatnonzero((answer.zone_of == number) & ~(case.pressure > 0).any(axis=1))
+        elements = np.flatnonzero(answer.in_zone[number] & ~(case.pressure[number] > 0).any(axis=1))
         if not len(elements):
             continue
         at_nodes = zone.surface.closest(nodes[elements].reshape(-1, 2)).gap.reshape(-1, 3)
-        moved = own[elements] - at_nodes
+        moved = own[number, elements] - at_nodes
         inside = zone.surface.closest((shapes @ nodes[elements]).reshape(-1, 2)).gap.reshape(len(elements), -1)
         gap = inside + moved @ shapes.T
         for element, least in zip(elements.tolist(), gap.min(axis=1).tolist(), strict=True):
@@ -344,8 +343,10 @@ def meshed(problem: Problem, progress: Callable[[str], object] | None = None) ->
             raise ProblemError(f"with every element in two the mesh has {unknowns} unknowns, more than {MOST_UNKNOWNS}")
         progress("every element in two")
         fine = solved(_cut(problem, 2 * refine))
-        bars = [error_bars(Difference(coarse=coarse, fine=fine, number=i), (), of_fine=False)
-                for i in range(len(fine.answers))]
+        bars = [
+            error_bars(Difference(coarse=coarse, fine=fine, number=i), (), of_fine=False)
+            for i in range(len(fine.answers))
+        ]
         accuracies = [Accuracy.of(asked, 1, its) for its in bars]
     except (ProblemError, SingularSystemError) as error:
         accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(coarse.answers)
@@ -371,7 +372,7 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
             reason = str(error).splitlines()[0]
             break
         differences = [Difference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
-        singular = [search.watch.look(item, search.corners) for item in differences]
+        singular = [search.watch.look(item) for item in differences]
         bars = [error_bars(item, its) for item, its in zip(differences, singular, strict=True)]
         best = Meshed(
             problem=fine.body.problem, condensation=fine.condensation,

@@ -136,12 +136,12 @@ class _Estimate:
 
 def pressure_change(difference: Difference, zone: int, singularities: Sequence[Singularity]) -> float | None:
     """‖Δp‖/‖p‖ of a zone, away from infinite pressures; None without pressure."""
-    one, two = difference.pair
-    compared = ~near_singularities(difference.fine, two, singularities) & (difference.fine.zone_of == zone)
-    norm = norm_squared(difference.fine, two.pressure)[compared].sum()
+    _, two = difference.pair
+    compared = ~near_singularities(difference.fine, two, singularities)
+    norm = norm_squared(difference.fine, two.pressure[zone])[compared].sum()
     if not norm > 0:
         return None
-    change = (difference.fine.weights * difference.pressure**2).sum(axis=1)[compared].sum()
+    change = (difference.fine.weights * difference.pressure[zone] ** 2).sum(axis=1)[compared].sum()
     return float(np.sqrt(change / norm))
 
 
@@ -173,26 +173,21 @@ def contact_beside(run: ZoneRun, stretches: Sequence[Stretch], position: float) 
     return best
 
 
-def _zone_bars(
-    estimate: _Estimate, number: int, name: str, m: float, its: Sequence[Singularity]
-) -> Iterator[ErrorBar]:
+def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Sequence[Singularity]) -> Iterator[ErrorBar]:
     """Error bars of a zone under pressure: peak, force, ends of contact, pressure, intensities."""
     both = [*zip((estimate.difference.coarse, estimate.difference.fine), estimate.difference.pair, strict=True)]
-    peaks = [float(answer.pressure[solved.zone_of == number].max()) for solved, answer in both]
+    peaks = [float(answer.pressure[number].max()) for _, answer in both]
     if its:
         yield ErrorBar(quantity="peak", zone=name, value=None, bar=None, note=_infinite(its))
     else:
         bar = estimate.bar(max(_change(*peaks), PEAK * m), smooth=True)
         yield ErrorBar(quantity="peak", zone=name, value=estimate.value(*peaks), bar=bar)
-    forces = [
-        float((solved.mesh.tributary * answer.pressure)[solved.zone_of == number].sum()) for solved, answer in both
-    ]
+    forces = [float((solved.mesh.tributary * answer.pressure[number]).sum()) for solved, answer in both]
     bar = estimate.bar(max(_change(*forces), FORCE * m))
     yield ErrorBar(quantity="force", zone=name, value=estimate.value(*forces), bar=bar)
     yield from _end_bars(estimate, name, m)
     solved, answer = estimate.reported
-    zone = solved.zone_of == number
-    square = norm_squared(solved, answer.pressure)[zone].sum() / solved.weights[zone].sum()
+    square = norm_squared(solved, answer.pressure[number]).sum() / solved.weights[solved.in_zone[number]].sum()
     note = "away from infinite pressures" if its else ""
     yield ErrorBar(quantity="pressure", zone=name, value=float(np.sqrt(square)), bar=estimate.bar(m), note=note)
     for item in its:
@@ -263,10 +258,13 @@ def _intensity(solved: Solved, answer: Answer, item: Singularity, degree: int) -
     run = solved.runs[item.place.run]
     side, length = contact_beside(run, answer.stretches[run.number], item.place.position)
     xi, _ = reference_element.gauss_legendre(2)
-    pressure = (reference_element.values(xi) @ answer.pressure[run_elements(solved, run), :, None])[..., 0]
+    own = answer.pressure[[*solved.body.problem.contact_zones].index(run.zone)]
+    pressure = (reference_element.values(xi) @ own[run_elements(solved, run), :, None])[..., 0]
     at = (run.ends[:-1, None] + run.ends[1:, None]) / 2 + np.diff(run.ends)[:, None] / 2 * xi
-    s: Array = np.min([np.where(side * (at - image) > 0, side * (at - image), np.inf)
-                       for image in _images(run, item.place.position)], axis=0)
+    s: Array = np.min(
+        [np.where(side * (at - image) > 0, side * (at - image), np.inf) for image in _images(run, item.place.position)],
+        axis=0,
+    )
     low, high = FITTED[0] * length, FITTED[1] * length
     used = (s >= low) & (s <= high) & (pressure > 0)
     if used.sum() < 2 * degree:

@@ -3,12 +3,11 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import groupby
 
 import numpy as np
 
 from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun, contact_stretches, zone_runs
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body, body_of
@@ -33,7 +32,7 @@ class Answer:
     condensation : with the load case that acts
     solution : of its contact problem
     stretches : stretches of contact by run; two with a slit between them are one
-    pressure : (m, 3) [p] by element and local node, zero outside the zones
+    pressure : (zones, m, 3) [p] by zone, element and local node, zero outside the zone
     traction : (m, 3, 2) [p]
     displacement : (m, 3, 2) less the motions that nothing determines [L]
     """
@@ -70,12 +69,12 @@ class Solved:
         return self.mesh.degrees_of_freedom
 
     @cached_property
-    def zone_of(self) -> IntArray:
-        """Number (m,) of the zone of each element, -1 for none."""
-        zone = np.full(len(self.mesh.elements), -1)
+    def in_zone(self) -> BoolArray:
+        """Whether each zone has each element (zones, m)."""
         points = self.body.points
-        zone[points.element] = points.zone[points.point]
-        return zone
+        has = np.zeros((len(self.body.problem.contact_zones), len(self.mesh.elements)), bool)
+        has[points.zone[points.point], points.element] = True
+        return has
 
     @cached_property
     def weights(self) -> Array:
@@ -104,14 +103,12 @@ def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> Answer:
     intervals = footprint(contact, solution).intervals
     state = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
     points = body.points
-    pressure = np.zeros((len(body.mesh.elements), 3))
-    pressure[points.element, points.local] = solution.pressure[points.point]
+    pressure = np.zeros((len(body.problem.contact_zones), *body.mesh.elements.shape))
+    pressure[points.zone[points.point], points.element, points.local] = solution.pressure[points.point]
     return Answer(
         condensation=condensation,
         solution=solution,
-        stretches={
-            run.number: _without_slits(contact_stretches(run, contact, solution, intervals)) for run in runs
-        },
+        stretches={run.number: _without_slits(contact_stretches(run, contact, solution, intervals)) for run in runs},
         pressure=pressure,
         traction=state.traction,
         displacement=_less_undetermined(body, state.displacement),
@@ -164,9 +161,9 @@ class Difference:
 
     @cached_property
     def pressure(self) -> Array:
-        """Change (2 m, 3) of the pressure at Gauss points of the halves [p]."""
+        """Change (zones, 2 m, 3) of the pressure at Gauss points of the halves [p]."""
         one, two = self.pair
-        return _at_gauss(two.pressure - halves(one.pressure))
+        return np.stack([_at_gauss(b - halves(a)) for a, b in zip(one.pressure, two.pressure, strict=True)])
 
     @cached_property
     def energy(self) -> Array:
@@ -185,8 +182,9 @@ class Difference:
 
     @cached_property
     def pressure_squared(self) -> Array:
-        """∫Δp² (m,) of each coarse element [p² L]."""
-        return _by_pairs((self.fine.weights * self.pressure**2).sum(axis=1))
+        """∫Δp² (zones, m) of each coarse element [p² L]."""
+        squares = (self.fine.weights * self.pressure**2).sum(axis=2)
+        return squares.reshape(len(squares), -1, 2).sum(axis=2)
 
 
 def norm_squared(solved: Solved, values: Array) -> Array:

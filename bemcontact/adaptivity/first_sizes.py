@@ -1,6 +1,6 @@
 """Element sizes from the geometry alone: curvature, edges, corners, thickness, and where the surface comes near."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -12,7 +12,7 @@ from bemcontact.adaptivity.sizes import Limit, Loop
 from bemcontact.arrays import Array
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour, Polyline, Shape
+from bemcontact.problem.rigid_surface import DeflectedContour, Polyline, RigidSurface, Shape
 
 TURN = pi / 6
 """Angle [rad] by which an element may turn."""
@@ -131,7 +131,7 @@ def surface_sizes(problem: Problem, outline: Outline) -> tuple[dict[int, list[Li
                 if edge.name in zone.edges:
                     start = loop.start_of[edge.name]
                     limits.setdefault(number, []).extend(_near(edge, start, zone.surface))
-                    for fraction in _corners(edge, zone.surface):
+                    for fraction in surface_corners(edge, zone.surface):
                         place = start + fraction * edge.length
                         marks.setdefault(number, []).append(place)
                         limits[number].append(Limit(low=place, high=place, size=AT_CORNER * edge.length))
@@ -158,7 +158,7 @@ def _near(edge: Edge, start: float, surface: Shape) -> Iterator[Limit]:
             yield Limit(low=place, high=place, size=float(max(0.5 / curvature, NARROW * edge.length)))
 
 
-def _corners(edge: Edge, surface: Shape) -> Iterator[float]:
+def surface_corners(edge: Edge, surface: RigidSurface) -> Iterator[float]:
     """Fractions of the length where an edge is nearest to a corner of a polyline, if that is inside."""
     if not isinstance(surface, Polyline):
         return

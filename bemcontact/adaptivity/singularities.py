@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bemcontact.adaptivity.fields import Difference, Solved
+from bemcontact.adaptivity.first_sizes import surface_corners
 from bemcontact.adaptivity.zone_runs import ZoneRun
 from bemcontact.arrays import IntArray
 
@@ -84,16 +85,17 @@ class Watch:
 
     histories: list[_History] = field(default_factory=list)
 
-    def look(self, difference: Difference, corners: Sequence[Place]) -> tuple[Singularity, ...]:
+    def look(self, difference: Difference) -> tuple[Singularity, ...]:
         """Look at all places of one load case on a mesh; list those where the pressure is infinite."""
         coarse, case = difference.coarse, difference.number
         one, two = difference.pair
-        for place in _places(difference, corners):
+        for place in _places(difference):
             history = self._history(place, case, SAME * coarse.runs[place.run].length)
             elements = elements_at(coarse, coarse.runs[place.run], place.position)
-            low = float(one.pressure[elements].max())
-            high = float(two.pressure[np.concatenate([2 * elements, 2 * elements + 1])].max())
-            pressed = one.pressure[(coarse.zone_of == coarse.zone_of[elements[0]])[:, None] & (one.pressure > 0)]
+            zone = [*coarse.body.problem.contact_zones].index(place.zone)
+            low = float(one.pressure[zone, elements].max())
+            high = float(two.pressure[zone, np.concatenate([2 * elements, 2 * elements + 1])].max())
+            pressed = one.pressure[zone][one.pressure[zone] > 0]
             history.growth.append(high / low if pressed.size and low > HIGH * pressed.mean() else 1.0)
             history.element.append(float(coarse.weights[elements].sum(axis=1).min()))
             if history.exponent is None and history.grows():
@@ -128,8 +130,8 @@ def _grows(history: Sequence[tuple[float, float]]) -> bool:
     return low < before < high and low < now < high and now - 1 > LASTING * (before - 1) and last < FINER * first
 
 
-def _places(difference: Difference, corners: Sequence[Place]) -> Iterator[Place]:
-    """Ends of contact that are not free, corners under pressure, and the place of the peak of each zone."""
+def _places(difference: Difference) -> Iterator[Place]:
+    """Ends of contact that are not free, and corners of the boundary and of the surface."""
     coarse = difference.coarse
     one, _ = difference.pair
     for run in coarse.runs:
@@ -142,7 +144,10 @@ def _places(difference: Difference, corners: Sequence[Place]) -> Iterator[Place]
         for position, corner in zip(run.joints, run.corner, strict=True):
             if corner and (run.closed or 0 < position < run.length):
                 yield Place(run=run.number, zone=run.zone, position=float(position), corner=True)
-    yield from corners
+        surface = coarse.body.problem.contact_zones[run.zone].surface
+        for edge, start in zip(run.edges, run.joints, strict=False):
+            for fraction in surface_corners(edge, surface):
+                yield Place(run=run.number, zone=run.zone, position=start + fraction * edge.length, corner=True)
 
 
 def elements_at(solved: Solved, run: ZoneRun, position: float) -> IntArray:

@@ -59,7 +59,9 @@ class Layers:
         """Size at distances (k,) from the end of contact; negative ones are before it."""
         d, w = np.abs(beyond), self.width
         n = np.where((beyond > 0) == self.after, self.count, self.count / OUTSIDE)
-        inside = np.maximum.reduce([w / n**3, np.full_like(d, SHORTEST * w), 3 / n * np.cbrt(w * np.minimum(d, w) ** 2)])
+        inside = np.maximum.reduce(
+            [w / n**3, np.full_like(d, SHORTEST * w), 3 / n * np.cbrt(w * np.minimum(d, w) ** 2)]
+        )
         return inside + GROWTH * np.maximum(d - w, 0.0)
 
 
@@ -124,7 +126,9 @@ class Loop:
             same = 1e-9 * (stop - start)
             own = np.unique(inside[(inside > start + same) & (inside < stop - same)])
             own = own[np.diff(own, prepend=start) > same]
-            ends[edge.name] = tuple(((self._divided(start, stop, own, limits, layers) - start) / (stop - start)).tolist())
+            ends[edge.name] = tuple(
+                ((self._divided(start, stop, own, limits, layers) - start) / (stop - start)).tolist()
+            )
         return ends
 
     def _divided(self, start: float, stop: float, marks: Array, limits: Array, layers: Sequence[Layers]) -> Array:
