@@ -42,6 +42,8 @@ PENETRATION = 1e-3
 """Penetration between nodes, over the largest displacement, that a mesh must resolve."""
 SPOT = 1 / 4
 """Factor of an element under which something penetrates between nodes."""
+NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
+NOT_ESTIMATED = "the errors of this mesh were not estimated"
 MOST_PASSES = 14
 MOST_UNKNOWNS = 4000
 """Largest number of unknowns of the finer mesh."""
@@ -315,10 +317,10 @@ def penetrations(answer: Solved, case: Answer) -> Iterator[tuple[int, float]]:
                 yield element, -least
 
 
-def meshed(problem: Problem, progress: Callable[[str], object] | None = None) -> Meshed:
+def meshed(problem: Problem, progress: Callable[[str], object] | None = None, *, errors: bool = True) -> Meshed:
     """Condense a problem on the mesh that it states, or on one that is found for the accuracy asked.
 
-    Errors are estimated in both cases, unless no accuracy is asked for.
+    The errors of a stated mesh are estimated, unless no accuracy is asked for or `errors` is false.
 
     Raises
     ------
@@ -331,10 +333,11 @@ def meshed(problem: Problem, progress: Callable[[str], object] | None = None) ->
     if problem.adapts:
         return _found(problem, progress)
     asked, refine = problem.asked_accuracy, problem.mesh.refine
-    if asked is None:
+    if asked is None or not errors:
         condensation = condense(body_of(problem))
         count = max(1, len(problem.case_names) if problem.case is None else 1)
-        return Meshed(problem=problem, condensation=condensation, accuracies=(Accuracy(asked=None),) * count)
+        unknown = Accuracy(asked=asked, reason=NONE_ASKED if asked is None else NOT_ESTIMATED)
+        return Meshed(problem=problem, condensation=condensation, accuracies=(unknown,) * count)
     progress("mesh as stated")
     coarse = solved(problem)
     try:

@@ -76,6 +76,11 @@ class Accuracy(Leaf):
         return replace(judged, met=bool(judged.worst <= asked))
 
     @property
+    def holds(self) -> bool:
+        """Whether the accuracy asked for is met, or none is asked for."""
+        return self.asked is None or bool(self.met)
+
+    @property
     def worst(self) -> float:
         """Largest error bar of those to which the accuracy applies; infinite if one is unknown."""
         judged = [item for item in self.bars if item.promised]

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Unpack
 
-from bemcontact.adaptivity.fitting import MeshFit
-from bemcontact.analysis.solve import Progress, Stopwatch, assessed, condensation_of, fitted_to_contact
+from bemcontact.analysis.solve import Prepared, Progress, Stopwatch, assessed, ensure_acting, prepare
 from bemcontact.analysis.study import MeshLevel, Settings, Study
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
@@ -69,8 +68,8 @@ def compare(
     """
     read = ComparisonOptions.of(formulations, weights, penalties, **options)
     watch = Stopwatch(progress=progress)
-    problem, fit = fitted_to_contact(problem, watch)
-    return _compared(read, problem, watch, fit).comparison
+    ensure_acting(problem)
+    return _compared(read, prepare(problem, watch, errors=False), watch).comparison
 
 
 def study(
@@ -82,8 +81,8 @@ def study(
 ) -> Study:
     """Compare formulations, as `compare` does, on one mesh for each number of parts in `refine`.
 
-    A mesh that is fitted to the ends of contact is fitted once and then refined. `changes` are those made to the spec
-    with --set. `OptionError` if `refine` is empty, repeats a number, or refines a condensed problem, which has no mesh.
+    A mesh that is found for an accuracy is found once and then refined. Errors are estimated on the finest mesh.
+    `changes` are those made to the spec with --set. `OptionError` if `refine` is empty, repeats a number, or refines a condensed problem, which has no mesh.
     """
     if not refine or len({*refine}) < len(refine):
         listed = ", ".join(map(str, refine)) or "none"
@@ -92,14 +91,17 @@ def study(
         raise OptionError("a condensed problem has no mesh to refine; refine the problem that it came from")
     for parts in refine:
         ensure_whole(parts, "refinement", 1)
-    fitting = Stopwatch(progress=progress)
-    problem, fit = fitted_to_contact(problem, fitting)
+    ensure_acting(problem)
+    finding = Stopwatch(progress=progress)
+    found = prepare(problem, finding) if isinstance(problem, Problem) and problem.adapts else None
+    problem = found.condensation.body.problem if found and found.condensation else problem
     levels = []
     for parts in sorted(map(int, refine)):
         report = progress if len(refine) == 1 or progress is None else _prefixed(progress, f"refine {parts}: ")
         finer = problem.refined(parts) if isinstance(problem, Problem) and parts > 1 else problem
-        watch = Stopwatch(progress=report, seconds={} if levels else fitting.seconds)
-        level = _compared(options, finer, watch, fit)
+        watch = Stopwatch(progress=report, seconds={} if levels else finding.seconds)
+        prepared = found if found and parts == 1 else prepare(finer, watch, errors=parts == max(refine))
+        level = _compared(options, prepared, watch)
         levels.append(replace(level, refine=parts, outdated=outdated(problem, changes)))
     return Study(settings=Settings(**options.to_dict(), changes=tuple(changes)), levels=tuple(levels))
 
@@ -123,11 +125,9 @@ def _prefixed(progress: Progress, prefix: str) -> Progress:
     return lambda stage, now: progress(prefix + stage, now)
 
 
-def _compared(
-    options: ComparisonOptions, problem: Problem | CondensedContact, watch: Stopwatch, fit: MeshFit | None
-) -> MeshLevel:
+def _compared(options: ComparisonOptions, prepared: Prepared, watch: Stopwatch) -> MeshLevel:
     """Compare on one mesh, and assess the direct solution with the boundary behind it."""
-    contact, condensation = condensation_of(problem, watch)
+    contact = prepared.contact
     reference = _attempted(SolveOptions(formulation=FormulationName.COMPLEMENTARITY), options, contact, watch)
     assert reference.solution is not None  # the direct solver ends with a status, never refuses
     if FormulationName.QP3 in options.formulations:
@@ -136,7 +136,7 @@ def _compared(
     attempts = [_attempted(attempt, options, contact, watch) for attempt in options.attempts]
     with watch.stage("comparison"):
         compared = comparison(contact, reference, attempts)
-    answer = assessed(problem, condensation, contact, reference.solution, Weights.TRIBUTARY, watch, fit=fit)
+    answer = assessed(prepared, reference.solution, Weights.TRIBUTARY, watch)
     return MeshLevel(refine=1, comparison=compared, answer=answer)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bemcontact.adaptivity.fitting import fitted
+from bemcontact.adaptivity.adapt import meshed
 from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -59,7 +59,7 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     end = float(to)
     if not (np.isfinite(begin) and np.isfinite(end)) or begin == end:
         raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
-    ends = (replace(contact, name=problem.title) for contact in between(fitted(problem)[0], key, begin, end))
+    ends = (replace(contact, name=problem.title) for contact in between(_on_mesh(problem, key, begin, end), key, begin, end))
     return ParameterPath(key=key, start=begin, end=end, path=load_path(*ends))
 
 
@@ -87,7 +87,7 @@ def sensitivities(
         If the equations of contact are singular to working precision.
     """
     ensure_acting(problem)
-    stated = fitted(problem)[0] if isinstance(problem, Problem) else None
+    stated = _with_mesh(problem) if isinstance(problem, Problem) else None
     contact = problem if isinstance(problem, CondensedContact) else condense(stated or problem)
     if changes is None or isinstance(changes, Mapping):
         return sensitivities_of_contact(contact, changes)
@@ -95,6 +95,22 @@ def sensitivities(
     keys = [changes] if isinstance(changes, str) else changes
     wanted = {key: known[key] if key in known else _change(contact, stated, key, solution.pressure) for key in keys}
     return sensitivities_of_contact(contact, wanted, solution)
+
+
+def _with_mesh(problem: Problem) -> Problem:
+    """The problem on its mesh, which is found if it is not stated."""
+    return meshed(problem, errors=False).problem if problem.adapts else problem
+
+
+def _on_mesh(problem: Problem, key: str, start: float, end: float) -> Problem:
+    """The problem on a mesh that is accurate at both ends of a path, if a mesh is to be found."""
+    if not problem.adapts:
+        return problem
+    found = _with_mesh(_varied(problem, key, start))
+    boundary, refine = found.boundary, found.mesh.refine
+    mesh = problem.mesh.model_copy(update={"adapt": True, "refine": refine})
+    there = _with_mesh(_varied(problem.model_copy(update={"boundary": boundary, "mesh": mesh}), key, end))
+    return problem.model_copy(update={"boundary": there.boundary, "mesh": there.mesh})
 
 
 def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:

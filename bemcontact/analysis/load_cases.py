@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Unpack
 
 from bemcontact.analysis.result import Result, ResultRecord
-from bemcontact.analysis.solve import Progress, Stopwatch, assessed, condensation_of, ensure_kind, solve_with
+from bemcontact.analysis.solve import Prepared, Progress, Stopwatch, assessed, ensure_kind, mesh_of
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.search import with_start_read
@@ -58,6 +58,11 @@ class CaseResults(Recorded):
         return all(result.certified for result in self.results.values())
 
     @property
+    def holds(self) -> bool:
+        """Whether each of them is certified, and as accurate as was asked."""
+        return all(result.holds for result in self.results.values())
+
+    @property
     def worst(self) -> str | None:
         """The case or combination with the largest peak pressure; None if nothing touches in any."""
         peaks = {name: item.footprint.peak.pressure for name, item in self.results.items() if item.footprint.peak}
@@ -103,28 +108,19 @@ def solve_cases(
 def solve_cases_with(options: SolveOptions, problem: Problem, progress: Progress | None = None) -> CaseResults:
     """Solve all load cases and combinations with options, as `solve_cases` does.
 
-    If the mesh is to be fitted to the ends of contact, each of them gets its own mesh.
+    All share one mesh, so that their results can be combined.
     """
     ensure_kind(problem, Problem)
     options = with_start_read(options)
     if not problem.load_cases:
         raise ProblemError("the problem states no load cases; bemcontact.solve solves it as it is")
-    if problem.mesh.fit_contact_edges:
-        results = {}
-        for name in problem.case_names:
-            if progress:
-                progress(name, "")
-            results[name] = solve_with(options, problem.with_case(name))
-        return CaseResults(name=problem.name, results=results, seconds={})
     shared = Stopwatch(progress=progress)
-    _, whole = condensation_of(problem.model_copy(update={"case": None}), shared)
-    assert whole is not None
-    cases = {name: whole.acting(name) for name in problem.case_names}
+    on_mesh = mesh_of(problem.model_copy(update={"case": None}), shared)
     results = {}
-    for name, case in cases.items():
-        watch = Stopwatch(progress=progress)
+    for name, accuracy in zip(problem.case_names, on_mesh.accuracies, strict=True):
+        watch, case = Stopwatch(progress=progress), on_mesh.condensation.acting(name)
         with watch.stage(name):
             solution, searches = solve_contact(case.contact, options)
-            given = case.body.problem
-            results[name] = assessed(given, case, case.contact, solution, options.weights, watch, searches)
+            prepared = Prepared(contact=case.contact, condensation=case, accuracy=accuracy)
+            results[name] = assessed(prepared, solution, options.weights, watch, searches)
     return CaseResults(name=problem.name, results=results, seconds=shared.seconds)

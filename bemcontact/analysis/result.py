@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.adaptivity.fitting import MeshFit
+from bemcontact.adaptivity.error_bars import Accuracy
 from bemcontact.arrays import Array
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
@@ -64,8 +64,8 @@ class HeadRecord(Record):
 class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     """Solution of a contact problem and all quantities recomputed from it; lists are by contact point."""
 
-    mesh_fit: MeshFit | None
-    """Fit of the mesh to the ends of contact; null without one."""
+    accuracy: Accuracy
+    """Accuracy of the mesh: error bars, and whether they are as small as was asked."""
     weights: Weights
     """Weights of the objective."""
     objective: float
@@ -89,7 +89,7 @@ class Result(Recorded):
     """A solution of a contact problem and all quantities recomputed from it."""
 
     problem: Problem | None
-    """The problem, with the element ends of a fitted mesh; None if a condensed problem was solved."""
+    """The problem on its mesh; None if a condensed problem was solved."""
     contact: CondensedContact
     """The condensed problem."""
     solution: ContactSolution
@@ -110,12 +110,12 @@ class Result(Recorded):
     """Two for each node of the mesh; None for a condensed problem."""
     notes: tuple[str, ...]
     """Notes on the condensation, the mesh and the solver."""
+    accuracy: Accuracy
+    """Error bars of the mesh, and whether they are as small as was asked."""
     seconds: dict[str, float]
     """Time of each stage."""
     starts: RandomStarts | None = None
     """Searches from random starts, if any were asked for."""
-    mesh_fit: MeshFit | None = None
-    """Fit of the mesh to the ends of contact; None without one."""
 
     def __repr__(self) -> str:
         """One line: name, formulation, verdict, peak."""
@@ -125,8 +125,13 @@ class Result(Recorded):
 
     @property
     def certified(self) -> bool:
-        """Whether this is proved to be the solution, and the only one."""
+        """Whether this is proved to be the solution of the equations on the mesh, and the only one."""
         return self.certificate.certified
+
+    @property
+    def holds(self) -> bool:
+        """Whether the equations are certified, and the mesh is as accurate as was asked."""
+        return self.certified and self.accuracy.holds
 
     @property
     def touching(self) -> NDArray[np.bool_]:
@@ -176,7 +181,7 @@ class Result(Recorded):
             **dict(contact_record(self.contact)),
             **dict(solution_record(self.contact, self.solution)),
             **dict(footprint_record(self.footprint)),
-            mesh_fit=self.mesh_fit,
+            accuracy=self.accuracy,
             weights=self.weights,
             objective=self.objective,
             starts=self.starts,

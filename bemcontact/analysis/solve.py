@@ -3,18 +3,17 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Unpack
 
-from bemcontact.adaptivity.fitting import MeshFit, fitted
+from bemcontact.adaptivity.adapt import Meshed, meshed
+from bemcontact.adaptivity.error_bars import Accuracy
 from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import Condensation, boundary_state
-from bemcontact.bem.condense import condense as condense_body
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.solution import ContactSolution
@@ -35,6 +34,10 @@ from bemcontact.problem.problem import Problem
 
 Progress = Callable[[str, str], object]
 """Takes the name of a stage and how far it has come; the latter is empty when the stage begins."""
+
+
+NO_MESH = Accuracy(asked=None, reason="a condensed problem has no mesh whose errors could be estimated")
+"""Accuracy of a problem that is given condensed."""
 
 
 @dataclass(kw_only=True)
@@ -68,8 +71,8 @@ def condense(problem: Problem) -> CondensedContact:
     Returns
     -------
     CondensedContact
-        On the fitted mesh if the problem asks for one; its notes say so. If the problem has load cases and none of them
-        acts, the permanent loads act, and each load case has the factor zero.
+        On the mesh that the problem states, or on one that is found for its accuracy. If the problem has load cases
+        and none of them acts, the permanent loads act, and each load case has the factor zero.
 
     Raises
     ------
@@ -79,9 +82,7 @@ def condense(problem: Problem) -> CondensedContact:
         If the equations of the body have no unique solution.
     """
     ensure_kind(problem, Problem)
-    problem, fit = fitted(problem)
-    contact = condense_body(body_of(problem)).contact
-    return contact if fit is None else replace(contact, notes=(*fit.notes, *contact.notes))
+    return meshed(problem, errors=False).condensation.contact
 
 
 def ensure_kind(problem: object, *kinds: type) -> None:
@@ -141,53 +142,60 @@ def solve(
 
 
 def solve_with(
-    options: SolveOptions, problem: Problem | CondensedContact, progress: Callable[[int], object] | None = None
+    options: SolveOptions,
+    problem: Problem | CondensedContact,
+    progress: Callable[[int], object] | None = None,
+    on_mesh: Progress | None = None,
 ) -> Result:
-    """Solve a contact problem with options, and assess the result, as `solve` does."""
-    options, watch = with_start_read(options), Stopwatch()
-    problem, fit = fitted_to_contact(problem, watch)
-    contact, condensation = condensation_of(problem, watch)
-    with watch.stage("solution"):
-        solution, searches = solve_contact(contact, options, progress)
-    return assessed(problem, condensation, contact, solution, options.weights, watch, searches, fit)
+    """Solve a contact problem with options, and assess the result, as `solve` does.
 
-
-def fitted_to_contact(
-    problem: Problem | CondensedContact, watch: Stopwatch
-) -> tuple[Problem | CondensedContact, MeshFit | None]:
-    """Fit the mesh to the ends of contact if the problem asks for it; `ProblemError` if no load case acts."""
+    `on_mesh` is called with each stage and how far it has come.
+    """
+    options, watch = with_start_read(options), Stopwatch(progress=on_mesh)
     ensure_acting(problem)
-    if isinstance(problem, CondensedContact) or not problem.mesh.fit_contact_edges:
-        return problem, None
-    with watch.stage("mesh fit") as say:
-        return fitted(problem, say)
+    prepared = prepare(problem, watch)
+    with watch.stage("solution"):
+        solution, searches = solve_contact(prepared.contact, options, progress)
+    return assessed(prepared, solution, options.weights, watch, searches)
 
 
-def condensation_of(
-    problem: Problem | CondensedContact, watch: Stopwatch
-) -> tuple[CondensedContact, Condensation | None]:
-    """Condense a problem; one that is condensed already has no condensation."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Prepared:
+    """A condensed problem, ready to be solved under one load case."""
+
+    contact: CondensedContact
+    condensation: Condensation | None = None
+    """None for a problem that was given condensed."""
+    accuracy: Accuracy = NO_MESH
+    """Accuracy of the mesh."""
+
+
+def prepare(problem: Problem | CondensedContact, watch: Stopwatch, *, errors: bool = True) -> Prepared:
+    """Condense a problem on its mesh or on one that is found, and estimate the errors of a stated mesh if wanted."""
     ensure_kind(problem)
     if isinstance(problem, CondensedContact):
-        return problem, None
-    with watch.stage("mesh"):
-        body = body_of(problem)
-    with watch.stage("condensation"):
-        condensation = condense_body(body)
-    return condensation.contact, condensation
+        return Prepared(contact=problem)
+    on_mesh = mesh_of(problem, watch, errors=errors)
+    return Prepared(
+        contact=on_mesh.condensation.contact, condensation=on_mesh.condensation, accuracy=on_mesh.accuracies[0]
+    )
+
+
+def mesh_of(problem: Problem, watch: Stopwatch, *, errors: bool = True) -> Meshed:
+    """Condense a problem on its mesh or on one that is found, with the accuracy under each load case."""
+    with watch.stage("mesh") as say:
+        return meshed(problem, say, errors=errors)
 
 
 def assessed(
-    problem: Problem | CondensedContact,
-    condensation: Condensation | None,
-    contact: CondensedContact,
+    prepared: Prepared,
     solution: ContactSolution,
     weights: Weights,
     watch: Stopwatch,
     searches: RandomStarts | None = None,
-    fit: MeshFit | None = None,
 ) -> Result:
-    """Recover the boundary of a solution of `contact`, condensed from `problem`, and assess both."""
+    """Recover the boundary of a solution of a prepared problem, and assess both."""
+    contact, condensation = prepared.contact, prepared.condensation
     boundary = None
     if condensation is not None:
         with watch.stage("recovery"):
@@ -197,14 +205,13 @@ def assessed(
         certificate = certify(contact, solution, recomputed)
         where = footprint(contact, solution)
         notes = (
-            *(() if fit is None else fit.notes),
             *contact.notes,
             *solution.notes,
             *diagnostics(contact, solution, where, None if condensation is None else condensation.body),
         )
     gap = contact.initial_gap + solution.displacement
     return Result(
-        problem=problem if isinstance(problem, Problem) else None,
+        problem=None if condensation is None else condensation.body.problem,
         contact=contact,
         solution=solution,
         weights=weights,
@@ -217,7 +224,7 @@ def assessed(
         notes=notes,
         seconds=watch.seconds,
         starts=searches,
-        mesh_fit=fit,
+        accuracy=prepared.accuracy,
     )
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 
-from bemcontact.adaptivity.fitting import MeshFit
+from bemcontact.adaptivity.error_bars import Accuracy
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.comparison import Comparison, ComparisonRecord
 from bemcontact.assessment.convergence import Convergence, convergence
@@ -54,8 +54,8 @@ class LevelRecord(Record):
     """Resultant of all forces on the body over their sum, from the recovered tractions; null without a boundary."""
     equilibrium_slack: float | None
     """Imbalance of the discrete equations relative to the loads; null without a boundary."""
-    mesh_fit: MeshFit | None
-    """Fit of the mesh to the ends of contact; null without one."""
+    accuracy: Accuracy
+    """Accuracy of the mesh: error bars, and whether they are as small as was asked."""
     comparison: ComparisonRecord
     """The formulations side by side."""
     references: tuple[Expected, ...]
@@ -128,7 +128,7 @@ class MeshLevel:
             notes=answer.notes,
             force_balance=answer.residuals.force_balance,
             equilibrium_slack=answer.equilibrium_slack,
-            mesh_fit=answer.mesh_fit,
+            accuracy=answer.accuracy,
             comparison=self.comparison.record(),
             references=self.expected,
             scores=self.scores,
@@ -167,6 +167,11 @@ class Study(Recorded):
     def certified(self) -> bool:
         """Whether all solutions on all meshes are proved to be the contact state."""
         return all(level.comparison.certified for level in self.levels)
+
+    @property
+    def holds(self) -> bool:
+        """Whether all solutions are certified, and the finest mesh is as accurate as was asked."""
+        return self.certified and self.finest.answer.accuracy.holds
 
     @cached_property
     def convergence(self) -> Convergence | None:
