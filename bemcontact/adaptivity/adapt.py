@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bemcontact.adaptivity.error_bars import Accuracy, error_bars, near_singularities
+from bemcontact.adaptivity.error_bars import Accuracy, contact_beside, error_bars, near_singularities
 from bemcontact.adaptivity.fields import Answer, Difference, Solved, norm_squared, solved
 from bemcontact.adaptivity.first_sizes import Outline, outline, surface_sizes
 from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
@@ -34,8 +34,8 @@ REFITS, NARROW_REFITS = 5, 12
 """Largest number of meshes fitted to the ends of contact in one pass, and while contact is narrow."""
 ENERGY_SHARE, PRESSURE_SHARE = 0.8, 0.5
 """Parts of the changes of energy and pressure whose elements are bisected."""
-TIP = 1 / 8
-"""Factor of the element at an infinite pressure."""
+TIP, SHORTEST_TIP = 1 / 8, 1e-5
+"""Factor of the element at an infinite pressure, and its least length over the contact."""
 BETWEEN = 17
 """Points of an open element where the gap is looked at."""
 PENETRATION = 1e-3
@@ -66,6 +66,11 @@ class Meshed:
     problem: Problem
     condensation: Condensation
     accuracies: tuple[Accuracy, ...]
+
+    @property
+    def worst(self) -> float:
+        """Largest error bar under any load case."""
+        return max(item.worst for item in self.accuracies)
 
 
 @dataclass(kw_only=True)
@@ -216,7 +221,10 @@ class _Search:
             wanted |= _largest(change, PRESSURE_SHARE)
             for item in its:
                 if not item.like_a_kink:
-                    tip = elements_at(coarse, coarse.runs[item.place.run], item.place.position)
+                    run, at = coarse.runs[item.place.run], item.place.position
+                    tip = elements_at(coarse, run, at)
+                    shortest = SHORTEST_TIP * contact_beside(run, one.stretches[run.number], at)[1]
+                    tip = tip[coarse.weights[tip].sum(axis=1) > shortest]
                     wanted[tip], factor[tip] = True, TIP
         for element in np.flatnonzero(wanted):
             self._limit(coarse, int(element), float(factor[element]))
@@ -377,12 +385,13 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
         differences = [Difference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
         singular = [search.watch.look(item) for item in differences]
         bars = [error_bars(item, its) for item, its in zip(differences, singular, strict=True)]
-        best = Meshed(
-            problem=fine.body.problem, condensation=fine.condensation,
+        now = Meshed(
+            problem=fine.body.problem,
+            condensation=fine.condensation,
             accuracies=tuple(Accuracy.of(asked, number, its) for its in bars),
-        )  # fmt: skip
-        worst = max((item.worst for item in best.accuracies), default=0.0)
-        progress(f"pass {number}, {fine.degrees_of_freedom} unknowns, error at most {100 * worst:.2g} %")
+        )
+        progress(f"pass {number}, {fine.degrees_of_freedom} unknowns, error at most {100 * now.worst:.2g} %")
+        best = now if best is None or now.worst <= best.worst else best
         if all(item.met for item in best.accuracies):
             return best
         search.layers = search.with_counts(search.ends_of_contact(fine)[0])

@@ -12,7 +12,7 @@ import numpy as np
 from bemcontact.adaptivity.fields import Answer, Difference, Solved, norm_squared
 from bemcontact.adaptivity.singularities import BESIDE, FITTED, Singularity, run_elements
 from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.serialization import Leaf
 
@@ -20,10 +20,13 @@ SAFETY = 1.5
 """Error bar over the change."""
 PEAK, FORCE, END = 0.5, 0.1, 0.1
 """Least changes of a peak, a force and the ends of contact, over that of the pressure as a whole."""
-INTENSITY = 3.0
-"""Safety of the intensity of an infinite pressure, before `SAFETY`."""
+INTENSITY, INTENSITY_FLOOR = 3.0, 5.0
+"""Factors of the change of the intensity of an infinite pressure, and of that of the pressure, before `SAFETY`."""
 UNKNOWN_EXPONENT = 0.01
 """Least error of the intensity if its exponent is measured."""
+
+TIP_ELEMENTS = 2
+"""Number of elements beside an infinite pressure that its intensity is not fitted to."""
 
 Quantity = Literal["peak", "force", "start", "end", "pressure", "displacement", "intensity"]
 """What an error bar is of."""
@@ -51,7 +54,8 @@ class ErrorBar(Leaf):
     @property
     def promised(self) -> bool:
         """Whether the accuracy asked for applies to it: not to intensities, nor where there is nothing to estimate."""
-        return self.quantity != "intensity" and bool(self.value)
+        nothing = self.value is None or (self.quantity == "force" and self.value == 0)
+        return self.quantity != "intensity" and not (self.bar is None and nothing)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,11 +197,11 @@ def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Seque
     yield from _end_bars(estimate, name, m)
     solved, answer = estimate.reported
     square = norm_squared(solved, answer.pressure[number]).sum() / solved.weights[solved.in_zone[number]].sum()
-    note = "away from infinite pressures" if its else ""
-    yield ErrorBar(quantity="pressure", zone=name, value=float(np.sqrt(square)), bar=estimate.bar(m), note=note)
+    value, note = (None, "away from infinite pressures") if its else (float(np.sqrt(square)), "")
+    yield ErrorBar(quantity="pressure", zone=name, value=value, bar=estimate.bar(m), note=note)
     for item in its:
         if not item.like_a_kink:
-            yield _intensity_bar(estimate.difference, item)
+            yield _intensity_bar(estimate.difference, item, m)
 
 
 def _infinite(its: Sequence[Singularity]) -> str:
@@ -245,7 +249,7 @@ def _spacing(run: ZoneRun, position: float) -> float:
     return float(run.ends[i + 1] - run.ends[i]) / 2
 
 
-def _intensity_bar(difference: Difference, item: Singularity) -> ErrorBar:
+def _intensity_bar(difference: Difference, item: Singularity, m: float) -> ErrorBar:
     """Error bar of the intensity K of an infinite pressure K s^-α."""
     one, two = difference.pair
     coarse = _intensity(difference.coarse, one, item, 4)
@@ -254,8 +258,15 @@ def _intensity_bar(difference: Difference, item: Singularity) -> ErrorBar:
     note = f"p = K s^-{item.exponent:.3g}"
     if coarse is None or fine is None or cubic is None:
         return ErrorBar(quantity="intensity", zone=item.place.zone, value=None, bar=None, note=note)
-    change = max(INTENSITY * _change(coarse, fine), _change(cubic, fine), least)
+    change = max(INTENSITY * _change(coarse, fine), _change(cubic, fine), INTENSITY_FLOOR * m, least)
     return ErrorBar(quantity="intensity", zone=item.place.zone, value=fine, bar=SAFETY * change, note=note)
+
+
+def elements_beside(run: ZoneRun, position: float) -> IntArray:
+    """Places in a run of the two elements on either side of a position, which do not follow an infinite pressure."""
+    at, count = int(np.argmin(np.abs(run.ends - position))), len(run.ends) - 1
+    near = np.arange(at - TIP_ELEMENTS, at + TIP_ELEMENTS)
+    return near % count if run.closed else near[(near >= 0) & (near < count)]
 
 
 def _intensity(solved: Solved, answer: Answer, item: Singularity, degree: int) -> float | None:
@@ -270,8 +281,8 @@ def _intensity(solved: Solved, answer: Answer, item: Singularity, degree: int) -
         [np.where(side * (at - image) > 0, side * (at - image), np.inf) for image in _images(run, item.place.position)],
         axis=0,
     )
-    low, high = FITTED[0] * length, FITTED[1] * length
-    used = (s >= low) & (s <= high) & (pressure > 0)
+    low, high = max(FITTED[0] * length, float(s[elements_beside(run, item.place.position)].max())), FITTED[1] * length
+    used = (s > low) & (s <= high) & (pressure > 0)
     if used.sum() < 2 * degree:
         return None
     return float(np.polynomial.Polynomial.fit(s[used], pressure[used] * s[used] ** item.exponent, degree)(0.0))

@@ -98,7 +98,7 @@ class Watch:
             pressed = one.pressure[zone][one.pressure[zone] > 0]
             history.growth.append(high / low if pressed.size and low > HIGH * pressed.mean() else 1.0)
             history.element.append(float(coarse.weights[elements].sum(axis=1).min()))
-            if history.exponent is None and history.grows():
+            if history.grows() or (history.exponent is not None and GROWING[0] < history.growth[-1] < GROWING[1]):
                 history.exponent = _snapped(float(np.log2(history.growth[-1])))
         return tuple(
             Singularity(place=item.place, exponent=item.exponent)
