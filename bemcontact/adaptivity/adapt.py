@@ -16,7 +16,7 @@ from bemcontact.arrays import Array
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import Condensation, condense
-from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
 
@@ -45,6 +45,8 @@ SPOT = 1 / 4
 NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
 NOT_ESTIMATED = "the errors of this mesh were not estimated"
 MOST_PASSES = 14
+MOST_FAILURES = 3
+"""Number of first meshes that may have no contact state."""
 MOST_UNKNOWNS = 4000
 """Largest number of unknowns of the finer mesh."""
 
@@ -71,6 +73,10 @@ class Meshed:
     def worst(self) -> float:
         """Largest error bar under any load case."""
         return max(item.worst for item in self.accuracies)
+
+    def because(self, reason: str) -> "Meshed":
+        """The same, with the reason why no better accuracy was reached."""
+        return replace(self, accuracies=tuple(replace(item, reason=reason) for item in self.accuracies))
 
 
 @dataclass(kw_only=True)
@@ -101,6 +107,10 @@ class _Search:
         answer = solved(self.mesh(refine))
         self.solves.append(answer.degrees_of_freedom)
         return answer
+
+    def halve(self) -> None:
+        """Halve all elements."""
+        self.sources = [[limit._replace(size=limit.size / 2) for limit in own] for own in self.sources]
 
     def fitted(self) -> Solved:
         """Solve on meshes fitted to the ends of contact until these rest."""
@@ -342,12 +352,12 @@ def meshed(problem: Problem, progress: Callable[[str], object] | None = None, *,
         return _found(problem, progress)
     asked, refine = problem.asked_accuracy, problem.mesh.refine
     if asked is None or not errors:
-        condensation = condense(body_of(problem))
-        count = max(1, len(problem.case_names) if problem.case is None else 1)
-        unknown = Accuracy(asked=asked, reason=NONE_ASKED if asked is None else NOT_ESTIMATED)
-        return Meshed(problem=problem, condensation=condensation, accuracies=(unknown,) * count)
+        return _unsolved(problem, asked, NONE_ASKED if asked is None else NOT_ESTIMATED)
     progress("mesh as stated")
-    coarse = solved(problem)
+    try:
+        coarse = solved(problem)
+    except SolverError as error:
+        return _unsolved(problem, asked, str(error))
     try:
         unknowns = 2 * coarse.degrees_of_freedom
         if unknowns > MOST_UNKNOWNS:
@@ -359,7 +369,7 @@ def meshed(problem: Problem, progress: Callable[[str], object] | None = None, *,
             for i in range(len(fine.answers))
         ]
         accuracies = [Accuracy.of(asked, 1, its) for its in bars]
-    except (ProblemError, SingularSystemError) as error:
+    except (ProblemError, SingularSystemError, SolverError) as error:
         accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(coarse.answers)
     return Meshed(problem=problem, condensation=coarse.condensation, accuracies=tuple(accuracies))
 
@@ -370,13 +380,20 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
     assert asked is not None
     search = _search(problem)
     best: Meshed | None = None
-    reason = f"after {MOST_PASSES} passes"
+    reason = f"no better mesh was found in {MOST_PASSES} passes"
     for number in range(1, MOST_PASSES + 1):
         try:
             coarse = search.fitted()
             if 2 * coarse.degrees_of_freedom > MOST_UNKNOWNS:
-                raise ProblemError(f"a finer mesh would have more than {MOST_UNKNOWNS} unknowns")
+                reason = f"a finer mesh would have more than {MOST_UNKNOWNS} unknowns"
+                break
             fine = search.solve(2)
+        except SolverError as error:
+            reason = str(error)
+            if best is not None or number > MOST_FAILURES:
+                break
+            search.halve()
+            continue
         except (ProblemError, SingularSystemError) as error:
             if best is None:
                 raise
@@ -396,8 +413,14 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
             return best
         search.layers = search.with_counts(search.ends_of_contact(fine)[0])
         search.refine(differences, singular)
-    assert best is not None
-    return replace(best, accuracies=tuple(replace(item, reason=reason) for item in best.accuracies))
+    return _unsolved(search.mesh(1), asked, reason) if best is None else best.because(reason)
+
+
+def _unsolved(problem: Problem, asked: float | None, reason: str) -> Meshed:
+    """A problem on a mesh whose errors were not estimated, for a reason."""
+    count = 1 if problem.case is not None else max(1, len(problem.case_names))
+    accuracies = (Accuracy(asked=asked, reason=reason),) * count
+    return Meshed(problem=problem, condensation=condense(body_of(problem)), accuracies=accuracies)
 
 
 def _search(problem: Problem) -> _Search:

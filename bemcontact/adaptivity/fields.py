@@ -15,7 +15,7 @@ from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.condense import condense as condense_body
 from bemcontact.bem.mesh import Mesh
 from bemcontact.contact.solution import ContactSolution, Status
-from bemcontact.errors import ProblemError
+from bemcontact.errors import SolverError
 from bemcontact.formulations import complementarity
 from bemcontact.problem.problem import Problem
 
@@ -99,7 +99,7 @@ def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> Answer:
     contact, body = condensation.contact, condensation.body
     solution = complementarity.solve(contact)
     if solution.status is not Status.SOLVED:
-        raise ProblemError(f"no contact state was found on a mesh: {solution.status.words}")
+        raise SolverError(f"no contact state was found on a mesh: {solution.status.words}")
     intervals = footprint(contact, solution).intervals
     state = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
     points = body.points
