@@ -6,13 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from bemcontact.adaptivity.error_bars import Accuracy, contact_beside, error_bars, near_singularities
+from bemcontact.adaptivity.error_bars import contact_beside, error_bars, near_singularities
 from bemcontact.adaptivity.fields import Answer, Difference, Solved, norm_squared, solved
 from bemcontact.adaptivity.first_sizes import Outline, outline, surface_sizes
 from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
 from bemcontact.adaptivity.sizes import Layers, Limit, Loop
 from bemcontact.adaptivity.zone_runs import ZoneRun
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import Condensation, condense
@@ -198,7 +199,7 @@ class _Search:
     def _between(self, answer: Solved) -> Iterator[tuple[int, Limit]]:
         """Limits for open elements through which a surface passes between the nodes."""
         for case in answer.answers:
-            for element, depth in penetrations(answer, case):
+            for element, _ in penetrations(answer, case):
                 name = answer.mesh.edge_names[answer.mesh.edge[element]]
                 for number, loop in enumerate(self.outline.loops):
                     if name in loop.start_of:
@@ -214,7 +215,7 @@ class _Search:
         wanted = np.zeros(m, bool)
         factor = np.full(m, 0.5)
         for difference, its in zip(differences, singular, strict=True):
-            one, two = difference.pair
+            one, _ = difference.pair
             wanted |= _largest(difference.energy, ENERGY_SHARE)
             change = difference.pressure_squared.copy()
             for zone, own in enumerate(one.pressure):
@@ -252,7 +253,7 @@ class _Search:
                 size = factor * (high - low) * length
                 self.sources[number].append(Limit(low=start + low * length, high=start + high * length, size=size))
 
-    def _beside_ends(self, answer: Solved) -> list[Array]:
+    def _beside_ends(self, answer: Solved) -> list[IntArray]:
         """Elements whose change of pressure belongs to each end of contact."""
         middles, loops = _middles(answer, self.outline)
         return [
@@ -299,7 +300,7 @@ def _middles(answer: Solved, outline: Outline) -> tuple[Array, Array]:
     return np.concatenate(positions), np.concatenate(loops)
 
 
-def _largest(values: Array, share: float) -> Array:
+def _largest(values: Array, share: float) -> BoolArray:
     """Fewest elements that have a share of the sum."""
     order = np.argsort(-values)
     total = np.cumsum(values[order])
@@ -372,6 +373,11 @@ def meshed(problem: Problem, progress: Callable[[str], object] | None = None, *,
     except (ProblemError, SingularSystemError, SolverError) as error:
         accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(coarse.answers)
     return Meshed(problem=problem, condensation=coarse.condensation, accuracies=tuple(accuracies))
+
+
+def first_mesh(problem: Problem) -> Problem:
+    """The problem on the first mesh, from the geometry alone and the elements that are stated."""
+    return _search(problem).mesh(1)
 
 
 def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:

@@ -4,8 +4,8 @@ A single quantity may change little by accident, where its error passes through 
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Literal, Self
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from bemcontact.adaptivity.fields import Answer, Difference, Solved, norm_square
 from bemcontact.adaptivity.singularities import BESIDE, FITTED, Singularity, run_elements
 from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun
 from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.bem import reference_element
-from bemcontact.serialization import Leaf
 
 SAFETY = 1.5
 """Error bar over the change."""
@@ -27,68 +27,6 @@ UNKNOWN_EXPONENT = 0.01
 
 TIP_ELEMENTS = 2
 """Number of elements beside an infinite pressure that its intensity is not fitted to."""
-
-Quantity = Literal["peak", "force", "start", "end", "pressure", "displacement", "intensity"]
-"""What an error bar is of."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class ErrorBar(Leaf):
-    """A quantity with its estimated error."""
-
-    quantity: Quantity
-    """What it is: peak pressure, force on a zone, start or end of a contact interval, the pressure as a whole, largest
-    displacement, or intensity of an infinite pressure."""
-    zone: str | None
-    """Name of the contact zone; null for the displacement."""
-    interval: int | None = None
-    """Number of the contact interval of a start or an end, from 0 on; null for others."""
-    value: float | None
-    """Value: pressure [p], force per thickness [p L], position along the run of the zone [L], root of the mean square of
-    the pressure [p], displacement [L], or intensity K of p = K s^-α [p L^α]; null if there is none."""
-    bar: float | None
-    """Estimated error, relative to the value, and of a start or an end to the length of its interval; null if unknown."""
-    note: str = ""
-    """Why there is no value or no error bar, or what they mean."""
-
-    @property
-    def promised(self) -> bool:
-        """Whether the accuracy asked for applies to it: not to intensities, nor where there is nothing to estimate."""
-        nothing = self.value is None or (self.quantity == "force" and self.value == 0)
-        return self.quantity != "intensity" and not (self.bar is None and nothing)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Accuracy(Leaf):
-    """Accuracy that was asked for, and what was reached."""
-
-    asked: float | None
-    """Relative accuracy asked for; null if none is."""
-    met: bool | None = None
-    """Whether all error bars are below it but those of intensities; null if errors were not estimated."""
-    passes: int = 0
-    """Number of meshes whose errors were estimated; 1 for a mesh that was stated."""
-    bars: tuple[ErrorBar, ...] = ()
-    """Error bars of all quantities."""
-    reason: str = ""
-    """Why no better accuracy was reached, or why errors were not estimated."""
-
-    @classmethod
-    def of(cls, asked: float, passes: int, bars: Sequence[ErrorBar]) -> Self:
-        """Judge error bars."""
-        judged = cls(asked=asked, passes=passes, bars=tuple(bars))
-        return replace(judged, met=bool(judged.worst <= asked))
-
-    @property
-    def holds(self) -> bool:
-        """Whether the accuracy asked for is met, or none is asked for."""
-        return self.asked is None or bool(self.met)
-
-    @property
-    def worst(self) -> float:
-        """Largest error bar of those to which the accuracy applies; infinite if one is unknown."""
-        judged = [item for item in self.bars if item.promised]
-        return max((np.inf if item.bar is None else item.bar for item in judged), default=0.0)
 
 
 def error_bars(
@@ -173,7 +111,7 @@ def _images(run: ZoneRun, position: float) -> list[float]:
 
 
 def contact_beside(run: ZoneRun, stretches: Sequence[Stretch], position: float) -> tuple[int, float]:
-    """Side (-1 before, 1 after) and length of the longer contact beside a position of a run; 1 and 0 if there is none."""
+    """Side (-1 before, 1 after) and length of the longer contact beside a position of a run; 1 and 0 without contact."""
     best = (1, 0.0)
     for item in stretches:
         for at in _images(run, position):
@@ -226,7 +164,9 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
             continue
         before, after = one.stretches[run.number], two.stretches[run.number]
         for i, item in enumerate(answer.stretches[run.number]):
-            for which, free in (("start", item.start_free), ("end", item.end_free)):
+            ends: tuple[tuple[Literal["start", "end"], bool], ...]
+            ends = ("start", item.start_free), ("end", item.end_free)
+            for which, free in ends:
                 position = float(getattr(item, which))
                 bar, note = 0.0, "contact reaches a corner or the end of its zone"
                 if len(before) != len(after):

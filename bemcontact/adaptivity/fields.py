@@ -1,6 +1,6 @@
 """The answer on one mesh: pressure, traction and displacement by element, and the stretches of contact."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -85,7 +85,7 @@ class Solved:
 
 
 def solved(problem: Problem) -> Solved:
-    """Solve a problem on its mesh, under the case that acts or under each one; `ProblemError` where there is no answer."""
+    """Solve a problem on its mesh, under the case that acts or each one; `SolverError` if a contact state is not found."""
     body = body_of(problem)
     condensation = condense_body(body)
     runs = tuple(zone_runs(body))
@@ -127,7 +127,7 @@ def _less_undetermined(body: Body, displacement: Array) -> Array:
     return displacement - motions.displacement(mesh.nodes[mesh.elements]) @ amount
 
 
-def _without_slits(stretches: Sequence[Stretch]) -> tuple[Stretch, ...]:
+def _without_slits(stretches: Iterable[Stretch]) -> tuple[Stretch, ...]:
     """Join stretches of contact between which almost nothing is open."""
     joined: list[Stretch] = []
     for item in stretches:

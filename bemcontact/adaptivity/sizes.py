@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from math import ceil
 from typing import NamedTuple
 
@@ -149,7 +150,7 @@ class Loop:
         at_corner = np.interp(corners, samples, count)
         least = LEAST if len(corners) == 2 else 1
         pieces = []
-        for number, (low, high) in enumerate(zip(at_corner[:-1], at_corner[1:], strict=True)):
+        for number, (low, high) in enumerate(pairwise(at_corner)):
             elements = max(ceil(high - low - ROUNDING), least)
             inner = np.interp(np.linspace(low, high, elements + 1)[1:], count, samples)
             inner[-1] = corners[number + 1]

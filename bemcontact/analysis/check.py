@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from bemcontact.adaptivity.adapt import first_mesh
 from bemcontact.arrays import Array
 from bemcontact.bem.body import body_of, deflections, each_case, ensure_held
 from bemcontact.bem.mesh import Mesh
@@ -32,7 +33,7 @@ class CheckedProblem:
 
 def check(problem: Problem) -> CheckedProblem:
     """Mesh a problem and list what holds the body; `ProblemError` if the load of any case pulls it off its supports."""
-    body = body_of(problem)
+    body = body_of(first_mesh(problem) if problem.adapts else problem)
     for acting in each_case(body):
         ensure_held(acting)
     x, y = body.acting.resultant(body.mesh)

@@ -82,7 +82,8 @@ def study(
     """Compare formulations, as `compare` does, on one mesh for each number of parts in `refine`.
 
     A mesh that is found for an accuracy is found once and then refined. Errors are estimated on the finest mesh.
-    `changes` are those made to the spec with --set. `OptionError` if `refine` is empty, repeats a number, or refines a condensed problem, which has no mesh.
+    `changes` are those made to the spec with --set. `OptionError` if `refine` is empty, repeats a number, or refines a
+    condensed problem, which has no mesh.
     """
     if not refine or len({*refine}) < len(refine):
         listed = ", ".join(map(str, refine)) or "none"

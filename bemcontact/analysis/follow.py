@@ -10,6 +10,7 @@ import numpy as np
 from bemcontact.adaptivity.adapt import meshed
 from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
 from bemcontact.arrays import Array
+from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import Issue, KeyPath, ProblemError
@@ -59,8 +60,11 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     end = float(to)
     if not (np.isfinite(begin) and np.isfinite(end)) or begin == end:
         raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
-    ends = (replace(contact, name=problem.title) for contact in between(_on_mesh(problem, key, begin, end), key, begin, end))
-    return ParameterPath(key=key, start=begin, end=end, path=load_path(*ends))
+    on_mesh = _on_mesh(problem, key, begin, end)
+    ends = (replace(contact, name=problem.title) for contact in between(on_mesh, key, begin, end))
+    path = load_path(*ends)
+    first, last = (_accuracy(on_mesh, key, value) for value in (begin, end))
+    return ParameterPath(key=key, start=begin, end=end, path=path, start_accuracy=first, end_accuracy=last)
 
 
 def sensitivities(
@@ -111,6 +115,15 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> Problem:
     mesh = problem.mesh.model_copy(update={"adapt": True, "refine": refine})
     there = _with_mesh(_varied(problem.model_copy(update={"boundary": boundary, "mesh": mesh}), key, end))
     return problem.model_copy(update={"boundary": there.boundary, "mesh": there.mesh})
+
+
+def _accuracy(problem: Problem, key: str, value: float) -> Accuracy:
+    """Accuracy of the mesh at one value of a key; a load that presses nothing has no errors to estimate."""
+    try:
+        (accuracy,) = meshed(_varied(problem, key, value)).accuracies
+    except ProblemError as error:
+        return Accuracy(asked=problem.asked_accuracy, reason=str(error).splitlines()[0])
+    return accuracy
 
 
 def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:

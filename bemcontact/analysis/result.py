@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.adaptivity.error_bars import Accuracy
 from bemcontact.arrays import Array
+from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
 from bemcontact.assessment.residual import Residuals
@@ -103,7 +103,7 @@ class Result(Recorded):
     certificate: Certificate
     """Certificate of the solution."""
     footprint: Footprint
-    """Contact intervals, peak pressure and resultant."""
+    """Contact intervals, peak pressure and resultant; no peak where it is infinite."""
     boundary: BoundaryState | None
     """Displacement and traction of the whole boundary; None for a condensed problem."""
     degrees_of_freedom: int | None
@@ -119,9 +119,14 @@ class Result(Recorded):
 
     def __repr__(self) -> str:
         """One line: name, formulation, verdict, peak."""
-        peak = "no contact" if self.footprint.peak is None else f"peak pressure {self.footprint.peak.pressure:.6g}"
-        verdict = "certified" if self.certified else self.certificate.kind
-        return f"<Result of {self.contact.name!r} by {self.solution.formulation}: {verdict}, {peak}>"
+        if self.footprint.peak is not None:
+            peak = f"peak pressure {self.footprint.peak.pressure:.6g}"
+        else:
+            peak = "infinite peak pressure" if self.footprint.intervals else "no contact"
+        equations = "unique solution proved" if self.certified else self.certificate.kind
+        known, accuracy = bool(self.accuracy.bars), self.accuracy
+        mesh = f"error at most {100 * accuracy.worst:.2g} %" if known else "error not estimated"
+        return f"<Result of {self.contact.name!r} by {self.solution.formulation}: {equations}, {mesh}, {peak}>"
 
     @property
     def certified(self) -> bool:

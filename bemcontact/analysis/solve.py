@@ -3,13 +3,13 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Unpack
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
-from bemcontact.adaptivity.error_bars import Accuracy
 from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.result import Result
+from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
@@ -204,6 +204,8 @@ def assessed(
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
         where = footprint(contact, solution)
+        if prepared.accuracy.infinite:
+            where = replace(where, peak=None)
         notes = (
             *contact.notes,
             *solution.notes,

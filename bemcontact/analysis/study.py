@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 
-from bemcontact.adaptivity.error_bars import Accuracy
 from bemcontact.analysis.result import Result
+from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.comparison import Comparison, ComparisonRecord
 from bemcontact.assessment.convergence import Convergence, convergence
 from bemcontact.contact.record import UnitsRecord, units_record

@@ -193,7 +193,7 @@ def _certificate_sentence(
 ) -> str:
     """Two or three sentences for an engineer."""
     sure = "equilibrium alone fixes it" if eigenvalue is None else f"its smallest eigenvalue is {eigenvalue:.2e}"
-    error = "" if relative is None else f" No pressure is off by more than {relative:.1e} of the peak."
+    error = "" if relative is None else f" {_bound_sentence(relative)}"
     match kind:
         case CertificateKind.UNIQUE:
             return (
@@ -213,6 +213,14 @@ def _certificate_sentence(
             )
         case CertificateKind.NOT_A_SOLUTION:
             return f"This is not the contact state: {violation}.{error} {way_out}"
+
+
+def _bound_sentence(relative: float) -> str:
+    """Say how far each pressure can be off."""
+    return (
+        f"No pressure is off by more than {relative:.1e} of the peak from the exact solution of the equations on this "
+        "mesh."
+    )
 
 
 def advice(solution: ContactSolution) -> str:

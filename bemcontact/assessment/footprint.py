@@ -69,7 +69,7 @@ class Footprint:
     intervals: tuple[ContactInterval, ...]
     """Contact intervals, zone by zone, in the order of the boundary; empty without contact."""
     peak: Peak | None
-    """Largest pressure; None without contact."""
+    """Largest pressure; None without contact, or if it is infinite."""
     resultant: Resultant
     """Resultant of the contact pressure."""
 
@@ -84,7 +84,7 @@ class FootprintRecord(Record):
     intervals: tuple[ContactInterval, ...]
     """Contact intervals, zone by zone; empty without contact."""
     peak: Peak | None
-    """Largest pressure; null without contact."""
+    """Largest pressure; null without contact, or if it is infinite."""
 
 
 def footprint_record(footprint: Footprint) -> FootprintRecord:

@@ -24,10 +24,6 @@ STANDARD_OUTPUT = Path("-")
 """The file name that means standard output."""
 
 RefineOption = Annotated[int, typer.Option(min=1, metavar="K", help="Split each element into K equal parts.")]
-FitOption = Annotated[
-    bool,
-    typer.Option("--fit-edges", help="Solve first, then grade the contact zones towards the ends of contact."),
-]
 FigureOption = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Draw a picture; FILE ends in .png, .svg or .pdf.", show_default=False),
@@ -69,17 +65,27 @@ class Source:
         ),
     ] = None
 
+    accuracy: Annotated[
+        float | None,
+        typer.Option(
+            metavar="X",
+            help="Find a mesh on which no result is off by more than X, relative: 0.003 is 0.3 %.",
+            show_default="as in the spec",
+        ),
+    ] = None
+
     @property
     def changes(self) -> list[str]:
         """All changes as --set writes them."""
-        return [*(self.overrides or ()), *([] if self.case is None else [f"case={json.dumps(self.case)}"])]
+        options = {"case": self.case, "accuracy": self.accuracy}
+        stated = [f"{key}={json.dumps(value)}" for key, value in options.items() if value is not None]
+        return [*(self.overrides or ()), *stated]
 
-    def problem(self, refine: int = 1, *, fit_edges: bool = False):  # its type costs the time of importing it
-        """Read the problem, with each element split and the mesh fitted to the ends of contact as asked for."""
+    def problem(self, refine: int = 1):  # its type costs the time of importing it
+        """Read the problem, with each element split."""
         from bemcontact import spec
 
-        problem = spec.load(self.spec, self.changes, self.variant).refined(refine)
-        return problem.with_value("mesh.fit_contact_edges", True) if fit_edges else problem
+        return spec.load(self.spec, self.changes, self.variant).refined(refine)
 
     def as_run(self) -> str:
         """The spec with all changes, as YAML."""

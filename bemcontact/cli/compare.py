@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import CommandOutput, FitOption, JsonOption, Source, names, option, run, several
+from bemcontact.cli.command import CommandOutput, JsonOption, Source, names, option, run, several
 from bemcontact.cli.terminal import Report
 from bemcontact.options import ComparisonOptions
 
@@ -22,7 +22,6 @@ def compare(
     refine: Annotated[
         str, typer.Option(metavar="K,…", help="Split each element into K parts; several compare the meshes.")
     ] = "1",
-    fit_edges: FitOption = False,
     out: Annotated[
         Path | None,
         typer.Option(metavar="FOLDER", help="Write a page with pictures, and its numbers.", show_default=False),
@@ -32,7 +31,8 @@ def compare(
     """Solve one problem by several formulations, and show whether they agree and which of them give the solution.
 
     QP1, QP2 and QP3 are compared with the direct solution of the complementarity problem; objectives, residuals and
-    certificates of all are recomputed. The exit status is 0 only if all of them are certified.
+    certificates of all are recomputed. The exit status is 0 only if all of them are certified, and the mesh is as
+    accurate as was asked.
 
     FOLDER gets report.html (one file, pictures inside), report.json, figures/, contact.npz and spec.yaml; an earlier
     report there is replaced.
@@ -53,7 +53,7 @@ def compare(
         parts = several(refine, "--refine", "whole number", int)
         penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
         options = ComparisonOptions.of(names(formulations), names(weights), penalties, starts=starts, seed=seed)
-        study = comparing.study(options, source.problem(fit_edges=fit_edges), parts, report, source.changes)
+        study = comparing.study(options, source.problem(), parts, report, source.changes)
         if out:
             report("report", "")
             from bemcontact.report import folder
@@ -62,8 +62,8 @@ def compare(
         return CommandOutput(
             summary=lambda: text.study_summary(study),
             json=study.to_json,
-            holds=study.certified,
-            verdict=study.finest.comparison.verdict,
+            holds=study.holds,
+            verdict=text.study_shortfall(study),
         )
 
     run("reading", work, source=source, folder=out, json_file=json_file)

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from pydantic import computed_field
 
+from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.footprint import ContactInterval, Footprint, footprint
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.record import UnitsRecord, units_record
@@ -70,6 +71,10 @@ class ParameterPath(Leaf):
     """Value of the parameter at the end."""
     path: Internal[LoadPath]
     """The path for t from 0 to 1."""
+    start_accuracy: Accuracy
+    """Accuracy of the mesh at the start."""
+    end_accuracy: Accuracy
+    """Accuracy of the mesh at the end."""
 
     def __repr__(self) -> str:
         """One line: key, values, the path."""

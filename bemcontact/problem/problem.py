@@ -5,10 +5,10 @@ from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
-    Strict,
     AfterValidator,
     Field,
     ModelWrapValidatorHandler,
+    Strict,
     ValidationError,
     ValidationInfo,
     field_validator,

@@ -1,12 +1,13 @@
 """Facts of a result in words, from its JSON, for the terminal and for pages."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from bemcontact.problem import Units
-from bemcontact.report.formatting import number, per_thickness, settled, vector, with_unit
+from bemcontact.report.formatting import number, per_thickness, sentence_case, settled, vector, with_unit
 
 Record = Mapping[str, Any]
 """A JSON object of a result."""
@@ -22,15 +23,96 @@ ROUND_OFF = 1e-9
 """Relative difference that is written as zero."""
 
 
+QUANTITIES = {
+    "peak": "peak pressure", "force": "force", "start": "start of contact", "end": "end of contact",
+    "pressure": "pressure", "displacement": "largest displacement", "intensity": "intensity",
+}  # fmt: skip
+"""Name of a quantity with an error bar -> the same in words."""
+
+
+class Verdict(NamedTuple):
+    """A verdict on the equations or on the mesh: whether it is good, in a word, and in sentences."""
+
+    of: str
+    good: bool
+    word: str
+    words: str
+
+
+def equations_verdict(certificate: Record, words: str) -> Verdict:
+    """Verdict on the solution of the equations on the mesh, with its sentences."""
+    word = {"unique": "unique solution proved", "not a solution": "not solved"}.get(
+        certificate["kind"], certificate["kind"]
+    )
+    return Verdict("Equations", certificate["kind"] == "unique", word, words)
+
+
+def mesh_verdict(accuracy: Record) -> Verdict:
+    """Verdict on the errors of the mesh."""
+    asked, reason = accuracy["asked"], accuracy["reason"]
+    if accuracy["met"] is None:
+        return Verdict("Mesh", asked is None, "not assessed", f"{sentence_case(reason)}.")
+    largest = worst_bar(accuracy)
+    error = "no error bar" if largest is None else f"{100 * (largest['bar'] or 0):.2g} %"
+    where = "" if largest is None else f" of the {bar_in_words(largest)}"
+    if accuracy["met"]:
+        return Verdict(
+            "Mesh", True, f"error at most {error}", f"Asked: {100 * asked:.3g} %. The largest error bar is that{where}."
+        )
+    estimate = f"error about {error}{where}"
+    if largest is not None and largest["bar"] is None:
+        estimate = f"the error{where} is not known: {largest['note']}"
+    remedy = f"; {reason}" if reason else "; leave elements out, or give --accuracy, and a mesh is found"
+    return Verdict("Mesh", False, "not met", f"Asked: {100 * asked:.3g} %; {estimate}{remedy}.")
+
+
+def worst_bar(accuracy: Record) -> Record | None:
+    """The largest error bar of those to which the accuracy applies, an unknown one first; None if there is none."""
+    judged = [bar for bar in accuracy["bars"] if bar["quantity"] != "intensity"]
+    judged = [bar for bar in judged if bar["bar"] is not None or (bar["value"] and bar["quantity"] != "force")]
+    return max(judged, key=lambda bar: np.inf if bar["bar"] is None else bar["bar"], default=None)
+
+
+def bar_in_words(bar: Record) -> str:
+    """Name a quantity and its zone: ``peak pressure of foot``."""
+    return QUANTITIES[bar["quantity"]] + (f" of {bar['zone']}" if bar["zone"] else "")
+
+
+def bars_of(record: Record, quantity: str) -> Iterator[Record]:
+    """Error bars of a quantity."""
+    return (bar for bar in record.get("accuracy", {}).get("bars", ()) if bar["quantity"] == quantity)
+
+
+def with_bar(value: float, bar: float | None) -> str:
+    """Write a number and its error: 183.3 ± 0.4; the number has the digits that the error leaves."""
+    if not bar or not value:
+        return number(value)
+    error = abs(value) * bar
+    digits = max(0, min(12, -int(np.floor(np.log10(error)))))
+    if 1e-3 <= abs(value) < 1e6 and digits <= 6 and error < abs(value):
+        return f"{value:.{digits}f} ± {error:.{digits}f}"
+    return f"{number(value)} ± {error:.1g}"
+
+
 def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     """List name and value of each fact of a record: contact, peak, resultants, free motions, tools and residuals."""
     size, pressed, moves = size_of(record), pressed_by(record), record["scales"]["displacement"]
     if not record["intervals"]:
         yield "Contact", "nowhere"
-    for interval in record["intervals"]:
-        yield "Contact", f"{interval['zone']}: {span(interval, size, units)}"
+    for interval, error in zip(record["intervals"], _end_errors(record), strict=False):
+        ends = f", ends ± {with_unit(small(error), units.length)}" if error else ""
+        yield "Contact", f"{interval['zone']}: {span(interval, size, units)}{ends}"
     if peak := record["peak"]:
-        yield "Peak pressure", f"{peak_in_words(peak, size, units)}; per UNDEFORMED length"
+        bar = next((item["bar"] for item in bars_of(record, "peak") if item["value"] == peak["pressure"]), None)
+        yield "Peak pressure", f"{peak_in_words(peak, size, units, bar)}; per UNDEFORMED length"
+    for bar in bars_of(record, "peak"):
+        if bar["value"] is None:
+            yield "Peak pressure", f"of {bar['zone']}: {bar['note']}"
+    for bar in bars_of(record, "intensity"):
+        if bar["value"] is not None:
+            yield "Intensity", f"of {bar['zone']}: K = {with_bar(bar['value'], bar['bar'])} in {bar['note']}"
+    for bar in bars_of(record, "displacement"):
+        yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most"
     force = vector(record["resultant"], per_thickness(units), scale=pressed)
     moment = with_unit(number(settled(record["resultant_moment"], pressed * size)), units.force)
     yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
@@ -47,6 +129,17 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
     written = (f"{name.replace('_', ' ')} {value + 0.0:.1e}" for name, value in residuals if value is not None)
     yield "Residuals", ", ".join(written)
+
+
+def _end_errors(record: Record) -> Iterator[float | None]:
+    """Largest error of the ends of each contact interval [L]; None if it is not known."""
+    bars = [bar for bar in (*bars_of(record, "start"), *bars_of(record, "end"))]
+    count: Counter[str] = Counter()
+    for interval in record["intervals"]:
+        zone, (first, last) = interval["zone"], interval["arc"]
+        own = [bar["bar"] for bar in bars if (bar["zone"], bar["interval"]) == (zone, count[zone])]
+        count[zone] += 1
+        yield None if not own or None in own else max(own) * (last - first)
 
 
 def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units) -> str:
@@ -72,9 +165,10 @@ def pressed_by(record: Record) -> float:
     return sum(w * abs(p) for w, p in zip(record["tributary_lengths"], record["pressure"], strict=True))
 
 
-def peak_in_words(peak: Record, size: float, units: Units) -> str:
-    """Write the largest pressure, and where it acts."""
-    return f"{with_unit(number(peak['pressure']), units.stress)} at {vector(peak['at'], units.length, scale=size)}"
+def peak_in_words(peak: Record, size: float, units: Units, bar: float | None = None) -> str:
+    """Write the largest pressure, its error, and where it acts."""
+    value = with_unit(with_bar(peak["pressure"], bar), units.stress)
+    return f"{value} at {vector(peak['at'], units.length, scale=size)}"
 
 
 def span(interval: Record, size: float, units: Units) -> str:

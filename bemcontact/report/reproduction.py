@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from bemcontact.problem import Units
-from bemcontact.report.facts import NOTHING, QUALITIES, Record, score_verdict, scores_in_words, small
+from bemcontact.report.facts import NOTHING, QUALITIES, Record, Verdict, score_verdict, scores_in_words, small
 from bemcontact.report.formatting import number, seconds_in_words, sentence_case, with_unit
 from bemcontact.report.page import picture, statement, template
 from bemcontact.report.text import table_of, verdict_text
@@ -46,7 +46,7 @@ def reproduction_summary(record: Record) -> RenderableType:
         ]
     word = "reproduced" if record["reproduced"] else "NOT reproduced"
     took = f"All runs took {seconds_in_words(record['seconds'])}."
-    end = verdict_text(word, record["reproduced"], f"{reproduction_sentence(record)} {took}")
+    end = verdict_text(Verdict("Verdict", record["reproduced"], word, f"{reproduction_sentence(record)} {took}"))
     return Group(*parts, _iteration_table(record), "", end)
 
 

@@ -4,9 +4,10 @@ The functions return a renderable for `rich`, no wider than 100 columns where th
 into them as plain text, never as markup.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+import numpy as np
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
@@ -21,7 +22,10 @@ from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.problem import DeflectedContour, Problem, Units
 from bemcontact.report.facts import (
     Record,
+    Verdict,
+    equations_verdict,
     facts,
+    mesh_verdict,
     peak_in_words,
     pressed_by,
     scores_in_words,
@@ -69,8 +73,9 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
     points = sum(map(len, checked.gaps.values()))
     add(shown, "Mesh", f"{len(mesh.elements)} elements, {len(mesh.nodes)} nodes, {points} contact points")
     add(shown, "Degrees of freedom", f"{mesh.degrees_of_freedom}")
-    if problem.mesh.fit_contact_edges:
-        add(shown, "Mesh fit", "solve and compare grade the contact zones towards the ends of contact")
+    if problem.adapts:
+        asked = f"{100 * (problem.asked_accuracy or 0):.3g} %"
+        add(shown, "Accuracy", f"{asked}; this mesh is only the first one, solve and compare find a better one")
     for load in volume_loads(problem):
         add(shown, "Volume load", load)
     for name, zone in problem.contact_zones.items():
@@ -113,8 +118,8 @@ def result_summary(result: Result) -> RenderableType:
         add(shown, "Starts", str(result.starts))
     for note in result.notes:
         add(shown, "Note", note)
-    word = "certified" if result.certified else "NOT certified"
-    add_verdict(shown, word, result.certified, uncertified(result))
+    for verdict in verdicts(result):
+        add_verdict(shown, verdict)
     polished = ", polished" if solution.polished else ""
     freedom = "" if result.degrees_of_freedom is None else f"{result.degrees_of_freedom} degrees of freedom, "
     took = seconds_in_words(sum(result.seconds.values()))
@@ -137,7 +142,7 @@ def condensed_summary(contact: CondensedContact, path: Path) -> RenderableType:
 
 def cases_summary(cases: CaseResults) -> RenderableType:
     """List peak, resultant, contact and certificate of each load case and combination."""
-    table, shown = table_of("load case", "verdict", "peak", "at", "resultant", "contact"), list_of_facts()
+    table, shown = table_of("load case", "equations", "mesh", "peak", "at", "resultant", "contact"), list_of_facts()
     for name, result in cases.results.items():
         record, units = result.to_dict(), units_of(result.contact)
         peak, _, at = (
@@ -148,27 +153,69 @@ def cases_summary(cases: CaseResults) -> RenderableType:
         force = vector(record["resultant"], per_thickness(units), scale=pressed_by(record))
         cells = [
             name,
-            "certified" if result.certified else "NOT certified",
+            verdicts(result)[0].word,
+            _mesh_in_a_word(result),
             peak,
             at,
             "\n".join(zone_forces(record, units)) or force,
             "\n".join(_places(record, result.contact)) or "nowhere",
         ]
-        table.add_row(*map(Text, cells), style="" if result.certified else "red")
+        table.add_row(*map(Text, cells), style="" if result.holds else "yellow" if result.certified else "red")
     for note in dict.fromkeys(note for result in cases.results.values() for note in result.notes):
         names = [name for name, result in cases.results.items() if note in result.notes]
         add(shown, "Note", note if len(names) == len(cases.results) else f"{', '.join(names)}: {note}")
     if cases.worst is not None:
         add(shown, "Largest peak", f"in {cases.worst}; pressures are per UNDEFORMED length")
-    add_verdict(shown, "all certified" if cases.certified else "NOT all certified", cases.certified, uncertified(cases))
+    for verdict in case_verdicts(cases):
+        add_verdict(shown, verdict)
     return Group(Text(cases.name, "bold"), "", table, "", shown)
 
 
-def uncertified(results: Result | CaseResults) -> str:
-    """Why a result, or each load case that is not certified, is not."""
-    if isinstance(results, Result):
-        return certificate_sentence(results.solution, results.certificate)
-    return " ".join(f"{name}: {uncertified(item)}" for name, item in results.results.items() if not item.certified)
+def verdicts(result: Result) -> tuple[Verdict, Verdict]:
+    """Verdicts on the equations and on the mesh."""
+    words = certificate_sentence(result.solution, result.certificate)
+    return equations_verdict(result.certificate.to_dict(), words), mesh_verdict(result.accuracy.to_dict())
+
+
+def _mesh_in_a_word(result: Result) -> str:
+    """Largest error of a result, for a table."""
+    accuracy = result.accuracy
+    if accuracy.met is None:
+        return "not assessed"
+    error = f"{100 * accuracy.worst:.2g} %" if np.isfinite(accuracy.worst) else "not known"
+    return error if accuracy.met else f"not met: {error}"
+
+
+def case_verdicts(cases: CaseResults) -> tuple[Verdict, Verdict]:
+    """Verdicts on the equations and on the mesh under all load cases; sentences on the cases that fall short."""
+    pairs = {name: verdicts(result) for name, result in cases.results.items()}
+    equations, mesh = ({name: pair[i] for name, pair in pairs.items() if not pair[i].good} for i in range(2))
+    every = next(iter(pairs.values()))
+    return (
+        _together("Equations", every[0].of and "unique solution proved", equations, "in every load case"),
+        _together("Mesh", every[1].word, mesh, "one mesh serves all load cases, so that they can be combined"),
+    )
+
+
+def _together(of: str, word: str, short: Mapping[str, Verdict], words: str) -> Verdict:
+    """One verdict for all load cases."""
+    if not short:
+        return Verdict(of, True, word, f"{sentence_case(words)}.")
+    first = next(iter(short.values()))
+    return Verdict(of, False, first.word, " ".join(f"{name}: {item.words}" for name, item in short.items()))
+
+
+def shortfall(results: Result | CaseResults) -> str:
+    """Why a result, or each load case that falls short, does not hold."""
+    both = verdicts(results) if isinstance(results, Result) else case_verdicts(results)
+    return " ".join(f"{item.of}: {item.word}. {item.words}" for item in both if not item.good)
+
+
+def study_shortfall(study: Study) -> str:
+    """Why a comparison does not hold."""
+    mesh = mesh_verdict(study.finest.answer.accuracy.to_dict())
+    words = [] if study.certified else [study.finest.comparison.verdict]
+    return " ".join([*words, *([] if mesh.good else [f"{mesh.of}: {mesh.word}. {mesh.words}"])])
 
 
 def _places(record: Record, contact: CondensedContact) -> Iterator[str]:
@@ -190,7 +237,7 @@ def _edge_table(problem: Problem) -> Table:
             table.add_row(Text(f"hole {number_of_loop}", "italic"))
         for shape, edge in zip(stated, loop, strict=True):
             length = with_unit(number(edge.length), problem.units.length)
-            elements = f"{edge.elements * problem.mesh.refine}"
+            elements = f"{len(edge.breakpoints(problem.mesh.refine)) - 1}"
             condition = ", ".join(prescribed(problem, edge)) or "free"
             table.add_row(*map(Text, (edge.name, shape.kind, length, elements, condition)))
     return table
@@ -214,12 +261,22 @@ def path_summary(path: ParameterPath) -> RenderableType:
     table = table_of("", "enter", "leave", "in contact", peak, "at", right=frozenset({"", "in contact", peak}))
     for state in path.breakpoints:
         table.add_row(*map(Text, _cells(path.contact, state)))
-    word = "certified" if path.certified else "NOT certified"
+    word = "unique solution proved" if path.certified else "not proved"
     where = f"{path.key} from {number(path.start)} to {number(path.end)}"
     counts = {"breakpoint": len(path.breakpoints), "pivot": path.pivots}
     how = ", ".join(f"{count} {plural(noun, count)}" for noun, count in counts.items())
-    end = verdict_text(word, path.certified, path_sentence(path))
-    return Group(Text(path.contact.name, "bold"), Text(f"{where}; {how}", "dim"), "", table, "", end)
+    shown = list_of_facts()
+    add_verdict(shown, Verdict("Equations", path.certified, word, path_sentence(path)))
+    for verdict in path_mesh_verdicts(path):
+        add_verdict(shown, verdict)
+    return Group(Text(path.contact.name, "bold"), Text(f"{where}; {how}", "dim"), "", table, "", shown)
+
+
+def path_mesh_verdicts(path: ParameterPath) -> Iterator[Verdict]:
+    """Verdicts on the mesh at both ends of a path."""
+    for value, accuracy in zip((path.start, path.end), (path.start_accuracy, path.end_accuracy), strict=True):
+        verdict = mesh_verdict(accuracy.to_dict())
+        yield verdict._replace(words=f"At {path.key} = {number(value)}. {verdict.words}")
 
 
 def path_sentence(path: ParameterPath) -> str:
@@ -271,14 +328,15 @@ def add(facts: Table, name: str, value: str) -> None:
     facts.add_row(Text(name, "cyan"), Text(value))
 
 
-def add_verdict(facts: Table, word: str, good: bool, words: str) -> None:
-    """Add the verdict to a list: in a word, and in sentences."""
-    facts.add_row(Text("Verdict", "bold"), verdict_text(word, good, words))
+def add_verdict(facts: Table, verdict: Verdict) -> None:
+    """Add a verdict to a list: in a word, and in sentences."""
+    facts.add_row(Text(verdict.of, "bold"), verdict_text(verdict))
 
 
-def verdict_text(word: str, good: bool, words: str) -> Text:
-    """Write a verdict: green if it is good, else red."""
-    return Text.assemble((word, "bold green" if good else "bold red"), ". ", words)
+def verdict_text(verdict: Verdict) -> Text:
+    """Write a verdict: green if it is good, else red for the equations and amber for the mesh."""
+    bad = "bold yellow" if verdict.of == "Mesh" else "bold red"
+    return Text.assemble((verdict.word, "bold green" if verdict.good else bad), ". ", verdict.words)
 
 
 def table_of(*columns: str, right: frozenset[str] = RIGHT) -> Table:
@@ -310,7 +368,9 @@ def study_summary(study: Study) -> RenderableType:
     for note in answer.notes:
         add(shown, "Note", note)
     words = [sentence_case(compared.verdict), *_uncertified_meshes(study)]
-    add_verdict(shown, "certified" if study.certified else compared.heading, study.certified, " ".join(words))
+    heading = "unique solution proved" if study.certified else compared.heading
+    add_verdict(shown, Verdict("Equations", study.certified, heading, " ".join(words)))
+    add_verdict(shown, mesh_verdict(answer.accuracy.to_dict()))
     scores = _score_table(level, units_of(answer.contact))
     tables = [
         _contender_table(compared),

@@ -36,9 +36,7 @@ def rectangle(width: float, height: float, x: float = 0.0, y: float = 0.0) -> li
 
 def problem(name: str, outer: list[dict[str, Any]], zones: dict[str, Any], **more: Any) -> Problem:
     """A steel problem."""
-    return Problem(
-        **{"name": name, "material": STEEL, "boundary": {"outer": outer}, "contact_zones": zones, **more}
-    )
+    return Problem(**{"name": name, "material": STEEL, "boundary": {"outer": outer}, "contact_zones": zones, **more})
 
 
 def floor(y: float = 0.0) -> dict[str, Any]:
@@ -137,9 +135,7 @@ def block_on_two_rods() -> Case:
         "left rod": {"edges": "bottom", "surface": {"kind": "circle", "center": [-18.3, -0.5], "radius": 0.5, "body": "outside"}},
         "right rod": {"edges": "lower", "surface": {"kind": "circle", "center": [11.7, -0.5], "radius": 0.5, "body": "outside"}},
     }  # fmt: skip
-    outer = polygon(
-        [(-30, 0), (-3, 0), (30, 0), (30, 20), (-30, 20)], ["bottom", "lower", "right", "top", "left"]
-    )
+    outer = polygon([(-30, 0), (-3, 0), (30, 0), (30, 20), (-30, 20)], ["bottom", "lower", "right", "top", "left"])
     conditions = {"top": {"pressure": 10.0}, "left": {}}
     conditions.pop("left")
     # moments about the left rod: 600 * 18.3 = F * 30
@@ -509,7 +505,9 @@ def parabolic_punch_turned() -> Case:
     corners = [(-40.0, 0.0), (40.0, 0.0), (40.0, 50.0), (-40.0, 50.0)]
     outer = [{"name": n, "start": turned(*c)} for n, c in zip(["bottom", "right", "top", "left"], corners, strict=True)]
     center = turned(3.0, 50 + 60.0 - 0.02)
-    zones = {"ball": {"edges": "top", "surface": {"kind": "circle", "center": center, "radius": 60.0, "body": "outside"}}}
+    zones = {
+        "ball": {"edges": "top", "surface": {"kind": "circle", "center": center, "radius": 60.0, "body": "outside"}}
+    }
     made = problem("turned block", outer, zones, conditions={"bottom": {"displacement": {"x": 0, "y": 0}}})
     return made, {}
 

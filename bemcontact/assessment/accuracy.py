@@ -1,0 +1,75 @@
+"""Error bars of a result, and whether they are as small as was asked."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Literal, Self
+
+from bemcontact.serialization import Leaf
+
+Quantity = Literal["peak", "force", "start", "end", "pressure", "displacement", "intensity"]
+"""What an error bar is of."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ErrorBar(Leaf):
+    """A quantity with its estimated error."""
+
+    quantity: Quantity
+    """What it is: peak pressure, force on a zone, start or end of a contact interval, the pressure as a whole, largest
+    displacement, or intensity of an infinite pressure."""
+    zone: str | None
+    """Name of the contact zone; null for the displacement."""
+    interval: int | None = None
+    """Number of the contact interval of a start or an end, from 0 on; null for others."""
+    value: float | None
+    """Value: pressure [p], force per thickness [p L], position along the run of the zone [L], root of the mean square
+    of the pressure [p], displacement [L], or intensity K of p = K s^-α [p L^α]; null if there is none."""
+    bar: float | None
+    """Estimated error, relative to the value, and of a start or an end to the length of its interval; null if unknown."""
+    note: str = ""
+    """Why there is no value or no error bar, or what they mean."""
+
+    @property
+    def promised(self) -> bool:
+        """Whether the accuracy asked for applies to it: not to intensities, nor where there is nothing to estimate."""
+        nothing = self.value is None or (self.quantity == "force" and self.value == 0)
+        return self.quantity != "intensity" and not (self.bar is None and nothing)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Accuracy(Leaf):
+    """Accuracy that was asked for, and what was reached."""
+
+    asked: float | None
+    """Relative accuracy asked for; null if none is."""
+    met: bool | None = None
+    """Whether all error bars are below it but those of intensities; null if errors were not estimated."""
+    passes: int = 0
+    """Number of meshes whose errors were estimated; 1 for a mesh that was stated."""
+    bars: tuple[ErrorBar, ...] = ()
+    """Error bars of all quantities."""
+    reason: str = ""
+    """Why no better accuracy was reached, or why errors were not estimated."""
+
+    @classmethod
+    def of(cls, asked: float, passes: int, bars: Sequence[ErrorBar]) -> Self:
+        """Judge error bars."""
+        judged = cls(asked=asked, passes=passes, bars=tuple(bars))
+        return replace(judged, met=bool(judged.worst <= asked))
+
+    @property
+    def holds(self) -> bool:
+        """Whether the accuracy asked for is met, or none is asked for."""
+        return self.asked is None or bool(self.met)
+
+    @property
+    def worst(self) -> float:
+        """Largest error bar of those to which the accuracy applies; infinite if one is unknown."""
+        judged = [item for item in self.bars if item.promised]
+        return max((inf if item.bar is None else item.bar for item in judged), default=0.0)
+
+    @property
+    def infinite(self) -> tuple[str, ...]:
+        """Names of the zones whose peak pressure is infinite."""
+        return tuple(item.zone or "" for item in self.bars if item.quantity == "peak" and item.value is None)
