@@ -111,7 +111,7 @@ def _images(run: ZoneRun, position: float) -> list[float]:
 
 
 def contact_beside(run: ZoneRun, stretches: Sequence[Stretch], position: float) -> tuple[int, float]:
-    """Side (-1 before, 1 after) and length of the longer contact beside a position of a run; 1 and 0 without contact."""
+    """Side (-1 before, 1 after) and length of the longer contact beside a position of a run; 1 and 0 without."""
     best = (1, 0.0)
     for item in stretches:
         for at in _images(run, position):

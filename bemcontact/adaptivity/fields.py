@@ -85,7 +85,7 @@ class Solved:
 
 
 def solved(problem: Problem) -> Solved:
-    """Solve a problem on its mesh, under the case that acts or each one; `SolverError` if a contact state is not found."""
+    """Solve a problem on its mesh, under the case that acts or each one; `SolverError` without a contact state."""
     body = body_of(problem)
     condensation = condense_body(body)
     runs = tuple(zone_runs(body))

@@ -26,7 +26,7 @@ class ErrorBar(Leaf):
     """Value: pressure [p], force per thickness [p L], position along the run of the zone [L], root of the mean square
     of the pressure [p], displacement [L], or intensity K of p = K s^-α [p L^α]; null if there is none."""
     bar: float | None
-    """Estimated error, relative to the value, and of a start or an end to the length of its interval; null if unknown."""
+    """Estimated error, relative to the value; of a start or an end, to the length of its interval. Null if unknown."""
     note: str = ""
     """Why there is no value or no error bar, or what they mean."""
 

@@ -102,8 +102,8 @@ class MeshDensity(SpecModel):
     refine: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] = 1
     """The number of equal parts into which each element is cut."""
     adapt: Flag | None = None
-    """Whether a mesh is found for the accuracy, and the stated elements are its coarsest. If left out, the mesh is taken
-    as it is stated if all edges state their elements and no accuracy is stated; else it is found."""
+    """Whether a mesh is found for the accuracy, and the stated elements are its coarsest. If left out, the mesh is
+    taken as it is stated if all edges state their elements and no accuracy is stated; else it is found."""
 
 
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:

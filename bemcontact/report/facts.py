@@ -41,10 +41,9 @@ class Verdict(NamedTuple):
 
 def equations_verdict(certificate: Record, words: str) -> Verdict:
     """Verdict on the solution of the equations on the mesh, with its sentences."""
-    word = {"unique": "unique solution proved", "not a solution": "not solved"}.get(
-        certificate["kind"], certificate["kind"]
-    )
-    return Verdict("Equations", certificate["kind"] == "unique", word, words)
+    kind: str = certificate["kind"]
+    word = {"unique": "unique solution proved", "not a solution": "not solved"}.get(kind, kind)
+    return Verdict("Equations", kind == "unique", word, words)
 
 
 def mesh_verdict(accuracy: Record) -> Verdict:
@@ -133,7 +132,7 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
 
 def _end_errors(record: Record) -> Iterator[float | None]:
     """Largest error of the ends of each contact interval [L]; None if it is not known."""
-    bars = [bar for bar in (*bars_of(record, "start"), *bars_of(record, "end"))]
+    bars = [*bars_of(record, "start"), *bars_of(record, "end")]
     count: Counter[str] = Counter()
     for interval in record["intervals"]:
         zone, (first, last) = interval["zone"], interval["arc"]
