@@ -5,6 +5,7 @@ from functools import cache
 from io import StringIO
 
 import pytest
+from messages import assert_states
 from rich.console import Console, RenderableType
 from tool_problems import BETWEEN, FREE, FREE_CASES, HELD, HELD_CASES, made
 
@@ -104,21 +105,19 @@ PENALTY = Penalty(value=1.0, raw=833.41, convexity_limit=13.007, convexity_limit
 
 
 def test_a_search_is_reported_with_both_phases_and_all_inertias(result: analysis.Result):
-    assert formatting.search_in_words(SEARCH, result.contact) == (
-        "from the null vector: 136 iterations (1 to a feasible point, 135 from there); 152 changes of the working set; "
-        "eigenvalues of the whole Hessian: 89 positive, 1 negative; of the reduced Hessian: 3 positive, "
-        "1 negative at the feasible point, none at the end"
-    )
+    words = formatting.search_in_words(SEARCH, result.contact)
+    assert_states(words, "null vector: 136 iterations … 1 … 135 … 152 changes … whole Hessian: 89 positive, 1 negative")
+    assert_states(words, "reduced Hessian: 3 positive, 1 negative at the feasible point, none at the end")
 
 
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({}, "penalty 1 (833.41 N/mm⁴), convex where equilibrium is kept up to 13.007 (10840 N/mm⁴)"),
-        ({"dimension": "1/p"}, "penalty 1 (833.41 mm²/N), convex where equilibrium is kept up to 13.007 (10840 mm²/N)"),
+        ({}, "penalty 1 (833.41 N/mm⁴), … up to 13.007 (10840 N/mm⁴)"),
+        ({"dimension": "1/p"}, "penalty 1 (833.41 mm²/N), … up to 13.007 (10840 mm²/N)"),
         (
             {"convexity_limit": None, "convexity_limit_raw": None},
-            "penalty 1 (833.41 N/mm⁴), convex where equilibrium is kept for every penalty",
+            "penalty 1 (833.41 N/mm⁴), … for every penalty",
         ),
         ({"convexity_limit": 0.0, "convexity_limit_raw": 0.0}, "penalty 1 (833.41 N/mm⁴), convex for no penalty"),
     ],
@@ -126,7 +125,7 @@ def test_a_search_is_reported_with_both_phases_and_all_inertias(result: analysis
 def test_a_penalty_is_reported_in_units(result: analysis.Result, changes: dict, sentence: str):
     """(1/μ) p² is p L² for the stiffness rows, so that μ is force over L⁴; (1/μ) L² for the others, L² over force."""
     search = dataclasses.replace(SEARCH, penalty=dataclasses.replace(PENALTY, **changes))
-    assert formatting.search_in_words(search, result.contact).endswith(f"; {sentence}")
+    assert_states(formatting.search_in_words(search, result.contact), sentence)
 
 
 def test_a_penalty_of_a_held_body_without_units(result: analysis.Result):
@@ -230,7 +229,7 @@ def test_each_case_has_a_row_with_its_own_numbers():
 
 def test_the_worst_case_is_named():
     told = shown(text.cases_summary(all_cases()))
-    assert f"in {all_cases().worst}; pressures are per UNDEFORMED length" in told
+    assert_states(told, f"in {all_cases().worst}; … UNDEFORMED length")
     assert "all certified." in told
 
 
