@@ -37,7 +37,7 @@ def fit_of(problem: Problem) -> tuple[Problem, MeshFit]:
 
 
 def elements_of(problem: Problem) -> int:
-    """As stated, before any refinement."""
+    """Number of elements as stated, before any refinement."""
     return sum(edge.elements for edge in problem.boundary.edges)
 
 

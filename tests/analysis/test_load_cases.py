@@ -472,7 +472,7 @@ def punch(refine: int) -> analysis.CondensedContact:
 
 
 def pressed_at(contact: analysis.CondensedContact, e: float) -> Result:
-    """The same condensed block, its force at e."""
+    """The condensed block with its force at e."""
     return bemcontact.solve(contact.with_tools(force=[[0, -2000, -2000 * e]]), "complementarity")
 
 

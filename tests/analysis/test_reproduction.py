@@ -97,8 +97,8 @@ def test_forces_are_those_of_equilibrium():
             assert size == pytest.approx(force, rel=1e-9)
 
 
-def test_open_nodes_at_the_tip_are_gone_on_the_mesh_that_is_named():
-    """As the sentence says: one open on the paper's meshes, which agree on the peak; none on short elements."""
+def test_fine_meshes_have_no_open_nodes_at_the_tip():
+    """One open on the paper's meshes, which agree on the peak; none on short elements."""
     (crack,) = reproduce((1, 4), problems=[CRACK]).problems
     opened = findings(crack, PaperQuantity.OPEN_POINTS)
     assert opened["paper's mesh"] == opened["finer crack"] == (1,)
@@ -107,7 +107,7 @@ def test_open_nodes_at_the_tip_are_gone_on_the_mesh_that_is_named():
     assert coarse == pytest.approx(finer, rel=0.005)
 
 
-def test_doubling_mends_the_mesh_of_the_bolt():
+def test_twice_the_elements_of_the_paper_meet_the_peak_of_the_bolt():
     """The table of the file has 48.56 at 90 degrees, within 1.5 % with twice the elements and not with the paper's."""
     peak = findings(problem("bolt_in_plate"), PaperQuantity.PEAK)
     assert abs(peak["paper's mesh"][0] / 48.56 - 1) > 0.015
@@ -145,7 +145,7 @@ def test_the_text_is_that_of_the_file():
 
 
 def test_an_installed_package_has_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """As a wheel is laid out; what stands beside the package is somebody else's."""
+    """The files of a wheel; a folder beside the package belongs to another program."""
     for folder, text in (("site/bemcontact/models", "own"), ("site/models", "foreign")):
         (tmp_path / folder).mkdir(parents=True)
         (tmp_path / folder / "block.yaml").write_text(text, encoding="utf-8")

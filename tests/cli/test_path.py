@@ -77,7 +77,7 @@ def test_json_on_standard_output_and_the_reason_beside_it():
         ("conditions.side.pressure", "conditions.side.pressure: there is no number to vary"),
     ],
 )
-def test_what_cannot_be_varied_is_refused_with_its_place(key: str, words: str):
+def test_invalid_parameters_are_refused_with_their_place(key: str, words: str):
     answer = run(CYLINDER, "--vary", key, "--to", 10)
     assert answer.exit_code == 2
     assert re.search(r"cylinder_on_plane\.yaml:\d+:\d+: ", answer.stderr)

@@ -16,7 +16,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations import FORMULATIONS
 
 
-def test_solve_states_it_in_a_short_table(block: Path):
+def test_solve_prints_a_short_table(block: Path):
     answer = run("solve", block)
     assert answer.exit_code == 0, answer.stderr
     assert answer.stderr == ""
@@ -167,7 +167,7 @@ def test_a_file_that_is_no_start_is_refused(block: Path, tmp_path: Path, content
     ],
 )
 def test_options_that_mean_nothing_are_refused(block: Path, options: tuple[str, ...], pattern: str):
-    """They are no mistakes of the file, which is not named."""
+    """Such options are no mistakes of the file, which is not named."""
     start = block.with_name("start.json")
     start.write_text(json.dumps({"pressure": [0] * 9, "normal_displacement": [0] * 9}), encoding="utf-8")
     answer = run("solve", block, *(option.replace("START", str(start)) for option in options))

@@ -191,7 +191,7 @@ def test_receding_contact_of_an_infinite_strip():
 
 
 def test_polygon_rolls_into_its_groove():
-    """It starts without contact and turns by the 0.0064 of the groove; forces and moment are balanced."""
+    """The polygon starts without contact and turns by the 0.0064 of the groove; forces and moment are balanced."""
     answer = analysis.solve(problem("rolling_polygon"))
     assert answer.contact.initial_gap.min() > 0.1
     assert answer.contact.free_motions == 3

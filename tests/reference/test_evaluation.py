@@ -120,7 +120,7 @@ def test_crack_in_a_small_panel_is_out_of_range(size: float, in_range: bool):
 
 
 def test_crack_that_does_not_close_is_not_judged():
-    """It closes to the tip from q = c E' / (2a + c) = 52.3 on."""
+    """The crack closes to the tip from q = c E' / (2a + c) = 52.3 on."""
     one, _ = only(crack(60.0), "reference.crack.compression=52")
     assert not one.in_range
     assert "the compression is too small" in one.remark
@@ -131,7 +131,7 @@ def test_crack_that_does_not_close_is_not_judged():
 
 
 @pytest.mark.parametrize("rigid", ["pin", "bore"])
-def test_ring_presses_everywhere_alike(rigid: str):
+def test_pressure_of_a_ring_is_uniform(rigid: str):
     one, contact = only(ring("plane_strain", rigid))
     assert one.compared.all()
     assert one.pressure == pytest.approx(np.full(contact.size, one.peak))
@@ -205,7 +205,7 @@ def test_contact_of_another_problem_is_refused():
         expected(bemcontact.loads(BLOCK), bemcontact.condense(bemcontact.loads(ring("plane_strain", "pin"))))
 
 
-def test_all_of_it_is_ready_for_json():
+def test_expected_values_are_ready_for_json():
     problem = bemcontact.loads(BLOCK)
     for item in expected(problem, bemcontact.condense(problem)):
         data = json.loads(json.dumps(item.to_dict(), allow_nan=False))

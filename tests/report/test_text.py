@@ -44,7 +44,7 @@ def printed(renderable: RenderableType, width: int = 100) -> str:
     return stream.getvalue()
 
 
-def test_problem_summary_states_what_is_there():
+def test_problem_summary_states_the_facts():
     lines = printed(text.problem_summary(check(block()))).splitlines()
     facts = {line[:20].strip(): line[20:].strip() for line in lines if line[18:20] == "  "}
     assert facts["Material"] == "E = 2.1e+05 N/mm², Poisson's ratio 0.3, plane strain"
@@ -56,7 +56,7 @@ def test_problem_summary_states_what_is_there():
     assert any(line.split() == ["right", "line", "20", "mm", "2", "free"] for line in lines)
 
 
-def test_result_summary_states_what_was_found(result: analysis.Result):
+def test_result_summary_states_the_facts(result: analysis.Result):
     answer = printed(text.result_summary(result))
     assert "foot: (0, 0) to (40, 0) mm, 40 mm long" in answer
     assert "3 N/mm² at" in answer
@@ -75,7 +75,7 @@ def test_a_result_that_is_not_certified_states_so(result: analysis.Result):
     assert "NOT certified" in printed(text.result_summary(doubtful))
 
 
-def test_what_deflects_a_contour_is_reported():
+def test_loads_that_deflect_a_contour_are_reported():
     zone = {"edges": ["bottom"], "surface": {"kind": "deflected_contour", "direction": [0, 1], "conditions": {
         "top": {"displacement": {"x": 0, "y": -0.25}}, "right": {"traction": {"x": 3}},
     }}}  # fmt: skip
@@ -262,7 +262,7 @@ def test_of_several_zones_the_force_of_each_is_reported():
     assert "press: (0, -50) N/mm" in listed
 
 
-def test_where_nothing_touches_nothing_is_worst():
+def test_without_contact_no_case_is_the_worst():
     """A table far below a held block, and no load."""
     far = {"table": {"edges": "foot", "surface": {"kind": "plane", "point": [0, -9], "normal": [0, 1]}}}
     case = {"light": {"conditions": {"top": {"pressure": 1e-3}}}}
@@ -284,7 +284,7 @@ def test_check_shows_tools_cases_and_combinations():
     assert "rotation counterclockwise about (1.5, 1) of the tool 'punch'" in told
 
 
-def test_check_shows_of_which_case_a_reference_is():
+def test_check_shows_the_case_of_a_reference():
     reference = {"it": {"kind": "uniform", "pressure": 1, "zone": "table", "case": "wind"}}
     told = shown(text.problem_summary(check(made(HELD, **HELD_CASES, reference=reference))))
     assert "it: closed form, uniform, load case 'wind'" in told
@@ -305,7 +305,7 @@ def test_no_line_is_wider_than_the_terminal(width: int):
     assert max(map(len, lines)) <= width
 
 
-def test_check_shows_of_the_case_that_acts_what_it_adds_by_which_factor():
+def test_check_shows_the_factors_of_the_acting_case():
     """all: 1.5 wind - 0.5 heat + 2 settle + 4 spin + 0.7 push; on the punch -40 - 0.7 · 30 and 3 - 0.7 · 4."""
     told = shown(text.problem_summary(check(made(HELD, **HELD_CASES, case="all"))))
     assert told.startswith("held block, all\n")
