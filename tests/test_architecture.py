@@ -69,8 +69,8 @@ HOME = {
 }
 """Foreign package -> the only rooms that import it."""
 
-SLOW = {"cvxpy", "matplotlib", "numba", "meshio"}
-"""Foreign packages that may be imported where they are used: slow ones, and those of the optional extras."""
+SLOW = {"cvxpy", "clarabel", "matplotlib", "numba", "meshio"}
+"""Foreign packages that may be imported where they are used: slow ones, solvers, and those of the optional extras."""
 
 PRINTERS = ("bemcontact.cli",)
 """Who may print."""

@@ -112,7 +112,7 @@ def test_path_of_a_factor_ends_where_the_tool_lifts_off_and_is_named_after_the_p
         ("no path[", 1.0, "is not a key path"),
     ],
 )
-def test_what_cannot_be_followed_is_refused(cylinder: Problem, key: str, to: float, words: str):
+def test_invalid_parameters_are_refused(cylinder: Problem, key: str, to: float, words: str):
     with pytest.raises(ProblemError, match=re.escape(words)):
         follow(cylinder, key, to)
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from messages import assert_states
 from tool_problems import (
     BETWEEN,
     FLOOR,
@@ -319,35 +320,29 @@ REFUSED = {
     "tool without load": (
         BETWEEN,
         {"press": {"zones": "press", "force": {"y": 0}}},
-        "only contact holds the body against the translation along (0, 1) and the rotation counterclockwise about "
-        "(1, 0.5), and the tool 'press' against the translation along (0, 1), but no load presses it onto its support, "
-        "so that its position is not determined; apply a load, or prescribe a displacement",
+        "only contact holds the body … translation along (0, 1) … rotation counterclockwise about (1, 0.5) … "
+        "the tool 'press' … translation along (0, 1) … no load … position is not determined; apply a load",
     ),
     "tool that is pulled off": (
         BETWEEN,
         {"press": {"zones": "press", "force": {"y": 10}}},
-        "the load pulls the tool 'press' off what it touches: it drives the translation along (0, 1), which no contact "
-        "resists; turn the load around, or move it to where contact can hold it, or prescribe a "
-        "displacement that holds it",
+        "the load pulls the tool 'press' off … translation along (0, 1) … turn the load around",
     ),
     "force that nothing resists": (
         BETWEEN,
         {"press": {"zones": "press", "force": {"x": 2, "y": -10}}},
-        "nothing holds the tool 'press' against the translation along (1, 0), and the loads act along it (resultant "
-        "2); prescribe a displacement that holds it, or balance the loads",
+        "nothing holds the tool 'press' … translation along (1, 0) … resultant 2 … prescribe a displacement",
     ),
     "moment beyond the edge": (
         BETWEEN,
         {"press": {"zones": "press", "point": [1, 1], "force": {"y": -10, "moment": 11}}},
-        "the load pulls the tool 'press' off what it touches: it drives the rotation counterclockwise about (0, 1), "
-        "which no contact resists; turn the load around, or move it to where contact can hold it, or prescribe a "
-        "displacement that holds it",
+        "the load pulls the tool 'press' off … rotation counterclockwise about (0, 1) … move it",
     ),
     "forces that do not balance": (
         BETWEEN,
         {"press": {"zones": "press", "force": {"y": -10}}, "table": {"zones": "table", "force": {"y": 9}}},
-        "nothing holds the body, the tool 'press' and the tool 'table' together against the translation along (0, 1), "
-        "and the loads act along it (resultant -1); prescribe a displacement that holds it, or balance the loads",
+        "nothing holds the body, the tool 'press' and the tool 'table' together … translation along (0, 1) … "
+        "resultant -1 … balance the loads",
     ),
     "moments that do not balance": (
         BETWEEN,
@@ -355,14 +350,13 @@ REFUSED = {
             "press": {"zones": "press", "point": [1, 1], "force": {"y": -10, "moment": 2}},
             "table": {"zones": "table", "point": [1, 0], "force": {"y": 10, "moment": 1}},
         },
-        "and the loads act along it (moment 3)",
+        "moment 3",
     ),
     "round tool that is turned": (
         {**BETWEEN, "contact_zones": {**BETWEEN["contact_zones"], "press": {"edges": ["head", "top"], "surface": {
             "kind": "circle", "center": [1, 4], "radius": 3, "body": "outside"}}}},
         {"press": {"zones": "press", "point": [1, 4], "force": {"y": -10, "moment": 2}}},
-        "nothing holds the tool 'press' against the rotation counterclockwise about (1, 4), and the loads act along it "
-        "(moment 2)",
+        "nothing holds the tool 'press' … rotation counterclockwise about (1, 4) … moment 2",
     ),
 }  # fmt: skip
 
@@ -372,7 +366,7 @@ def test_tools_that_contact_cannot_hold_are_refused(name: str):
     stated, tools, words = REFUSED[name]
     with pytest.raises(ProblemError) as caught:
         body_of(made(stated, tools=tools))
-    assert words in str(caught.value)
+    assert_states(str(caught.value), words)
 
 
 def test_case_that_contact_cannot_hold_is_refused_by_its_name():
@@ -478,7 +472,7 @@ def punch(refine: int) -> analysis.CondensedContact:
 
 
 def pressed_at(contact: analysis.CondensedContact, e: float) -> Result:
-    """The same condensed block, its force at e."""
+    """The condensed block with its force at e."""
     return bemcontact.solve(contact.with_tools(force=[[0, -2000, -2000 * e]]), "complementarity")
 
 

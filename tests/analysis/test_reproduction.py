@@ -63,14 +63,18 @@ def test_the_coordinate_is_that_of_the_references():
 
 
 def test_curved_surface():
-    """50 ± 0.01 from 40 to 95 with ten elements along, not with five; a peak and a fall before."""
+    """50 ± 0.01 from 40 to 95 with ten elements along, not with five; before, p falls to the clamp from a peak.
+
+    Finite elements have the peak. At the clamp p is 0, and on the first node beside it nearer to 0 than to 50.
+    """
     curved = problem("cantilever_curved_surface")
     away = findings(curved, PaperQuantity.PRESSURE)
     good = {label: max(abs(p - 50) for p in ends) < 0.01 for label, ends in away.items()}
     assert good == {"5 along": False, "10 along": True, "base mesh": True}
     low, high = findings(curved, PaperQuantity.PRESSURE, 1)["base mesh"]
-    assert low < 20
-    assert high == pytest.approx(50.85, rel=1e-3)
+    (known,) = (item for item in curved.problem.reference.values() if item.kind == "values")
+    assert low < 25
+    assert high == pytest.approx(known.peak, rel=known.tolerance)
     assert dict(curved.paper.iterations) == {"qp1": 63, "qp2": 47, "qp3": 70}
     assert all(apart < 1e-5 for (apart,) in findings(curved, PaperQuantity.DIFFERENCE).values())
 
@@ -93,8 +97,8 @@ def test_forces_are_those_of_equilibrium():
             assert size == pytest.approx(force, rel=1e-9)
 
 
-def test_open_nodes_at_the_tip_are_gone_on_the_mesh_that_is_named():
-    """As the sentence says: one open on the paper's meshes, which agree on the peak; none on short elements."""
+def test_fine_meshes_have_no_open_nodes_at_the_tip():
+    """One open on the paper's meshes, which agree on the peak; none on short elements."""
     (crack,) = reproduce((1, 4), problems=[CRACK]).problems
     opened = findings(crack, PaperQuantity.OPEN_POINTS)
     assert opened["paper's mesh"] == opened["finer crack"] == (1,)
@@ -103,11 +107,11 @@ def test_open_nodes_at_the_tip_are_gone_on_the_mesh_that_is_named():
     assert coarse == pytest.approx(finer, rel=0.005)
 
 
-def test_doubling_mends_the_mesh_of_the_bolt():
-    """The table of the file has 48.56 at 90 degrees: off by some per cent, and by little."""
+def test_twice_the_elements_of_the_paper_meet_the_peak_of_the_bolt():
+    """The table of the file has 48.56 at 90 degrees, within 1.5 % with twice the elements and not with the paper's."""
     peak = findings(problem("bolt_in_plate"), PaperQuantity.PEAK)
-    assert peak["paper's mesh"][0] / 48.56 - 1 == pytest.approx(0.04, abs=0.01)
-    assert peak["doubled"][0] == pytest.approx(48.56, rel=0.015)
+    assert abs(peak["paper's mesh"][0] / 48.56 - 1) > 0.015
+    assert abs(peak["doubled"][0] / 48.56 - 1) <= 0.015
 
 
 def test_flat_surface_and_the_printed_modulus():
@@ -141,7 +145,7 @@ def test_the_text_is_that_of_the_file():
 
 
 def test_an_installed_package_has_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """As a wheel is laid out; what stands beside the package is somebody else's."""
+    """The files of a wheel; a folder beside the package belongs to another program."""
     for folder, text in (("site/bemcontact/models", "own"), ("site/models", "foreign")):
         (tmp_path / folder).mkdir(parents=True)
         (tmp_path / folder / "block.yaml").write_text(text, encoding="utf-8")

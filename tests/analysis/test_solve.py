@@ -177,7 +177,7 @@ def test_change_of_units(formulation, length, stress):
 @settings(max_examples=12, deadline=None)
 @given(st.floats(-3, 3), st.floats(-6, 6))
 def test_any_change_of_units(log_length, log_stress):
-    """The same for factors that are no powers of two or ten."""
+    """A change of units changes nothing, also by factors that are no powers of two or ten."""
     length, stress = 10**log_length, 10**log_stress
     reference = bemcontact.solve(stepped_part(), "complementarity")
     result = bemcontact.solve(stepped_part(length, stress), "complementarity")
@@ -324,7 +324,7 @@ contact_zones:
 
 
 @pytest.mark.parametrize("formulation", ["qp1", "qp2"])
-def test_wide_gaps_do_not_drown_the_pressure(formulation):
+def test_wide_gaps_do_not_reduce_the_accuracy_of_pressure(formulation):
     """The wheel laid far into a groove, three free motions, gaps of thousands of scales: the direct solver's answer."""
     problem = bemcontact.loads(WHEEL)
     result, direct = (bemcontact.solve(problem, name) for name in (formulation, "complementarity"))
@@ -333,7 +333,7 @@ def test_wide_gaps_do_not_drown_the_pressure(formulation):
     assert abs(result.solution.pressure - direct.solution.pressure).max() < 1e-9 * peak
 
 
-def test_polish_leaves_no_dust_of_the_solver():
+def test_polish_makes_pressure_off_contact_exactly_zero():
     """A wheel laid far into a groove, three free motions: p is exactly zero off two contacts, and no note is wrong."""
     result, direct = bemcontact.solve(bemcontact.loads(WHEEL), "qp3"), bemcontact.solve(bemcontact.loads(WHEEL))
     assert result.certified

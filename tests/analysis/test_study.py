@@ -115,6 +115,6 @@ def test_a_file_name_is_no_problem():
         comparing.compare("block.yaml")  # pyright: ignore
 
 
-def test_one_name_stands_for_a_list_of_it():
+def test_one_name_means_a_list_of_one():
     found = comparing.compare(random_contact(1, 6, 1), "qp1", "tributary")
     assert [item.label for item in found.contenders] == ["QP1"]

@@ -39,7 +39,7 @@ def test_values_that_go_to_and_fro_show_no_order():
     assert result.quantities[-1].orders == (pytest.approx(0.0), pytest.approx(-1.0))
 
 
-def test_two_meshes_show_only_what_vanishes():
+def test_two_meshes_give_an_order_only_to_values_that_vanish():
     result = convergence((1, 3), [print_of(1.0), print_of(1.1)], [0.9, 0.1])
     assert result.quantities[0].orders == ()
     assert result.quantities[-1].orders == (pytest.approx(2.0),)

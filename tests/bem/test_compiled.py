@@ -69,7 +69,7 @@ def rows_of(source, fixed):
 
 @pytest.mark.parametrize("name", MESHES)
 def test_machine_code_and_numpy_agree(name):
-    """They agree to round-off of the largest entry. All elements, or those of one stretch, have columns of G."""
+    """Both ways agree to round-off of the largest entry. All elements, or those of one stretch, have columns of G."""
     mesh = mesh_of(*MESHES[name])
     m = len(mesh.elements)
     for wanted in (np.arange(m), np.arange(m // 3, 2 * m // 3), np.zeros(0, int)):

@@ -35,7 +35,7 @@ def test_a_contour_that_cannot_be_found_is_located(block: Path):
     assert f"block.yaml:{line}:19: contact_zones.foot.surface.conditions: with these" in " ".join(answer.stderr.split())
 
 
-def test_check_states_what_it_sees(block: Path):
+def test_check_prints_the_facts(block: Path):
     answer = run("check", block, "--set", "boundary.outer[0].elements=5")
     assert answer.exit_code == 0, answer.stderr
     for word in ("bottom", "right", "top", "left", "foot", "plane", "pressure", "translation", "contact"):

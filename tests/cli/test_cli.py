@@ -60,14 +60,14 @@ def test_a_full_disk_is_one_clear_error(block: Path, command: str):
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 @pytest.mark.parametrize("command", ["check", "solve"])
-def test_a_terminal_that_lacks_letters_gets_the_others(block: Path, command: str, encoding: str):
+def test_missing_letters_of_a_terminal_are_replaced(block: Path, command: str, encoding: str):
     block.write_text(BLOCK.replace("block on a table", "блок on a table"), encoding="utf-8")
     answer = in_a_process(command, block, PYTHONIOENCODING=encoding, PYTHONUTF8="0")
     assert (answer.returncode, answer.stderr) == (0, "")
     assert answer.stdout.startswith("???? on a table\n")
 
 
-def test_json_is_utf_8_whatever_the_terminal_speaks(block: Path):
+def test_json_is_utf_8_on_any_terminal(block: Path):
     answer = in_a_process("solve", block, "--json", "-", PYTHONIOENCODING="cp1252", encoding="utf-8")
     assert json.loads(answer.stdout)["name"] == "block on a table"
     schema = in_a_process("schema", PYTHONIOENCODING="cp1252", encoding="utf-8")

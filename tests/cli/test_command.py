@@ -68,7 +68,7 @@ def test_an_interrupt_states_what_was_written_already(block: Path, monkeypatch: 
     assert not answer_file.exists()
 
 
-def test_an_interrupt_while_the_answer_is_shown_states_no_more(block: Path, monkeypatch: pytest.MonkeyPatch):
+def test_interrupt_during_the_table_is_stated(block: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("bemcontact.report.text.result_summary", interrupted)
     answer = run("solve", block)
     assert (answer.exit_code, answer.output) == (130, "interrupted\n")
@@ -160,7 +160,7 @@ OUTPUTS = [
 
 
 @pytest.mark.parametrize(("command", "option", "name"), OUTPUTS)
-def test_a_file_that_cannot_be_written_is_found_out_before_any_work(
+def test_unwritable_files_are_refused_before_any_work(
     block: Path, command: str, option: str, name: str, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr(analysis, "solve_with", None)

@@ -92,7 +92,7 @@ def test_json_holds_what_the_schema_states(block: Path, tmp_path: Path):
         assert report["levels"][0]["comparison"]["contenders"][0]["answer"]["peak"]["pressure"] == pytest.approx(3)
 
 
-def test_what_is_not_certified_ends_with_status_1(block: Path, monkeypatch: pytest.MonkeyPatch):
+def test_comparison_that_is_not_certified_ends_with_status_1(block: Path, monkeypatch: pytest.MonkeyPatch):
     """Instead of the block a problem with a spurious local minimum, as in tests/assessment/test_comparison.py."""
     spurious = CondensedContact.from_compliance([[1.0, 2.0], [1.0, 1.0]], [-1.0, -2.0])
     found = comparing.study(ComparisonOptions.of(["qp1"]), spurious)
@@ -127,7 +127,7 @@ def test_what_is_not_certified_ends_with_status_1(block: Path, monkeypatch: pyte
         (("--starts", "0"), "'--starts'"),
     ],
 )
-def test_mistakes_end_with_status_2_and_a_sentence(
+def test_mistakes_end_with_status_2_and_a_message(
     block: Path, options: tuple, words: str, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.chdir(block.parent)

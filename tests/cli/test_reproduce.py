@@ -44,7 +44,7 @@ def test_a_table_a_page_and_its_numbers(tmp_path: Path):
     assert numbers.read_text(encoding="utf-8") == (place / "numbers.json").read_text(encoding="utf-8")
 
 
-def test_what_is_not_reproduced_ends_with_status_1(monkeypatch: pytest.MonkeyPatch):
+def test_reproduction_that_fails_ends_with_status_1(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(analysis, "reproduce", lambda *_: with_coarse_mesh_judged())
     answer = run("reproduce")
     assert answer.exit_code == 1
@@ -67,7 +67,7 @@ def test_what_is_not_reproduced_ends_with_status_1(monkeypatch: pytest.MonkeyPat
         (("--json", "none/x.json"), "--json"),
     ],
 )
-def test_mistakes_end_with_status_2_and_a_sentence(
+def test_mistakes_end_with_status_2_and_a_message(
     tmp_path: Path, options: tuple, words: str, monkeypatch: pytest.MonkeyPatch
 ):
     (tmp_path / "full").mkdir()

@@ -19,7 +19,7 @@ def worked() -> None:
 
 
 @pytest.mark.usefixtures("no_patience")
-def test_a_terminal_shows_what_is_going_on(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+def test_terminal_shows_progress(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     monkeypatch.setenv("FORCE_COLOR", "1")
     worked()
     captured = capsys.readouterr()

@@ -79,12 +79,12 @@ def test_a_command_that_cannot_work_is_found(tmp_path: Path):
 
 
 def test_the_readme_is_short():
-    """The length that the founders ask for."""
+    """150 lines at most."""
     assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 150
 
 
 def test_each_page_is_in_a_table_of_contents():
-    """Those that lead to it from the index of the site."""
+    """The pages that can be reached from the index of the site are all pages."""
     reached, queue = set(), [pages.DOCS / "index.md"]
     while queue:
         page = queue.pop()

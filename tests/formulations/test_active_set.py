@@ -37,7 +37,7 @@ def test_cycle_ends_with_the_best_point_seen():
     M = np.array([[2, -2, -1, 2, 0], [0, 2, -2, 2, -1], [2, 1, 1, -1, 0], [-2, -2, 1, 2, -3], [3, -3, -2, 3, 2]], float)
     problem = plain(M, np.array([0.0, -2.0, 1.0, 0.0, -2.0]))
     end = primal_dual(problem, first_active_set(problem))
-    assert end.steps < 32
+    assert end.steps < 2**5  # the number of sets
     assert end.residual > 1e-3
     assert (end.pressure >= 0).all()
 

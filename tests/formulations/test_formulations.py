@@ -121,10 +121,10 @@ def test_objective_of_qp3_is_that_of_the_point(k):
     problem = random_contact(4, N, k)
     small = scaled(problem)
     work = qp3.objective(small, np.diag(small.weights))
-    whole = qp3.solve(problem, SolveOptions(polish=False))
+    whole = qp3.solve(problem, SolveOptions.of("qp3", polish=False))
     assert counted(whole) == 2 * [*range(whole.iterations + 1)]
     for limit in range(1, whole.iterations + 1):
-        stopped = qp3.solve(problem, SolveOptions(polish=False, max_iterations=limit))
+        stopped = qp3.solve(problem, SolveOptions.of("qp3", polish=False, max_iterations=limit))
         values, record = of(stopped, "objective"), of(stopped, "infeasibility")
         np.testing.assert_array_equal(values, of(whole, "objective")[: limit + 1])
         p, a = scaled_point(problem, stopped.pressure, stopped.rigid_amplitudes)
@@ -147,7 +147,7 @@ def test_units_of_wide_gaps_are_taken_back(k):
     problem = replace(problem, initial_gap=problem.initial_gap + 1e7 * np.eye(N)[0])
     small = scaled(problem)
     work = qp3.objective(small, np.diag(small.weights))
-    result = qp3.solve(problem, SolveOptions(polish=False))
+    result = qp3.solve(problem, SolveOptions.of("qp3", polish=False))
     assert counted(result) == 2 * [*range(result.iterations + 1)]
     p, a = scaled_point(problem, result.pressure, result.rigid_amplitudes)
     assert work.value(p, a) > 1.0

@@ -72,7 +72,7 @@ def assert_right(problem: CondensedContact, result: RandomStarts, truth: Array) 
 
 @named
 @pytest.mark.parametrize("n", [3, 5, 8])
-def test_kinds_are_what_they_say(kind, n):
+def test_kinds_of_problems_have_their_properties(kind, n):
     """By all principal minors; and `ring` and `dominated` have a negative eigenvalue of sym(JM)."""
     for seed in range(3):
         problem = kind(np.random.default_rng([seed, n]), n)
@@ -345,7 +345,7 @@ def test_the_library_function_and_the_option_agree():
         ({"penalty": 1e13, "formulation": "qp2"}, "from 1e-08 to"),
     ],
 )
-def test_what_random_starts_cannot_be_asked_is_refused(asked, pattern):
+def test_invalid_options_of_random_starts_are_refused(asked, pattern):
     with pytest.raises(OptionError, match=pattern):
         bemcontact.random_starts(resting(), **asked)
 
@@ -359,7 +359,7 @@ def test_a_limit_of_iterations_reaches_every_search():
     assert "--max-iterations; 2 were done" in result.certificate.words
 
 
-def test_progress_counts_what_is_done():
+def test_progress_counts_searches():
     done = []
     bemcontact.random_starts(resting(), "qp1", count=4, progress=done.append)
     bemcontact.solve(resting(), "qp1", starts=3, progress=done.append)

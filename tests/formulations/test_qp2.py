@@ -235,7 +235,7 @@ def test_no_penalty_costs_digits(penalty):
 
 
 def test_stiffness_rows_of_a_slender_body_do_not():
-    """The same body to 1e-8 without a polish; the pressure is known only as well as cond M · eps = 1e-10 allows."""
+    """A slender body to 1e-8 without a polish; the pressure is known only as well as cond M · eps = 1e-10 allows."""
     solution = qp2.solve(slender(), SolveOptions.of("qp2", polish=False))
     assert solution.status is Status.SOLVED
     np.testing.assert_allclose(solution.pressure, 1, atol=1e-8)

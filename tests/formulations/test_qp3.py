@@ -13,7 +13,7 @@ from bemcontact.formulations import clarabel, complementarity, qp3
 from bemcontact.formulations.scaling import scaled
 from bemcontact.options import SolveOptions, Weights
 
-UNPOLISHED = SolveOptions(polish=False)
+UNPOLISHED = SolveOptions.of("qp3", polish=False)
 
 
 def balanced(problem, rng: np.random.Generator) -> np.ndarray:
@@ -36,7 +36,7 @@ def test_quadratic_equals_the_work_of_the_pressure_in_the_gap(k):
 
 
 def test_quadratic_with_full_weights():
-    """The same for a J that is neither diagonal nor tributary, with J R = ℓ C: here tributary weights plus PᵀXP."""
+    """For a J that is neither diagonal nor tributary, with J R = ℓ C: here tributary weights plus PᵀXP."""
     rng = np.random.default_rng(2)
     problem = scaled(random_contact(3, 9, 2))
     R, ell = problem.rigid_motions, problem.equilibrium

@@ -66,7 +66,7 @@ def test_one_random_start_is_the_first_of_many():
         ({"formulation": "qp3", "equilibrium": "penalty"}, "no use for the option 'equilibrium'"),
     ],
 )
-def test_what_cannot_be_asked_is_refused(asked, pattern):
+def test_invalid_options_of_solve_are_refused(asked, pattern):
     with pytest.raises(OptionError, match=pattern):
         bemcontact.solve(resting(), **asked)
 

@@ -182,7 +182,7 @@ def test_a_model_without_an_optimum_is_a_status_in_words():
     assert "+1 x motion 1" in bemcontact.model(upwards).solve().words
 
 
-def test_what_cannot_be_modelled_is_refused():
+def test_invalid_models_are_refused():
     model = bemcontact.model(random_contact(4, 12, 1))
     with pytest.raises(ProblemError, match=r"not convex by cvxpy's rules \(DCP\) in the objective"):
         model.problem(cp.sqrt(model.pressure[0]))

@@ -118,7 +118,8 @@ def test_load_does_not_move_the_end_of_receding_contact(formulation: str):
         other = analysis.solve(loaded, formulation)
         assert other.certified
         assert other.footprint.intervals[0].end == pytest.approx(once.footprint.intervals[0].end, rel=1e-9, abs=1e-9)
-        assert other.solution.pressure == pytest.approx(factor * once.solution.pressure, abs=1e-9 * 79 * factor)
+        pressure = factor * once.solution.pressure
+        assert other.solution.pressure == pytest.approx(pressure, abs=1e-9 * pressure.max())
 
 
 def test_material_does_not_move_the_end_of_receding_contact():
@@ -186,11 +187,11 @@ def test_receding_contact_of_an_infinite_strip():
         answer = result("receding_contact", "qp3", refine)
         x = answer.contact.points[:, 0]
         known = 100 * strip.pressure(a, x[x < 9] / 10)
-        assert abs(answer.solution.pressure[x < 9] - known).max() < within * 79
+        assert abs(answer.solution.pressure[x < 9] - known).max() < within * stated.peak
 
 
 def test_polygon_rolls_into_its_groove():
-    """It starts without contact and turns by the 0.0064 of the groove; forces and moment are balanced."""
+    """The polygon starts without contact and turns by the 0.0064 of the groove; forces and moment are balanced."""
     answer = analysis.solve(problem("rolling_polygon"))
     assert answer.contact.initial_gap.min() > 0.1
     assert answer.contact.free_motions == 3

@@ -1,6 +1,7 @@
 """Load cases and combinations in a spec, and the place and text of the error for each mistake."""
 
 import pytest
+from messages import assert_states
 
 import bemcontact
 from bemcontact.errors import ProblemError
@@ -57,7 +58,7 @@ def test_each_load_case_is_read(name: str):
 
 def test_the_spec_may_choose_the_case_that_acts():
     assert bemcontact.loads(spec(GOOD["pressure"], "case: it\n")).factors() == {"it": 1}
-    with pytest.raises(ProblemError, match="case: unknown load case 'wind'; there is only 'it'"):
+    with pytest.raises(ProblemError, match=r"case: unknown .*'wind'.*'it'"):
         bemcontact.loads(spec(GOOD["pressure"])).with_case("wind")
 
 
@@ -71,38 +72,37 @@ def test_a_variant_sets_values_of_load_cases_and_names_the_one_that_acts():
 
 
 REFUSED = {
-    "nothing": ("{}", "{}", "load_cases.it: the load case is empty; give conditions, loads or tools"),
-    "description only": ("{description: wind}", "{desc", "load_cases.it: the load case is empty"),
+    "nothing": ("{}", "{}", "load_cases.it: … empty; give conditions, loads or tools"),
+    "description only": ("{description: wind}", "{desc", "load_cases.it: … empty"),
     "unknown edge": (
         "{conditions: {topp: {pressure: 1}}}",
         "topp",
-        "load_cases.it.conditions.topp: unknown edge 'topp'; did you mean 'top'?",
+        "load_cases.it.conditions.topp: unknown … 'topp' … 'top'?",
     ),
     "edge of a zone": (
         "{conditions: {bottom: {pressure: 1}}}",
         "bottom",
-        "load_cases.it.conditions.bottom: edge 'bottom' is in the contact zone 'foot'",
+        "load_cases.it.conditions.bottom: … 'bottom' … contact zone 'foot'",
     ),
     "held in addition": (
         "{conditions: {left: {displacement: {x: 0, y: 0.1}}}}",
         "0.1",
-        "add the displacement 0 along y to the conditions of the problem",
+        "add the displacement 0 along y",
     ),
     "held on a free edge": (
         "{conditions: {right: {displacement: {x: 0.1}}}}",
         "0.1",
-        "load_cases.it.conditions.right.displacement.x: a load case cannot hold an edge that the problem leaves free "
-        "along x",
+        "load_cases.it.conditions.right.displacement.x: … free along x",
     ),
     "traction on a held edge": (
         "{conditions: {left: {traction: {x: 1}}}}",
         "1}}}}",
-        "load_cases.it.conditions.left.traction.x: the problem prescribes the displacement of this edge along x",
+        "load_cases.it.conditions.left.traction.x: … prescribes the displacement … along x",
     ),
     "pressure on a held edge": (
         "{conditions: {left: {pressure: 1}}}",
         "1}}}",
-        "load_cases.it.conditions.left.pressure: the problem prescribes the displacement of this edge along x",
+        "load_cases.it.conditions.left.pressure: … prescribes the displacement … along x",
     ),
     "unknown tool": (
         "{tools: {pda: {force: {y: 1}}}}",
@@ -112,7 +112,7 @@ REFUSED = {
     "idle tool": (
         "{tools: {pad: {}}}",
         "{}",
-        "load_cases.it.tools.pad: the tool has no displacement and no force",
+        "load_cases.it.tools.pad: … no displacement … no force",
     ),
     "displacement of a free tool": (
         "{tools: {pad: {displacement: {y: 1}}}}",
@@ -122,12 +122,12 @@ REFUSED = {
     "force on a held tool": (
         "{tools: {pad: {force: {x: 1}}}}",
         "1}}}}",
-        "load_cases.it.tools.pad.force.x: the tool is held along x; add x: 0",
+        "load_cases.it.tools.pad.force.x: … held along x; add x: 0",
     ),
     "moment on a held tool": (
         "{tools: {pad: {force: {moment: 1}}}}",
         "1}}}}",
-        "load_cases.it.tools.pad.force.moment: the tool is held in rotation; add moment: 0",
+        "load_cases.it.tools.pad.force.moment: … held in rotation; add moment: 0",
     ),
     "rotation without a point": (
         "{tools: {pad: {displacement: {rotation: 1}}}}",
@@ -150,7 +150,7 @@ def test_each_mistake_is_reported_at_its_place(case: str):
         bemcontact.loads(spec(text), "body.yaml")
     [line] = str(caught.value).splitlines()
     assert line.startswith(f"body.yaml:15:{text.index(wrong) + 7}: load_cases.it")
-    assert words in line
+    assert_states(line, words)
 
 
 @pytest.mark.parametrize(
@@ -158,18 +158,18 @@ def test_each_mistake_is_reported_at_its_place(case: str):
     [
         (
             "combinations: {it: {it: 1}}",
-            "combinations.it: a load case has the name 'it' already; give the combination another name",
+            "combinations.it: … name 'it' … give … another name",
         ),
         (
             "combinations: {sum: {it: 1, wind: 2}}",
-            "combinations.sum.wind: unknown load case 'wind'; there is only 'it'",
+            "combinations.sum.wind: unknown … 'wind' … 'it'",
         ),
         (
             "combinations: {sum: {}}",
-            "combinations.sum: the combination is empty; give load cases with their factors",
+            "combinations.sum: … empty; give load cases",
         ),
         ("combinations: {sum: {it: big}}", "combinations.sum.it: expected a number, found the text"),
-        ("case: wind", "case: unknown load case 'wind'; there is only 'it'"),
+        ("case: wind", "case: unknown … 'wind' … 'it'"),
     ],
 )
 def test_combinations_and_the_acting_case_fit_the_load_cases(after: str, words: str):
@@ -177,7 +177,7 @@ def test_combinations_and_the_acting_case_fit_the_load_cases(after: str, words: 
         bemcontact.loads(spec(GOOD["pressure"], after), "body.yaml")
     [line] = str(caught.value).splitlines()
     assert line.startswith("body.yaml:16:")
-    assert words in line
+    assert_states(line, words)
 
 
 def test_a_case_without_load_cases_is_refused():

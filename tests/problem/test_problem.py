@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from messages import assert_each_states, assert_states
 
 from bemcontact.errors import ProblemError
 from bemcontact.problem import (
@@ -95,7 +96,7 @@ def test_names_are_checked_in_a_problem_with_invalid_parts():
     boundary = parts()["boundary"].model_dump()
     first, second = issues(boundary=boundary, material={"young_modulus": 1}, conditions={"tip": {"pressure": 1}})
     assert first.startswith("material.poisson_ratio: missing; give the Poisson ratio")
-    assert second == "conditions.tip: unknown edge 'tip'; did you mean 'top'?"
+    assert_states(second, "conditions.tip: unknown … 'tip' … 'top'")
 
 
 def test_geometry_is_checked_in_a_problem_with_invalid_parts():
@@ -116,19 +117,19 @@ def test_value_under_a_misspelled_key_is_checked():
     del data["material"]
     with pytest.raises(ProblemError) as caught:
         Problem(**data)
-    assert [str(issue) for issue in caught.value.issues] == [
-        "materiel: unknown key 'materiel'; did you mean 'material'?",
-        "materiel.young_modulus: must be greater than 0, found 0",
-        "materiel.poison_ratio: unknown key 'poison_ratio'; did you mean 'poisson_ratio'?",
-        "materiel.poison_ratio: must be greater than -1 and less than 0.5, found 0.7",
+    facts = [
+        "materiel: unknown … 'materiel' … 'material'",
+        "materiel.young_modulus: … greater than 0, found 0",
+        "materiel.poison_ratio: unknown … 'poison_ratio' … 'poisson_ratio'",
+        "materiel.poison_ratio: … greater than -1 and less than 0.5, found 0.7",
     ]
+    assert_each_states(map(str, caught.value.issues), facts)
 
 
 def test_edge_that_occurs_twice_in_a_zone_is_refused():
     zone = ContactZone(edges=["arc", "arc"], surface=Plane(point=(0, 0), normal=(0, 1)))
-    assert issues(contact_zones={"foot": zone}) == [
-        "contact_zones.foot.edges[1]: edge 'arc' occurs twice in the zone; list it once"
-    ]
+    (issue,) = issues(contact_zones={"foot": zone})
+    assert_states(issue, "contact_zones.foot.edges[1]: … 'arc' … twice")
 
 
 @pytest.mark.parametrize(
@@ -144,10 +145,7 @@ def test_edge_that_occurs_twice_in_a_zone_is_refused():
 def test_surface_that_faces_away_is_refused_with_a_remedy(surface, remedy):
     zone = {"edges": ["arc"], "surface": surface}
     [issue] = issues(contact_zones={"foot": zone})
-    assert issue.startswith(
-        "contact_zones.foot.surface: the normal of the rigid surface must point from the surface into"
-    )
-    assert remedy in issue
+    assert_states(issue, f"contact_zones.foot.surface: … normal … into … {remedy}")
 
 
 @pytest.mark.parametrize("data", [None, 3, [], "block"])
@@ -175,13 +173,10 @@ def test_contour_may_load_edges_of_its_zone():
 
 
 def test_contour_is_checked_against_the_body():
-    assert issues(contact_zones=on_its_contour(conditions={"tap": {"pressure": 1}})) == [
-        "contact_zones.foot.surface.conditions.tap: unknown edge 'tap'; did you mean 'top'?"
-    ]
-    (issue,) = issues(contact_zones=on_its_contour(direction=[0, -3]))
-    assert issue.startswith("contact_zones.foot.surface: the normal of the rigid surface must point ")
-    assert "at 'arc'" in issue
-    assert "reverse the direction: [0, 3]" in issue
+    (unknown,) = issues(contact_zones=on_its_contour(conditions={"tap": {"pressure": 1}}))
+    assert_states(unknown, "contact_zones.foot.surface.conditions.tap: unknown … 'tap' … 'top'")
+    (away,) = issues(contact_zones=on_its_contour(direction=[0, -3]))
+    assert_states(away, "contact_zones.foot.surface: … normal … at 'arc' … reverse the direction: [0, 3]")
 
 
 @given(st.floats(1e-6, 1e9), st.floats(-0.99, 0.49))
@@ -213,10 +208,11 @@ def test_incompressible_material_needs_plane_stress():
 def test_all_issues_of_a_material_are_reported_together():
     with pytest.raises(ProblemError) as caught:
         Material(young_modulus=-1, poisson_ratio="0.3")
-    assert [str(issue) for issue in caught.value.issues] == [
-        "young_modulus: must be greater than 0, found -1",
-        "poisson_ratio: expected a number, found the text '0.3'; leave the quotes out",
+    facts = [
+        "young_modulus: … greater than 0, found -1",
+        "poisson_ratio: … a number, found … '0.3'; leave the quotes out",
     ]
+    assert_each_states(map(str, caught.value.issues), facts)
 
 
 def block(variants, **more):

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 import yaml
 from jsonschema import Draft202012Validator
+from messages import assert_states
 
 import bemcontact
 from bemcontact.problem import Crack, FlatPunch, Hertz, Problem, ProppedBeam, ShrinkFit, Table, Uniform, Values
@@ -61,22 +62,22 @@ def test_a_spec_may_have_no_reference():
 
 
 REFUSED = {
-    "no kind": ("{load: 810}", "{load: 810}", "kind: missing; give the kind of a reference: hertz, flat_punch,"),
+    "no kind": ("{load: 810}", "{load: 810}", "kind: missing; … hertz, flat_punch,"),
     "unknown kind": (
         "{kind: herz, load: 1}",
         "herz, load: 1}",
-        "reference.it.kind: unknown kind 'herz'; did you mean 'hertz'?",
+        "reference.it.kind: unknown … 'herz' … 'hertz'?",
     ),
-    "no mapping": ("183", "183", "reference.it: expected a mapping that describes a reference, found 183"),
+    "no mapping": ("183", "183", "reference.it: … a mapping … found 183"),
     "unknown key": (
         "{kind: hertz, load: 1, radius: 1, halve: true}",
         "halve: true}",
-        "reference.it.halve: unknown key 'halve'; did you mean 'half'",
+        "reference.it.halve: unknown … 'halve' … 'half'",
     ),
     "no load": (
         "{kind: hertz, radius: 1}",
         "{kind: hertz, ra",
-        "reference.it.load: missing; give the force per thickness",
+        "reference.it.load: missing; … force per thickness",
     ),
     "load as a text": (
         "{kind: hertz, load: '1', radius: 1}",
@@ -86,7 +87,7 @@ REFUSED = {
     "pull": (
         "{kind: hertz, load: -1, radius: 1}",
         "-1, radius: 1}",
-        "reference.it.load: must be greater than 0, found -1",
+        "reference.it.load: … greater than 0, found -1",
     ),
     "no radius": (
         "{kind: hertz, load: 1, radius: 0}",
@@ -101,7 +102,7 @@ REFUSED = {
     "tight groove": (
         "{kind: hertz, load: 1, radius: 8, surface_radius: -8}",
         "-8}",
-        "reference.it.surface_radius: 1/radius + 1/surface_radius must be greater than 0, found 1/8 + 1/-8",
+        "reference.it.surface_radius: … greater than 0, found 1/8 + 1/-8",
     ),
     "flat surface": (
         "{kind: hertz, load: 1, radius: 8, surface_radius: 0}",
@@ -111,12 +112,12 @@ REFUSED = {
     "beside the punch": (
         "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0], eccentricity: -2}",
         "-2}",
-        "reference.it.eccentricity: must be between -half_width and half_width = 2, found -2",
+        "reference.it.eccentricity: … half_width = 2, found -2",
     ),
     "of no case": (
         "{kind: uniform, pressure: 1, case: wind}",
         "wind}",
-        "reference.it.case: unknown load case 'wind'",
+        "reference.it.case: unknown … 'wind'",
     ),
     "half and eccentric": (
         "{kind: flat_punch, load: 1, half_width: 2, center: [0, 0], eccentricity: 1, half: true}",
@@ -126,27 +127,27 @@ REFUSED = {
     "no wall": (
         "{kind: shrink_fit, inner_radius: 2, outer_radius: 2, interference: 1}",
         "2, interference:",
-        "reference.it.outer_radius: must be greater than inner_radius = 2, found 2",
+        "reference.it.outer_radius: … greater than inner_radius = 2, found 2",
     ),
     "pin in a disc": (
         "{kind: shrink_fit, inner_radius: 0, outer_radius: 2, interference: 1}",
         "0, outer_radius:",
-        "reference.it.inner_radius: must be greater than 0 on a pin",
+        "reference.it.inner_radius: … greater than 0",
     ),
     "unknown support": (
         "{kind: propped_beam, support: middle, load: 1, span: 20, height: 1, gap: 0}",
         "middle, load",
-        "reference.it.support: expected 'prop' or 'end', found the text 'middle'",
+        "reference.it.support: … 'prop' or 'end', found … 'middle'",
     ),
     "prop above the beam": (
         "{kind: propped_beam, support: prop, load: 1, span: 20, height: 1, gap: -1}",
         "-1}",
-        "reference.it.gap: must be at least 0, found -1",
+        "reference.it.gap: … at least 0, found -1",
     ),
     "per cent": (
         "{kind: uniform, pressure: 5, tolerance: 2}",
         "2}",
-        "reference.it.tolerance: must be less than 1, found 2",
+        "reference.it.tolerance: … less than 1, found 2",
     ),
     "reason for nothing": (
         "{kind: uniform, pressure: 5, reason: digits}",
@@ -171,7 +172,7 @@ REFUSED = {
     "end before start": (
         "{kind: values, source: s, start: 3, end: 2}",
         "2}",
-        "reference.it.end: must be greater than start = 3, found 2",
+        "reference.it.end: … greater than start = 3, found 2",
     ),
     "angle without center": (
         "{kind: values, source: s, start: 3, against: angle}",
@@ -181,7 +182,7 @@ REFUSED = {
     "center without angle": (
         "{kind: values, source: s, start: 3, center: [0, 0]}",
         "{kind: values, s",
-        "leave them out, or write against: angle",
+        "write against: angle",
     ),
     "no direction": (
         "{kind: values, source: s, start: 3, against: angle, center: [0, 0], zero: [0, 0]}",
@@ -191,28 +192,28 @@ REFUSED = {
     "position twice": (
         "{kind: table, source: s, pressure: [[1, 3], [0, 2], [1, 4]]}",
         "1, 4]]}",
-        "reference.it.pressure[2][0]: the position 1 occurs in pressure[0] too",
+        "reference.it.pressure[2][0]: … position 1 … pressure[0]",
     ),
     "one point": ("{kind: table, source: s, pressure: [[1, 3]]}", "[[1, 3]]}", "expected at least 2 in the list"),
     "pull in a table": (
         "{kind: table, source: s, pressure: [[1, 3], [0, -2]]}",
         "-2]]}",
-        "reference.it.pressure[1][1]: a contact pressure must not be negative, found -2",
+        "reference.it.pressure[1][1]: … negative, found -2",
     ),
     "no pair": (
         "{kind: table, source: s, pressure: [[1, 3], [0]]}",
         "[0]]}",
-        "reference.it.pressure[1]: expected two numbers such",
+        "reference.it.pressure[1]: … two numbers",
     ),
     "angle beyond half a turn": (
         "{kind: table, source: s, against: angle, center: [0, 0], pressure: [[0, 1], [270, 2]]}",
         "270, 2]]}",
-        "reference.it.pressure[1][0]: an angle must be between -180 and 180 degrees, found 270",
+        "reference.it.pressure[1][0]: … -180 and 180 degrees, found 270",
     ),
     "unknown zone": (
         "{kind: uniform, pressure: 5, zone: fot}",
         "fot}",
-        "reference.it.zone: unknown contact zone 'fot'; did you mean 'foot'?",
+        "reference.it.zone: unknown … 'fot' … 'foot'?",
     ),
 }
 
@@ -225,7 +226,7 @@ def test_each_mistake_is_reported_at_its_place(case: str):
         bemcontact.loads(spec(text), "body.yaml")
     [line] = str(caught.value).splitlines()
     assert line.startswith(f"body.yaml:13:{text.index(wrong) + 7}: reference.it")
-    assert words in line
+    assert_states(line, words)
 
 
 @pytest.mark.parametrize(

@@ -89,7 +89,7 @@ def test_punch_carries_load_and_moment_and_leaves_a_straight_face(eccentricity: 
 
 
 @pytest.mark.parametrize("eccentricity", [1.2, 1.5, 1.99, -1.3])
-def test_what_lifts_off_is_clear_of_the_half_plane(eccentricity: float):
+def test_open_part_is_clear_of_the_half_plane(eccentricity: float):
     """Outside, the slope of the surface is an ordinary integral; what the tilted face rises above it grows outwards."""
     form = PunchOnHalfPlane(load=7.0, half_width=2.0, eccentricity=eccentricity)
     side, h = np.sign(eccentricity), form.touching_half_width

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from known_answers import BLOCK, crack, hertz, propped_beam, punch, ring
+from messages import assert_states
 
 import bemcontact
 from bemcontact.reference import Expected, expected
@@ -40,19 +41,19 @@ def test_hertz_of_half_a_cylinder():
     [
         (
             ("reference.Hertz.load=810",),
-            "Hertz needs b/R << 1; here b/R = 0.34, where the error of its peak is about 2.7 %:",
+            "b/R = 0.34, … 2.7 %",
         ),
-        (("reference.Hertz.load=81000",), "Hertz needs b/R << 1; here b/R = 3.4: shown, not judged"),
+        (("reference.Hertz.load=81000",), "b/R = 3.4:"),
         (
             ("reference.Hertz.radius=800", "reference.Hertz.load=10"),
-            "Hertz needs a thick body; here the body ends 2.6",
+            "thick body; … 2.6",
         ),
     ],
 )
 def test_hertz_out_of_range_is_shown_and_not_judged(overrides, words: str):
     one, _ = only(hertz(), *overrides)
     assert not one.in_range
-    assert words in one.remark
+    assert_states(one.remark, words)
     assert one.remark.endswith("shown, not judged")
     assert np.isfinite(one.pressure).all()
 
@@ -119,10 +120,10 @@ def test_crack_in_a_small_panel_is_out_of_range(size: float, in_range: bool):
 
 
 def test_crack_that_does_not_close_is_not_judged():
-    """It closes to the tip from q = c E' / (2a + c) = 52.3 on."""
+    """The crack closes to the tip from q = c E' / (2a + c) = 52.3 on."""
     one, _ = only(crack(60.0), "reference.crack.compression=52")
     assert not one.in_range
-    assert one.remark == "the compression is too small to close the opening to its tip"
+    assert "the compression is too small" in one.remark
     assert np.isnan(one.pressure).all()
     assert not one.compared.any()
     one, _ = only(crack(60.0), "reference.crack.compression=53")
@@ -130,7 +131,7 @@ def test_crack_that_does_not_close_is_not_judged():
 
 
 @pytest.mark.parametrize("rigid", ["pin", "bore"])
-def test_ring_presses_everywhere_alike(rigid: str):
+def test_pressure_of_a_ring_is_uniform(rigid: str):
     one, contact = only(ring("plane_strain", rigid))
     assert one.compared.all()
     assert one.pressure == pytest.approx(np.full(contact.size, one.peak))
@@ -158,14 +159,14 @@ def test_supports_of_a_beam_share_its_load():
 @pytest.mark.parametrize(
     ("span", "gap", "remark"),
     [
-        (9.0, 0.5, "beam theory needs a slender beam; this one is 9 heights long: shown, not judged"),
-        (10.0, 0.8, "the beam presses on its prop by 20 % of its sag only: shown, not judged"),
+        (9.0, 0.5, "slender beam; … 9 heights long: shown, not judged"),
+        (10.0, 0.8, "20 % of its sag … shown, not judged"),
     ],
 )
 def test_beam_out_of_range_is_shown_and_not_judged(span: float, gap: float, remark: str):
     for one in supports(span, gap):
         assert not one.in_range
-        assert one.remark == remark
+        assert_states(one.remark, remark)
         assert one.resultant is not None
 
 
@@ -196,7 +197,7 @@ def test_table_beside_the_contact_states_nothing():
     table = "reference:\n  high: {kind: table, source: s, against: y, pressure: [[5, 1], [6, 2]]}\n"
     one, _ = only(spec[: spec.index("reference:")] + table)
     assert not one.in_range
-    assert one.remark == "no contact point lies within the range of the table"
+    assert_states(one.remark, "no contact point … range of the table")
 
 
 def test_contact_of_another_problem_is_refused():
@@ -204,7 +205,7 @@ def test_contact_of_another_problem_is_refused():
         expected(bemcontact.loads(BLOCK), bemcontact.condense(bemcontact.loads(ring("plane_strain", "pin"))))
 
 
-def test_all_of_it_is_ready_for_json():
+def test_expected_values_are_ready_for_json():
     problem = bemcontact.loads(BLOCK)
     for item in expected(problem, bemcontact.condense(problem)):
         data = json.loads(json.dumps(item.to_dict(), allow_nan=False))

@@ -43,24 +43,29 @@ def test_hertz_at_a_hundredth_of_the_load_is_judged_and_holds():
     assert difference["pressure (largest difference)"] < 2e-3
 
 
-@pytest.mark.parametrize(("size", "off"), [(10.0, 5e-3), (20.0, 1.5e-3)])
+@pytest.mark.parametrize("size", [10.0, 20.0])
 @pytest.mark.parametrize("parts", [1, 2])
-def test_hertz_on_a_body_of_finite_depth(size: float, off: float, parts: int):
-    """0.46 % of the peak and 0.40 % of the half-width at a depth of 10 b, a quarter at 20 b; a finer mesh holds too."""
+def test_hertz_on_a_body_of_finite_depth_holds(size: float, parts: int):
     found = scores(bemcontact.loads(pillow(size)).refined(parts))
     assert all(item.judged and item.holds for item in found.values())
-    assert abs(found["Hertz", "peak"].difference) < off
-    assert abs(found["Hertz", "half-width"].difference) < off
+
+
+def test_difference_from_hertz_is_of_second_order_in_half_width_over_depth():
+    """A body of twice the depth: a quarter of the difference of the peak, up to a tenth for the mesh."""
+    shallow, deep = (
+        scores(bemcontact.loads(pillow(size)).refined(2))["Hertz", "peak"].difference for size in (10.0, 20.0)
+    )
+    assert shallow / deep == pytest.approx(4, rel=0.1)
 
 
 def test_hertz_at_full_load_is_shown_and_not_judged():
-    """At b/R = 0.34 the peak is 2.6 % lower and the contact 1.0 % wider; what finite elements found holds to 0.1 %."""
+    """Finite elements have 183.335 for 188.19 of Hertz, and 2.7685 for 2.7401; the result agrees with them to 0.1 %."""
     found = scores(bemcontact.load(ROOT / "models" / "cylinder_on_plane.yaml"))
     for (reference, quantity), item in found.items():
         assert item.judged == (reference == "finite elements")
         assert item.holds == (reference == "finite elements" or quantity == "resultant")
-    assert found["Hertz", "peak"].difference == pytest.approx(-0.026, abs=1e-3)
-    assert found["Hertz", "half-width"].difference == pytest.approx(0.010, abs=1.2e-3)
+    assert found["Hertz", "peak"].difference == pytest.approx(183.335 / 188.19 - 1, abs=1e-3)
+    assert found["Hertz", "half-width"].difference == pytest.approx(2.7685 / 2.7401 - 1, abs=1e-3)
     assert abs(found["finite elements", "peak"].difference) < 1e-3
     assert abs(found["finite elements", "half-width"].difference) < 1e-3
 
@@ -74,23 +79,26 @@ def test_a_change_of_units_changes_no_score():
     assert there["Hertz", "half-width"].computed == pytest.approx(1e3 * here["Hertz", "half-width"].computed, rel=1e-8)
 
 
-@pytest.mark.parametrize(("size", "largest"), [(10.0, 6e-3), (20.0, 3e-3)])
-def test_punch_on_a_block(size: float, largest: float):
-    """The pressure under a punch: the block of ten half-widths leaves 0.5 %, of twenty a quarter of it and the mesh."""
-    found = scores(bemcontact.loads(punch(size)))
-    assert all(item.judged and item.holds for item in found.values())
-    assert found["punch", "pressure (largest difference)"].difference < largest
-    assert found["punch", "resultant"].difference == pytest.approx(0.0, abs=1e-12)
+def test_punch_on_a_block():
+    """The pressure on a block of twenty half-widths is nearer to that on a half-plane than on one of ten."""
+    small, large = (scores(bemcontact.loads(punch(size))) for size in (10.0, 20.0))
+    for found in (small, large):
+        assert all(item.judged and item.holds for item in found.values())
+        assert found["punch", "resultant"].difference == pytest.approx(0.0, abs=1e-12)
+    for quantity in ("pressure (largest difference)", "pressure (mean square)"):
+        assert large["punch", quantity].difference < small["punch", quantity].difference
 
 
-@pytest.mark.parametrize("size", [30.0, 60.0, 120.0])
-def test_panel_with_a_crack_tends_to_the_infinite_one(size: float):
-    """Pressure larger by 3.4 (a/size)², to a twentieth of it and 0.1 % of the mesh."""
-    found = scores(bemcontact.loads(crack(size)))
-    difference = found["crack", "pressure (mean square)"].difference
-    assert difference == pytest.approx(3.4 * (3 / size) ** 2, rel=0.05, abs=1e-3)
-    assert found["crack", "half-width"].holds
-    assert found["crack", "pressure (largest difference)"].judged == (size >= 60)
+def test_panel_with_a_crack_tends_to_the_infinite_one():
+    """Of second order in crack over panel: twice the size has a quarter of the difference, to 5 %."""
+    differences = []
+    for size in (30.0, 60.0, 120.0):
+        found = scores(bemcontact.loads(crack(size)))
+        differences.append(found["crack", "pressure (mean square)"].difference)
+        assert found["crack", "half-width"].holds
+        assert found["crack", "pressure (largest difference)"].judged == (size >= 60)
+    assert differences[0] / differences[1] == pytest.approx(4, rel=0.05)
+    assert differences[1] / differences[2] == pytest.approx(4, rel=0.05)
 
 
 @pytest.mark.parametrize("state", ["plane_strain", "plane_stress"])
@@ -102,14 +110,13 @@ def test_shrink_fit(state: str, rigid: str):
     assert found["fit", "pressure (largest difference)"].difference < 3e-3
 
 
-@pytest.mark.parametrize(("span", "prop", "end"), [(10.0, 8e-3, 1.3e-2), (20.0, 2e-3, 2.1e-3)])
 @pytest.mark.parametrize("gap", [0.0, 0.5, 0.75])
-def test_propped_beam(span: float, prop: float, end: float, gap: float):
-    """Off by as much as the closed form says of itself at 10 and at 20 heights, whatever part of the sag the gap is."""
-    found = scores(bemcontact.loads(propped_beam(span, gap)).refined(3))
-    assert all(item.judged and item.holds for item in found.values())
-    assert abs(found["prop", "resultant"].difference) < prop
-    assert abs(found["end", "resultant"].difference) < end
+def test_propped_beam(gap: float):
+    """Beam theory is for slender beams: with 20 heights it is off by less than half of what it is with 10."""
+    short, long = (scores(bemcontact.loads(propped_beam(span, gap)).refined(3)) for span in (10.0, 20.0))
+    assert all(item.judged and item.holds for found in (short, long) for item in found.values())
+    for support in ("prop", "end"):
+        assert abs(long[support, "resultant"].difference) < abs(short[support, "resultant"].difference) / 2
 
 
 def test_block_between_walls():

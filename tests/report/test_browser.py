@@ -120,7 +120,7 @@ def test_a_picture_is_transparent_and_its_ink_follows_the_page(chromium: Browser
     assert dark != pytest.approx(light, abs=0.02)
 
 
-def test_complaints_are_heard(chromium: Browser, tmp_path: Path):
+def test_errors_in_the_browser_are_noticed(chromium: Browser, tmp_path: Path):
     """A page with a script that fails and a picture that is missing: without this the test above proves nothing."""
     bad = tmp_path / "bad.html"
     bad.write_text(

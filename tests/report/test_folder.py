@@ -19,7 +19,7 @@ def files(place: Path) -> set[str]:
     return {path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file()}
 
 
-def test_all_of_it_is_written(tmp_path: Path):
+def test_all_files_of_a_report_are_written(tmp_path: Path):
     study, place = on_one_mesh(), tmp_path / "report"
     folder.save(study, place, "name: block\n")
     assert files(place) >= {"report.html", "report.json", "contact.npz", "spec.yaml", "figures/pressure.svg"}
@@ -68,7 +68,7 @@ def test_foreign_files_are_never_lost(tmp_path: Path):
 
 
 @pytest.mark.parametrize("content", ["", "[]", "{}", '{"levels": []}', "\udcff"])
-def test_a_folder_with_somebody_elses_report_is_refused(tmp_path: Path, content: str):
+def test_folder_with_a_foreign_report_is_refused(tmp_path: Path, content: str):
     (tmp_path / "report.json").write_text(content, encoding="utf-8", errors="surrogateescape")
     with pytest.raises(FileExistsError, match=r"has no report\.json of bemcontact"):
         folder.ensure_folder_writable(tmp_path)
@@ -100,7 +100,7 @@ def test_folders_of_two_kinds_do_not_replace_each_other(tmp_path: Path):
         folder.save_reproduction(on_base_meshes(), tmp_path / "paper")
 
 
-def test_a_file_in_the_way_is_refused(tmp_path: Path):
+def test_file_of_the_name_of_the_folder_is_refused(tmp_path: Path):
     (tmp_path / "report").touch()
     with pytest.raises(OSError, match="is a file; name a folder"):
         folder.ensure_folder_writable(tmp_path / "report")

@@ -66,7 +66,7 @@ def test_a_text_of_the_user_stays_text():
     assert not {"script", "b", "on"} & {tag for tag, _ in reader.tags}
 
 
-def test_each_contender_stands_there_with_its_verdict():
+def test_page_has_the_verdict_of_each_contender():
     report = report_of(of_many_settings())
     text = read(render(report, {}, None)).text
     for contender in report["levels"][-1]["comparison"]["contenders"]:
@@ -93,7 +93,7 @@ def test_a_coarser_mesh_that_is_not_certified_is_named():
     assert "The comparison on the coarser mesh (refine 2) is not certified." in head
 
 
-def test_sections_go_without_what_there_is_not():
+def test_sections_without_content_are_left_out():
     alone = read(render(report_of(without_a_body()), {"pressure": SVG}, None)).text
     assert "Mesh convergence" not in alone
     assert "Reference values" not in alone
@@ -130,7 +130,7 @@ def test_references_are_judged_in_their_range_only():
     assert remark[1:] in text
 
 
-def test_the_penalty_stands_beside_where_qp2_is_convex():
+def test_page_has_the_penalty_beside_the_limit_of_convexity():
     """With μ = 1000 it is not: the whole Hessian has negative eigenvalues where the limit lies below."""
     report = report_of(of_many_settings())
     section = render(report, {}, None).split('id="convexity"')[1]

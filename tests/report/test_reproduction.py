@@ -20,7 +20,7 @@ SVG = b'<svg xmlns="http://www.w3.org/2000/svg"/>'
 
 
 def record() -> dict[str, Any]:
-    """As another program reads it from the file."""
+    """The record as another program reads it from the file."""
     return json.loads(on_base_meshes().to_json())
 
 
@@ -45,7 +45,7 @@ def test_the_page_is_whole_and_needs_nothing_else():
     assert "Certified and in agreement with every reference." in reader.text
 
 
-def test_each_problem_stands_there_with_what_the_paper_states():
+def test_page_has_the_statements_of_the_paper():
     text = read(render(record(), {})).text
     for item in record()["problems"]:
         for told in (item["name"][1:], *(row["statement"] for row in item["statements"]), *item["differs"]):
@@ -72,7 +72,7 @@ def test_numbers_come_from_the_record_alone():
             assert number in after
 
 
-def test_the_iterations_of_qpsol_stand_above_ours():
+def test_iterations_of_qpsol_are_above_ours():
     marked_up = render(record(), {}).split('<section id="iterations">')[1]
     section = " ".join(unescape(re.sub(r"<[^>]+>", " ", marked_up)).split())
     assert "QPSOL, the paper – 63 47 70 –" in section
@@ -86,7 +86,7 @@ def test_the_iterations_of_qpsol_stand_above_ours():
             assert " ".join(map(str, (run["label"], *cells))) in section
 
 
-def test_what_fails_is_named():
+def test_failed_references_are_named():
     failed = json.loads(with_coarse_mesh_judged().to_json())
     text = read(render(failed, {})).text
     assert "The paper's two problems" in text

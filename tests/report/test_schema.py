@@ -44,7 +44,7 @@ def written(request: pytest.FixtureRequest) -> dict[str, dict]:
 
 
 @pytest.mark.parametrize("kind", RESULTS)
-def test_it_is_a_schema_and_states_of_each_field_what_it_means(kind: str):
+def test_schema_is_valid_and_describes_each_field(kind: str):
     """Every object and every key has a description, which is a sentence."""
     stated = schema(kind)
     Draft202012Validator.check_schema(stated)

@@ -72,7 +72,7 @@ def test_the_file_holds_the_boundary_element_by_element(tmp_path: Path, ending: 
         assert (values[:, 2] == 0).all()
 
 
-def test_pressure_and_gap_stand_on_the_elements_of_their_own_zone(tmp_path: Path):
+def test_pressure_and_gap_are_on_the_elements_of_their_zone(tmp_path: Path):
     """The node in the corner is in both zones, and has the pressure of each; nodes off the zones have no gap."""
     vtk.save(analysis.solve(problem()), tmp_path / "block.vtu")
     found = meshio.read(tmp_path / "block.vtu")
@@ -108,7 +108,7 @@ def test_the_command_line_writes_it(block: Path):
     assert sorted(path.name for path in block.parent.iterdir()) == ["block.vtu", "block.yaml"]
 
 
-def test_what_cannot_be_written_is_refused_before_any_work(block: Path, monkeypatch: pytest.MonkeyPatch):
+def test_invalid_outputs_are_refused_before_any_work(block: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(analysis, "solve_with", None)
     answers = {
         r"--vtk: .*\.vtu or \.vtk": solve(block, "--vtk", block.with_suffix(".stl")),

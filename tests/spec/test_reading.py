@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import yaml
 from jsonschema import Draft202012Validator
+from messages import assert_each_states, assert_states
 
 import bemcontact.spec
 from bemcontact.errors import Issue, ProblemError, SpecError, dotted
@@ -449,13 +450,14 @@ def test_unknown_edge_is_reported_together_with_mistakes_in_keys():
     text = SPEC.replace("edges: bottom", "edges: botom").replace("poisson_ratio: .3", "poison_ratio: .3")
     text = text.replace("kind: plane, point", "kind: plane, pont").replace("boundary:", "boundry:")
     text = text.replace("{name: left, elements: 2}", "{name: left, elments: 2}")
-    assert [line.split(": ")[:3] for line in error_lines(text)] == [
-        ["block.yaml:5:3", "material.poison_ratio", "unknown key 'poison_ratio'; did you mean 'poisson_ratio'?"],
-        ["block.yaml:6:1", "boundry", "unknown key 'boundry'; did you mean 'boundary'?"],
-        ["block.yaml:19:20", "boundry.outer[3].elments", "unknown key 'elments'; did you mean 'elements'?"],
-        ["block.yaml:27:12", "contact_zones.foot.edges", "unknown edge 'botom'; did you mean 'bottom'?"],
-        ["block.yaml:28:28", "contact_zones.foot.surface.pont", "unknown key 'pont'; did you mean 'point'?"],
+    facts = [
+        "block.yaml:5:3: material.poison_ratio: unknown … 'poison_ratio' … 'poisson_ratio'",
+        "block.yaml:6:1: boundry: unknown … 'boundry' … 'boundary'",
+        "block.yaml:19:20: boundry.outer[3].elments: unknown … 'elments' … 'elements'",
+        "block.yaml:27:12: contact_zones.foot.edges: unknown … 'botom' … 'bottom'",
+        "block.yaml:28:28: contact_zones.foot.surface.pont: unknown … 'pont' … 'point'",
     ]
+    assert_each_states(error_lines(text), facts)
 
 
 @pytest.mark.parametrize(
@@ -511,27 +513,27 @@ def test_later_override_wins():
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("material.poisson_ratio=0.6", "material.poisson_ratio: must be greater than -1 and less than 0.5, found 0.6"),
-        ("material.poisson=0.2", "material.poisson: unknown key 'poisson'; did you mean 'poisson_ratio'?"),
+        ("material.poisson_ratio=0.6", "material.poisson_ratio: … less than 0.5, found 0.6"),
+        ("material.poisson=0.2", "material.poisson: unknown … 'poisson' … 'poisson_ratio'"),
         ("material.young_modulus", "there is no '='; write key.path=value"),
         ("=3", "'' is not a key path"),
         ("a..b=3", "'a..b' is not a key path"),
-        ("boundary.outer[9].elements=3", "boundary.outer: there is no entry [9], the list has 4"),
-        ("boundary.outer.tip.elements=3", "boundary.outer: unknown entry 'tip'; did you mean 'top'?"),
-        ("name.first=3", "name: it has no entry first, because it is the text 'block on a plane'"),
+        ("boundary.outer[9].elements=3", "boundary.outer: … no entry [9] … 4"),
+        ("boundary.outer.tip.elements=3", "boundary.outer: unknown … 'tip' … 'top'"),
+        ("name.first=3", "name: … no entry first … 'block on a plane'"),
         ("material.young_modulus=[1", "not YAML: "),
         ("conditions.top={pressure: 1, pressure: 2}", "the key occurs twice"),
-        ("conditions.topp.pressure=3", "conditions.topp: unknown edge 'topp'; did you mean 'top'?"),
+        ("conditions.topp.pressure=3", "conditions.topp: unknown … 'topp' … 'top'"),
         ("conditions.top.pressure=", "conditions.top: the condition is empty"),
-        ("conditions.left.traction.x=1", "conditions.left: both displacement and traction are given along x"),
-        ("contact_zones.foot.edges=top", "conditions.top: edge 'top' is in the contact zone 'foot'"),
+        ("conditions.left.traction.x=1", "conditions.left: … displacement … traction … along x"),
+        ("contact_zones.foot.edges=top", "conditions.top: … 'top' … contact zone 'foot'"),
     ],
 )
 def test_mistake_in_an_override_points_to_it(override, words):
     lines = error_lines(SPEC, [override])
     assert len(lines) == 1
     assert lines[0].startswith(f"--set {override}: ")
-    assert words in lines[0]
+    assert_states(lines[0], words)
 
 
 def test_only_new_issues_are_attributed_to_an_override():
@@ -591,12 +593,12 @@ def test_variant_of_the_file_equals_that_of_the_problem(variant, tmp_path):
     ("old", "new", "variant", "line"),
     [
         ("ratio: 0.25", "ratio: 0.7", None, "block.yaml:33:31: variants.fine.set.material.poisson_ratio: with this"),
-        ("ratio: 0.25", "ratio: 0.7", "fine", "block.yaml:33:31: material.poisson_ratio: must be greater than -1"),
+        ("ratio: 0.25", "ratio: 0.7", "fine", "block.yaml:33:31: material.poisson_ratio: … greater than -1"),
         ("outer.bottom", "outer.bot", None, "block.yaml:32:36: variants.fine.set.boundary.outer.bot.elements: "),
         ("outer.bottom", "outer.bot", "fine", "block.yaml:32:36: variants.fine.set.boundary.outer.bot.elements: "),
-        ("    set:", "    sat:", "fine", "block.yaml:31:5: variants.fine.sat: unknown key 'sat'; did you mean 'set'?"),
-        ("", "", "fime", "--variant fime: unknown variant 'fime'; did you mean 'fine'?"),
-        ("", "", "", "--variant '': the name of the variant is empty; there are: fine, steep"),
+        ("    set:", "    sat:", "fine", "block.yaml:31:5: variants.fine.sat: unknown … 'sat' … 'set'"),
+        ("", "", "fime", "--variant fime: unknown … 'fime' … 'fine'"),
+        ("", "", "", "--variant '': … empty; … fine, steep"),
     ],
 )
 def test_mistakes_in_variants_are_located(old, new, variant, line):
@@ -604,7 +606,7 @@ def test_mistakes_in_variants_are_located(old, new, variant, line):
     with pytest.raises(SpecError) as caught:
         bemcontact.spec.loads(text, "block.yaml", variant=variant)
     (found,) = str(caught.value).splitlines()
-    assert found.startswith(line)
+    assert_states(found, line)
 
 
 def test_later_issues_of_a_variant_are_located_in_it(tmp_path):
@@ -628,7 +630,7 @@ def test_file_in_another_encoding_is_refused_at_its_byte(tmp_path):
     path.write_bytes("units: {}\nname: Größe\n".encode("latin-1"))
     with pytest.raises(SpecError) as caught:
         bemcontact.spec.load(path)
-    assert str(caught.value) == f"{path}:2:9: byte 0xf6 is not valid UTF-8; save the file as UTF-8"
+    assert_states(str(caught.value), f"{path}:2:9: … 0xf6 … save the file as UTF-8")
 
 
 def test_binary_file_is_refused(tmp_path):

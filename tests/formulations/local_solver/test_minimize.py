@@ -478,7 +478,7 @@ def test_a_start_outside_the_bounds_is_moved_to_them():
         ({"options": QPOptions(max_iterations=-1)}, "max_iterations"),
     ],
 )
-def test_bad_input_is_refused_with_what_and_why(change, message):
+def test_invalid_input_is_refused_with_the_reason(change, message):
     with pytest.raises(ProblemError, match=message):
         minimize_qp(**({"H": np.eye(2), "c": np.zeros(2)} | change))
 
@@ -492,7 +492,7 @@ def test_a_far_bound_takes_no_digit_from_the_near_one(far):
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_rows_satisfied_at_the_start_are_no_trap(seed):
+def test_rows_satisfied_at_the_start_do_not_stop_the_search(seed):
     """Complementarity with a kernel matrix and whole numbers: many rows hold at 0; M is definite, so 0 is the least."""
     rng = np.random.default_rng(seed)
     k = int(rng.integers(4, 24))

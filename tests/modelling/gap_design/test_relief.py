@@ -87,7 +87,7 @@ def test_the_profile_that_is_next_to_none():
         (Relief(shapes=[np.ones_like]), "toe", None, "nothing bounds the profile"),
     ],
 )
-def test_what_is_no_set_of_profiles_is_refused(relief, zone, arc, words):
+def test_invalid_relief_is_refused(relief, zone, arc, words):
     with pytest.raises(ProblemError, match=words):
         Profiles.of(contact(), relief, zone, arc)
 

@@ -43,7 +43,7 @@ def test_references_are_dashed_and_grey_where_they_are_out_of_range():
     assert found["Hertz, out of its range"].is_dashed()
 
 
-def test_contenders_that_cannot_be_distinguished_are_one_curve_and_what_is_far_off_is_cut_off_and_named():
+def test_equal_contenders_share_a_curve_and_outliers_are_named():
     """QP1 finds the same with both weights; QP2 with consistent weights and a large penalty has huge pressures."""
     level, axes = of_many_settings().finest, Figure().add_subplot()
     figures.draw_pressures(axes, level)
@@ -70,7 +70,7 @@ def test_gaps_are_drawn_beside_the_initial_gap():
     )
 
 
-def test_gaps_that_are_closed_everywhere_are_reported_and_their_round_off_is_not_blown_up():
+def test_closed_gaps_are_reported_and_their_round_off_is_not_magnified():
     """A block in a corner under uniform pressure touches both planes with all of its edges."""
     problem = spec.load(Path(__file__).parents[3] / "models" / "gallery" / "block_in_corner.yaml")
     level, axes = comparing.study(ComparisonOptions.of(["qp3"]), problem).finest, Figure().add_subplot()
@@ -91,7 +91,7 @@ def test_differences_are_relative_to_the_peak():
         assert np.nanmax(drawn(line)) == pytest.approx(difference.largest)
 
 
-def test_two_zones_stand_side_by_side_each_with_its_own_distances():
+def test_two_zones_are_side_by_side_with_their_own_distances():
     study = comparing.study(ComparisonOptions.of(["qp3"]), block_in_a_corner())
     axes = Figure().add_subplot()
     figures.draw_pressures(axes, study.finest)

@@ -163,7 +163,7 @@ def test_contact_is_marked_on_the_deformed_outline():
     assert np.ptp(np.concatenate(on_floor)[:, 0]) > 1.9
 
 
-def test_rigid_surfaces_stand_only_beside_a_body_to_scale(result: analysis.Result):
+def test_rigid_surfaces_are_drawn_only_with_a_body_to_scale(result: analysis.Result):
     assert result.boundary is not None
     shown = []
     for scale in (1e-3, 1.0, 1e3):

@@ -36,13 +36,13 @@ def test_curves_are_those_of_the_design(design: GapDesign, tmp_path: Path):
     assert legend is not None
     assert [text.get_text() for text in legend.get_texts()] == ["without", "with profile"]
     figures.save(figure, tmp_path / "design.png")
-    assert (tmp_path / "design.png").stat().st_size > 10_000
+    assert (tmp_path / "design.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_singular_pressure_runs_out_of_the_picture_and_is_reported(design: GapDesign):
-    """7653 without the profile beside 202 with it: the axis ends at three times 202."""
+    """Without the profile the peak is infinite but for the mesh: the axis ends far below it."""
     above = figures.figure_of_design(design).axes[0]
-    assert above.get_ylim()[1] == pytest.approx(1.08 * 3 * design.peak)
+    assert design.peak < above.get_ylim()[1] < design.peak_before / 2
     assert [text.get_text() for text in above.texts] == [f"up to {design.peak_before:.4g} without"]
 
 

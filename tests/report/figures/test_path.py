@@ -39,7 +39,7 @@ def test_lines_are_the_states(link: ParameterPath):
     assert np.asarray(end.get_ydata())[-1] == interval.end_arc
 
 
-def test_written_twice_it_is_the_same(link: ParameterPath, tmp_path: Path):
+def test_a_path_written_twice_is_the_same(link: ParameterPath, tmp_path: Path):
     for name in ("a", "b"):
         folder.save_path(link, tmp_path / name)
     for name in ("path.svg", "path.csv", "path.json"):

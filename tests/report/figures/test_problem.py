@@ -28,7 +28,7 @@ def test_each_edge_is_named_and_no_name_covers_another(problem: Problem):
     assert axes.get_aspect() == 1
 
 
-def test_what_is_prescribed_stands_at_the_edge():
+def test_conditions_are_written_at_their_edges():
     problem = block_in_a_corner()
     axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
     told = {text.get_text().split("\n")[0]: text.get_text().split("\n")[1:] for text in axes.texts}
@@ -86,7 +86,7 @@ def test_volume_loads_are_drawn():
     assert said[-3:] == ["gravity (0, -9.81)", "rotation -3 about (1, 1)", "temperature change 20"]
 
 
-def test_names_stand_on_their_own_side_of_a_slender_body():
+def test_names_are_on_their_own_side_of_a_slender_body():
     """A name beyond the far edge of a beam would belong to the wrong one."""
     problem = beam_over_a_circle()
     axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
@@ -95,7 +95,7 @@ def test_names_stand_on_their_own_side_of_a_slender_body():
     assert heights["under"] < 5
 
 
-def test_tractions_along_an_edge_stand_beside_it_one_after_the_other():
+def test_tractions_along_an_edge_are_beside_it_in_a_row():
     problem = beam_over_a_circle().model_dump()
     problem["conditions"]["top"] = {"traction": {"x": 2}}
     loaded = Problem(**problem)
@@ -134,7 +134,7 @@ def test_a_force_ends_at_the_point_of_the_tool_and_a_displacement_too():
     assert len(drawn) == 2
 
 
-def test_a_tool_without_a_point_is_drawn_at_the_middle_of_its_surface_and_a_pull_starts_there():
+def test_tool_without_a_point_is_drawn_at_the_middle_of_its_surface():
     """The round punch (1.6, 7), radius 6, is nearest to the middle (1.5, 1) of the edge at 7 - 6 = 1."""
     axes = Figure().add_subplot()
     tools = {"punch": {"zones": "punch", "displacement": {"y": 0.01}}}
@@ -146,7 +146,7 @@ def test_a_tool_without_a_point_is_drawn_at_the_middle_of_its_surface_and_a_pull
     assert name.text == "punch\ndisplaced by y = 0.01"
 
 
-def test_what_is_reported_of_a_tool_is_of_the_case_that_acts():
+def test_tool_has_the_load_of_the_acting_case():
     texts = [text.get_text() for text in picture(made(HELD, **HELD_CASES, **UNITS, case="push")).texts]
     assert "punch\nloaded by y = -70 N/mm, moment = -1 N" in texts
 

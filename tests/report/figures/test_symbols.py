@@ -35,9 +35,10 @@ def test_ground_is_hatched_on_the_side_away_from_the_normals():
     points, up = np.array([[0.0, 0.0], [10.0, 0.0]]), np.array([[0.0, 1.0], [0.0, 1.0]])
     covered = draw_ground(axes, points, up, 1.0, "black")
     assert covered[:, 1].max() == 0
-    assert covered[:, 1].min() == pytest.approx(-0.7)
+    assert -1 <= covered[:, 1].min() < 0
     (hatching,) = axes.patches
     hatches = np.asarray(hatching.get_path().vertices).reshape(-1, 2, 2)
-    assert len(hatches) == 16  # 0.6 apart on a length of 10
+    assert np.ptp(np.diff(hatches[:, 0, 0])) <= 1e-12
+    assert np.ptp(hatches[:, 0, 0]) > 9
     assert (hatches[:, 1, 1] < 0).all()
     assert (hatches[:, 0, 1] == 0).all()
