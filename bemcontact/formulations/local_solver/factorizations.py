@@ -10,7 +10,9 @@ from bemcontact.arrays import Array
 
 Inertia = tuple[int, int, int]
 
-geqp3, orgqr, trtri, pstrf, potrf = get_lapack_funcs(("geqp3", "orgqr", "trtri", "pstrf", "potrf"), dtype=np.float64)
+geqp3, orgqr, trtri, pstrf, potrf, posv = get_lapack_funcs(
+    ("geqp3", "orgqr", "trtri", "pstrf", "potrf", "posv"), dtype=np.float64
+)
 SWEEPS = 4
 BLOCK = 32
 """Columns that LAPACK takes at a time."""

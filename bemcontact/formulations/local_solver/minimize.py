@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.errors import ProblemError
+from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unscaled
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, examine, first_order
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
@@ -16,14 +17,11 @@ from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 from bemcontact.formulations.local_solver.statement import (
     EPS,
-    Scales,
     Sides,
     Statement,
-    equilibrate,
     largest,
     numbers,
     read,
-    unscaled,
 )
 from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest
 
