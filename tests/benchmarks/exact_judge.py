@@ -15,6 +15,8 @@ CLEAR = 1e-6
 CLOSE = 1e-9
 """A product of unit vectors below this may be zero."""
 DENOMINATOR = 10**6
+FAR = 1e6
+"""No minimizer of such data is isolated beyond this."""
 
 Row = list[Fraction]
 
@@ -59,6 +61,8 @@ def _of_minimizer(program: IntegerProgram, x: Array) -> Verdict:
     """A local minimizer: quickly where strict multipliers and curvatures are clear, else exactly."""
     if violation(program, x) > CLEAR:
         return Verdict.FALSE_MINIMIZER
+    if np.abs(x).max() > FAR:
+        return Verdict.UNSETTLED
     equal, inwards, _ = _active(program, x)
     gradient = program.H @ x + program.c
     multipliers, residual = _multipliers(gradient, equal, inwards)
@@ -119,7 +123,10 @@ def _exactly(program: IntegerProgram, x: Array) -> Verdict:
     gradient = program.H @ near + program.c
     if _multipliers(gradient, equal, inwards)[1] > 1e-8 * max(1.0, float(np.abs(gradient).max())):
         return Verdict.FALSE_MINIMIZER
-    exact_gradient = [sum((Fraction(int(h)) * v for h, v in zip(row, point)), Fraction(int(b))) for row, b in zip(program.H, program.c)]
+    exact_gradient = [
+        sum((Fraction(int(h)) * v for h, v in zip(row, point)), Fraction(int(b)))
+        for row, b in zip(program.H, program.c)
+    ]
     rows = [*_exact(equal), exact_gradient]
     return _of_cone(program.H, rows, inwards)
 
@@ -206,7 +213,9 @@ def _solved(rows: list[Row], unknowns: int, guess: Row) -> Row | None:
     x = list(guess)
     fixed = set(pivots)
     for row, column in zip(rows, pivots):
-        x[column] = row[-1] - sum((row[j] * guess[j] for j in range(unknowns) if j not in fixed and row[j]), Fraction(0))
+        x[column] = row[-1] - sum(
+            (row[j] * guess[j] for j in range(unknowns) if j not in fixed and row[j]), Fraction(0)
+        )
     return x
 
 

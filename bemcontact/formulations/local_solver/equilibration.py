@@ -67,8 +67,8 @@ def natural_factors(statement: Statement) -> Array:
     those of H and c do, then the bounds. A change of the units of a row, a variable or the objective changes this
     solution by itself, so that the scaled data do not depend on the units of the data.
 
-    With s² the factor of the objective, z = (s D, E/s, s) multiplies rows and columns of [[H, Aᵀ, c], [A, 0, b], [c, b, 0]]
-    alike, b the bounds of the rows; those of the variables are multiplied by s/(s D).
+    With s² the factor of the objective, z = (s D, E/s, s) multiplies rows and columns of [[H, Aᵀ, c], [A, 0, b],
+    [c, b, 0]] alike, b the bounds of the rows; those of the variables are multiplied by s/(s D).
     """
     n, bound = statement.c.size, _bounds(statement)
     sizes, weights = _entries(statement, bound[n:])

@@ -27,6 +27,8 @@ from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest
 
 FAILURES = 6
 """Restarts with fresh factors after claims that fail when they are recomputed."""
+NEAR = 1e-6
+"""A constraint at this distance, relative to the point, may count as active where rounding hides the difference."""
 FINER = 1e-2
 """Part of the tolerance of phase one that counts after each failure."""
 
@@ -106,7 +108,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
     if outcome.ending is Ending.INACCURATE:
         return Restart(sides=descent.working.sides, failed=True)
     multipliers = descent.working.of_all(descent.multipliers)
-    conditions = first_order(progress, multipliers, descent.zero)
+    conditions = first_order(progress, multipliers, descent.working.of_all(descent.zeros))
     if not conditions.holds:
         return Restart(sides=descent.working.sides, failed=True)
     return _second_order(progress, descent, conditions, multipliers)
@@ -120,7 +122,8 @@ def _second_order(
         return _minimizer(descent, conditions, multipliers, QPStatus.LOCAL_MINIMIZER)
     curvature = examine(progress.statement.H, conditions.cone(progress.statement), faces=progress.options.search)
     if curvature.direction is None:
-        status = QPStatus.LOCAL_MINIMIZER if curvature.copositive else QPStatus.UNDECIDED
+        proved = curvature.copositive and not conditions.doubtful
+        status = QPStatus.LOCAL_MINIMIZER if proved else QPStatus.UNDECIDED
         return _minimizer(descent, conditions, multipliers, status)
     direction = curvature.direction
     along = progress.statement.values(direction)
@@ -133,7 +136,8 @@ def _second_order(
     slope, curved = float(progress.gradient @ direction), float(direction @ progress.statement.H @ direction)
     rounding = 100.0 * EPS * abs(progress.objective)
     if block.step * (slope + 0.5 * block.step * curved) >= -rounding:
-        return _second_order(progress, descent, conditions.stricter(along, block.constraint), multipliers)
+        near = block.step <= NEAR * max(1.0, largest(progress.x))
+        return _second_order(progress, descent, conditions.stricter(along, block.constraint, near=near), multipliers)
     progress.move(along, block.step, 1.0)
     progress.look()
     held = int(np.count_nonzero(conditions.strong)) + 1

@@ -19,7 +19,9 @@ from bemcontact.formulations.local_solver.statement import EPS, Statement, large
 from bemcontact.formulations.local_solver.working_set import DEPENDENT
 
 ZERO = 1e-11
-"""A curvature below this counts as none, in units in which the rows of |H| have size one."""
+"""A curvature below -ZERO is negative, in units in which the rows of |H| have size one."""
+ROUNDING = 1e-14
+"""A curvature above minus this, times the order and at least ten, is not negative; between the two it is left open."""
 FEW = 100
 PROBES = 8
 DESCENTS = 30
@@ -45,7 +47,7 @@ class CriticalCone:
 class Curvature:
     """Whether H is copositive on the cone, and if not, a unit direction (n,) of the cone with negative curvature.
 
-    `copositive` is None if the bound of the search came first.
+    `copositive` is None if the bound of the search came first, or if rounding decides.
     """
 
     copositive: bool | None
@@ -86,12 +88,17 @@ def null_space(rows: Array, n: int) -> Array:
 
 
 def _positive_semidefinite(matrix: Array) -> bool:
-    """Whether no eigenvalue is below -ZERO, by Cholesky of the shifted matrix."""
+    """Whether no eigenvalue is negative by more than rounding, by Cholesky of the shifted matrix."""
     return (
         matrix.size == 0
-        or is_definite(matrix + ZERO * np.eye(matrix.shape[0]))
-        or float(np.linalg.eigvalsh(matrix)[0]) >= -ZERO
+        or is_definite(matrix + _rounding(matrix) * np.eye(matrix.shape[0]))
+        or float(np.linalg.eigvalsh(matrix)[0]) >= -_rounding(matrix)
     )
+
+
+def _rounding(matrix: Array) -> float:
+    """What rounding could make of an eigenvalue zero, in units in which the rows have size one."""
+    return ROUNDING * max(10, matrix.shape[0])
 
 
 def _projected(weak: Array, d: Array) -> Array:
@@ -134,7 +141,7 @@ def _falls(reduced: Array, weak: Array, d: Array) -> bool:
 def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None, Array | None]:
     """All faces on whose span the form is not positive semidefinite, until one holds a falling direction."""
     stack: list[tuple[int, ...]] = [()]
-    seen = 0
+    seen, settled = 0, True
     while stack:
         if seen >= faces:
             return None, None
@@ -144,16 +151,16 @@ def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None,
         if basis.shape[1] == 0:
             continue
         form = basis.T @ reduced @ basis
-        if is_definite(form + ZERO * np.eye(form.shape[0])):
+        if _positive_semidefinite(form):
             continue
         eigenvalues, vectors = np.linalg.eigh(form)
         for column in np.flatnonzero(eigenvalues < -ZERO):
             for d in (basis @ vectors[:, column], -(basis @ vectors[:, column])):
                 if _falls(reduced, weak, d):
                     return False, d
-        if eigenvalues[0] < -ZERO:
-            stack += [(*face, i) for i in range(face[-1] + 1 if face else 0, weak.shape[0])]
-    return True, None
+        settled = settled and eigenvalues[0] < -ZERO
+        stack += [(*face, i) for i in range(face[-1] + 1 if face else 0, weak.shape[0])]
+    return True if settled else None, None
 
 
 WEAK = 10.0
@@ -170,6 +177,7 @@ class FirstOrder:
     strong, weak : (n + m,) active constraints: equalities and those with a multiplier, and the others
     sides : (n + m,) bound that each active constraint is at (2: equality)
     size : (n + m,) absolute multipliers
+    doubtful : whether the cone was made smaller by something that rounding could decide
     """
 
     holds: bool
@@ -177,6 +185,7 @@ class FirstOrder:
     weak: BoolArray
     sides: NDArray[np.int8]
     size: Array
+    doubtful: bool = False
 
     def cone(self, statement: Statement) -> CriticalCone:
         """The critical cone, its normals turned inwards."""
@@ -189,29 +198,29 @@ class FirstOrder:
         normals[fixed.size :] = statement.A[rows][:, free]
         return CriticalCone(free=free, equal=statement.A[self.strong[n:]][:, free], weak=inwards[:, None] * normals)
 
-    def stricter(self, along: Array, blocking: int) -> "FirstOrder":
+    def stricter(self, along: Array, blocking: int, *, near: bool) -> "FirstOrder":
         """The conditions without a direction on which the objective does not fall as far as it leads.
 
         Small multipliers that make it rise count. If none does, the constraint that blocks it at once is active too.
+        Rounding decides this, save where an inactive constraint is so near that it only moves the point a little.
         """
         leaving = self.weak & (self.sides * along < 0.0) & (self.size > 0.0)
-        sides, weak = self.sides.copy(), self.weak & ~leaving
+        sides, weak, doubtful = self.sides.copy(), self.weak & ~leaving, True
         if not leaving.any():
+            doubtful = not near or bool(weak[blocking])
             leaving[blocking], weak[blocking] = weak[blocking], not weak[blocking]
             sides[blocking] = -1 if along[blocking] < 0.0 else 1
-        return replace(self, strong=self.strong | leaving, weak=weak, sides=sides)
+        doubtful = self.doubtful or doubtful
+        return replace(self, strong=self.strong | leaving, weak=weak, sides=sides, doubtful=doubtful)
 
 
-def first_order(progress: Progress, multipliers: Array, zero: Array) -> FirstOrder:
-    """Recompute the first-order conditions at the point from the data, each component against its own `zero` (n,)."""
-    statement, x = progress.statement, progress.x
-    n = x.size
-    values = statement.values(x)
+def first_order(progress: Progress, multipliers: Array, zeros: Array) -> FirstOrder:
+    """Recompute the first-order conditions at the point from the data, each multiplier against its own zero (n + m,)."""
+    statement, n = progress.statement, progress.x.size
+    values = statement.values(progress.x)
     slack = 2.0 * progress.slack
     feasible = np.count_nonzero(statement.violation(values) <= slack) == slack.size
     stationary = largest(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero
-    zeros = np.full(values.size, progress.zero)
-    zeros[:n] = zero
     size = np.abs(multipliers)
     sides = statement.sides_reached(values, slack)
     held = sides != 0
@@ -219,8 +228,10 @@ def first_order(progress: Progress, multipliers: Array, zero: Array) -> FirstOrd
     wrong[statement.equality] = 0.0
     held[n:] &= np.logical_or.reduce(statement.A, axis=1)  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
+    tolerated = 2.0 * zeros
+    tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
     return FirstOrder(
-        holds=feasible and stationary and np.count_nonzero(wrong <= 2.0 * zeros) == zeros.size,
+        holds=feasible and stationary and np.count_nonzero(wrong <= tolerated) == zeros.size,
         strong=strong,
         weak=held & ~strong,
         sides=sides,

@@ -157,8 +157,8 @@ class Descent:
     changed : whether the working set has changed since the last whole Newton step
     broken : whether a constraint ended a step that by its normal cannot: the factors have lost too many digits
     whole, idle : whole Newton steps in a row; releases since the last step
-    multipliers, zero : (n + r,) and (n,), at a stationary end: multipliers of the working set, and the size of each
-        component of the gradient that counts as zero
+    multipliers, zeros : (n + r,) at a stationary end: multipliers of the working set, and the size of each that counts
+        as zero; those of the variables are components of the gradient
     """
 
     def __init__(self, progress: Progress, working: WorkingSet) -> None:
@@ -167,7 +167,7 @@ class Descent:
         self.changed = self.broken = False
         self.whole = self.idle = 0
         self._refused: set[int] = set()
-        self.multipliers = self.zero = progress.x[:0]
+        self.multipliers = self.zeros = progress.x[:0]
         self.working = working
         self.hessian = ReducedHessian(progress.statement, working.null_space)
         for direction in self.hessian.left_over.T:
@@ -224,10 +224,9 @@ class Descent:
         if place is not None:
             return False, place
         self._refine()
-        multipliers, zero = self.multipliers, self.zero
-        if loose and (np.abs(multipliers[:n] * working.free) > zero).any():
+        multipliers, zeros = self.multipliers, self.zeros
+        if loose and (np.abs(multipliers[:n] * working.free) > zeros[:n]).any():
             return True, None
-        zeros = np.concatenate([zero, zero.dot(np.abs(working.N))])
         return False, wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
 
     def _refine(self) -> None:
@@ -239,7 +238,8 @@ class Descent:
                 x = x + hessian.newton(progress.statement.H.dot(x) + progress.statement.c)
         progress.correct(x)
         self.multipliers = working.multipliers(progress.gradient, refined=True)
-        self.zero = progress.fine_zero(self.multipliers[x.size :], working.W, working.N)
+        zero = progress.fine_zero(self.multipliers[x.size :], working.W, working.N)
+        self.zeros = np.concatenate([zero, zero.dot(np.abs(working.N))])
 
     def _allowed(self, multipliers: Array) -> Array:
         """Multipliers (n + r,), zero for refused constraints."""

@@ -94,15 +94,18 @@ class Progress:
 
         Where variables differ in size by many orders, small ones must not be assessed by the terms of large ones.
         Rounding in one component reaches others through the multipliers of the rows (r,), the rows (r, n) and their
-        right inverse (n, r).
+        right inverse (n, r); and a component of the point, however small, has the rounding of the rows that fix it.
         """
         H, c, _ = self.statement.absolute
-        W, terms = np.abs(rows), H.dot(np.abs(self.x)) + c
+        size = np.abs(self.x)
+        W, terms, reach = np.abs(rows), H.dot(size) + c, self.travelled
         if of_rows.size:
+            N = np.abs(inverse)
             terms += np.abs(of_rows).dot(W)
-        lost = EPS * np.maximum(terms, H.dot(self.travelled))
+            reach = np.maximum(reach, N.dot(W.dot(size)))
+        lost = EPS * np.maximum(terms, H.dot(reach))
         if of_rows.size:
-            lost += lost.dot(np.abs(inverse)).dot(W)
+            lost += lost.dot(N).dot(W)
         return np.maximum(FINE * self.options.optimality_tolerance * terms, 100.0 * lost)
 
     def level(self, direction: Array, zero: Array) -> float:
