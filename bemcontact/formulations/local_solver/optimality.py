@@ -215,7 +215,7 @@ class FirstOrder:
 
 
 def first_order(progress: Progress, multipliers: Array, zeros: Array) -> FirstOrder:
-    """Recompute the first-order conditions at the point from the data, each multiplier against its own zero (n + m,)."""
+    """Recompute the first-order conditions at the point, each multiplier against the size that is its zero (n + m,)."""
     statement, n = progress.statement, progress.x.size
     values = statement.values(progress.x)
     slack = 2.0 * progress.slack
@@ -256,7 +256,7 @@ def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
     slope = float(progress.gradient @ d)
     zero = statement.rounding(d)
     no_rows = statement.A[:0]
-    level = progress.level(d, progress.fine_zero(d[:0], no_rows, no_rows.T))
+    level = progress.level(d, progress.fine_zero(d[:0], no_rows, no_rows.T, 0.0 * d))
     return d if curvature < -zero or (curvature <= zero and slope < -level) else None
 
 

@@ -238,7 +238,7 @@ class Descent:
                 x = x + hessian.newton(progress.statement.H.dot(x) + progress.statement.c)
         progress.correct(x)
         self.multipliers = working.multipliers(progress.gradient, refined=True)
-        zero = progress.fine_zero(self.multipliers[x.size :], working.W, working.N)
+        zero = self._fine_zero(self.multipliers)
         self.zeros = np.concatenate([zero, zero.dot(np.abs(working.N))])
 
     def _allowed(self, multipliers: Array) -> Array:
@@ -292,9 +292,25 @@ class Descent:
 
     def _fine_slope(self, direction: Array) -> float:
         """The slope along a direction that counts as zero."""
-        working = self.working
-        of_rows = working.multipliers(self.progress.gradient)[direction.size :]
-        return self.progress.level(direction, self.progress.fine_zero(of_rows, working.W, working.N))
+        multipliers = self.working.multipliers(self.progress.gradient)
+        return self.progress.level(direction, self._fine_zero(multipliers))
+
+    def _fine_zero(self, multipliers: Array) -> Array:
+        """Size of each component of the gradient that counts as zero (n,), with multipliers (n + r,)."""
+        working, n = self.working, self.progress.x.size
+        return self.progress.fine_zero(multipliers[n:], working.W, working.N, self._reach())
+
+    def _reach(self) -> Array:
+        """Size of the terms that each component of the point is computed from (n,), by a sample of their rounding.
+
+        A row is met up to the rounding of its terms. The point follows by N, and by a Newton step on what is free.
+        """
+        working, hessian, x = self.working, self.hessian, self.progress.x
+        if working.size == 0:
+            return np.abs(x)
+        signs = np.where(np.arange(working.size) % 2, -1.0, 1.0)
+        moved = working.N.dot(signs * np.abs(working.W).dot(np.abs(x)))
+        return np.abs(moved + hessian.newton(self.progress.statement.H.dot(moved)))
 
     def _advance(
         self, along: Array, length: float, step: float, change: float, block: BlockingConstraint | None

@@ -89,23 +89,20 @@ class Progress:
         """cᵀx + xᵀHx/2."""
         return 0.5 * float(self.x.dot(self.gradient + self.statement.c))
 
-    def fine_zero(self, of_rows: Array, rows: Array, inverse: Array) -> Array:
+    def fine_zero(self, of_rows: Array, rows: Array, inverse: Array, reach: Array) -> Array:
         """Size of each component of the gradient that counts as zero, relative to its own terms (n,).
 
         Where variables differ in size by many orders, small ones must not be assessed by the terms of large ones.
         Rounding in one component reaches others through the multipliers of the rows (r,), the rows (r, n) and their
-        right inverse (n, r); and a component of the point, however small, has the rounding of the rows that fix it.
+        right inverse (n, r); and the point has the rounding of numbers of the size `reach` (n,), however small it is.
         """
         H, c, _ = self.statement.absolute
-        size = np.abs(self.x)
-        W, terms, reach = np.abs(rows), H.dot(size) + c, self.travelled
+        W, terms = np.abs(rows), H.dot(np.abs(self.x)) + c
         if of_rows.size:
-            N = np.abs(inverse)
             terms += np.abs(of_rows).dot(W)
-            reach = np.maximum(reach, N.dot(W.dot(size)))
-        lost = EPS * np.maximum(terms, H.dot(reach))
+        lost = EPS * np.maximum(terms, H.dot(np.maximum(self.travelled, reach)))
         if of_rows.size:
-            lost += lost.dot(N).dot(W)
+            lost += lost.dot(np.abs(inverse)).dot(W)
         return np.maximum(FINE * self.options.optimality_tolerance * terms, 100.0 * lost)
 
     def level(self, direction: Array, zero: Array) -> float:
