@@ -171,7 +171,7 @@ def _exact_point(program: IntegerProgram, x: Array) -> Row | None:
         of_rows = [-Fraction(int(G[number, i])) for number in numbers]
         rows.append([*_exact(program.H[i : i + 1])[0], *of_rows, -Fraction(int(program.c[i]))])
     guess = [_rational(v) for v in x] + [Fraction(0)] * k
-    solution = _solved(rows, n + k, guess)
+    solution = solved_exactly(rows, n + k, guess)
     return None if solution is None else solution[:n]
 
 
@@ -179,7 +179,7 @@ def _snapped(rows: list[Row], d: Array) -> Row:
     """The direction with the components that the rows leave free made rational, the others computed from them."""
     scaled = d / np.abs(d).max()
     homogeneous = [[*row, Fraction(0)] for row in rows]
-    solution = _solved(homogeneous, d.size, [_rational(v) for v in scaled])
+    solution = solved_exactly(homogeneous, d.size, [_rational(v) for v in scaled])
     return solution if solution is not None else [Fraction(0)] * d.size
 
 
@@ -192,7 +192,7 @@ def _rational(value: float) -> Fraction:
     return Fraction(value).limit_denominator(DENOMINATOR)
 
 
-def _solved(rows: list[Row], unknowns: int, guess: Row) -> Row | None:
+def solved_exactly(rows: list[Row], unknowns: int, guess: Row) -> Row | None:
     """A solution of rows [a | b] a x = b, free unknowns as guessed, by elimination in fractions; None if none."""
     rows, pivots = [list(row) for row in rows], []
     at = 0
@@ -236,13 +236,13 @@ def _of_ray(program: IntegerProgram, x: Array, ray: Array) -> Verdict:
     leaves = (falls & (along < -1e-8)) | (rises & (along > 1e-8))
     if violation(program, x) > CLEAR or leaves.any():
         return Verdict.FALSE_UNBOUNDED
+    curvature, product = float(d @ H @ d), np.abs(d) @ np.abs(H) @ np.abs(d)
+    if curvature < -CLEAR:  # the nearest direction that meets the rows exactly has it too
+        return Verdict.RIGHT
     held = (falls | rises) & (np.abs(along) <= 1e-8)
     exact = np.array([float(v) for v in _snapped(_exact(G[held]), d)])
-    curvature, product = float(d @ H @ d), np.abs(d) @ np.abs(H) @ np.abs(d)
     if np.abs(exact - d).max() > 1e-6:
         return Verdict.UNSETTLED
-    if curvature < -CLEAR:
-        return Verdict.RIGHT
     gradient = H @ x + program.c
     terms = float((np.abs(H) @ np.abs(x) + np.abs(program.c)) @ np.abs(d))
     if abs(curvature) <= CLOSE * max(1.0, product) and gradient @ d < -CLEAR * terms:

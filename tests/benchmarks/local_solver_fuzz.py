@@ -80,7 +80,7 @@ def main() -> None:
             if kept and worth_keeping(name):
                 kept.write(f"{seed} {name}\n")
                 kept.flush()
-        if (seed + 1 - given.first) % 50_000 == 0:
+        if (seed + 1 - given.first) % 10_000 == 0:
             print(seed + 1 - given.first, f"{time.perf_counter() - begin:.0f} s", dict(counts), flush=True)
     print(f"{given.cases} cases from seed {given.first} in {time.perf_counter() - begin:.0f} s")
     for name, count in sorted(counts.items()):

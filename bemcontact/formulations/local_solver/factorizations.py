@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 
 Inertia = tuple[int, int, int]
 
@@ -89,3 +89,11 @@ def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDAr
     full[:, : min(m, n)] = reflectors[:, : min(m, n)]
     Q = orgqr(full, tau, lwork=BLOCK * n)[0]
     return Q[:, :rank], Q[:, rank:], np.triu(reflectors[:rank, :rank]), pivots[:rank].astype(np.intp) - 1
+
+
+def independent_rows(rows: Array, first: BoolArray, tolerance: float) -> NDArray[np.intp]:
+    """The numbers of rows of unit length that span all of them; those marked in `first` (m,) come before others."""
+    preferred, others = first.nonzero()[0], (~first).nonzero()[0]
+    span, _, _, kept = orthogonal(rows[preferred], tolerance)
+    outside = rows[others] - (rows[others] @ span) @ span.T
+    return np.concatenate([preferred[kept], others[orthogonal(outside, tolerance)[3]]])

@@ -23,7 +23,7 @@ from bemcontact.formulations.local_solver.statement import (
     numbers,
     read,
 )
-from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest
+from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest, supporting
 
 FAILURES = 6
 """Restarts with fresh factors after claims that fail when they are recomputed."""
@@ -264,6 +264,8 @@ def minimize_qp(
     sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
+    elif x0 is not None:
+        sides = supporting(progress, sides)
     finding, reduced_start = run_phases(progress, sides)
     return _result(stated, scales, progress, finding, reduced_start)
 

@@ -60,9 +60,10 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
 
 def _with_equalities(statement: Statement, sides: Sides) -> WorkingSet:
     """A working set with all equalities, which are met as exactly as the arithmetic allows."""
+    wanted = sides != 0
     sides = sides.copy()
     sides[statement.equality] = 2
-    return WorkingSet(statement, sides)
+    return WorkingSet(statement, sides, wanted)
 
 
 def violated_signs(progress: Progress) -> Array:

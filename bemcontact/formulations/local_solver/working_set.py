@@ -15,9 +15,16 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import nnls
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, orthogonal, unit_rows
+from bemcontact.formulations.local_solver.factorizations import (
+    add_rank_one,
+    independent_rows,
+    inverse_triangle,
+    orthogonal,
+    unit_rows,
+)
 from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, Progress
 from bemcontact.formulations.local_solver.statement import Sides, Statement
 
@@ -41,7 +48,8 @@ FAINT = 1e-14
 class WorkingSet:
     """The constraints that are held, changed in place by `add` and `drop`.
 
-    It starts from the wanted `sides` (n + m,): 0 free, -1 lower, +1 upper, 2 equality. Dependent rows are left out.
+    It starts from the wanted `sides` (n + m,): 0 free, -1 lower, +1 upper, 2 equality. Dependent rows are left out;
+    those marked in `first` (n + m,) are kept before others.
 
     Attributes
     ----------
@@ -57,7 +65,7 @@ class WorkingSet:
     sharp : whether N still has all its digits
     """
 
-    def __init__(self, statement: Statement, sides: Sides) -> None:
+    def __init__(self, statement: Statement, sides: Sides, first: BoolArray | None = None) -> None:
         n, A = statement.c.size, statement.A
         self.statement = statement
         self.sides = sides.copy()
@@ -70,6 +78,10 @@ class WorkingSet:
         if rows.size and free.size:
             normals, length = unit_rows(A[rows][:, free])
             Y, null_space, T, independent = orthogonal(normals, DEPENDENT)
+            if first is not None and independent.size < rows.size:
+                chosen = independent_rows(normals, first[n + rows], DEPENDENT)
+                Y, null_space, T, independent = orthogonal(normals[chosen], 0.0)
+                independent = chosen[independent]
             kept, self.null_space = rows[independent], np.zeros((n, null_space.shape[1]))
             self.null_space[free] = null_space
             self._N[free, : kept.size] = Y @ inverse_triangle(T).T / length[independent]
@@ -248,6 +260,36 @@ class WorkingSet:
             return x
         ids, W, N = self.constraints()
         return x + N.dot(targets[ids] - W.dot(x))
+
+
+def supporting(progress: Progress, sides: Sides) -> Sides:
+    """Sides of independent active constraints with multipliers of the right sign, if the point has such a set.
+
+    Where active constraints are dependent, the multipliers of any independent ones of them may have a wrong sign.
+    """
+    statement, active = progress.statement, sides.nonzero()[0]
+    if active.size == 0 or (statement.violation(progress.values) > progress.slack).any():
+        return sides
+    normals, _ = unit_rows(np.array([statement.normal(constraint) for constraint in active]))
+    if orthogonal(normals, DEPENDENT)[3].size == active.size:
+        return sides
+    equal, upper = sides[active] == EQUALITY, sides[active] == 1
+    inwards = np.where(upper, -1.0, 1.0)[:, None] * normals
+    try:
+        multipliers, residual = nnls(np.vstack([inwards, -normals[equal]]).T, progress.gradient)
+    except RuntimeError:  # SciPy's iteration limit
+        return sides
+    if residual > progress.zero:
+        return sides
+    strong = multipliers[: active.size] > 0.0
+    strong[equal] |= multipliers[active.size :] > 0.0
+    needed = (strong | equal).nonzero()[0]  # an equality is held anyway, so it comes before what has no multiplier
+    first = np.zeros(active.size, dtype=bool)
+    first[needed[independent_rows(normals[needed], strong[needed], DEPENDENT)]] = True
+    kept = active[independent_rows(normals, first, DEPENDENT)]
+    supporting = np.zeros_like(sides)
+    supporting[kept] = sides[kept]
+    return supporting
 
 
 class BlockingConstraint(NamedTuple):
