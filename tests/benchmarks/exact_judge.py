@@ -124,8 +124,8 @@ def _exactly(program: IntegerProgram, x: Array) -> Verdict:
     if _multipliers(gradient, equal, inwards)[1] > 1e-8 * max(1.0, float(np.abs(gradient).max())):
         return Verdict.FALSE_MINIMIZER
     exact_gradient = [
-        sum((Fraction(int(h)) * v for h, v in zip(row, point)), Fraction(int(b)))
-        for row, b in zip(program.H, program.c)
+        sum((Fraction(int(h)) * v for h, v in zip(row, point, strict=True)), Fraction(int(b)))
+        for row, b in zip(program.H, program.c, strict=True)
     ]
     rows = [*_exact(equal), exact_gradient]
     return _of_cone(program.H, rows, inwards)
@@ -166,13 +166,12 @@ def _exact_point(program: IntegerProgram, x: Array) -> Row | None:
     _, _, named = _active(program, x)
     numbers = [number for number, _ in named]
     k = len(numbers)
-    rows = [[*row, *[Fraction(0)] * k, Fraction(int(bound))] for row, (_, bound) in zip(_exact(G[numbers]), named)]
-    for i in range(n):
+    rows = [[*[Fraction(0)] * k, *row, Fraction(int(b))] for row, (_, b) in zip(_exact(G[numbers]), named, strict=True)]
+    for i, row in enumerate(_exact(program.H)):
         of_rows = [-Fraction(int(G[number, i])) for number in numbers]
-        rows.append([*_exact(program.H[i : i + 1])[0], *of_rows, -Fraction(int(program.c[i]))])
-    guess = [_rational(v) for v in x] + [Fraction(0)] * k
-    solution = solved_exactly(rows, n + k, guess)
-    return None if solution is None else solution[:n]
+        rows.append([*of_rows, *row, -Fraction(int(program.c[i]))])
+    solution = solved_exactly(rows, k + n, [Fraction(0)] * k + [_rational(v) for v in x])
+    return None if solution is None else solution[k:]
 
 
 def _snapped(rows: list[Row], d: Array) -> Row:
@@ -205,14 +204,14 @@ def solved_exactly(rows: list[Row], unknowns: int, guess: Row) -> Row | None:
         rows[at] = [v / head for v in rows[at]]
         for i, row in enumerate(rows):
             if i != at and (factor := row[column]):
-                rows[i] = [v - factor * w for v, w in zip(row, rows[at])]
+                rows[i] = [v - factor * w for v, w in zip(row, rows[at], strict=True)]
         pivots.append(column)
         at += 1
     if any(row[-1] for row in rows[at:]):
         return None
     x = list(guess)
     fixed = set(pivots)
-    for row, column in zip(rows, pivots):
+    for row, column in zip(rows, pivots, strict=False):
         x[column] = row[-1] - sum(
             (row[j] * guess[j] for j in range(unknowns) if j not in fixed and row[j]), Fraction(0)
         )
@@ -225,27 +224,27 @@ def _exact(rows: Array) -> list[Row]:
 
 
 def _product(a: Row, b: Row) -> Fraction:
-    return sum((v * w for v, w in zip(a, b) if v and w), Fraction(0))
+    return sum((v * w for v, w in zip(a, b, strict=True) if v and w), Fraction(0))
 
 
 def _of_ray(program: IntegerProgram, x: Array, ray: Array) -> Verdict:
     """A ray: recession direction on which the objective falls without end."""
     G, H, d = program.normals, program.H, ray / np.abs(ray).max()
-    along = G @ d
+    along, rounding = G @ d, 1e-8 * (np.abs(G) @ np.abs(d))
     falls, rises = np.isfinite(program.lower), np.isfinite(program.upper)
-    leaves = (falls & (along < -1e-8)) | (rises & (along > 1e-8))
+    leaves = (falls & (along < -rounding)) | (rises & (along > rounding))
     if violation(program, x) > CLEAR or leaves.any():
         return Verdict.FALSE_UNBOUNDED
-    curvature, product = float(d @ H @ d), np.abs(d) @ np.abs(H) @ np.abs(d)
-    if curvature < -CLEAR:  # the nearest direction that meets the rows exactly has it too
+    curvature, product = float(d @ H @ d), float(np.abs(d) @ np.abs(H) @ np.abs(d))
+    if curvature < -CLEAR * product:  # the nearest direction that meets the rows exactly has it too
         return Verdict.RIGHT
-    held = (falls | rises) & (np.abs(along) <= 1e-8)
+    held = (falls | rises) & (np.abs(along) <= rounding)
     exact = np.array([float(v) for v in _snapped(_exact(G[held]), d)])
     if np.abs(exact - d).max() > 1e-6:
         return Verdict.UNSETTLED
     gradient = H @ x + program.c
     terms = float((np.abs(H) @ np.abs(x) + np.abs(program.c)) @ np.abs(d))
-    if abs(curvature) <= CLOSE * max(1.0, product) and gradient @ d < -CLEAR * terms:
+    if abs(curvature) <= CLOSE * product and gradient @ d < -CLEAR * terms:
         return Verdict.RIGHT
     return _unbounded_at_all(program)
 
