@@ -51,7 +51,8 @@ def random_units(program: IntegerProgram, rng: np.random.Generator) -> Units:
     widths = rng.choice([0, 3, 8], size=3, p=[0.3, 0.3, 0.4])
     n, m = program.c.size, len(program.A)
     columns, rows, objective = (
-        10.0 ** rng.integers(-width, width + 1, size) for width, size in zip(widths, (n, m, 1), strict=True)
+        np.power(10.0, rng.integers(-width, width + 1, size)).astype(float)
+        for width, size in zip(widths, (n, m, 1), strict=True)
     )
     return Units(columns=columns, rows=rows, objective=float(objective[0]))
 

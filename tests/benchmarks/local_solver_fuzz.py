@@ -30,7 +30,7 @@ def case(seed: int) -> tuple[IntegerProgram, Units, Array | None, Array | None]:
     program = random_program(rng)
     units = random_units(program, rng)
     start = rng.integers(-4, 5, program.c.size).astype(float) if rng.random() < 0.5 else None
-    working_set = rng.integers(-1, 2, program.lower.size) if rng.random() < 0.2 else None
+    working_set = rng.integers(-1, 2, program.lower.size).astype(float) if rng.random() < 0.2 else None
     return program, units, start, working_set
 
 
@@ -63,7 +63,7 @@ def outcomes(seed: int) -> list[str]:
 
 def worth_keeping(name: str) -> bool:
     """Whether the seed is to be looked at."""
-    return not name.startswith("status") and name != "plain: solved too" or any(status in name for status in MISSING)
+    return (not name.startswith("status") and name != "plain: solved too") or any(status in name for status in MISSING)
 
 
 def main() -> None:

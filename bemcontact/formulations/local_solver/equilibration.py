@@ -1,4 +1,4 @@
-"""Equilibration: rows, variables and the objective in units that do not depend on those of the data."""
+"""Equilibration: the program is scaled so that the units of the data have no influence on the answer."""
 
 from dataclasses import dataclass
 from math import frexp, ldexp, sqrt
@@ -11,35 +11,36 @@ from bemcontact.formulations.local_solver.statement import EPS, Statement, large
 
 RUIZ_SWEEPS = 4
 OF_OBJECTIVE, OF_BOUNDS, UNDECIDED = 1e-3, 1e-6, 1e-11
-"""Weights of the entries of H and c, of the bounds, and of factors that nothing determines; that of A is 1."""
+"""Weights in the least-squares problem: of H and c, of the bounds, and of the factors themselves. A has weight 1."""
 BITS = 1000.0
-"""Largest binary logarithm of a natural factor."""
+"""The largest binary logarithm of a factor."""
 LEAST = 2.0**-200
 """The smallest factor of a variable."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scales:
-    """x = variables * scaled x; scaled rows = rows * A * variables; scaled objective = objective * objective."""
+    """Factors of a scaling: x = variables * (scaled x), scaled A = rows * A * variables, scaled H = objective * H."""
 
     variables: Array
     rows: Array
     objective: float
 
     def multipliers(self, scaled: Array) -> Array:
-        """Multipliers of the constraints in the units of the data (objective not rescaled)."""
+        """Multipliers of the constraints in the units of x and A; the objective remains scaled."""
         return scaled * np.concatenate([1.0 / self.variables, self.rows])
 
 
 def unscaled(statement: Statement) -> tuple[Statement, Scales]:
-    """The statement as it is, all factors one."""
+    """Return the statement unchanged, with factors of one."""
     m, n = statement.A.shape
     return statement, Scales(variables=np.ones(n), rows=np.ones(m), objective=1.0)
 
 
 def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
-    """The statement with rows and columns of A of size one, columns outside A by H, and the largest of H and c one.
+    """Scale the rows and columns of A to size one, and the largest entry of H and c to one.
 
+    The scale of a column of zeros in A comes from H.
     All factors are powers of two, so that no digit of the data changes.
     """
     n = statement.c.size
@@ -61,11 +62,11 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
 
 
 def natural_factors(statement: Statement) -> Array:
-    """Factors of columns and rows (n + m,) by which the logarithms of all entries are least in squares.
+    """Factors of columns and rows (n + m,) that minimize the sum of squares of the logarithms of all entries.
 
-    The entries of A decide (Curtis and Reid, J. Inst. Math. Appl. 10 (1972) 118-124); where they leave a factor open,
-    those of H and c do, then the bounds. A change of the units of a row, a variable or the objective changes this
-    solution by itself, so that the scaled data do not depend on the units of the data.
+    The method is that of Curtis and Reid, J. Inst. Math. Appl. 10 (1972) 118-124. The entries of A have the largest
+    weight. Where they do not determine a factor, H and c do, and then the bounds. If the units of a row, a variable or
+    the objective change, the factors change with them. So the scaled data do not depend on the units of the data.
 
     With s² the factor of the objective, z = (s D, E/s, s) multiplies rows and columns of [[H, Aᵀ, c], [A, 0, b],
     [c, b, 0]] alike, b the bounds of the rows; those of the variables are multiplied by s/(s D).
@@ -93,7 +94,7 @@ def natural_factors(statement: Statement) -> Array:
 
 
 def _bounds(statement: Statement) -> Array:
-    """The smaller bound of each constraint in size that is not zero, 0 where there is none (n + m,)."""
+    """Size of the smaller nonzero bound of each constraint; 0 where there is none (n + m,)."""
     bounds = np.abs([statement.lower, statement.upper])
     bounds[bounds == 0.0] = np.inf
     smaller = bounds.min(axis=0)
@@ -102,9 +103,9 @@ def _bounds(statement: Statement) -> Array:
 
 
 def _entries(statement: Statement, bound: Array) -> tuple[Array, Array]:
-    """Sizes of the entries of [[H, Aᵀ, c], [A, 0, b], [c, b, 0]], and their weights, 0 for a zero and for rounding.
+    """Sizes of the entries of [[H, Aᵀ, c], [A, 0, b], [c, b, 0]], and their weights; zeros and rounding have weight 0.
 
-    An entry of H or A is rounding beside the largest of its row and beside that of its column.
+    An entry counts as rounding if it is small beside the largest entry of its row and of its column.
     """
     (m, n), (H, c, A) = statement.A.shape, statement.absolute
     sizes = np.zeros((n + m + 1, n + m + 1))
@@ -123,7 +124,7 @@ def _entries(statement: Statement, bound: Array) -> tuple[Array, Array]:
 
 
 def _ruiz(statement: Statement, factors: Array) -> Array:
-    """Factors of columns and rows by which the largest entry of each comes to one, nearly (Ruiz, RAL-TR-2001-034)."""
+    """Improve the factors so that the largest entry of each row and column is about one (Ruiz, RAL-TR-2001-034)."""
     H, _, A = statement.absolute
     n = A.shape[1]
     D, E = factors[:n], factors[n:]
@@ -146,7 +147,7 @@ def _ruiz(statement: Statement, factors: Array) -> Array:
 
 
 def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
-    """A unit of length that makes the largest bound about one, if all are smaller: tolerances are relative to one."""
+    """Factor of all variables by which the largest bound is about one if all are smaller, as tolerances assume."""
     factors = np.concatenate([1.0 / D, E])
     sizes = np.abs(np.concatenate([factors * statement.lower, factors * statement.upper]))
     size = largest(sizes[sizes < np.inf])
@@ -154,7 +155,7 @@ def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
 
 
 def _near_power(factor: float) -> float:
-    """The nearest power of two; within the limits of double precision."""
+    """The nearest power of two within the limits of double precision."""
     return ldexp(1.0, min(max(frexp(factor * sqrt(0.5))[1], -1000), 1000))
 
 

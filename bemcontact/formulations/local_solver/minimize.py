@@ -1,4 +1,4 @@
-"""`minimize_qp`: the data are scaled, both phases are run until a claim survives its check, and units are put back."""
+"""`minimize_qp`: scale the data, run both phases until a claim passes its check, and return to the given units."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -26,16 +26,16 @@ from bemcontact.formulations.local_solver.statement import (
 from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest, supporting
 
 FAILURES = 6
-"""Restarts with fresh factors after claims that fail when they are recomputed."""
+"""Largest number of restarts with new factors after a claim failed its check."""
 NEAR = 1e-6
-"""A constraint at this distance, relative to the point, may count as active where rounding hides the difference."""
+"""Relative distance to the point within which a constraint may count as active."""
 FINER = 1e-2
-"""Part of the tolerance of phase one that counts after each failure."""
+"""Factor of the tolerance of phase one after each failure."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """The end of a run in scaled units.
+    """Result of a run in scaled units.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class Restart:
-    """The working set to go on from, and whether a claim failed."""
+    """The working set to continue from, and whether a claim failed."""
 
     sides: Sides
     failed: bool
@@ -66,7 +66,7 @@ class Restart:
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # ratio tests divide by what does not move
 def run_phases(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
-    """Run rounds of both phases until a claim survives its check, or the iterations or attempts are used up.
+    """Repeat both phases until a claim passes its check, or until iterations or attempts are exhausted.
 
     The second result is the inertia of the reduced Hessian at the start of phase two; zeros if it was not reached.
     """
@@ -96,7 +96,7 @@ def run_phases(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
 
 
 def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
-    """Descend, then check what the end of the descent suggests."""
+    """Run phase two, then check the claim that its end suggests."""
     outcome = descent.run()
     if outcome.ending is Ending.LIMIT:
         return _finding(progress, QPStatus.ITERATION_LIMIT, descent.working.sides)
@@ -117,7 +117,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
 def _second_order(
     progress: Progress, descent: Descent, conditions: FirstOrder, multipliers: Array
 ) -> Finding | Restart:
-    """A minimizer if H is copositive on the critical cone; else leave along the direction that shows it is not."""
+    """Claim a minimizer if H is copositive on the critical cone; else move along a direction of negative curvature."""
     if _strict(descent, conditions):
         return _minimizer(descent, conditions, multipliers, QPStatus.LOCAL_MINIMIZER)
     curvature = examine(progress.statement.H, conditions.cone(progress.statement), faces=progress.options.search)
@@ -146,9 +146,9 @@ def _second_order(
 
 
 def _strict(descent: Descent, conditions: FirstOrder) -> bool:
-    """Whether all that is held has a multiplier, nothing else is active, and H is definite on what is left free.
+    """Whether the held constraints are the active ones, all have multipliers, and the reduced Hessian is definite.
 
-    Recomputed: with W N = I and W Z = 0 the columns of Z span the null space, and Zᵀ H Z = I.
+    This is computed from the data: W N = I, W Z = 0, Zᵀ H Z = I, and the columns of Z span the null space.
     """
     working, hessian = descent.working, descent.hessian
     if working.temporary or np.count_nonzero(conditions.weak) or np.count_nonzero(working.held != conditions.strong):
@@ -164,7 +164,7 @@ def _strict(descent: Descent, conditions: FirstOrder) -> bool:
 
 
 def _minimizer(descent: Descent, conditions: FirstOrder, multipliers: Array, status: QPStatus) -> Finding:
-    """The end at a first-order point."""
+    """Finding at a first-order point."""
     return Finding(
         status=status,
         sides=descent.working.sides,
@@ -177,7 +177,7 @@ def _minimizer(descent: Descent, conditions: FirstOrder, multipliers: Array, sta
 def _finding(
     progress: Progress, status: QPStatus, sides: Sides, *, ray: Array | None = None, certificate: Array | None = None
 ) -> Finding:
-    """An end other than at a first-order point."""
+    """Finding at a point that is not claimed to be of first order."""
     return Finding(
         status=status,
         sides=sides,
@@ -192,7 +192,7 @@ def _finding(
 def reduced_inertia(descent: Descent) -> Inertia:
     """Inertia of the reduced Hessian on the null space of the constraints that are not temporary.
 
-    H is definite on the columns of Z and conjugate between them and the directions left over (Sylvester).
+    H is definite on the columns of Z. The other directions are made conjugate to them (Sylvester).
     """
     working, hessian = descent.working, descent.hessian
     if hessian.pending is None and not working.temporary:
@@ -271,7 +271,7 @@ def minimize_qp(
 
 
 def _check(options: QPOptions) -> None:
-    """Refuse options out of range."""
+    """Raise `ProblemError` if an option is out of range."""
     if not isinstance(options, QPOptions):
         raise ProblemError(
             f"options is a {type(options).__name__}: give a QPOptions, as in QPOptions(max_iterations=50)"
@@ -299,7 +299,7 @@ def _counts(value: object) -> bool:
 
 
 def _wanted(working_set: ArrayLike, size: int) -> BoolArray:
-    """Whether a warm start names each constraint (n + m,)."""
+    """Whether the given working set contains each constraint (n + m,)."""
     wanted = np.asarray(working_set)
     if wanted.shape != (size,) or not np.isin(wanted, (-1, 0, 1, 2)).all():
         raise ProblemError(f"working_set must be ({size},) integers of -1, 0, 1, 2, as in QPResult.working_set")

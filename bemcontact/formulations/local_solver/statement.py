@@ -1,4 +1,4 @@
-"""The quadratic program as given, checked on entry."""
+"""The quadratic program, and the check of the data on entry."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +15,7 @@ from bemcontact.errors import ProblemError
 Sides = NDArray[np.int8]
 
 INFINITE = 1e20
-"""A bound of this size or more is none, as in most solvers and their files."""
+"""A bound of this size or more counts as infinite, as in most solvers."""
 EPS = float(np.finfo(float).eps)
 
 
@@ -50,7 +50,7 @@ class Statement:
 
     @cached_property
     def absolute(self) -> tuple[Array, Array, Array]:
-        """|H|, |c|, |A|, which rounding is measured by."""
+        """|H|, |c|, |A|, from which bounds of the rounding are computed."""
         return np.abs(self.H), np.abs(self.c), np.abs(self.A)
 
     @property
@@ -60,14 +60,14 @@ class Statement:
 
     @cached_property
     def bound_size(self) -> Array:
-        """Size of the smaller bound of each constraint, 0 where it has none (n + m,)."""
+        """Absolute value of the smaller bound of each constraint; 0 if there is no bound (n + m,)."""
         size = np.minimum(np.abs(self.lower), np.abs(self.upper))
         size[size == np.inf] = 0.0
         return size
 
     @cached_property
     def equality(self) -> BoolArray:
-        """Which constraints have one bound for both sides, or two that rounding does not tell apart (n + m,)."""
+        """Whether the two bounds of each constraint are equal up to rounding (n + m,)."""
         return self.upper - self.lower <= 4.0 * EPS * self.bound_size
 
     def objective(self, x: Array) -> float:
@@ -99,7 +99,7 @@ class Statement:
         return unit
 
     def sides_reached(self, values: Array, slack: Array) -> Sides:
-        """Which bound each constraint is at, within its slack; the nearer of two; 2 for an equality."""
+        """Nearer bound of each active constraint (-1, +1, or 2 for an equality); 0 if it is farther than its slack."""
         lower, upper = np.abs(values - self.lower), np.abs(values - self.upper)
         sides = np.ones(values.size, dtype=np.int8)
         sides[lower <= upper] = -1
@@ -108,13 +108,13 @@ class Statement:
         return sides
 
     def rounding(self, d: Array) -> float:
-        """The rounding in dᵀHd, from its terms and from the components of d."""
+        """Bound of the rounding in dᵀHd."""
         size = np.abs(d)
         product = self.absolute[0].dot(size)
-        return 10.0 * sqrt(d.size) * EPS * float(size.dot(product) + largest(size) * largest(product * (size > 0.0)))
+        return 100.0 * sqrt(d.size) * EPS * float(size.dot(product) + largest(size) * largest(product * (size > 0.0)))
 
     def violation(self, values: Array) -> Array:
-        """How far each constraint is outside its bounds; 0 inside."""
+        """Distance of each value from its bounds; 0 if it is between them (n + m,)."""
         return np.maximum(np.maximum(self.lower - values, values - self.upper), 0.0)
 
 
@@ -158,7 +158,7 @@ def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
 
 
 def _floats(name: str, given: Any) -> Array:
-    """A new array of numbers."""
+    """Convert to a new array of numbers."""
     try:
         if getattr(given, "dtype", None) != np.float64 and np.iscomplexobj(given):
             raise TypeError("it is complex")
@@ -189,7 +189,7 @@ def _bound(name: str, given: ArrayLike | None, size: int, absent: float) -> Arra
 
 
 def _complain(lower: Array, upper: Array, n: int) -> None:
-    """Refuse a bound that is not a number, an infinite one in the wrong direction, and crossed bounds."""
+    """Raise `ProblemError` for a bound that is NaN or infinite in the wrong direction, and for crossed bounds."""
     for low, high, part in (("bl", "bu", slice(n)), ("cl", "cu", slice(n, None))):
         for name, bound, absent in ((low, lower[part], -np.inf), (high, upper[part], np.inf)):
             wrong = np.isnan(bound) | (bound == -absent)
