@@ -10,15 +10,15 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import isfinite
 from numbers import Real
-from operator import attrgetter
-from pathlib import Path
 from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
+from bemcontact.arguments import file_path, instance_of
+from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays, real_array
 from bemcontact.contact import archive
+from bemcontact.contact.consistency import ensure_arrays, ensure_independent, ensure_labels, ensure_parts_fit
 from bemcontact.contact.free_motions import (
     ContactScales,
     MotionAlgebra,
@@ -93,45 +93,20 @@ class CondensedContact(MotionAlgebra):
     pinned: Pinned = field(default_factory=lambda: Pinned.none(0, 0))
 
     def __post_init__(self) -> None:
-        """Check shapes, refuse numbers that are not finite, make arrays read-only."""
-        n, k = self.rigid_motions.shape
-        shapes = {
-            "points": (n, 2), "normals": (n, 2), "zone": (n,), "run": (n,), "arc_position": (n,),
-            "compliance": (n, n), "free_displacement": (n,), "motion_load": (k,), "initial_gap": (n,),
-            "weights": (n,), "consistent_weights": (n, n), "element_length_weights": (n,),
-        }  # fmt: skip
-        for key, shape in shapes.items():
-            array = getattr(self, key)
-            if array is None:
-                continue
-            if array.shape != shape:
-                raise ProblemError(f"{key} has shape {array.shape} where {shape} is needed; n = {n}, k = {k}")
-            if not np.isfinite(array).all():
-                raise ProblemError(f"{key} has entries that are not finite numbers")
-        if not (self.weights > 0).all():
-            raise ProblemError(f"weights must be positive; the smallest is {self.weights.min():.3g}")
-        freeze_arrays(self)
-        self._ensure_actions_fit()
-
-    def _ensure_actions_fit(self) -> None:
-        """Give empty tools and load cases their shapes, and refuse those of another body."""
+        """Refuse what is inconsistent, give empty tools and load cases their shapes, and make arrays read-only."""
+        ensure_arrays(self)
+        ensure_labels(self)
+        for name, kind in (("tools", Tools), ("cases", LoadCases), ("pinned", Pinned)):
+            instance_of(getattr(self, name), kind, name, "leave it out if there is none")
         n, k = self.rigid_motions.shape
         if not len(self.tools):
             object.__setattr__(self, "tools", Tools.none(n, k))
         if not len(self.cases):
             object.__setattr__(self, "cases", LoadCases.none(n, k, len(self.tools)))
-        c, t, j = len(self.cases), 3 * len(self.tools), len(self.pinned.motions)
-        if not j:
-            object.__setattr__(self, "pinned", Pinned.none(c, len(self.tools)))
-        shapes = {
-            "cases.displacement": (n, c), "cases.motion_load": (k, c), "cases.position": (t, c), "cases.force": (t, c),
-            "cases.factors": (c,), "tools.motions": (n, t), "tools.amplitudes": (t, k), "tools.position": (t,),
-            "tools.free": (t,), "tools.force": (t,), "tools.point": (t // 3, 2), "pinned.load": (j, 1 + c),
-            "pinned.tools": (t, j), "pinned.turns": (j,), "pinned.magnitude": (1 + c,),
-        }  # fmt: skip
-        for key, shape in shapes.items():
-            if (stated := attrgetter(key)(self).shape) != shape:
-                raise ProblemError(f"{key} has shape {stated} where {shape} is needed; n = {n}, k = {k}")
+        if not len(self.pinned.motions):
+            object.__setattr__(self, "pinned", Pinned.none(len(self.cases), len(self.tools)))
+        ensure_parts_fit(self)
+        freeze_arrays(self)
 
     @classmethod
     def from_compliance(
@@ -165,20 +140,22 @@ class CondensedContact(MotionAlgebra):
         ProblemError
             Shapes that do not fit, weights that are not positive, or entries that are not finite.
         """
-        M = np.array(compliance, float, ndmin=2)
-        q = np.array(offset, float, ndmin=1)
-        n = len(q)
-        J = np.ones(n) if weights is None else np.array(weights, float, ndmin=1)
-        R = np.zeros((n, 0)) if rigid_motions is None else np.array(rigid_motions, float)
-        R = R[:, None] if R.ndim == 1 else R
-        load = np.zeros(R.shape[1]) if motion_load is None else np.array(motion_load, float, ndmin=1)
-        if not (M.shape == (n, n) and J.shape == (n,) and R.shape[0] == n and load.shape == R.shape[1:]):
+        M = np.atleast_2d(real_array(compliance, "compliance"))
+        q = np.atleast_1d(real_array(offset, "offset"))
+        n = q.size
+        J = np.ones(n) if weights is None else np.atleast_1d(real_array(weights, "weights"))
+        R = np.zeros((n, 0)) if rigid_motions is None else real_array(rigid_motions, "rigid_motions")
+        R = R.reshape(-1, 1) if R.ndim < 2 else R
+        load = np.zeros(R.shape[1:]) if motion_load is None else np.atleast_1d(real_array(motion_load, "motion_load"))
+        shapes = M.shape, q.shape, J.shape, R.shape[:1], load.shape, R.ndim
+        if shapes != ((n, n), (n,), (n,), (n,), R.shape[1:], 2):
             raise ProblemError(
                 f"offset has {n} entries; then compliance needs ({n}, {n}), weights ({n},), rigid_motions ({n}, k), "
                 f"motion_load (k,); found {M.shape}, {J.shape}, {R.shape}, {load.shape}"
             )
-        if R.shape[1] and np.linalg.matrix_rank(R) < R.shape[1]:
-            raise ProblemError("rigid_motions needs independent columns: a motion that no point sees holds nothing")
+        ensure_independent(R)
+        if not (J > 0).all():
+            raise ProblemError(f"weights must be positive; the smallest is {J.min():.3g}")
         gauge = fix_gauge(MotionAlgebra(rigid_motions=R, weights=J, motion_load=load), M, np.zeros(n))
         return cls(
             name=name,
@@ -391,9 +368,9 @@ class CondensedContact(MotionAlgebra):
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the problem as one ``.npz`` file, whole or not at all; `OSError` if it cannot be written."""
-        archive.write(Path(path), self)
+        archive.write(file_path(path, "the file to write"), self)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read what `save` wrote; `ProblemError` if the file is something else."""
-        return archive.read(Path(path), cls)
+        return archive.read(file_path(path, "the file to read"), cls)
