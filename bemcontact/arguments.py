@@ -20,6 +20,9 @@ Kind = TypeVar("Kind")
 LARGEST_NUMBER = 1e100
 """The square of this number is still finite, so that products can be computed."""
 
+LARGEST_COUNT = 2**63 - 1
+"""Largest whole number, which fits into all places that count."""
+
 _short = Repr()
 _short.maxother, _short.maxstring, _short.maxlevel = 60, 60, 3
 
@@ -47,11 +50,13 @@ def real_number(value: object, what: str) -> float:
     return number
 
 
-def whole_number(value: object, what: str, least: int) -> int:
-    """Read a whole number of at least `least`; errors call it `what`."""
+def whole_number(value: object, what: str, least: int, most: int = LARGEST_COUNT) -> int:
+    """Read a whole number of at least `least`, and of at most `most`; errors call it `what`."""
     single = _single(value)
     if not isinstance(single, Integral) or isinstance(single, bool) or single < least:
         raise ProblemError(f"the {what} must be a whole number of at least {least}; found {shown(value)}")
+    if single > most:
+        raise ProblemError(f"the {what} must be a whole number of at most {most}; found {shown(value)}")
     return int(single)
 
 
@@ -71,10 +76,13 @@ def text_of_argument(value: object, what: str) -> str:
 
 def texts(value: object, what: str) -> tuple[str, ...]:
     """Read a sequence of texts; a single text is refused, because its letters would be taken one by one."""
-    items = () if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable) else tuple(value)
-    if not isinstance(value, Iterable) or (value and not items) or not all(isinstance(item, str) for item in items):
+    try:
+        items = None if isinstance(value, str | bytes | Mapping) else tuple(cast(Iterable[object], value))
+    except Exception:  # it cannot be iterated over, whatever it is
+        items = None
+    if items is None or not all(isinstance(item, str) for item in items):
         raise ProblemError(f"{what} must be a list of texts; found {shown(value)}; put a single text into brackets")
-    return items
+    return cast(tuple[str, ...], items)
 
 
 def file_path(value: object, what: str) -> Path:

@@ -18,12 +18,12 @@ def ensure_arrays(contact: Any) -> None:
     """Read the arrays of a problem; refuse wrong shapes and ranges, and points that are out of order."""
     n, k = contact_shape(contact)
     read_arrays(contact, {"zone": (n,), "run": (n,)}, reader=whole_array)
-    shapes: dict[str, Shape] = {
+    needed: dict[str, Shape] = {
         "points": (n, 2), "normals": (n, 2), "arc_position": (n,), "compliance": (n, n), "free_displacement": (n,),
-        "motion_load": (k,), "initial_gap": (n,), "weights": (n,), "consistent_weights": (n, n),
-        "element_length_weights": (n,),
+        "motion_load": (k,), "initial_gap": (n,), "weights": (n,),
     }  # fmt: skip
-    read_arrays(contact, {name: shape for name, shape in shapes.items() if getattr(contact, name) is not None})
+    optional: dict[str, Shape] = {"consistent_weights": (n, n), "element_length_weights": (n,)}
+    read_arrays(contact, needed | {key: shape for key, shape in optional.items() if getattr(contact, key) is not None})
     if not (contact.weights > 0).all():
         raise ProblemError(f"weights must be positive; the smallest is {contact.weights.min():.3g}")
     lengths = np.hypot(*contact.normals.T)
@@ -62,15 +62,13 @@ def ensure_labels(contact: Any) -> None:
         raise ProblemError(f"units must be a mapping such as {{'length': 'mm'}}; found {shown(units)}")
     if len({*contact.zone_names}) < len(contact.zone_names):
         raise ProblemError(f"zone_names must be different from each other; found {', '.join(contact.zone_names)}")
-    if contact.motion_names and len(contact.motion_names) != contact.rigid_motions.shape[1]:
-        raise ProblemError(
-            f"motion_names has {len(contact.motion_names)} names for {contact.rigid_motions.shape[1]} free motions"
-        )
 
 
 def ensure_parts_fit(contact: Any) -> None:
     """Refuse load cases, tools and pinned motions of another body."""
     n, k = contact.rigid_motions.shape
+    if contact.motion_names and len(contact.motion_names) != k:
+        raise ProblemError(f"motion_names has {len(contact.motion_names)} names for {k} free motions")
     c, t = len(contact.cases), 3 * len(contact.tools)
     shapes = {
         "cases.displacement": (n, c), "cases.motion_load": (k, c), "cases.position": (t, c), "cases.force": (t, c),
@@ -108,8 +106,8 @@ def _ensure_held(contact: Any) -> None:
     points = real_array(points, "held_points", (runs, 2, 2), finite=False)
     object.__setattr__(contact, "held_arc", arc)
     object.__setattr__(contact, "held_points", points)
-    if np.isinf(arc).any() or np.isinf(points).any() or (np.isnan(arc)[..., None] != np.isnan(points)).any():
-        raise ProblemError("held_arc and held_points need finite numbers at held ends, and no numbers at other ends")
+    if np.isinf(arc).any() or not np.isfinite(points[~np.isnan(arc)]).all():
+        raise ProblemError("held_arc and held_points need finite numbers at held ends; held_arc is nan at other ends")
 
 
 def _ensure_order(contact: Any) -> None:

@@ -457,9 +457,9 @@ def test_a_start_outside_the_bounds_is_moved_to_them():
     [
         ({"H": [[1.0, 2.0], [0.0, 1.0]]}, "not symmetric"),
         ({"H": [[1.0]]}, "H has shape"),
-        ({"H": [[1.0, 2.0], [3.0]]}, "H is no array of real numbers"),
-        ({"c": ["a", "b"]}, "c is no array of real numbers"),
-        ({"bl": [1j, 0.0]}, "bl is no array of real numbers"),
+        ({"H": [[1.0, 2.0], [3.0]]}, "H cannot be read as an array: .*rows of equal length"),
+        ({"c": ["a", "b"]}, "c must be an array of real numbers; found texts"),
+        ({"bl": [1j, 0.0]}, "bl must be an array of real numbers; found complex numbers"),
         ({"c": [np.nan, 0.0]}, "not finite"),
         ({"bl": [2.0, 0.0], "bu": [1.0, 1.0]}, "exceeds"),
         ({"cl": [0.0]}, "without A"),
