@@ -221,7 +221,7 @@ def test_sensitivities_of_a_condensed_problem(cylinder: Problem):
         ProblemError, match=r"there is no 'material\.young_modulus' in this condensed problem; it has: init"
     ):
         sensitivities(contact, ["material.young_modulus"])
-    with pytest.raises(ProblemError, match="a Problem or a CondensedContact is needed, found str"):
+    with pytest.raises(ProblemError, match="a Problem or a CondensedContact is needed, found '"):
         sensitivities("cylinder.yaml")  # pyright: ignore[reportArgumentType]
 
 

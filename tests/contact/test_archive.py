@@ -3,6 +3,7 @@
 import io
 import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from tool_problems import HELD, HELD_CASES, made
 import bemcontact
 from bemcontact.contact import archive
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.errors import ProblemError
+from bemcontact.errors import BemContactError, ProblemError
 
 Members = dict[str, bytes]
 
@@ -74,9 +75,10 @@ def read_back(content: bytes, place: Path) -> CondensedContact | None:
     try:
         return CondensedContact.load(place)
     except ProblemError as error:
-        assert str(error).startswith(f"{place}: ")
-        assert len(str(error)) < 600
-        return None
+        text = str(error)
+    assert text.startswith(f"{place}: ")
+    assert len(text) < 600
+    return None
 
 
 def signed(members: Members) -> Members:
@@ -118,7 +120,7 @@ def test_what_is_saved_is_read_back(contact: CondensedContact, tmp_path: Path):
     assert same(again, contact)
 
 
-@settings(max_examples=300)
+@settings(max_examples=100)
 @given(which=st.sampled_from(["plain", "body"]), data=st.data())
 def test_bytes_that_change_give_an_error_or_the_same_problem(which: str, data: st.DataObject, whole, tmp_path_factory):
     """Flipped, inserted and removed bytes anywhere in the file, and cut ends."""
@@ -140,7 +142,7 @@ def test_bytes_that_change_give_an_error_or_the_same_problem(which: str, data: s
     assert found is None or same(found, PLAIN if which == "plain" else BODY)
 
 
-@settings(max_examples=300)
+@settings(max_examples=100)
 @given(which=st.sampled_from(["plain", "body"]), data=st.data())
 def test_members_that_change_give_an_error_or_the_same_problem(
     which: str, data: st.DataObject, whole, tmp_path_factory
@@ -163,12 +165,12 @@ def test_members_that_change_give_an_error_or_the_same_problem(
     assert found is None or same(found, PLAIN if which == "plain" else BODY)
 
 
-@settings(max_examples=200)
+@settings(max_examples=80)
 @given(which=st.sampled_from(["plain", "body"]), way=st.integers(0, 8), seed=st.integers(0, 99), data=st.data())
 def test_a_false_problem_with_a_true_checksum_is_refused_or_solvable(
     which: str, way: int, seed: int, data: st.DataObject, whole, tmp_path_factory
 ):
-    """A checksum proves no sense: what is read has to state a problem, to which a solver gives an answer or an error."""
+    """A checksum proves no sense: what is read has to state a problem, to which there is an answer or an error."""
     members = members_of(whole[which])
     names = sorted(name for name in members if name not in ("format.npy", "checksum.npy"))
     name = data.draw(st.sampled_from(names))
@@ -181,6 +183,8 @@ def test_a_false_problem_with_a_true_checksum_is_refused_or_solvable(
     if found is not None:
         assert np.isfinite(found.compliance).all()
         np.testing.assert_allclose(np.hypot(*found.normals.T), 1.0, atol=1e-9)
+        with suppress(BemContactError):
+            bemcontact.solve(found, "complementarity")
 
 
 BREAKS: dict[str, tuple[str, Callable[[np.ndarray], Any], str]] = {

@@ -145,7 +145,7 @@ def test_keys_are_those_of_the_spec():
         ),
         (
             lambda contact: contact.with_tools(force=[[0, np.nan, 0]] * 2),
-            r"forces x, y, moment on 2 tools has entries that are not finite numbers; \[0, 1\] is nan",
+            "forces x, y, moment on 2 tools has entries that are not",
         ),
     ],
 )
