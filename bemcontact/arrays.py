@@ -31,7 +31,7 @@ def real_array(value: Any, what: str, shape: Shape | None = None, *, finite: boo
     if array.dtype.kind == "O" and all(_is_real(entry) for entry in array.flat):
         array = _as_floats(array, what)
     if array.dtype.kind not in "iuf" and array.size:
-        raise ProblemError(f"{what} must be an array of real numbers; found {_described(value, array)}")
+        raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
     _ensure_shape(array, what, shape)
     array = np.asarray(array, dtype=float)
     if finite and not (np.abs(array) <= LARGEST_NUMBER).all():  # false also for what is not a number
@@ -43,7 +43,7 @@ def whole_array(value: Any, what: str, shape: Shape | None = None) -> IntArray:
     """Read an array of whole numbers, as `real_array` does."""
     array = _as_array(value, what)
     if array.dtype.kind not in "iu" and array.size:
-        raise ProblemError(f"{what} must be an array of whole numbers; found {_described(value, array)}")
+        raise ProblemError(f"{what} must contain whole numbers; found {_described(value, array)}")
     _ensure_shape(array, what, shape)
     return np.asarray(array, dtype=np.int64)
 
@@ -52,7 +52,7 @@ def flag_array(value: Any, what: str, shape: Shape | None = None) -> BoolArray:
     """Read an array of truth values, as `real_array` does."""
     array = _as_array(value, what)
     if array.dtype.kind != "b" and array.size:
-        raise ProblemError(f"{what} must be an array of True and False; found {_described(value, array)}")
+        raise ProblemError(f"{what} must contain True and False; found {_described(value, array)}")
     _ensure_shape(array, what, shape)
     return np.asarray(array, dtype=bool)
 

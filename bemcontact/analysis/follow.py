@@ -60,7 +60,7 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     if _case_of(problem, key) is None:
         ensure_acting(problem)
     if begin == end:
-        raise ProblemError(f"{key}: a path needs two different values; found {begin!r} and {end!r}")
+        raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
     ends = (replace(contact, name=problem.title) for contact in between(fitted(problem)[0], key, begin, end))
     return ParameterPath(key=key, start=begin, end=end, path=load_path(*ends))
 
