@@ -473,7 +473,7 @@ def test_a_start_outside_the_bounds_is_moved_to_them():
         ({"options": QPOptions(max_iterations="a")}, "max_iterations"),
         ({"options": QPOptions(log=True)}, "log is True"),
         ({"options": {"search": 3}}, "options is a dict"),
-        ({"H": np.eye(2) * 1j}, "it is complex"),
+        ({"H": np.eye(2) * 1j}, "H must contain real numbers; found complex numbers"),
         ({"H": np.zeros((0, 0)), "c": []}, "c is empty"),
         ({"options": QPOptions(max_iterations=-1)}, "max_iterations"),
     ],
