@@ -11,20 +11,21 @@ PACKAGE = TESTS.parent / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("errors", "arrays", "serialization", "options", "version", "files")
+FOUNDATION = ("errors", "arguments", "arrays", "serialization", "options", "version", "files")
 
 ROOMS = {
     "errors": (),
-    "arrays": (),
+    "arguments": ("errors",),
+    "arrays": ("errors", "arguments"),
     "serialization": (),
-    "options": ("errors",),
+    "options": ("errors", "arguments"),
     "version": (),
     "files": ("errors",),
-    "problem": ("errors", "arrays", "options"),
-    "spec": ("errors", "files", "problem"),
+    "problem": ("errors", "arguments", "arrays", "options"),
+    "spec": ("errors", "arguments", "files", "problem"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problem", "contact"),
-    "formulations.local_solver": ("errors", "arrays"),
+    "formulations.local_solver": ("errors", "arguments", "arrays"),
     "formulations": (*FOUNDATION, "contact", "formulations.local_solver"),
     "assessment": (*FOUNDATION, "contact"),
     "adaptivity": (*FOUNDATION, "problem", "contact", "bem", "formulations", "assessment"),

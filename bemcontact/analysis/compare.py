@@ -8,6 +8,7 @@ from typing import Unpack
 from bemcontact.adaptivity.fitting import MeshFit
 from bemcontact.analysis.solve import Progress, Stopwatch, assessed, condensation_of, fitted_to_contact
 from bemcontact.analysis.study import MeshLevel, Settings, Study
+from bemcontact.arguments import ensure_callable
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -67,6 +68,7 @@ def compare(
     ProblemError
         The problem has no answer, or does not carry the weights asked for.
     """
+    ensure_callable(progress, "progress")
     read = ComparisonOptions.of(formulations, weights, penalties, **options)
     watch = Stopwatch(progress=progress)
     problem, fit = fitted_to_contact(problem, watch)

@@ -9,6 +9,7 @@ import numpy as np
 
 from bemcontact.adaptivity.fitting import fitted
 from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
+from bemcontact.arguments import real_number, text_of_argument, texts
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
@@ -53,11 +54,12 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
         contact state at either end.
     """
     ensure_kind(problem, Problem)
-    begin = stated_value(problem, key) if start is None else float(start)
+    text_of_argument(key, "key")
+    end = real_number(to, f"{key}: the value at the end of the path (to)")
+    begin = stated_value(problem, key) if start is None else real_number(start, f"{key}: the start value")
     if _case_of(problem, key) is None:
         ensure_acting(problem)
-    end = float(to)
-    if not (np.isfinite(begin) and np.isfinite(end)) or begin == end:
+    if begin == end:
         raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
     ends = (replace(contact, name=problem.title) for contact in between(fitted(problem)[0], key, begin, end))
     return ParameterPath(key=key, start=begin, end=end, path=load_path(*ends))
@@ -87,21 +89,33 @@ def sensitivities(
         If the equations of contact are singular to working precision.
     """
     ensure_acting(problem)
+    given = changes if changes is None or isinstance(changes, Mapping) else _keys(changes)
     stated = fitted(problem)[0] if isinstance(problem, Problem) else None
     contact = problem if isinstance(problem, CondensedContact) else condense(stated or problem)
-    if changes is None or isinstance(changes, Mapping):
-        return sensitivities_of_contact(contact, changes)
+    if given is None or isinstance(given, Mapping):
+        return sensitivities_of_contact(contact, given)
     solution, known = complementarity.solve(contact), contact.changes
-    keys = [changes] if isinstance(changes, str) else changes
-    wanted = {key: known[key] if key in known else _change(contact, stated, key, solution.pressure) for key in keys}
+    wanted = {key: known[key] if key in known else _change(contact, stated, key, solution.pressure) for key in given}
     return sensitivities_of_contact(contact, wanted, solution)
+
+
+def _keys(changes: object) -> tuple[str, ...]:
+    """Read key paths, a single one as a list."""
+    keys = texts((changes,) if isinstance(changes, str) else changes, "the keys of changes")
+    for key in keys:
+        parsed_path(key)
+    return keys
 
 
 def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:
     """Change of gap and load per unit of a key that is neither a load case nor a tool component."""
     path = parsed_path(key)
-    if path[0] == "initial_gap" and isinstance(path[-1], int) and path[-1] < contact.size and len(path) == 2:
-        return Change(np.eye(contact.size)[path[-1]], np.zeros(contact.free_motions))
+    if path[0] == "initial_gap":
+        if len(path) == 2 and isinstance(path[1], int) and path[1] < contact.size:
+            return Change(np.eye(contact.size)[path[1]], np.zeros(contact.free_motions))
+        raise ProblemError(
+            f"there is no '{key}': the contact points have initial_gap[0] to initial_gap[{contact.size - 1}]"
+        )
     if problem is None:
         known = ", ".join((*contact.changes, f"initial_gap[0] to initial_gap[{contact.size - 1}]"))
         raise ProblemError(f"there is no '{key}' in this condensed problem; it has: {known}")

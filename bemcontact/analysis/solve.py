@@ -9,6 +9,7 @@ from typing import Unpack
 from bemcontact.adaptivity.fitting import MeshFit, fitted
 from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.result import Result
+from bemcontact.arguments import ensure_callable, shown
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
@@ -22,6 +23,7 @@ from bemcontact.errors import Issue, ProblemError
 from bemcontact.formulations.multistart import multistart, solve_contact
 from bemcontact.formulations.search import with_start_read
 from bemcontact.options import (
+    STARTS,
     FormulationName,
     SolveKeywords,
     SolveOptions,
@@ -89,9 +91,7 @@ def ensure_kind(problem: object, *kinds: type) -> None:
     kinds = kinds or (Problem, CondensedContact)
     if not isinstance(problem, kinds):
         names = " or a ".join(kind.__name__ for kind in kinds)
-        raise ProblemError(
-            f"a {names} is needed, found {type(problem).__name__}; bemcontact.load reads one from a file"
-        )
+        raise ProblemError(f"a {names} is needed, found {shown(problem)}; bemcontact.load reads one from a file")
 
 
 def ensure_acting(problem: Problem | CondensedContact) -> None:
@@ -137,6 +137,7 @@ def solve(
     NotConvexError
         If the formulation needs a convex program and this is none.
     """
+    ensure_callable(progress, "progress")
     return solve_with(SolveOptions.of(formulation, weights, **options), problem, progress)
 
 
@@ -251,8 +252,9 @@ def random_starts(
     ProblemError
         As of `solve`.
     """
+    ensure_callable(progress, "progress")
     ensure_known(options, StatementKeywords.__annotations__)
-    ensure_whole(count, "number of starts", 1)
+    ensure_whole(count, STARTS, 1)
     ensure_whole(seed, "seed", 0)
     read = SolveOptions.of(formulation, weights, start=StartName.RANDOM, starts=count, seed=seed, **options)
     ensure_kind(problem)

@@ -36,6 +36,10 @@ STATUSES = {
 """Status of a cvxpy problem -> ours."""
 
 
+LARGEST_COUNT = 2**32 - 1
+"""Largest number of iterations that Clarabel can count to."""
+
+
 class _Scaling(NamedTuple):
     """x = D x', rows times E, costs times s: arrays or numbers."""
 
@@ -77,7 +81,7 @@ def _solve(data: dict[str, Any], tolerance: float, max_iterations: int) -> tuple
     from cvxpy.reductions.solvers.conic_solvers.clarabel_conif import dims_to_solver_cones
 
     settings = DefaultSettings()
-    settings.verbose, settings.max_iter = False, max_iterations
+    settings.verbose, settings.max_iter = False, min(max_iterations, LARGEST_COUNT)
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
     n = len(data["c"])
     P = triu(data["P"], format="csc") if "P" in data else csc_array((n, n))

@@ -8,16 +8,17 @@ from pathlib import Path
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arguments import text_of_argument
+from bemcontact.arrays import Array, real_array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, LocalSearch, Penalty, Status, Trace, traces_in_turn
-from bemcontact.errors import OptionError, SpecError
+from bemcontact.errors import OptionError, ProblemError, SpecError
 from bemcontact.files.text import text_of
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.local_solver import QPResult, QPStatus
 from bemcontact.formulations.program import Program, minimize
 from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
-from bemcontact.options import SolveOptions, StartName, Weights, ensure_whole
+from bemcontact.options import STARTS, SolveOptions, StartName, Weights, ensure_whole
 
 SPREAD = 2.0
 """Largest random pressure over T, and size of a random displacement over U."""
@@ -71,10 +72,10 @@ class Start:
         """Refuse all but two equally long vectors of finite numbers; make them read-only."""
         for name in ("pressure", "displacement"):
             try:
-                vector = np.array(getattr(self, name), float, ndmin=1)
-            except (TypeError, ValueError):
-                vector = np.array([np.nan])
-            if vector.ndim != 1 or not np.isfinite(vector).all():
+                vector = np.atleast_1d(real_array(getattr(self, name), f"the {name} of a start")).copy()
+            except ProblemError as error:
+                raise OptionError(f"{error}; give finite numbers, one for each contact point") from None
+            if vector.ndim != 1:
                 raise OptionError(f"the {name} of a start needs finite numbers, one for each contact point")
             vector.setflags(write=False)
             object.__setattr__(self, name, vector)
@@ -83,6 +84,7 @@ class Start:
                 f"a start needs one pressure and one displacement for each contact point; found {self.pressure.size} "
                 f"pressures and {self.displacement.size} displacements"
             )
+        text_of_argument(self.label, "the label of a start")
 
 
 def read_start(path: str | os.PathLike[str]) -> Start:
@@ -132,7 +134,7 @@ def draw_starts(contact: CondensedContact, count: int, seed: int = 0) -> tuple[S
     The same seed gives the same starts, in any units, and fewer starts are the first of more. `OptionError` for a count
     below 1, a negative seed, or numbers that are not whole.
     """
-    ensure_whole(count, "number of starts", 1)
+    ensure_whole(count, STARTS, 1)
     ensure_whole(seed, "seed", 0)
     rng = np.random.default_rng(seed)
     U, T = contact.scales

@@ -9,6 +9,7 @@ from typing import Any
 import cvxpy as cp
 import numpy as np
 
+from bemcontact.arguments import instance_of, real_number, shown
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
@@ -19,7 +20,7 @@ from bemcontact.formulations.complementarity import ACTIVE_SET, polish
 from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
 from bemcontact.modelling.model_result import ModelResult, judged, read_back, solution_at
 from bemcontact.modelling.parameters import Parameters, Value
-from bemcontact.options import Weights
+from bemcontact.options import Weights, ensure_whole
 
 
 class ContactProblem(cp.Problem):
@@ -109,8 +110,8 @@ class ContactModel:
             There is no such zone.
         """
         names = self.original.zone_names
-        if zone is not None and zone not in names:
-            raise ProblemError(f"there is no contact zone '{zone}'; there are: {', '.join(names)}")
+        if zone is not None and not (isinstance(zone, str) and zone in names):
+            raise ProblemError(f"there is no contact zone {shown(zone)}; there are: {', '.join(names)}")
         inside = np.ones(self.original.size, bool) if zone is None else self.original.zone == names.index(zone)
         return self.original.forces(inside.astype(float)).T @ self.pressure
 
@@ -140,6 +141,18 @@ class ContactModel:
             raise ProblemError(f"extra_objective is an expression, which is added to F3 and minimized; found {kind}")
         if isinstance(extra_constraints, cp.Constraint):
             raise ProblemError("extra_constraints is a list of constraints; put the one that is given into brackets")
+        if not isinstance(extra_constraints, Sequence) or not all(map(_is_constraint, extra_constraints)):
+            raise ProblemError(
+                "extra_constraints is a list of constraints, such as [model.pressure <= 2.0]; found "
+                f"{shown(extra_constraints)}"
+            )
+        if isinstance(extra_objective, cp.Expression):
+            if not extra_objective.is_scalar() or extra_objective.is_complex():
+                raise ProblemError(
+                    f"extra_objective must be one real number, and its shape is {extra_objective.shape}; sum it"
+                )
+        elif extra_objective is not None:
+            extra_objective = real_number(extra_objective, "extra_objective")
         goal = self.objective if extra_objective is None else self.objective + extra_objective
         problem = ContactProblem(cp.Minimize(goal), [*self.constraints.values(), *extra_constraints])
         ensure_convex(problem)
@@ -178,9 +191,12 @@ class ContactModel:
         SolverError
             Clarabel cannot state the model, or breaks down.
         """
-        added = (
-            extra_objective is not None or isinstance(extra_constraints, cp.Constraint) or len(extra_constraints) > 0
-        )
+        several = isinstance(extra_constraints, Sequence) and not isinstance(extra_constraints, cp.Constraint)
+        added = extra_objective is not None or not several or len(extra_constraints) > 0
+        if max_iterations is not None:
+            ensure_whole(max_iterations, "limit of iterations", 1)
+        if problem is not None:
+            instance_of(problem, cp.Problem, "problem", "model.problem makes one")
         if problem is not None and added:
             raise ProblemError("give either a problem that was made before, or what is to be added, not both")
         chosen = problem or (self.problem(extra_objective, extra_constraints) if added else self._pure)
@@ -216,6 +232,7 @@ class ContactModel:
         ProblemError
             It has not been solved, or does not contain the pressure of the model.
         """
+        instance_of(problem, cp.Problem, "problem", "model.problem makes one")
         parts = zip(problem.constraints, self.constraints.values(), strict=False)
         pure = len(problem.constraints) == len(self.constraints) and all(one is other for one, other in parts)
         return read_back(
@@ -232,9 +249,12 @@ def model(contact: CondensedContact) -> ContactModel:
 
     Raises
     ------
+    ProblemError
+        It is no condensed contact.
     NotConvexError
         The Hessian has a negative eigenvalue on the equilibrium space, of more than a hundredth of the largest.
     """
+    instance_of(contact, CondensedContact, "contact", "bemcontact.condense makes one of a problem")
     U, T = scales = typical_scales(contact)
     problem, given = scaled(contact, scales), Parameters.of(contact)
     n, k = contact.rigid_motions.shape
@@ -259,6 +279,11 @@ def model(contact: CondensedContact) -> ContactModel:
         scales=scales,
         notes=notes,
     )
+
+
+def _is_constraint(item: object) -> bool:
+    """Whether cvxpy takes an item as a constraint: a comparison of numbers, True or False, is one too."""
+    return isinstance(item, cp.Constraint | bool | np.bool_)
 
 
 def ensure_convex(problem: cp.Problem) -> None:

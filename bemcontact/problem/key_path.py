@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, Self, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from bemcontact.arguments import text_of_argument
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.validation import SpecModel, described, misspelled, unknown_word
 
@@ -15,6 +16,7 @@ Part = TypeVar("Part", bound=SpecModel)
 
 def parsed_path(text: str) -> KeyPath:
     """Parse a path such as ``boundary.outer[2].elements``; `ProblemError` if it is none."""
+    text_of_argument(text, "a key path")
     path: list[str | int] = []
     position = 0
     rest = f".{text}"

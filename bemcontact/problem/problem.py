@@ -14,6 +14,8 @@ from pydantic import (
     model_validator,
 )
 
+from bemcontact.arguments import real_number, shown, text_of_argument, whole_number
+from bemcontact.arrays import real_array
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition, Loads
@@ -252,7 +254,7 @@ class Problem(SpecModel):
 
     def factors(self, case: str | None = None) -> dict[str, float]:
         """Factors of the load cases in a case or combination; in the one that acts if None; empty if none acts."""
-        name = self.case if case is None else case
+        name = self.case if case is None else text_of_argument(case, "the name of a load case")
         if name is None or name in self.load_cases:
             return {} if name is None else {name: 1.0}
         if name in self.combinations:
@@ -261,6 +263,8 @@ class Problem(SpecModel):
 
     def tool_action(self, tool: str) -> ToolAction:
         """Displacement of a tool and force on it, including the load cases that act."""
+        if text_of_argument(tool, "the name of a tool") not in self.tools:
+            raise ProblemError(Issue(path=("tools",), message=unknown_word("tool", tool, self.tools)))
         action: ToolAction = self.tools[tool]
         for case, factor in self.factors().items():
             if tool in self.load_cases[case].tools:
@@ -279,7 +283,7 @@ class Problem(SpecModel):
         ProblemError
             If there is no load case or combination of this name.
         """
-        self.factors(name)
+        self.factors(text_of_argument(name, "the name of a load case"))
         return self.model_copy(update={"case": name})
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
@@ -294,12 +298,19 @@ class Problem(SpecModel):
         ProblemError
             If a load case does not exist, or a factor is not a number.
         """
-        name = " + ".join(f"{factor:.6g} {case}" for case, factor in factors.items()).replace(".", ",")
+        if not isinstance(factors, Mapping):
+            raise ProblemError(f"factors by load case are needed, such as {{'wind': 1.5}}; found {shown(factors)}")
+        numbers = {
+            text_of_argument(case, "the name of a load case"): real_number(factor, f"the factor of '{case}'")
+            for case, factor in factors.items()
+        }
+        name = " + ".join(f"{factor:.6g} {case}" for case, factor in numbers.items()).replace(".", ",")
         data = self.model_dump(exclude={"variants"})
-        return type(self)(**{**data, "combinations": {**self.combinations, name: dict(factors)}, "case": name})
+        return type(self)(**{**data, "combinations": {**self.combinations, name: numbers}, "case": name})
 
     def edge(self, name: str) -> Edge:
         """Edge with a name; `ProblemError` if there is none."""
+        text_of_argument(name, "the name of an edge")
         for edge in self.boundary.edges:
             if edge.name == name:
                 return edge
@@ -313,6 +324,7 @@ class Problem(SpecModel):
         ----------
         parts : number of equal parts into which each element is cut
         """
+        parts = whole_number(parts, "number of parts", 1)
         return self if parts == 1 else self.with_value("mesh.refine", self.mesh.refine * parts)
 
     def variant(self, name: str) -> Self:
@@ -327,7 +339,7 @@ class Problem(SpecModel):
         ProblemError
             If there is no variant of this name.
         """
-        if name not in self.variants:
+        if text_of_argument(name, "the name of a variant") not in self.variants:
             raise ProblemError(Issue(path=("variants",), message=unknown_word("variant", name, self.variants)))
         variant, data = self.variants[name], self.model_dump(exclude={"variants"})
         paths = variant.paths(data)
@@ -358,7 +370,13 @@ class Problem(SpecModel):
         ProblemError
             If an edge does not exist, its elements cannot end there, turn too much, or are too many.
         """
-        boundary = self.boundary.with_element_ends(ends)
+        if not isinstance(ends, Mapping):
+            raise ProblemError(f"ends by edge name are needed, such as {{'top': [0.5]}}; found {shown(ends)}")
+        numbers = {
+            text_of_argument(name, "the name of an edge"): real_array(given, f"the ends on '{name}'", (None,)).tolist()
+            for name, given in ends.items()
+        }
+        boundary = self.boundary.with_element_ends(numbers)
         if issues := mesh_issues(boundary, ("boundary",), self.mesh.refine):
             raise ProblemError(issues)
         mesh = self.mesh.model_copy(update={"fit_contact_edges": False})

@@ -71,7 +71,10 @@ def described(value: object) -> str:
             return f"a list of {len(value)}" if value else "an empty list"
         case Mapping():
             return "a mapping" if value else "an empty mapping"
-    return _shortened(str(value))
+    try:
+        return _shortened(str(value))
+    except Exception:  # an object of the user may refuse to be written
+        return f"an object of type {type(value).__name__}"
 
 
 class SpecModel(BaseModel):

@@ -7,6 +7,7 @@ from typing import Any
 
 import yaml
 
+from bemcontact.arguments import shown, text_of_argument, texts
 from bemcontact.errors import Issue, KeyPath, ProblemError, SpecError
 from bemcontact.files.text import place_after, text_of
 from bemcontact.problem import Problem, Variant
@@ -48,6 +49,9 @@ def load(path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: s
         If there is no such file or variant, or it contains mistakes: a line ``file:line:column: key.path: message``
         for each mistake.
     """
+    if not isinstance(path, str | os.PathLike) or not isinstance(os.fspath(path), str):
+        hint = "bemcontact.loads reads a text, and bemcontact.Problem(**parts) takes a mapping"
+        raise SpecError(f"load needs the path of a file; found {shown(path)}; {hint}")
     return loads(text_of(path), os.fspath(path), overrides, variant)
 
 
@@ -106,6 +110,13 @@ def schema() -> dict[str, Any]:
 
 def _stages(text: str, name: str, overrides: Sequence[str], variant: str | None) -> list[Document]:
     """Documents of a text: without changes, then after each change."""
+    name = name if isinstance(name, str) else shown(name)
+    try:
+        text_of_argument(text, "what loads reads")
+        overrides = texts(overrides, "overrides, such as ['material.young_modulus=2e6'],")
+        text_of_argument("" if variant is None else variant, "the name of a variant")
+    except ProblemError as error:
+        raise SpecError(f"{name}: {error}") from None
     stages = [_parsed(text, name)]
     _check_mapping(stages[0], name)
     if variant is not None:

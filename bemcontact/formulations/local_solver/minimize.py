@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arguments import shown
+from bemcontact.arrays import Array, BoolArray, whole_array
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unscaled
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
@@ -279,13 +280,15 @@ def _check(options: QPOptions) -> None:
     for name in ("feasibility_tolerance", "optimality_tolerance"):
         value = getattr(options, name)
         if not _is_number(value) or not 0.0 < value < 1e-2:
-            raise ProblemError(f"{name} is {value!r}: give a number between 0 and 0.01, such as 1e-9")
+            raise ProblemError(f"{name} is {shown(value)}: give a number between 0 and 0.01, such as 1e-9")
     if options.max_iterations is not None and not _counts(options.max_iterations):
-        raise ProblemError(f"max_iterations is {options.max_iterations!r}: give a whole number >= 0, or None")
+        raise ProblemError(f"max_iterations is {shown(options.max_iterations)}: give a whole number >= 0, or None")
+    if not isinstance(options.scale, bool | np.bool_):
+        raise ProblemError(f"scale is {shown(options.scale)}: give True or False")
     if not _counts(options.search):
-        raise ProblemError(f"search is {options.search!r}: give the number of faces to examine, >= 0")
+        raise ProblemError(f"search is {shown(options.search)}: give the number of faces to examine, >= 0")
     if options.log is not None and not callable(options.log):
-        raise ProblemError(f"log is {options.log!r}: give a function of a LogLine, such as print")
+        raise ProblemError(f"log is {shown(options.log)}: give a function of a LogLine, such as print")
 
 
 def _is_number(value: object) -> bool:
@@ -300,7 +303,7 @@ def _counts(value: object) -> bool:
 
 def _wanted(working_set: ArrayLike, size: int) -> BoolArray:
     """Whether the given working set contains each constraint (n + m,)."""
-    wanted = np.asarray(working_set)
+    wanted = whole_array(working_set, "working_set")
     if wanted.shape != (size,) or not np.isin(wanted, (-1, 0, 1, 2)).all():
         raise ProblemError(f"working_set must be ({size},) integers of -1, 0, 1, 2, as in QPResult.working_set")
     return wanted != 0

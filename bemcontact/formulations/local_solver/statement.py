@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, real_array
 from bemcontact.errors import ProblemError
 
 Sides = NDArray[np.int8]
@@ -158,14 +158,10 @@ def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
 
 
 def _floats(name: str, given: Any) -> Array:
-    """Convert to a new array of numbers."""
-    try:
-        if getattr(given, "dtype", None) != np.float64 and np.iscomplexobj(given):
-            raise TypeError("it is complex")
-        dense = given if isinstance(given, np.ndarray) or not sparse.issparse(given) else given.toarray()
-        return np.array(dense, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise ProblemError(f"{name} is no array of real numbers ({error}): give rows of equal length") from None
+    """A new array of numbers."""
+    if type(given) is np.ndarray and given.dtype == np.float64:
+        return given.copy()
+    return real_array(given.toarray() if sparse.issparse(given) else given, name, finite=False).copy()
 
 
 def _matrix(name: str, given: Any, columns: int) -> Array:

@@ -10,6 +10,7 @@ from operator import attrgetter
 
 import numpy as np
 
+from bemcontact.arguments import instance_of, shown
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
@@ -68,6 +69,7 @@ def design_gap(
         Clarabel breaks down.
     """
     states, goal = _states(contact, cases), _goal(goal)
+    instance_of(relief, Relief, "relief", "it holds the bounds on the profile: Relief(lower=0.0, upper=0.1)")
     profiles = Profiles.of(states[0], relief, zone, arc)
     shared = SharedProfile.of(states, profiles, goal)
     before = tuple(_solved(state, np.zeros(state.size)) for state in states)
@@ -114,10 +116,13 @@ def _states(
     contact: CondensedContact | Sequence[CondensedContact], cases: Sequence[Mapping[str, float]] | None
 ) -> tuple[CondensedContact, ...]:
     """Check that the load states are those of one body."""
-    states = (contact,) if isinstance(contact, CondensedContact) else tuple(contact)
+    several = contact if isinstance(contact, Sequence) else ()
+    states = (contact,) if isinstance(contact, CondensedContact) else tuple(several)
     if not states or not all(isinstance(state, CondensedContact) for state in states):
         raise ProblemError("a design needs a CondensedContact, or several of one body; bemcontact.condense makes them")
     if cases is not None:
+        if not isinstance(cases, Sequence) or not all(isinstance(factors, Mapping) for factors in cases):
+            raise ProblemError(f"cases is a list of factors by load case, [{{'wind': 1.5}}]; found {shown(cases)}")
         if len(states) != 1 or not len(cases):
             raise ProblemError("factors of load cases go with one condensed contact, and at least one state is needed")
         return tuple(states[0].with_factors(factors) for factors in cases)
@@ -136,10 +141,10 @@ def _states(
 def _goal(goal: Goal | str) -> Goal:
     """Read the name of a goal."""
     try:
-        return Goal(goal)
+        return Goal(goal if isinstance(goal, str) else "")
     except ValueError:
         raise ProblemError(
-            f"there is no goal {goal!r}; there are: {', '.join(known.value for known in Goal)}"
+            f"there is no goal {shown(goal)}; there are: {', '.join(known.value for known in Goal)}"
         ) from None
 
 

@@ -5,6 +5,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from bemcontact.arguments import shown
 from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
@@ -214,8 +215,8 @@ class GapDesign(Recorded):
         ProblemError
             The kind is unknown, the zone has several pieces or goes round, or the surface would fold.
         """
-        if kind not in SURFACES:
-            raise ProblemError(f"there is no surface of kind {kind!r} to write; there are: {', '.join(SURFACES)}")
+        if not isinstance(kind, str) or kind not in SURFACES:
+            raise ProblemError(f"there is no surface of kind {shown(kind)} to write; there are: {', '.join(SURFACES)}")
         contact = self.before[0].contact.at_rest()
         inside = np.flatnonzero(contact.zone == contact.zone[self.points[0]])
         runs = np.unique(contact.run[inside])
