@@ -14,7 +14,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import qp3
-from bemcontact.formulations.clarabel import minimize
+from bemcontact.formulations.clarabel import Answer, minimize
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
 from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
 from bemcontact.modelling.model_result import ModelResult, judged, read_back, solution_at
@@ -176,7 +176,7 @@ class ContactModel:
         ProblemError
             As in `problem`, or if both a problem and additions are given.
         SolverError
-            Clarabel cannot state the model, or breaks down.
+            Clarabel cannot state the model, or none of several attempts leads to an optimum.
         """
         added = (
             extra_objective is not None or isinstance(extra_constraints, cp.Constraint) or len(extra_constraints) > 0
@@ -186,8 +186,8 @@ class ContactModel:
         chosen = problem or (self.problem(extra_objective, extra_constraints) if added else self._pure)
         if chosen is self._pure and (result := self._from_last()) is not None:
             return result
-        minimize(chosen, max_iterations)
-        return self.result(chosen)
+        answer = minimize(chosen, max_iterations, leave_point=chosen is self._pure)
+        return self._read_back(chosen, answer)
 
     def _from_last(self) -> ModelResult | None:
         """The contact state by a few active-set steps from the last solve; None if they do not lead to one."""
@@ -216,6 +216,10 @@ class ContactModel:
         ProblemError
             It has not been solved, or does not contain the pressure of the model.
         """
+        return self._read_back(problem, None)
+
+    def _read_back(self, problem: cp.Problem, answer: Answer | None) -> ModelResult:
+        """The result of a problem, with the answer of Clarabel if it was called here."""
         parts = zip(problem.constraints, self.constraints.values(), strict=False)
         pure = len(problem.constraints) == len(self.constraints) and all(one is other for one, other in parts)
         return read_back(
@@ -223,6 +227,7 @@ class ContactModel:
             problem,
             self.pressure,
             self.motions,
+            answer,
             added=not pure or problem.objective.expr is not self.objective,
         )
 
