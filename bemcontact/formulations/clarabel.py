@@ -22,12 +22,12 @@ from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.solution import Status
 from bemcontact.errors import SolverError
 
-ASKED = 1e-11
-"""Tolerance that is asked of Clarabel."""
+ASKED, RAY = 1e-11, 1e-13
+"""Tolerances that are asked of Clarabel, for a point and for a ray."""
 AT_ONCE, GOOD, POOR = 1e-10, 1e-8, 1e-5
 """Residual that ends the attempts; up to which the best of them is an optimum; up to which it is an inaccurate one."""
-PROOF = 1e-7
-"""Residual up to which a ray proves that there is no feasible point, or no least one."""
+PROOF = 1e-6
+"""Error of a ray up to which it is a proof: nothing feasible is then smaller than a million times the data."""
 ITERATIONS = 200
 ROUNDS = 12
 """Iterations of Ruiz's method; each takes the square root of how far rows and columns are from one."""
@@ -73,18 +73,13 @@ class Answer(NamedTuple):
     ----------
     progress : (iterations + 1, 2) the objective without its constant, and the residual of the constraints that Clarabel
         holds against its tolerance; one row less if Clarabel gave up in the last iteration
-    residual : largest relative residual of the optimality conditions, computed anew
+    failed : whether all attempts failed, so that the point that is left is no optimum
     note : which attempt gave the answer, or how inaccurate it is; empty if the first one did what was asked
     """
 
     progress: Array
-    residual: float
+    failed: bool
     note: str
-
-    @property
-    def failed(self) -> bool:
-        """Whether the point is no optimum."""
-        return self.residual > POOR
 
 
 class _Scaling(NamedTuple):
@@ -96,18 +91,12 @@ class _Scaling(NamedTuple):
 
 
 def minimize(
-    problem: Any,
-    max_iterations: int | None = None,
-    *,
-    equilibrate: bool = True,
-    size: float = 1.0,
-    leave_point: bool = False,
+    problem: Any, max_iterations: int | None = None, *, equilibrate: bool = True, leave_point: bool = False
 ) -> Answer:
     """Solve a convex cvxpy problem; its status and values are set as by its own `solve`, which has coarser tolerances.
 
-    Rows and columns are scaled (`equilibrate`), unless the problem is dimensionless: then all variables and right sides
-    are divided by `size`. `SolverError` if Clarabel cannot state the problem, or no attempt is an answer; with
-    `leave_point` the best point is left as an inaccurate one.
+    Rows and columns are scaled (`equilibrate`), unless the problem is dimensionless. `SolverError` if Clarabel cannot
+    state the problem, or no attempt is an answer; with `leave_point` the best point is left as an inaccurate one.
     """
     import cvxpy as cp
 
@@ -115,20 +104,20 @@ def minimize(
         data, chain, inverse = problem.get_problem_data(cp.CLARABEL, solver_opts={})
     except cp.SolverError as error:
         raise SolverError(f"Clarabel cannot solve this model: {error}; state it without integers") from error
-    end = _best_end(data, max_iterations, size, equilibrate=equilibrate)
-    status = end.status if end.residual <= POOR or end.status == LIMIT else "AlmostSolved" if leave_point else ""
-    if not status or not np.isfinite(end.residual):
+    end = _best_end(data, max_iterations, equilibrate=equilibrate)
+    failed = end.residual > POOR and end.status != LIMIT
+    if (failed and not leave_point) or not np.isfinite(end.residual):
         raise SolverError(
             "Clarabel found no solution of this model; look for terms of very different size, or loosen what was added"
         )
     with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status says the same
-        problem.unpack_results(_unscaled(end.solution, status, end.scaling), chain, inverse)
-    return Answer(end.progress / np.array([end.scaling.s, 1.0]), end.residual, end.note)
+        problem.unpack_results(_unscaled(end.solution, end.status, end.scaling), chain, inverse)
+    return Answer(end.progress / np.array([end.scaling.s, 1.0]), failed, end.note)
 
 
 LIMIT = "MaxIterations"
-RAYS = {"PrimalInfeasible": "primal", "DualInfeasible": "dual"}
-"""Ends of Clarabel that are proofs, and the side on which there is no point."""
+RAYS = "PrimalInfeasible", "DualInfeasible"
+"""Ends of Clarabel that are proofs."""
 
 
 class _End(NamedTuple):
@@ -142,25 +131,23 @@ class _End(NamedTuple):
     scaling: _Scaling
 
 
-def _best_end(data: dict[str, Any], max_iterations: int | None, size: float, *, equilibrate: bool) -> _End:
-    """The first end that is an answer, or the best one."""
+def _best_end(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> _End:
+    """The first end that is an answer or at the limit of iterations, or the best one."""
     ends: list[_End] = []
-    for end in _ends(data, max_iterations, size, equilibrate=equilibrate):
+    for end in _ends(data, max_iterations, equilibrate=equilibrate):
         ends.append(end)
-        if end.status in RAYS or end.status == LIMIT or end.residual <= AT_ONCE:
+        if end.status in RAYS or end.residual <= AT_ONCE or end.solution.iterations >= (max_iterations or np.inf):
             return end
     return min(ends, key=lambda end: end.residual)
 
 
-def _ends(data: dict[str, Any], max_iterations: int | None, size: float, *, equilibrate: bool) -> Iterator[_End]:
+def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> Iterator[_End]:
     """Make the attempts."""
     for attempt in ATTEMPTS:
-        ruiz = equilibrate is not attempt.rescaled
-        scaled, scaling = _equilibrated(data) if ruiz else _divided(data, size)
+        scaled, scaling = _equilibrated(data) if equilibrate is not attempt.rescaled else (data, _Scaling())
         solution, progress = _solve(scaled, attempt.settings, max_iterations or ITERATIONS)
         status, residual = _judged(scaled, solution)
-        limited = max_iterations is not None and solution.iterations >= max_iterations and residual > GOOD
-        if limited and status not in RAYS:
+        if status not in RAYS and residual > GOOD and solution.iterations >= (max_iterations or np.inf):
             status = LIMIT
         yield _End(status, residual, _note(attempt, status, residual), solution, progress, scaling)
 
@@ -178,11 +165,10 @@ def _judged(data: dict[str, Any], solution: Any) -> tuple[str, float]:
     x, z, s = (np.array(part) for part in (solution.x, solution.z, solution.s))
     A, b, c = data["A"], data["b"], data["c"]
     curved = _symmetric(data) @ x
-    side = RAYS.get(str(solution.status))
-    if side == "primal":
-        return (str(solution.status), 0.0) if _is_ray(-(b @ z), A.T @ z) else ("Unsolved", np.inf)
-    if side == "dual":
-        return (str(solution.status), 0.0) if _is_ray(-(c @ x), np.append(curved, A @ x + s)) else ("Unsolved", np.inf)
+    status = str(solution.status).removeprefix("Almost")
+    if status in RAYS:
+        proved = _is_ray(b, z, A.T @ z) if status == RAYS[0] else _is_ray(c, x, np.append(curved, A @ x + s))
+        return (status, 0.0) if proved else ("Unsolved", np.inf)
     primal, dual = c @ x + x @ curved / 2, -(b @ z) - x @ curved / 2
     residuals = (
         _size(A @ x + s - b) / max(1.0, _size(b) + _size(x) + _size(s)),
@@ -202,9 +188,9 @@ def _symmetric(data: dict[str, Any]) -> Any:
     return csc_array(data["P"]) if "P" in data else csc_array((n, n))
 
 
-def _is_ray(descent: float, rest: Array) -> bool:
-    """Whether a ray goes down, and what should vanish on it does; both have the same unit."""
-    return descent > 0 and _size(rest) <= PROOF * descent
+def _is_ray(slope: Array, ray: Array, rest: Array) -> bool:
+    """Whether a ray goes down, and by more than the rest, which should vanish, could feign where the slope is large."""
+    return bool(max(1.0, _size(slope)) * _size(rest) <= -PROOF * (slope @ ray))
 
 
 def _outside(dims: Any, s: Array, z: Array) -> float:
@@ -226,6 +212,7 @@ def _solve(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations: int)
     settings = DefaultSettings()
     settings.verbose, settings.max_iter = False, max_iterations
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ASKED
+    settings.tol_infeas_abs = settings.tol_infeas_rel = RAY
     for name, value in chosen.items():
         setattr(settings, name, value)
     P = triu(_symmetric(data), format="csc")
@@ -242,11 +229,6 @@ def _solve(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations: int)
         rows[-1] = solution.obj_val, solution.r_prim  # Clarabel may have withdrawn its last step
     progress = np.array(rows).reshape(-1, 2)
     return solution, progress[np.logical_and.accumulate(np.isfinite(progress).all(axis=1))]
-
-
-def _divided(data: dict[str, Any], size: float) -> tuple[dict[str, Any], _Scaling]:
-    """Variables and right sides over a size, the objective over its square."""
-    return {**data, "b": data["b"] / size, "c": data["c"] / size}, _Scaling(size, 1 / size, size**-2)
 
 
 def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], _Scaling]:

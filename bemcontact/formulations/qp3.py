@@ -122,12 +122,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
             "negative part of its Hessian, as a start for the active-set step"
         )
     optimum = _minimized(body, work, options.max_iterations)
-    widest, escape = float(np.abs(body.offset).max(initial=0.0)), None
-    if optimum.status in (Status.UNBOUNDED, Status.INFEASIBLE):
-        escape = escape_note(contact)
-        if widest > 1 and not escape:  # the widest gaps drown the pressures
-            optimum = _minimized(body, work, options.max_iterations, widest)
-    if optimum.status is Status.INFEASIBLE and escape:
+    if optimum.status is Status.INFEASIBLE and (escape := escape_note(contact)):
         notes.append(escape)
     notes += [optimum.note] if optimum.note else []
     p, u_n, a = unscaled(contact, optimum.pressure, optimum.amplitudes)
@@ -176,8 +171,8 @@ class _Optimum:
     note: str
 
 
-def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | None, size: float = 1.0) -> _Optimum:
-    """State the quadratic program in cvxpy, and solve it with pressures and gaps divided by a size."""
+def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | None) -> _Optimum:
+    """State the quadratic program in cvxpy, and solve it."""
     import cvxpy as cp
 
     M, R, ell, load = contact.compliance, contact.rigid_motions, contact.equilibrium, contact.motion_load
@@ -190,7 +185,7 @@ def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | No
         goal, gap, balance = goal + work.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
     program = cp.Problem(cp.Minimize(goal), [gap >= 0, *balance])
     try:
-        answer = minimize(program, max_iterations, equilibrate=False, size=size, leave_point=True)
+        answer = minimize(program, max_iterations, equilibrate=False, leave_point=True)
     except SolverError as error:
         raise SolverError(
             "Clarabel found no solution of QP3; check the mesh for very short elements, or solve the "
