@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
-from typing import Any
+from typing import Any, cast
 
 import cvxpy as cp
 import numpy as np
@@ -48,7 +48,8 @@ class ContactModel:
     displacement : (n,) u_n = Δ1 + M p + R a [L]
     tool_displacement : (t, 3) x, y [L] and rotation [rad] of the tools; None without tools
     objective : F3 [p L²], which is zero at a contact state; in equilibrium it is pᵀJ gap
-    constraints : "no_penetration", "no_tension" and, with free motions, "equilibrium"
+    constraints : "no_penetration", "no_tension" and, with free motions, "equilibrium", scaled; `duals` has their
+        multipliers in the user's units
     scales : displacement [L] and pressure [p] that the variables behind the expressions are divided by
     notes : warnings to the user
     """
@@ -113,6 +114,46 @@ class ContactModel:
             raise ProblemError(f"there is no contact zone '{zone}'; there are: {', '.join(names)}")
         inside = np.ones(self.original.size, bool) if zone is None else self.original.zone == names.index(zone)
         return self.original.forces(inside.astype(float)).T @ self.pressure
+
+    @property
+    def duals(self) -> dict[str, Array]:
+        """Multipliers of the named constraints, right after a solve, in the user's units.
+
+        "no_penetration" (n,) [p], "no_tension" (n,) [L] and "equilibrium" (k,) belong to w gap >= 0, w p >= 0 and
+        ℓᵀp + load = 0. If the first or the second zero becomes s at a point, the least objective changes by the
+        multiplier times s. At a contact state they are the pressure, the gap and the motions themselves.
+
+        Raises
+        ------
+        ProblemError
+            No problem with these constraints has been solved to an optimum.
+        """
+        values = {name: constraint.dual_value for name, constraint in self.constraints.items()}
+        if any(value is None for value in values.values()):
+            raise ProblemError("there are no multipliers yet; solve the model to an optimum first")
+        duals = {name: np.asarray(value, float) / self._dual_units[name] for name, value in values.items()}
+        if "equilibrium" in duals:
+            duals["equilibrium"] = duals["equilibrium"] - self._carried_by_form
+        return duals
+
+    @property
+    def _carried_by_form(self) -> Array:
+        """What `_work` adds to the multiplier of equilibrium (k,), because it sees P p and p0 apart.
+
+        Its gradient lacks (I - Pᵀ)H(p - ½ p0) = ℓ c, which ℓᵀp = -load makes good: this is c.
+        """
+        body, (U, _) = scaled(self.contact, self.scales), self.scales
+        p = cast(Array, self.pressure.variables()[0].value) - body.balancing_pressure / 2
+        weighted = body.weights[:, None] * body.compliance
+        R, ell = body.rigid_motions, body.equilibrium
+        return U / motion_sizes(self.original) * np.linalg.solve(R.T @ ell, R.T @ ((weighted + weighted.T) @ p))
+
+    @cached_property
+    def _dual_units(self) -> dict[str, Array]:
+        """What the multipliers of the scaled constraints are divided by."""
+        (U, T), w = self.scales, self.original.weights
+        units = {"no_penetration": U * w, "no_tension": T * w}
+        return units | {"equilibrium": T * w.max() * motion_sizes(self.original)}
 
     @property
     def contact(self) -> CondensedContact:
@@ -202,6 +243,10 @@ class ContactModel:
         self.pressure.variables()[0].value = solution.pressure / T
         if motions is not None:
             motions.variables()[0].value = solution.rigid_amplitudes * (motion_sizes(self.original) / U)
+        p, a = solution.pressure, solution.rigid_amplitudes
+        for (name, constraint), value in zip(self.constraints.items(), (p, contact.gap(p, a), a), strict=False):
+            own = self._carried_by_form if name == "equilibrium" else 0.0
+            constraint.save_dual_value(self._dual_units[name] * (value + own))
         return result
 
     def result(self, problem: cp.Problem) -> ModelResult:
