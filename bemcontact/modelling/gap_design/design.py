@@ -6,7 +6,6 @@ problem.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from operator import attrgetter
 
 import numpy as np
 
@@ -19,6 +18,8 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import complementarity
+from bemcontact.formulations.active_set import solve_active_set
+from bemcontact.formulations.scaling import scaled
 from bemcontact.modelling.gap_design.contact_sets import BestProfile, SharedProfile
 from bemcontact.modelling.gap_design.designed_gap import GapDesign, Goal, LoadState, relieved
 from bemcontact.modelling.gap_design.relief import Profiles, Relief
@@ -77,7 +78,7 @@ def design_gap(
     bound, coefficients, sets = shared.relaxed(best.value * shared.scales.pressure)
     if best.value * shared.scales.pressure > bound * (1 + MET):
         others = (_descended(shared, some) for some in (sets, _state(states, profiles.shapes @ coefficients)[1]))
-        best = min((piece for piece in (best, *others) if piece is not None), key=attrgetter("value"))
+        best = _least([piece for piece in (best, *others) if piece is not None])
     best, gentlest = _gently_descended(shared, best)
     gentle = _carried_out(shared, states, before, gentlest, bound)
     return gentle if gentle.verified else _carried_out(shared, states, before, best, bound)
@@ -104,7 +105,7 @@ def _carried_out(
         coefficients=coefficients / profiles.sizes if profiles.shaped else None,
         before=before,
         after=after,
-        designed=piece.pressures,
+        designed=np.array([_on_sets(*pair) for pair in zip(after, piece.touching, strict=True)]),
         value_before=shared.measure(state.pressure for state in before),
         value=reached,
         lower_bound=bound,
@@ -164,6 +165,12 @@ def _solved(contact: CondensedContact, profile: Array) -> LoadState:
     )
 
 
+def _on_sets(state: LoadState, touching: BoolArray) -> Array:
+    """Pressure (n,) [p] on a designed contact set, of either sign; the program has it to its tolerance over λ only."""
+    pressure, _ = solve_active_set(scaled(state.contact), touching)
+    return pressure * state.contact.scales.pressure
+
+
 def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> BestProfile:
     """The best end of all starts."""
     known = set[bytes]()
@@ -175,7 +182,13 @@ def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> BestProf
             ends.append(end)
     if not ends:
         raise SolverError("no convex program of the design had an optimum; look in the mesh for very short elements")
-    return min(ends, key=attrgetter("value"))
+    return _least(ends)
+
+
+def _least(pieces: Sequence[BestProfile]) -> BestProfile:
+    """The first of those with the least value, so that round-off does not choose between equal ones."""
+    least = min(piece.value for piece in pieces)
+    return next(piece for piece in pieces if piece.value <= least + GAIN * abs(least))
 
 
 def _starts(shared: SharedProfile, states: Sequence[CondensedContact]) -> Iterator[BoolArray]:

@@ -119,7 +119,7 @@ class GapDesign(Recorded):
     profile : (n,) g [L], zero off the interval
     coefficients : (s,) of the shapes, if the profile is made of some
     before, after : the load states without and with the profile, by the direct solver
-    designed : (loads, n) pressure [p] by the convex program, which is to agree with that of `after`
+    designed : (loads, n) pressure [p] on the designed contact sets, which is to agree with that of `after`
     value_before, value : of the goal [p], of the contact states
     lower_bound : of the goal within the bounds on the profile [p], by convex relaxation
     proved_optimal : whether the value is at the bound, to a millionth
