@@ -151,7 +151,7 @@ def contact_stretches(
 def _points(run: ZoneRun, contact: CondensedContact, solution: ContactSolution) -> tuple[Array, BoolArray]:
     """Arc lengths of the points of a run in order, and which of them touch; of a closed run all several times over."""
     own = contact.points_of_run(run.number)
-    touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
+    touching = contact.pressed(solution.pressure, solution.displacement)
     arcs, touching = contact.arc_position[own], touching[own]
     if not run.closed:
         return arcs, touching

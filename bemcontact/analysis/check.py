@@ -35,7 +35,7 @@ def check(problem: Problem) -> CheckedProblem:
     body = body_of(problem)
     for acting in each_case(body):
         ensure_held(acting)
-    x, y = body.acting.resultant(body.mesh)
+    x, y = body.acting.true_force
     return CheckedProblem(
         problem=body.problem,
         mesh=body.mesh,

@@ -20,6 +20,8 @@ UNBOUNDED = "the pressure there is infinite in theory, and its values at the las
 """Note on an end of contact where the stresses are singular."""
 LONG_NEIGHBOR = 4.0
 """Length of the element beyond the end of a zone over that inside, above which pressure at that end suffers."""
+SMALL_NET_LOAD = 1e-3
+"""Net load over the sum of the magnitudes of all loads below which it may be due to rounded numbers in the input."""
 LARGE_PRESSURE = 0.5
 """Peak pressure over Young's modulus beyond which displacements are not small."""
 
@@ -28,8 +30,9 @@ def diagnostics(
     contact: CondensedContact, solution: ContactSolution, where: Footprint, body: Body | None
 ) -> Iterator[str]:
     """Notes on a solution; those on mesh and size need a body."""
-    touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
+    touching = contact.pressed(solution.pressure, solution.displacement)
     yield from floating(contact, touching)
+    yield from nearly_balanced(contact)
     yield from few_points(contact, touching, where)
     if body is not None:
         yield from reached_zone_ends(body, touching)
@@ -44,6 +47,16 @@ def floating(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator
         yield (
             f"no contact point carries pressure, so contact does not determine the {motions}; if there should be "
             "contact, check the directions of loads and displaced tools"
+        )
+
+
+def nearly_balanced(contact: CondensedContact) -> Iterator[str]:
+    """Note that what presses the body onto its support is a small difference of large loads."""
+    if 0 < contact.net_load < SMALL_NET_LOAD:
+        yield (
+            f"the loads nearly balance: what drives the {' and the '.join(contact.motion_names)} is "
+            f"{contact.net_load:.1g} of the sum of their magnitudes, and contact carries only that; errors of this "
+            "size in the loads change the contact entirely"
         )
 
 

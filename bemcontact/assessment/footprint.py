@@ -172,7 +172,7 @@ class _Path:
 def _paths(contact: CondensedContact, solution: ContactSolution) -> list[tuple[int, _Path]]:
     """All runs, each with the number of its zone."""
     gap = contact.initial_gap + solution.displacement
-    touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
+    touching = contact.pressed(solution.pressure, solution.displacement)
     pieces = sorted(set(zip(contact.zone.tolist(), contact.run.tolist(), strict=True)))
     return [(zone, _path(contact, zone, run, gap, touching)) for zone, run in pieces]
 
@@ -287,7 +287,7 @@ def _at(path: _Path, position: float) -> Pair:
 def _peak(contact: CondensedContact, pressure: Array) -> Peak | None:
     """The point of largest pressure."""
     i = int(np.argmax(pressure))
-    if pressure[i] <= 0:
+    if not contact.peak(pressure):
         return None
     x, y = contact.points[i]
     return Peak(pressure=float(pressure[i]), at=(float(x), float(y)))

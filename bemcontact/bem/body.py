@@ -66,9 +66,15 @@ class Body:
         return combined(self.loadings, self.factors.tolist())
 
     def motion_load(self, motions: FreeMotions) -> Array:
-        """Work (k, 1 + c) of each loading, forces on tools included, in free motions [p L]."""
-        on_body = np.column_stack([loading.work(self.mesh, motions.body) for loading in self.loadings])
-        return on_body + motions.tools.T @ self.tools.force
+        """Work (k, 1 + c) of each loading, forces on tools included, in free motions [p L]; zero where they balance.
+
+        It is that on the exact curves: the mesh does not decide whether large loads balance.
+        """
+        on_body = np.column_stack([loading.true_work(self.mesh, motions.body) for loading in self.loadings])
+        work = on_body + motions.tools.T @ self.tools.force
+        unit = np.eye(len(self.loadings))
+        total = [self.pinned.total(alone, force) for alone, force in zip(unit, self.tools.force.T, strict=True)]
+        return np.where(abs(work) > BALANCED * np.array(total), work, 0.0)
 
     @cached_property
     def pinned(self) -> Pinned:

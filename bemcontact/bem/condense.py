@@ -151,13 +151,12 @@ def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes
 
 
 def _force_balance(condensation: Condensation, traction: Array) -> float:
-    """Resultant force and moment of everything that acts on the body, over the sum of the magnitudes."""
+    """Resultant force and moment of loads, on the exact curves, and reactions, over the sum of the magnitudes."""
     body = condensation.body
-    mesh, every = body.mesh, all_rigid_motions(body.mesh)
+    mesh, acting, every = body.mesh, body.acting, all_rigid_motions(body.mesh)
     forces = mesh.tributary[..., None] * traction
-    volume = body.acting.particular
-    resultant = every.work(mesh.nodes[mesh.elements], forces) + every.work_of(volume.force, volume.moment)
-    magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + volume.magnitude
+    resultant = every.work(mesh.nodes[mesh.elements], forces - acting.forces(mesh)) + acting.true_work(mesh, every)
+    magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + acting.particular.magnitude
     return float(abs(resultant).max() / magnitude) if magnitude > 0 else 0.0
 
 

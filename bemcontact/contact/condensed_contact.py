@@ -29,6 +29,8 @@ from bemcontact.contact.load_cases import Change, LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
 from bemcontact.options import Weights, named
 
+CANCELLED = 64 * float(np.finfo(float).eps)
+"""Fraction of the terms of a sum below which the sum is round-off."""
 PEAK = 1e-12
 """Fraction of T below which the largest pressure is round-off, so that nothing touches."""
 
@@ -101,7 +103,7 @@ class CondensedContact(MotionAlgebra):
             object.__setattr__(self, "tools", Tools.none(n, k))
         if not len(self.cases):
             object.__setattr__(self, "cases", LoadCases.none(n, k, len(self.tools)))
-        if not len(self.pinned.motions):
+        if not len(self.pinned.motions) and not self.pinned.magnitude.any():
             object.__setattr__(self, "pinned", Pinned.none(len(self.cases), len(self.tools)))
         ensure_parts_fit(self)
         freeze_arrays(self)
@@ -197,9 +199,26 @@ class CondensedContact(MotionAlgebra):
         """Scales with U = ‖M‖∞ T: the larger of those of the load and of the interference.
 
         A load that presses a free body needs the balancing pressure. Interference is the penetration without pressure
-        at the best position of the body. Wide gaps far from contact do not count. If there is neither, U = max|q|.
+        at the best position of the body. Wide gaps far from contact do not count. If there is neither, U is the largest
+        of the terms that are added up in q: what they leave of each other by round-off is no interference.
         """
-        return typical_scales(self.compliance, self.offset, self.rigid_motions, self.balancing_pressure)
+        return typical_scales(
+            self.compliance, self.offset, self.terms_of_offset, self.rigid_motions, self.balancing_pressure
+        )
+
+    @property
+    def terms_of_offset(self) -> Array:
+        """Sum of the magnitudes (n,) [L] of all that is added up in q: ε, Δ1, load cases and displacements of tools."""
+        cases, tools = self.cases, self.tools
+        added, moved = cases.displacement * cases.factors, tools.motions * tools.position
+        permanent = abs(self.free_displacement - added.sum(axis=1)) + abs(self.initial_gap - moved.sum(axis=1))
+        return permanent + abs(added).sum(axis=1) + abs(moved).sum(axis=1)
+
+    @property
+    def net_load(self) -> float:
+        """Largest work of the loads in a free motion, over the sum of their magnitudes; 1 if these are not known."""
+        total = self.pinned.total(np.append(1.0, self.cases.factors), self.tools.force)
+        return float(abs(self.motion_load).max(initial=0.0)) / total if total > 0 else 1.0
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
         """Apply load cases, each by its factor, and no other ones; nothing is condensed anew.
@@ -265,13 +284,18 @@ class CondensedContact(MotionAlgebra):
         return self
 
     def stepped(self, factors: Array, position: Array, force: Array) -> Self:
-        """Add to the factors (c,), and to the displacements (3 t,) and forces (3 t,) of tools, balanced or not."""
+        """Add to the factors (c,), and to the displacements (3 t,) and forces (3 t,) of tools, balanced or not.
+
+        What round-off leaves where terms cancel is zero.
+        """
         cases, tools = self.cases, self.tools
+        loads = np.column_stack([cases.motion_load * factors, tools.amplitudes.T * force])
+        acting = np.append(1.0, cases.factors + factors), tools.force + force
         return replace(
             self,
-            free_displacement=self.free_displacement + cases.displacement @ factors,
-            initial_gap=self.initial_gap + tools.motions @ position,
-            motion_load=self.motion_load + cases.motion_load @ factors + tools.amplitudes.T @ force,
+            free_displacement=_sum(self.free_displacement, cases.displacement * factors),
+            initial_gap=_sum(self.initial_gap, tools.motions * position),
+            motion_load=_sum(self.motion_load, loads, self.pinned.total(*acting)),
             cases=replace(cases, factors=cases.factors + factors),
             tools=replace(tools, position=tools.position + position, force=tools.force + force),
         )
@@ -358,6 +382,10 @@ class CondensedContact(MotionAlgebra):
         U, T = self.scales
         return p / T > (self.initial_gap + u_n) / U
 
+    def pressed(self, pressure: Array, displacement: Array) -> BoolArray:
+        """Which points (n,) are in contact under pressure; none if the largest pressure is round-off beside T."""
+        return self.touching(pressure, displacement) & (pressure > 0) & (self.peak(pressure) > 0)
+
     def peak(self, pressure: Array) -> float:
         """Largest of the pressures p (n,), [p]; zero if it is round-off beside T."""
         peak = float(self._by_point(pressure, "pressure").max(initial=0.0))
@@ -384,3 +412,10 @@ class CondensedContact(MotionAlgebra):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read what `save` wrote; `ProblemError` if the file is something else."""
         return archive.read(file_path(path, "the file to read"), cls)
+
+
+def _sum(start: Array, terms: Array, least: float = 0.0) -> Array:
+    """Sum (m,) of the start (m,) and terms (m, t); zero if it is round-off beside the terms, or beside a least size."""
+    total = start + terms.sum(axis=1)
+    size = np.maximum(abs(start) + abs(terms).sum(axis=1), least)
+    return np.where(abs(total) > CANCELLED * size, total, 0.0)
