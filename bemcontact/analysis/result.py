@@ -155,10 +155,14 @@ class Result(Recorded):
         pressure, gap = np.zeros(boundary.points.shape[:2]), np.full(boundary.points.shape[:2], np.nan)
         for number, name in enumerate(contact.zone_names):
             edges = [boundary.edge_names.index(edge) for edge in problem.contact_zones[name].edges]
-            at = {tuple(contact.points[i]): i for i in np.flatnonzero(contact.zone == number)}
+            own = np.flatnonzero(contact.zone == number)
+            at = {tuple(contact.points[i]): i for i in own}
+            on_run = {(run, *point): i for i in own for run, point in [(contact.run[i], contact.points[i])]}
             for element in np.flatnonzero(np.isin(boundary.edge, edges)):
-                for local, point in enumerate(boundary.points[element]):
-                    if (i := at.get(tuple(point))) is not None:
+                places = [*map(tuple, boundary.points[element])]
+                run = contact.run[at[places[1]]] if places[1] in at else -1
+                for local, place in enumerate(places):
+                    if (i := on_run.get((run, *place), at.get(place))) is not None:
                         pressure[element, local], gap[element, local] = self.solution.pressure[i], gaps[i]
         return pressure, gap
 

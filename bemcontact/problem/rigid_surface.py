@@ -9,12 +9,14 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 from scipy.interpolate import CubicSpline
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.validation import Name, Point, Positive, SpecModel, TaggedUnion, invalid
 
 ON_CORNER = 1e-9
 """Distance of a point from a corner, relative to the extent of line and points, up to which it is on the corner."""
+ALIKE = 1e-9
+"""Difference of two unit normals that counts as none."""
 SAMPLES = 16
 """Number of starting points for the nearest point, between two points of a spline."""
 NEWTON_STEPS = 60
@@ -30,7 +32,31 @@ class Closest(NamedTuple):
     normals: Array
 
 
-class Plane(SpecModel):
+class Faces(NamedTuple):
+    """Gap (k, 3) [L] and unit normals (k, 3, 2) of the faces of a surface that hold points of the boundary of a body.
+
+    The first face is that of the boundary before a point, the last one that of the boundary after it. The face in the
+    middle holds a corner of the body that stands on it, between two others. Nearly everywhere all three are one face.
+    """
+
+    gap: Array
+    normals: Array
+
+
+class _Smooth(SpecModel):
+    """A surface without corners: one face holds both sides of a point."""
+
+    def closest(self, points: Array) -> Closest:
+        """Gap and normal at points (k, 2) [L]."""
+        raise NotImplementedError
+
+    def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
+        """Find the face that holds points (k, 2) [L], as of `Polyline`."""
+        gap, normals = self.closest(points)
+        return Faces(np.repeat(gap[:, None], 3, axis=1), np.repeat(normals[:, None], 3, axis=1))
+
+
+class Plane(_Smooth):
     """An infinite straight surface."""
 
     kind: Literal["plane"] = "plane"
@@ -59,7 +85,7 @@ class Plane(SpecModel):
         return Closest(offset @ normal, np.tile(normal, (len(offset), 1)))
 
 
-class Circle(SpecModel):
+class Circle(_Smooth):
     """A rigid disk with the body outside, or a rigid hole with the body inside."""
 
     kind: Literal["circle"] = "circle"
@@ -92,40 +118,139 @@ class Polyline(SpecModel):
         _ensure_simple(self.points)
         return self
 
+    @cached_property
+    def sides(self) -> "_Sides":
+        """The segments as arrays."""
+        corners = np.array(self.points)
+        steps = np.diff(corners, axis=0)
+        lengths = np.hypot(*steps.T)
+        directions = steps / lengths[:, None]
+        low, high = np.zeros(len(lengths)), lengths.copy()
+        low[0], high[-1] = -np.inf, np.inf
+        return _Sides(corners, directions, np.column_stack([-directions[:, 1], directions[:, 0]]), low, high)
+
     def closest(self, points: Array) -> Closest:
         """Gap and normal at points (k, 2) [L] for the nearest segment.
 
         If a corner is nearest, the normal is radial from the corner. On a corner, up to round-off, the normal is the
         bisector of the normals of both segments.
         """
-        points, corners = np.asarray(points, float), np.array(self.points)
-        sides = np.diff(corners, axis=0)
-        lengths = np.hypot(*sides.T)
-        directions = sides / lengths[:, None]
-        lefts = np.column_stack([-directions[:, 1], directions[:, 0]])
+        points, (corners, _, lefts, _, _) = np.asarray(points, float), self.sides
+        nearest, corner, feet = self._nearest(points)
+        before, after = lefts[np.clip(corner - 1, 0, len(lefts) - 1)], lefts[np.clip(corner, 0, len(lefts) - 1)]
+        offset = points - feet
+        side = np.where(np.einsum("ki,ki->k", offset, before + after) < 0, -1.0, 1.0)
+        radial = _unit(side[:, None] * offset, before + after)
+        normals = np.where((corner >= 0)[:, None], radial, lefts[nearest])
+        if len(corners) > 2:
+            which, distance = self._nearest_corner(points)
+            on = distance <= ON_CORNER * self._extent(points)
+            normals[on] = _unit(lefts[which] + lefts[which + 1], lefts[which])[on]
+        return Closest(np.einsum("ki,ki->k", offset, normals), normals)
+
+    def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
+        """Find the faces that hold points (k, 2) [L] of a boundary with normals (k, 2, 2) into the body on either side.
+
+        In a concave corner of the surface each side of a point has the face to which it is turned, although the other
+        face may be nearer. A convex corner presses on the body along the normals of the body, as far as they lie
+        between those of its faces: on a smooth boundary if it is there, and on both sides of a re-entrant corner of the
+        body up to the distance `reach` (k,) [L].
+        """
+        points, near = np.asarray(points, float), self.closest(points)
+        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in near)
+        if len(self.points) > 2:
+            self._hold_in_grooves(points, inward, gap, normals)
+            self._press_on_ridges(points, inward, reach, gap, normals)
+        return Faces(gap, normals)
+
+    def _hold_in_grooves(self, points: Array, inward: Array, gap: Array, normals: Array) -> None:
+        """Put the face to which each side is turned: that of the nearest segment, or of one that rises beside it.
+
+        If a corner of the body stands on the nearest one, between two others, the face in the middle holds it.
+        """
+        corners, directions, lefts, low, high = self.sides
+        nearest, corner, _ = self._nearest(points)
+        last = len(lefts) - 1
+        facing = np.clip(nearest[:, None] + np.array([0, -1, 1]), 0, last)
+        offset = points[:, None] - corners[facing]
+        along = np.einsum("ksi,ksi->ks", offset, directions[facing])
+        rising = np.column_stack([nearest >= 0, *((nearest > 0, nearest < last) & self._concave_beside(nearest))])
+        rising &= (along >= low[facing]) | (np.arange(3) != 1)
+        rising &= (along <= high[facing]) | (np.arange(3) != 2)
+        held = np.flatnonzero((corner < 0) | self._concave[np.clip(corner - 1, 0, last - 1)])
+        turned = np.einsum("kai,ksi->kas", inward, lefts[facing]) + np.array([ALIKE, 0.0, 0.0])
+        choice = np.where(rising[:, None], turned, -np.inf).argmax(axis=2)[held]
+        stands = (choice > 0).all(axis=1) & (_cross(inward[held, 0], inward[held, 1]) > 0)
+        for column, chosen in enumerate((choice[:, 0], np.where(stands, 0, choice[:, 0]), choice[:, 1])):
+            normals[held, column] = lefts[facing[held, chosen]]
+            gap[held, column] = np.einsum("ki,ki->k", offset[held, chosen], normals[held, column])
+
+    def _press_on_ridges(self, points: Array, inward: Array, reach: Array, gap: Array, normals: Array) -> None:
+        """Put the normals of the body where a convex corner of the surface presses on it."""
+        corners, _, lefts, _, _ = self.sides
+        which, distance = self._nearest_corner(points)
+        re_entrant = _cross(inward[:, 0], inward[:, 1]) < 0
+        there = distance <= ON_CORNER * self._extent(points)
+        pressed = np.flatnonzero(~self._concave[which] & (there | (re_entrant & (distance <= reach))))
+        before, after = lefts[which[pressed]], lefts[which[pressed] + 1]
+        offset, common = points[pressed] - corners[which[pressed] + 1], inward[pressed].sum(axis=1)
+        for side, column in ((0, 0), (0, 1), (1, 2)):
+            own = np.where(re_entrant[pressed, None], inward[pressed, side], common)
+            normals[pressed, column] = _between(own, after, before)
+            gap[pressed, column] = np.einsum("ki,ki->k", offset, normals[pressed, column])
+
+    def beyond_ends(self, points: Array) -> BoolArray:
+        """Whether the surface is nearest to points (k, 2) [L] where it goes on straight beyond its ends."""
+        (corners, directions, _, _, high), (nearest, _, feet) = self.sides, self._nearest(np.asarray(points, float))
+        along = np.einsum("ki,ki->k", feet - corners[nearest], directions[nearest])
+        slack, last = ON_CORNER * self._extent(points), len(high) - 1
+        length = float(np.hypot(*(corners[-1] - corners[-2])))
+        return ((nearest == 0) & (along < -slack)) | ((nearest == last) & (along > length + slack))
+
+    @cached_property
+    def _concave(self) -> BoolArray:
+        """Whether the line turns towards the body at each of its inner corners."""
+        directions = self.sides.directions
+        return _cross(directions[:-1], directions[1:]) > 0
+
+    def _concave_beside(self, segment: IntArray) -> BoolArray:
+        """Whether the line turns towards the body (2, k) where each segment (k,) starts, and where it ends."""
+        last = len(self._concave) - 1
+        return self._concave[np.clip([segment - 1, segment], 0, last)]
+
+    def _nearest(self, points: Array) -> tuple[IntArray, IntArray, Array]:
+        """Nearest segment (k,), its corner that is nearest or -1 (k,), and the nearest point of the line (k, 2)."""
+        corners, directions, _, low, high = self.sides
         along = np.einsum("ksi,si->ks", points[:, None] - corners[:-1], directions)
-        low, high = np.zeros(len(sides)), lengths.copy()
-        low[0], high[-1] = -np.inf, np.inf
         held = np.clip(along, low, high)
         feet = corners[:-1] + held[:, :, None] * directions
         nearest = np.argmin(np.hypot(*np.moveaxis(points[:, None] - feet, 2, 0)), axis=1)
         rows = np.arange(len(points))
-        corner = nearest + (along > high)[rows, nearest]
-        at_corner = (held != along)[rows, nearest]
-        before, after = lefts[np.clip(corner - 1, 0, len(sides) - 1)], lefts[np.clip(corner, 0, len(sides) - 1)]
-        offset = points - feet[rows, nearest]
-        side = np.where(np.einsum("ki,ki->k", offset, before + after) < 0, -1.0, 1.0)
-        radial = _unit(side[:, None] * offset, before + after)
-        normals = np.where(at_corner[:, None], radial, lefts[nearest])
-        inner = corners[1:-1]
-        distances = np.hypot(*np.moveaxis(points[:, None] - inner, 2, 0))
-        size = np.ptp(np.concatenate([points, corners]), axis=0).max(initial=0.0)
-        on, which = np.nonzero(distances <= ON_CORNER * size)
-        normals[on] = _unit(lefts[which] + lefts[which + 1], lefts[which])
-        return Closest(np.einsum("ki,ki->k", offset, normals), normals)
+        corner = np.where((held != along)[rows, nearest], nearest + (along > high)[rows, nearest], -1)
+        return nearest, corner, feet[rows, nearest]
+
+    def _nearest_corner(self, points: Array) -> tuple[IntArray, Array]:
+        """Nearest inner corner (k,), counted from 0, and its distance (k,) [L]."""
+        distances = np.hypot(*np.moveaxis(np.asarray(points)[:, None] - self.sides.corners[1:-1], 2, 0))
+        which = distances.argmin(axis=1)
+        return which, distances[np.arange(len(which)), which]
+
+    def _extent(self, points: Array) -> float:
+        """Extent of line and points [L], the scale of round-off."""
+        return float(np.ptp(np.concatenate([points, self.sides.corners]), axis=0).max(initial=0.0))
 
 
-class Spline(SpecModel):
+class _Sides(NamedTuple):
+    """Corners (s + 1, 2), directions and left normals (s, 2) of segments, and their range (s,) of arc length [L]."""
+
+    corners: Array
+    directions: Array
+    lefts: Array
+    low: Array
+    high: Array
+
+
+class Spline(_Smooth):
     """A smooth curve through points with the body on its left; it continues straight beyond both ends.
 
     Both coordinates are natural cubic splines of the length along the chords.
@@ -262,6 +387,17 @@ def _ensure_simple(points: tuple[Point, ...]) -> None:
 def _of_length_one(vector: Point) -> Point:
     length = float(np.hypot(*vector))
     return vector[0] / length, vector[1] / length
+
+
+def _cross(a: Array, b: Array) -> Array:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def _between(vectors: Array, first: Array, last: Array) -> Array:
+    """Unit vectors along vectors (k, 2), or the nearer of two unit normals where these are not on either side."""
+    inside = (_cross(first, vectors) >= 0) & (_cross(vectors, last) >= 0)
+    nearer = np.einsum("ki,ki->k", vectors, first) > np.einsum("ki,ki->k", vectors, last)
+    return np.where(inside[:, None], _unit(vectors, last), np.where(nearer[:, None], first, last))
 
 
 def _unit(vectors: Array, otherwise: Array) -> Array:
