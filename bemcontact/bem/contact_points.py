@@ -295,8 +295,8 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
 def _first_alike(mesh: Mesh, node: IntArray, normals: Array, gap: Array, tool: Sequence[str | None]) -> IntArray:
     """The first point (n,) with the same node, normal, gap and tool: zones that meet on one surface share it."""
     first = np.arange(len(node))
-    for j in np.flatnonzero(np.bincount(node)[node] > 1):
-        for i in np.flatnonzero(node[:j] == node[j]):
+    for j in np.flatnonzero(np.bincount(node)[node] > 1).tolist():
+        for i in np.flatnonzero(node[:j] == node[j]).tolist():
             alike = tool[i] == tool[j] and np.hypot(*(normals[i] - normals[j])) <= ALIKE
             if alike and abs(gap[i] - gap[j]) <= ALIKE * mesh.size:
                 first[j] = first[i]

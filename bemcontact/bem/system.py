@@ -232,8 +232,11 @@ class System:
         first = int((self.unknowns.displacement >= 0).sum())
         columns = self.unknowns.traction[self.influence.traction_elements] - first
         factors = np.ones(self.unknowns.size - first)
-        at = [np.nonzero(columns[..., axis] >= 0) for axis in range(2)]
-        return [self._carried(*pair, columns[*pair, axis], factors) for axis, pair in enumerate(at)]
+        carried = []
+        for axis in range(2):
+            element, local = np.nonzero(columns[..., axis] >= 0)
+            carried.append(self._carried(element, local, columns[element, local, axis], factors))
+        return carried
 
     @cached_property
     def _unit_pressures(self) -> list[_Carried]:

@@ -84,7 +84,10 @@ def _conditions_of_contours(zones: RawValue) -> Iterator[RawValue]:
 def _repeated_edge(edge: str, first: str, second: str) -> str:
     if first == second:
         return f"edge '{edge}' occurs twice in the zone; list it once"
-    return f"edge '{edge}' is already in the contact zone '{first}'; an edge can touch only one surface"
+    return (
+        f"edge '{edge}' is already in the contact zone '{first}', and an edge can touch only one surface; divide it "
+        "into two edges, one for each surface, or state both surfaces as one polyline, the surface of one zone"
+    )
 
 
 def tool_issues(tools: RawValue, zones: RawValue) -> Iterator[Issue]:
