@@ -14,7 +14,8 @@ from bemcontact.arrays import BoolArray
 from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.condense import boundary_state
 from bemcontact.bem.mesh import BoundaryState
-from bemcontact.bem.surface_gaps import Outline, SurfaceGaps
+from bemcontact.bem.outline import Outline
+from bemcontact.bem.surface_gaps import SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath

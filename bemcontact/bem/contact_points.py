@@ -10,8 +10,10 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import BoundaryValues, Mesh
+from bemcontact.bem.outline import Outline
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import Closest, DeflectedContour, RigidSurface
+from bemcontact.problem.rigid_surface import DeflectedContour, RigidSurface
+from bemcontact.problem.surface_lines import Closest, Polyline
 
 PARALLEL = 1e-9
 """Sine of the angle below which the rigid normal lies along a prescribed axis."""
@@ -19,6 +21,8 @@ ALIKE = 1e-9
 """Difference of two normals, or of two gaps over the size of the body, at one node that counts as none."""
 SMOOTH = 0.05
 """Sine of the angle between elements below which the boundary is smooth: quadratic elements on a curve kink a bit."""
+ROUGH = 1e-7
+"""Difference of the unit normals of two edges below which they meet smoothly."""
 ARC_ORDER = 12
 """Gauss points for arc lengths and the consistent weights."""
 
@@ -133,7 +137,7 @@ def contact_points(
     pieces: list[_Piece] = []
     for number, (name, zone) in enumerate(problem.contact_zones.items()):
         in_zone = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in zone.edges])
-        faces = _faces(zone.surface, mesh, halves, deflections.get(name))
+        faces = _faces(problem, zone.surface, mesh, halves, deflections.get(name))
         for elements, closed in _between_corners(mesh, _runs(mesh, in_zone), faces):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
             gap, normals = faces.along(nodes, closed=closed)
@@ -167,27 +171,29 @@ class _NodeFaces(NamedTuple):
         return Closest(self.gap[nodes, side], self.normals[nodes, side])
 
 
-def _faces(surface: RigidSurface, mesh: Mesh, halves: Array, deflection: Array | None) -> _NodeFaces:
+def _faces(problem: Problem, surface: RigidSurface, mesh: Mesh, halves: Array, deflection: Array | None) -> _NodeFaces:
     """Faces of a surface at all nodes, or of the deflected contour."""
     if isinstance(surface, DeflectedContour):
         assert deflection is not None
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.behind(deflection))
+    elif isinstance(surface, Polyline):
+        gap, normals = surface.faces(mesh.nodes, *_sides_of_nodes(problem, mesh, halves))
     else:
-        gap, normals = surface.faces(mesh.nodes, *_sides_of_nodes(mesh, halves))
+        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.closest(mesh.nodes))
     other = np.hypot(*np.moveaxis(normals - normals[:, [2, 0, 0]], 2, 0)) > ALIKE
     return _NodeFaces(gap, normals, other | (abs(gap - gap[:, [2, 0, 0]]) > ALIKE * mesh.size))
 
 
-def _sides_of_nodes(mesh: Mesh, halves: Array) -> tuple[Array, Array]:
+def _sides_of_nodes(problem: Problem, mesh: Mesh, halves: Array) -> tuple[Array, Array]:
     """Normals (N, 2, 2) into the body before and after each node, and the distance (N,) [L] that is near to it.
 
-    Elements of one edge, and those that meet smoothly, have a common normal. A middle node has one normal.
+    They are those of the edges themselves, and equal where these are smooth up to round-off.
     """
-    before, inward = mesh.before, -mesh.normals
+    before, elements = mesh.before, np.arange(len(mesh.elements))
+    inward = Outline(problem=problem).places(elements, np.tile(reference_element.NODES, (len(elements), 1))).inward
     ends = np.stack([inward[before, 2], inward[:, 0]], axis=1)
-    smooth = (mesh.edge == mesh.edge[before]) | (abs(mesh.inner_angles - np.pi) < SMOOTH)
-    ends[smooth] = ends[smooth].mean(axis=1, keepdims=True)
-    ends /= np.hypot(ends[..., 0], ends[..., 1])[..., None]
+    smooth = np.hypot(*(ends[:, 1] - ends[:, 0]).T) < ROUGH
+    ends[smooth] = ends[smooth, :1]
     middles = np.repeat(inward[:, 1, None], 2, axis=1)
     near = np.minimum(halves[before, 1], halves[:, 0])
     return np.concatenate([ends, middles]), np.concatenate([near, np.zeros(len(near))])

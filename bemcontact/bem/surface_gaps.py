@@ -5,8 +5,7 @@ that of the elements.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -14,11 +13,11 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import BoundaryState
+from bemcontact.bem.outline import SAMPLES, Outline, Places
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import Closest, DeflectedContour, Shape
+from bemcontact.problem.rigid_surface import DeflectedContour, Shape
+from bemcontact.problem.surface_lines import Closest
 
-SAMPLES = np.linspace(-1.0, 1.0, 17)
-"""Local coordinates at which the boundary is compared with a surface."""
 NODES = [0, len(SAMPLES) // 2, -1]
 """Which of them are nodes."""
 CHUNK = 8192
@@ -29,50 +28,6 @@ SAME_FACE = 0.98
 """Cosine of the angle between two normals of a surface up to which they belong to the same face."""
 DIP = 1 / 8
 """Largest dip of a quadratic below zero between three nodes, over the largest of its values there, if none is below."""
-
-
-class Places(NamedTuple):
-    """Places (k, q, 2) [L] on elements, with unit normals (k, q, 2) into the body."""
-
-    points: Array
-    inward: Array
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Outline:
-    """The curves of the edges under the elements of a mesh; places at `SAMPLES` are computed once."""
-
-    problem: Problem
-    samples: dict[int, tuple[Array, Array]] = field(default_factory=dict)
-
-    @cached_property
-    def _elements(self) -> tuple[IntArray, Array]:
-        """Number (m,) of the edge of each element, and the fractions (m, 2) of its length between which it is."""
-        ends = [edge.breakpoints(self.problem.mesh.refine) for edge in self.problem.boundary.edges]
-        number = np.repeat(np.arange(len(ends)), [len(item) - 1 for item in ends])
-        return number, np.concatenate([np.column_stack([item[:-1], item[1:]]) for item in ends])
-
-    def places(self, elements: IntArray, xi: Array) -> Places:
-        """Places at the local coordinates ξ (k, q) of elements (k,)."""
-        of_edge, fractions = self._elements
-        points, inward = np.empty((*xi.shape, 2)), np.empty((*xi.shape, 2))
-        first, last = fractions[elements].T[..., None]
-        along = first + (last - first) * (1 + xi) / 2
-        for number in np.unique(of_edge[elements]):
-            edge, on = self.problem.boundary.edges[number], of_edge[elements] == number
-            flat = along[on].ravel()
-            points[on] = edge.points(flat).reshape(-1, xi.shape[1], 2)
-            inward[on] = -edge.normals(flat).reshape(-1, xi.shape[1], 2)
-        return Places(points, inward)
-
-    def sampled(self, elements: IntArray) -> Places:
-        """Places at `SAMPLES` of elements (k,)."""
-        missing = np.array([i for i in elements.tolist() if i not in self.samples], int)
-        if len(missing):
-            new = self.places(missing, np.tile(SAMPLES, (len(missing), 1)))
-            self.samples.update(zip(missing.tolist(), zip(*new, strict=True), strict=True))
-        points, inward = zip(*(self.samples[i] for i in elements.tolist()), strict=True)
-        return Places(np.array(points), np.array(inward))
 
 
 class Intrusion(NamedTuple):

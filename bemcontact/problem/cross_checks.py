@@ -15,7 +15,8 @@ from bemcontact.problem.geometry import MOST_ELEMENTS, Line
 from bemcontact.problem.key_path import RawValue
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.reference import Hertz, Table, Values
-from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, Polyline, RigidSurface, Shape, Spline
+from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, RigidSurface, Shape
+from bemcontact.problem.surface_lines import Polyline, Spline
 from bemcontact.problem.validation import KeyIssue, unknown_word
 
 LARGEST_TURNING = radians(60)
