@@ -47,7 +47,7 @@ ROOMS = {
 
 EXCEPTIONS = {
     ("report.figures", "bem.mesh"): "figures draw elements, and the values that are prescribed on them",
-    ("modelling", "problem.rigid_surface"): "a designed gap is written as a rigid surface of a spec",
+    ("modelling", "problem.surface_lines"): "a designed gap is written as a rigid surface of a spec",
 }
 """(Who imports, what) -> why. There is no other exception to `ROOMS`."""
 

@@ -84,6 +84,8 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
     for number in range(len(points.run_length)):
         own = middle & (points.run[points.point] == number)
         elements = points.element[own]
+        if not len(elements):
+            continue  # a corner of the body that stands on a face by itself
         names = [mesh.edge_names[i] for i in dict.fromkeys(mesh.edge[elements].tolist())]
         edges = tuple(problem.edge(name) for name in names)
         closed = bool(np.isfinite(points.run_length[number]))

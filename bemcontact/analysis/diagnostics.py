@@ -11,6 +11,7 @@ from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import element_lengths
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.problem.surface_lines import Polyline, Spline
 
 FEW_POINTS = 5
 """Points under pressure below which a contact is not resolved: three make a parabola, two more its ends."""
@@ -37,6 +38,7 @@ def diagnostics(
     if body is not None:
         yield from reached_zone_ends(body, touching)
         yield from long_neighbors(body, touching)
+        yield from beyond_ends(body, touching)
         yield from large_pressure(body, where)
 
 
@@ -112,6 +114,22 @@ def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
                 f"pressure acts at ({x:.5g}, {y:.5g}), the end of the zone '{_zone(body, i)}', beyond which an element "
                 f"of '{mesh.edge_names[mesh.edge[outside]]}' is {times:.2g} times as long as that in the zone: the "
                 "pressure there is less accurate; grade that edge towards the zone"
+            )
+
+
+def beyond_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Note contact with the straight continuation of a polyline or a spline beyond its ends."""
+    points = body.points
+    for number, (name, zone) in enumerate(body.problem.contact_zones.items()):
+        if not isinstance(zone.surface, Polyline | Spline):
+            continue
+        pressed = body.mesh.nodes[points.node[touching & (points.zone == number)]]
+        beyond = pressed[zone.surface.beyond_ends(pressed)] if len(pressed) else pressed
+        if len(beyond):
+            x, y = beyond[0]
+            yield (
+                f"contact in {name} at ({x:.5g}, {y:.5g}) is with the straight continuation of its {zone.surface.kind} "
+                "beyond the last point: the line has no ends; if the surface ends there, add a point that leads away"
             )
 
 

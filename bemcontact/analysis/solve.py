@@ -8,6 +8,7 @@ from typing import Unpack
 
 from bemcontact.adaptivity.fitting import MeshFit, fitted
 from bemcontact.analysis.diagnostics import diagnostics
+from bemcontact.analysis.penetration import penetration, surface_gaps
 from bemcontact.analysis.result import Result
 from bemcontact.arguments import ensure_callable, shown
 from bemcontact.assessment.certificate import certify
@@ -196,11 +197,14 @@ def assessed(
     with watch.stage("assessment"):
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
-        where = footprint(contact, solution)
+        where, deepest, unseen = footprint(contact, solution), None, ()
+        if boundary is not None and isinstance(problem, Problem):
+            deepest, unseen = penetration(surface_gaps(problem, boundary, contact, solution), contact)
         notes = (
             *(() if fit is None else fit.notes),
             *contact.notes,
             *solution.notes,
+            *unseen,
             *diagnostics(contact, solution, where, None if condensation is None else condensation.body),
         )
     gap = contact.initial_gap + solution.displacement
@@ -213,6 +217,7 @@ def assessed(
         residuals=recomputed,
         certificate=certificate,
         footprint=where,
+        penetration=deepest,
         boundary=boundary,
         degrees_of_freedom=None if condensation is None else condensation.body.mesh.degrees_of_freedom,
         notes=notes,

@@ -138,7 +138,8 @@ def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes
     displacement, traction = system.fields(z, body.acting)
     displacement += body.seen.body.displacement(mesh.nodes) @ amplitudes
     points = body.points
-    traction[points.element, points.local] += pressure[points.point, None] * points.normals[points.point]
+    carried = pressure[points.point, None] * points.normals[points.point]
+    np.add.at(traction, (points.element, points.local), carried)
     return BoundaryState(
         points=mesh.nodes[mesh.elements],
         displacement=displacement[mesh.elements],

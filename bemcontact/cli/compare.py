@@ -63,7 +63,7 @@ def compare(
             summary=lambda: text.study_summary(study),
             json=study.to_json,
             holds=study.certified,
-            verdict=study.finest.comparison.verdict,
+            verdict=study.verdict,
         )
 
     run("reading", work, source=source, folder=out, json_file=json_file)

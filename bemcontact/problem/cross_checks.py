@@ -15,7 +15,8 @@ from bemcontact.problem.geometry import MOST_ELEMENTS, Line
 from bemcontact.problem.key_path import RawValue
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.reference import Hertz, Table, Values
-from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, Polyline, RigidSurface, Shape, Spline
+from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, RigidSurface, Shape
+from bemcontact.problem.surface_lines import Polyline, Spline
 from bemcontact.problem.validation import KeyIssue, unknown_word
 
 LARGEST_TURNING = radians(60)
@@ -84,7 +85,10 @@ def _conditions_of_contours(zones: RawValue) -> Iterator[RawValue]:
 def _repeated_edge(edge: str, first: str, second: str) -> str:
     if first == second:
         return f"edge '{edge}' occurs twice in the zone; list it once"
-    return f"edge '{edge}' is already in the contact zone '{first}'; an edge can touch only one surface"
+    return (
+        f"edge '{edge}' is already in the contact zone '{first}', and an edge can touch only one surface; divide it "
+        "into two edges, one for each surface, or state both surfaces as one polyline, the surface of one zone"
+    )
 
 
 def tool_issues(tools: RawValue, zones: RawValue) -> Iterator[Issue]:

@@ -140,9 +140,14 @@ def _contents(report: Record) -> dict[str, Any]:
         "acting": " + ".join(
             f"{factor:g} {case}" for case, factor in compared["contact"]["load_factors"].items() if factor
         ),
-        "uncertified": [item["refine"] for item in report["levels"][:-1] if not item["comparison"]["certified"]],
+        "uncertified": [item["refine"] for item in report["levels"][:-1] if not _certified(item)],
         "stages": [*dict.fromkeys(stage for item in report["levels"] for stage in item["seconds"])],
     }
+
+
+def _certified(level: Record) -> bool:
+    """Whether all is certified on a mesh."""
+    return level["comparison"]["certified"] and level["penetration"] is None
 
 
 def _quality(outcome: str) -> str:
@@ -157,7 +162,9 @@ def _headline(report: Record, compared: Record) -> str:
     outcomes = Counter(item["verdict"]["outcome"] for item in compared["contenders"])
     counted = (f"{count} {OUTCOMES[Outcome(name)].predicate[count > 1]}" for name, count in outcomes.items())
     direct = OUTCOMES[Outcome(compared["reference"]["verdict"]["outcome"])].of_direct
-    return f"Of {len(compared['contenders'])} settings {', '.join(counted)}. {sentence_case(direct)}."
+    deepest = report["levels"][-1]["penetration"]
+    first = "" if deepest is None else f"{deepest['words']} "
+    return f"{first}Of {len(compared['contenders'])} settings {', '.join(counted)}. {sentence_case(direct)}."
 
 
 def _facts(level: Record, units: Units) -> list[tuple[str, str]]:

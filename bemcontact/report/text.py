@@ -167,7 +167,9 @@ def cases_summary(cases: CaseResults) -> RenderableType:
 def uncertified(results: Result | CaseResults) -> str:
     """Why a result, or each load case that is not certified, is not."""
     if isinstance(results, Result):
-        return certificate_sentence(results.solution, results.certificate)
+        deepest = results.penetration
+        proved = certificate_sentence(results.solution, results.certificate)
+        return proved if deepest is None else f"{deepest.words} At the contact points: {proved}"
     return " ".join(f"{name}: {uncertified(item)}" for name, item in results.results.items() if not item.certified)
 
 
@@ -228,7 +230,9 @@ def path_sentence(path: ParameterPath) -> str:
     exact = f"The largest natural residual at a breakpoint is {path.residual:.0e}."
     if path.certified:
         return f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
-    return " ".join((*(f"{sentence_case(note)}." for note in path.notes), exact))
+    deepest = () if path.penetration is None else (path.penetration.words,)
+    where = () if path.penetrates_at is None else (f"This is at {path.key} = {number(path.penetrates_at)}.",)
+    return " ".join((*deepest, *where, *(f"{sentence_case(note)}." for note in path.notes), exact))
 
 
 def _cells(contact: CondensedContact, state: PathState) -> list[str]:
@@ -309,8 +313,8 @@ def study_summary(study: Study) -> RenderableType:
         add(shown, "Meshes", study.convergence.remark)
     for note in answer.notes:
         add(shown, "Note", note)
-    words = [sentence_case(compared.verdict), *_uncertified_meshes(study)]
-    add_verdict(shown, "certified" if study.certified else compared.heading, study.certified, " ".join(words))
+    words = [sentence_case(study.verdict), *_uncertified_meshes(study)]
+    add_verdict(shown, study.heading, study.certified, " ".join(words))
     scores = _score_table(level, units_of(answer.contact))
     tables = [
         _contender_table(compared),
@@ -324,7 +328,7 @@ def study_summary(study: Study) -> RenderableType:
 
 def _uncertified_meshes(study: Study) -> Iterator[str]:
     """Name coarser meshes on which not all is certified."""
-    coarser = [f"{level.refine}" for level in study.levels[:-1] if not level.comparison.certified]
+    coarser = [f"{level.refine}" for level in study.levels[:-1] if not level.certified]
     if coarser:
         yield f"On the coarser mesh{'es' * (len(coarser) > 1)} (refine {', '.join(coarser)}) not all is certified."
 

@@ -13,7 +13,7 @@ from bemcontact.assessment.residual import Residuals
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
-from bemcontact.problem.rigid_surface import Polyline, Spline
+from bemcontact.problem.surface_lines import Polyline, Spline
 from bemcontact.serialization import Pairs, Record, Recorded, Vector
 
 AGREED = 1e-6
