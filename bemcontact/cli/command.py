@@ -48,7 +48,8 @@ class Source:
         typer.Option(
             "--set",
             metavar="KEY.PATH=VALUE",
-            help="Replace one value of the spec before it is checked; repeatable.",
+            help="Replace one value of the spec, stated or at its default, before it is checked; repeatable. It adds no "
+            "zone, tool or load case.",
             show_default=False,
         ),
     ] = None
@@ -80,6 +81,12 @@ class Source:
 
         problem = spec.load(self.spec, self.changes, self.variant).refined(refine)
         return problem.with_value("mesh.fit_contact_edges", True) if fit_edges else problem
+
+    def readable(self):
+        """What can be read of a problem that is refused, for a picture; None without a sound boundary."""
+        from bemcontact import spec
+
+        return spec.readable(self.spec, self.changes, self.variant)
 
     def as_run(self) -> str:
         """The spec with all changes, as YAML."""
