@@ -200,7 +200,7 @@ def assessed(
             *(() if fit is None else fit.notes),
             *contact.notes,
             *solution.notes,
-            *diagnostics(contact, solution, where, None if condensation is None else condensation.body),
+            *diagnostics(contact, solution, where, None if condensation is None else condensation.body, boundary),
         )
     gap = contact.initial_gap + solution.displacement
     return Result(

@@ -21,10 +21,9 @@ def edge(i, kind, first, last):
     name = f"e{i}"
     if kind == "line":
         return Line(name=name, start=corner(first), end=corner(last), elements=8)
-    shape = {"angles": (360 * first, 360 * last), "radius": RADIUS}
     if kind == "ends":
-        shape = {"start": corner(first), "end": corner(last)}
-    return Arc(name=name, center=(0, 0), elements=8, **shape)
+        return Arc(name=name, center=(0, 0), start=corner(first), end=corner(last), elements=8)
+    return Arc(name=name, center=(0, 0), radius=RADIUS, angles=(360 * first, 360 * last), elements=8)
 
 
 @st.composite
