@@ -43,7 +43,7 @@ def reader(kind: type[int | float | StrEnum], least: int | None = None, *, finit
     return read
 
 
-def _expected(kind: type[int | float | StrEnum], least: int | None) -> str:
+def _expected(kind: type[Any], least: int | None) -> str:
     """Name the values that an option takes."""
     if issubclass(kind, StrEnum):
         return f"one of {', '.join(kind)}"
