@@ -101,39 +101,3 @@ def test_no_color_is_respected(block: Path):
     colour = re.compile(r"\x1b\[[0-9;]*3[0-9]")
     assert colour.search(coloured.stdout)
     assert not colour.search(plain.stdout)
-
-
-@pytest.mark.parametrize(
-    ("command", "option", "expected"),
-    [
-        ("solve", "--formulation", "one of qp1, qp2, qp3, complementarity"),
-        ("solve", "--weights", "one of tributary, consistent, element_length"),
-        ("solve", "--rows", "one of stiffness, compliance"),
-        ("solve", "--equilibrium", "one of constraint, penalty"),
-        ("path", "--to", "a number"),
-        ("path", "--from", "a number"),
-        *((command, "--refine", "a whole number of at least 1") for command in ("solve", "check", "condense", "path")),
-        ("solve", "--max-iterations", "a whole number of at least 1"),
-        ("solve", "--starts", "a whole number of at least 1"),
-        ("solve", "--seed", "a whole number of at least 0"),
-        ("compare", "--starts", "a whole number of at least 1"),
-        ("compare", "--seed", "a whole number of at least 0"),
-    ],
-)
-@pytest.mark.parametrize("value", ["foo", "", "-7.5e", "1/2", "½", "nan", "inf", "1e999", "1,5", "[bold]"])
-def test_a_wrong_value_of_an_option_is_told_what_is_expected(command: str, option: str, expected: str, value: str):
-    answer = run(command, "no file", option, value)
-    words = re.sub(r"[\s│]+", " ", answer.stderr)
-    assert answer.exit_code == 2
-    assert f"Invalid value for '{option}': expected {expected}, found '{value}'" in words
-    assert "Value error" not in words
-
-
-@pytest.mark.parametrize("value", ["foo", "", "1/2", "1,5"])
-def test_a_penalty_that_is_no_number_is_told_what_is_expected(value: str):
-    assert f"expected a number, found '{value}'" in run("solve", "no file", "--penalty", value).stderr
-
-
-def test_a_mesh_that_is_too_fine_is_told_by_its_option(block: Path):
-    for parts in ("10000", "1000000000000"):
-        assert_refused(run("solve", block, "--refine", parts), f"--refine {parts}: ")
