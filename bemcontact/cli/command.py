@@ -27,8 +27,8 @@ STANDARD_OUTPUT = Path("-")
 """The file name that means standard output."""
 
 
-def reader(kind: type[int | float | StrEnum], least: int | None = None, *, finite: bool = True) -> Callable[[Any], Any]:
-    """A parser of an option that says in words what it expects; typer's own words are those of a programmer."""
+def reader(kind: type[Any], least: int | None = None, *, finite: bool = True) -> Callable[[Any], Any]:
+    """A parser of an option that says in plain words what it expects."""
 
     def read(text: Any) -> Any:
         try:
