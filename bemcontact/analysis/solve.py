@@ -205,7 +205,7 @@ def assessed(
             *contact.notes,
             *solution.notes,
             *unseen,
-            *diagnostics(contact, solution, where, None if condensation is None else condensation.body),
+            *diagnostics(contact, solution, where, None if condensation is None else condensation.body, boundary),
         )
     gap = contact.initial_gap + solution.displacement
     return Result(

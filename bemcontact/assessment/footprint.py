@@ -8,6 +8,7 @@ from pydantic import computed_field
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import BALANCED
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.serialization import Internal, Leaf, Pair, Record
 
@@ -59,7 +60,7 @@ class Resultant:
     moment: float
     """Its moment about the origin, counterclockwise, per thickness [p L²]."""
     line_point: Pair | None
-    """Point of the line of action that is nearest to the origin [L]; None without a force."""
+    """Point of the line of action that is nearest to the origin [L]; None if the contact forces balance each other."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -300,5 +301,6 @@ def _resultant(contact: CondensedContact, pressure: Array) -> Resultant:
     fx, fy = map(float, forces.sum(axis=0))
     moment = float((x * forces[:, 1] - y * forces[:, 0]).sum())
     square = fx**2 + fy**2
-    line_point = (moment * fy / square, -moment * fx / square) if square > 0 else None
+    acts = square > (BALANCED * np.hypot(*forces.T).sum()) ** 2  # else the force, and so its line, is round-off
+    line_point = (moment * fy / square, -moment * fx / square) if acts else None
     return Resultant(force=(fx, fy), moment=moment, line_point=line_point)

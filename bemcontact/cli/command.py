@@ -2,10 +2,13 @@
 
 import inspect
 import json
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass
+from enum import StrEnum
 from functools import wraps
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, TypeVar, get_type_hints
 
@@ -23,7 +26,34 @@ UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 STANDARD_OUTPUT = Path("-")
 """The file name that means standard output."""
 
-RefineOption = Annotated[int, typer.Option(min=1, metavar="K", help="Split each element into K equal parts.")]
+
+def reader(kind: type[Any], least: int | None = None, *, finite: bool = True) -> Callable[[Any], Any]:
+    """A parser of an option that says in plain words what it expects."""
+
+    def read(text: Any) -> Any:
+        try:
+            value = kind(text.strip() if isinstance(text, str) else text)
+        except (ValueError, OverflowError):
+            value = None
+        if value is None or (least is not None and value < least) or (kind is float and finite and not isfinite(value)):
+            hint = "; the decimal sign is a point" if kind is float and re.fullmatch(r"[-+]?\d+,\d+", text) else ""
+            raise typer.BadParameter(f"expected {_expected(kind, least)}, found '{text[:40]}'{hint}")
+        return value
+
+    return read
+
+
+def _expected(kind: type[Any], least: int | None) -> str:
+    """Name the values that an option takes."""
+    if issubclass(kind, StrEnum):
+        return f"one of {', '.join(kind)}"
+    return "a number" if kind is float else f"a whole number{'' if least is None else f' of at least {least}'}"
+
+
+RefineOption = Annotated[
+    int, typer.Option(parser=reader(int, 1), metavar="K", help="Split each element into K equal parts.")
+]
+read_number = reader(float)
 FitOption = Annotated[
     bool,
     typer.Option("--fit-edges", help="Solve first, then grade the contact zones towards the ends of contact."),
@@ -48,7 +78,8 @@ class Source:
         typer.Option(
             "--set",
             metavar="KEY.PATH=VALUE",
-            help="Replace one value of the spec before it is checked; repeatable.",
+            help="Replace one value of the spec, stated or at its default, before it is checked; repeatable. "
+            "It adds no zone, tool or load case.",
             show_default=False,
         ),
     ] = None
@@ -78,8 +109,18 @@ class Source:
         """Read the problem, with each element split and the mesh fitted to the ends of contact as asked for."""
         from bemcontact import spec
 
-        problem = spec.load(self.spec, self.changes, self.variant).refined(refine)
+        problem = spec.load(self.spec, self.changes, self.variant)
+        try:
+            problem = problem.refined(refine)
+        except ProblemError as error:
+            raise OptionError(f"--refine {refine}: {'; '.join(issue.message for issue in error.issues)}") from None
         return problem.with_value("mesh.fit_contact_edges", True) if fit_edges else problem
+
+    def readable(self):
+        """What can be read of a problem that is refused, for a picture; None without a sound boundary."""
+        from bemcontact import spec
+
+        return spec.readable(self.spec, self.changes, self.variant)
 
     def as_run(self) -> str:
         """The spec with all changes, as YAML."""
@@ -96,18 +137,24 @@ class Source:
 
 def option(kind: type[SolveOptions | ComparisonOptions], name: str) -> Any:
     """An option of the command line as `SolveOptions` or `ComparisonOptions` declares it."""
-    about = next(item.metadata for item in fields(kind) if item.name == name)
-    return typer.Option(
-        metavar=about["metavar"],
-        help=about["meaning"],
-        min=about["least"],
-        show_default=about["shown"],
-        parser=_start if name == "start" else None,
-    )
+    item = next(item for item in fields(kind) if item.name == name)
+    about, default = item.metadata, item.default
+    parser, metavar = None, about["metavar"]
+    if name == "start":
+        parser = _start
+    elif about["least"] is not None:
+        parser = reader(int, about["least"])
+    elif isinstance(default, StrEnum):
+        parser, metavar = reader(type(default)), f"<{'|'.join(type(default))}>"
+    elif isinstance(default, float):
+        parser = reader(float, finite=False)  # the options state the range
+    return typer.Option(metavar=metavar, help=about["meaning"], show_default=about["shown"], parser=parser)
 
 
 def _start(text: str) -> StartName | Path:
     """Read --start: a name, or else a file."""
+    if not text.strip():
+        raise typer.BadParameter(f"expected {', '.join(StartName)} or the name of a file, found nothing")
     return StartName(text) if text in [*StartName] else Path(text)
 
 

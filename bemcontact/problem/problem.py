@@ -122,12 +122,12 @@ class Variant(SpecModel):
         paths, issues = {}, []
         for key in self.set:
             try:
-                paths[key] = existing_path(data, parsed_path(key))
+                path = parsed_path(key)
+                if path[0] == "variants":
+                    raise ProblemError("a variant cannot change variants; remove this value")
+                paths[key] = existing_path(data, path)
             except ProblemError as error:
                 issues += [Issue(path=("set", key), message=str(item)) for item in error.issues]
-                continue
-            if paths[key][0] == "variants":
-                issues.append(Issue(path=("set", key), message="a variant cannot change variants; remove this value"))
         if issues:
             raise ProblemError(issues)
         return paths
@@ -388,7 +388,7 @@ class Problem(SpecModel):
         Parameters
         ----------
         path : key path such as ``material.young_modulus`` or ``boundary.outer[2].elements``; an edge may be given by
-            its name, ``boundary.outer.top.elements``
+            its name, ``boundary.outer.top.elements``. Zones, tools and load cases are changed, none is added.
         value : the new value, of the form that a spec has there
 
         Raises

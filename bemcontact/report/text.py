@@ -81,11 +81,8 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
         add(shown, "Tool", f"{name}, the surface of {' and '.join(tool.zones)}: {action}")
     total = vector(checked.total_load, per_thickness(units), scale=checked.load_magnitude)
     add(shown, "Total load", f"{total}, without reactions")
-    add(
-        shown,
-        "Held by conditions",
-        "all rigid motions except those below" if checked.free_motions else "all rigid motions",
-    )
+    held = {0: "all rigid motions", 3: "no rigid motion"}
+    add(shown, "Held by conditions", held.get(checked.free_motions, "all rigid motions except those below"))
     for motion in checked.held_by_contact:
         add(shown, "Held by contact", motion)
     for name, case in problem.load_cases.items():

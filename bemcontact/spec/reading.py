@@ -12,6 +12,7 @@ from bemcontact.errors import Issue, KeyPath, ProblemError, SpecError
 from bemcontact.files.text import place_after, text_of
 from bemcontact.problem import Problem, Variant
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path
+from bemcontact.problem.readable import readable_part
 from bemcontact.problem.validation import described, number_hint, unknown_word
 from bemcontact.spec.document import Document, LocatedMessage, Mark, Place, error_text
 from bemcontact.spec.yaml_1_2 import READERS, TAG, Loader, to_yaml
@@ -98,6 +99,14 @@ def located(
     document = _stages(text_of(path), name, overrides, variant)[-1]
     whole = [(Mark(0, 0, name), issue.message) for issue in error.issues if not issue.path]
     return SpecError(error_text([*whole, *(document.located(item) for item in error.issues if item.path)]))
+
+
+def readable(path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: str | None = None) -> Problem | None:
+    """What can be read of a spec that may have mistakes, unchecked, for a picture; None without a sound boundary."""
+    try:
+        return readable_part(_stages(text_of(path), os.fspath(path), overrides, variant)[-1].data)
+    except SpecError:
+        return None
 
 
 def schema() -> dict[str, Any]:

@@ -527,6 +527,8 @@ def test_later_override_wins():
         ("conditions.top.pressure=", "conditions.top: the condition is empty"),
         ("conditions.left.traction.x=1", "conditions.left: … displacement … traction … along x"),
         ("contact_zones.foot.edges=top", "conditions.top: … 'top' … contact zone 'foot'"),
+        ("contact_zones.fot.edges=top", "contact_zones: … adds no contact zone: … 'fot' … 'foot'"),
+        ("tools.press.force.y=1", "tools: … adds no tool: unknown tool 'press'; there are none"),
     ],
 )
 def test_mistake_in_an_override_points_to_it(override, words):
