@@ -10,17 +10,18 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("errors", "arrays", "serialization", "options", "version", "files")
+FOUNDATION = ("plain_text", "errors", "arrays", "serialization", "options", "version", "files")
 
 ROOMS = {
-    "errors": (),
+    "plain_text": (),
+    "errors": ("plain_text",),
     "arrays": (),
-    "serialization": (),
+    "serialization": ("plain_text",),
     "options": ("errors",),
     "version": (),
-    "files": ("errors",),
-    "problem": ("errors", "arrays", "options"),
-    "spec": ("errors", "files", "problem"),
+    "files": ("plain_text", "errors"),
+    "problem": ("plain_text", "errors", "arrays", "options"),
+    "spec": ("plain_text", "errors", "files", "problem"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problem", "contact"),
     "formulations.local_solver": ("errors", "arrays"),

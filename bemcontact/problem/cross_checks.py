@@ -7,7 +7,7 @@ from math import degrees, radians
 import numpy as np
 
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problem.boundary import Boundary
+from bemcontact.problem.boundary import Boundary, far_issue
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.contact_zone import TOOL_COMPONENTS, ContactZone, RigidTool, ToolAction
 from bemcontact.problem.curves import Edge
@@ -215,7 +215,7 @@ def _too_few_elements(edge: Edge, refine: int) -> str:
 
 
 def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> list[Issue]:
-    """Issues of rigid surfaces whose normal points out of the body where they are closest to it.
+    """Issues of rigid surfaces that are too far away or too wide, or whose normal points out of the body there.
 
     The direction of a deflected contour must not point out of the body at any point of the zone.
     """
@@ -223,6 +223,9 @@ def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> l
     issues = []
     for path, zone in zones.items():
         members = [edges[name] for name in zone.edges]
+        if far := far_issue((*path, "surface"), [*_lengths(zone.surface)], boundary.size):
+            issues.append(far)
+            continue
         if isinstance(zone.surface, DeflectedContour):
             cosine, name = max((_outward(edge, zone.surface), edge.name) for edge in members)
         else:
@@ -230,6 +233,20 @@ def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> l
         if cosine > ALONG:
             issues.append(Issue(path=(*path, "surface"), message=_faces_away(name, zone.surface)))
     return issues
+
+
+def _lengths(surface: RigidSurface) -> Iterator[float]:
+    """Coordinates and radii of a surface."""
+    match surface:
+        case Plane():
+            yield from surface.point
+        case Circle():
+            yield from (*surface.center, surface.radius)
+        case Polyline() | Spline():
+            for point in surface.points:
+                yield from point
+        case DeflectedContour():
+            yield 0.0
 
 
 def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:
