@@ -20,17 +20,28 @@ Report = Callable[[str, str], None]
 
 
 def show(renderable: RenderableType) -> None:
-    """Print on standard output without hidden characters; into a file or a pipe, without blanks at the ends of lines.
-    """
+    """Print on standard output without hidden characters; into a file or a pipe, without blanks at the ends of lines."""
     console = Console(highlight=False, markup=False, emoji=False)
     rendered = (part._replace(text=escaped_lines(part.text)) for part in console.render(renderable))
     visible = Segments([part for part in rendered if not part.control])
-    if console.is_terminal:
-        console.print(visible)
-        return
-    with console.capture() as captured:
-        console.print(visible)
-    print(re.sub(r" +$", "", captured.get(), flags=re.MULTILINE), end="", flush=True)
+    with standard_output():
+        if console.is_terminal:
+            console.print(visible)
+            return
+        with console.capture() as captured:
+            console.print(visible)
+        print(re.sub(r" +$", "", captured.get(), flags=re.MULTILINE), end="", flush=True)
+
+
+@contextmanager
+def standard_output() -> Iterator[None]:
+    """Let errors of writing name standard output; a closed pipe is none."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, error.filename or "standard output") from error
 
 
 def tell(head: str, message: str, style: str = "bold red") -> None:
