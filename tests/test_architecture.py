@@ -10,10 +10,11 @@ PACKAGE = Path(__file__).parents[1] / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("plain_text", "errors", "arrays", "serialization", "options", "version", "files")
+FOUNDATION = ("plain_text", "memory", "errors", "arrays", "serialization", "options", "version", "files")
 
 ROOMS = {
     "plain_text": (),
+    "memory": (),
     "errors": ("plain_text",),
     "arrays": (),
     "serialization": ("plain_text",),

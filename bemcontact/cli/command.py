@@ -15,6 +15,7 @@ import typer
 from bemcontact.cli.terminal import RenderableType, Report, show, stages, standard_output, tell
 from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError
 from bemcontact.files import output
+from bemcontact.memory import ensure_memory
 from bemcontact.options import ComparisonOptions, SolveOptions, StartName
 from bemcontact.plain_text import escaped
 
@@ -206,6 +207,7 @@ def run(
     """Run a command: check outputs, do the work with progress, write and print results, exit with the status."""
     files = {**(files or {}), "--json": None if json_file == STANDARD_STREAM else json_file}
     with reported(source, (folder, *files.values())), stages() as report:
+        ensure_memory()
         check_outputs(source, files)
         check_folder(source, folder, files["--json"], kind)
         report(stage, "")
@@ -321,7 +323,8 @@ def reported(source: Source | None = None, outputs: Sequence[Path | None] | None
         tell("failed: ", str(error))
         raise typer.Exit(UNCERTIFIED) from error
     except MemoryError as error:
-        tell("failed: ", "not enough memory for so many elements; take a smaller --refine")
+        reason = f" ({error})" if error.args else ""
+        tell("failed: ", f"there is not enough memory{reason}; take fewer elements, or raise the limit")
         raise typer.Exit(UNCERTIFIED) from error
 
 

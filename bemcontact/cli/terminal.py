@@ -20,7 +20,7 @@ Report = Callable[[str, str], None]
 
 
 def show(renderable: RenderableType) -> None:
-    """Print on standard output without hidden characters; into a file or a pipe, without blanks at the ends of lines."""
+    """Print on standard output without hidden characters; into a file or pipe, without blanks at the ends of lines."""
     console = Console(highlight=False, markup=False, emoji=False)
     rendered = (part._replace(text=escaped_lines(part.text)) for part in console.render(renderable))
     visible = Segments([part for part in rendered if not part.control])

@@ -13,6 +13,7 @@ from pydantic import model_validator
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
+from bemcontact.problem.closeness import near_miss, sagitta
 from bemcontact.problem.curves import CircularArc, Curve, Edge
 from bemcontact.problem.geometry import AnyEdge, Arc, Grading, Line, LoopSpec, Place
 from bemcontact.problem.validation import LARGEST_NUMBER, Point, SpecModel, unknown_word, validation_error
@@ -298,13 +299,15 @@ def _crossings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Ite
     lines = [edge.polyline() for edge, _ in placed]
     tolerance = TOUCHING * float(np.hypot(*np.ptp(np.vstack(lines), axis=0)))
     reported: set[int] = set()
-    for i, j in _pairs_close_by(lines, tolerance):
+    for i, j in _pairs_close_by(lines, tolerance + 2 * max(sagitta(edge) for edge, _ in placed)):
         (one, _), (other, path) = placed[i], placed[j]
         if j in reported:
             continue
         point = first_meeting(lines[i], lines[j], tolerance, itself=i == j)
         if point is None and i != j and dist(one.start, other.start) <= tolerance:
             point = one.start
+        if point is None and i != j:
+            point = near_miss(one, other)
         if point is not None:
             reported.add(j)
             what = "itself" if i == j else f"'{one.name}'"

@@ -23,6 +23,8 @@ LARGEST_TURNING = radians(60)
 
 ALONG = 0.5
 """Cosine of the angle between two normals above which they point the same way."""
+SAMPLES, PIECE = 1000, 200
+"""Largest number of points of an edge that are compared with a surface, and how many of them at the same time."""
 
 
 def edge_name_issues(boundary: RawValue, conditions: Iterable[RawValue], zones: RawValue) -> list[Issue]:
@@ -251,8 +253,9 @@ def _lengths(surface: RigidSurface) -> Iterator[float]:
 
 def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:
     """Least distance between edge and surface, and there the cosine between outward normal and surface normal."""
-    fractions = np.linspace(0, 1, 8 * edge.elements + 1)
-    gap, normals = surface.closest(edge.points(fractions))
+    fractions = np.linspace(0, 1, min(8 * edge.elements, SAMPLES) + 1)
+    pieces = [surface.closest(piece) for piece in np.array_split(edge.points(fractions), 1 + len(fractions) // PIECE)]
+    gap, normals = (np.concatenate(parts) for parts in zip(*pieces, strict=True))
     cosine = np.einsum("ki,ki->k", normals, edge.normals(fractions))
     closest = np.argmin(np.abs(gap))
     return float(np.abs(gap[closest])), float(cosine[closest])

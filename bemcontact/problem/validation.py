@@ -31,7 +31,7 @@ LARGEST_NUMBER = 1e30
 LONGEST_NAME = 1000
 """Largest number of characters in a name."""
 MANY_WORDS = 100
-"""Number of known words from which a misspelled one is not compared with them, which would take long."""
+"""Number of known or unknown words from which they are not compared with each other, which would take long."""
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
 _NUMBER_AND_UNIT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)? *[^\W\d_][^ ]*")
 
@@ -186,7 +186,7 @@ def _translated_errors(cls: type[BaseModel], error: ValidationError) -> list[Iss
     """Translate the errors of one class; a missing key is not reported together with its misspelling."""
     details = error.errors(include_url=False)
     unknown = {str(item["loc"][-1]) for item in details if item["type"] == "extra_forbidden" and len(item["loc"]) == 1}
-    meant = {near_by(key, cls.model_fields) for key in unknown}
+    meant = {near_by(key, cls.model_fields) for key in unknown} if len(unknown) <= MANY_WORDS else set[str | None]()
     return [
         _issue(item) if _is_translated(item) else _translated(cls, item)
         for item in details
@@ -197,7 +197,7 @@ def _translated_errors(cls: type[BaseModel], error: ValidationError) -> list[Iss
 def misspelled(cls: type[BaseModel], data: Mapping[str, Any]) -> dict[str, str]:
     """Find unknown keys that are probably misspelled: key in the data -> known key that is not given."""
     unknown = [key for key in data if isinstance(key, str) and key not in cls.model_fields]
-    meant = {key: near_by(key, cls.model_fields) for key in unknown}
+    meant = {key: near_by(key, cls.model_fields) for key in unknown} if len(unknown) <= MANY_WORDS else {}
     return {key: word for key, word in meant.items() if word is not None and word not in data}
 
 
@@ -273,6 +273,7 @@ def _available(words: tuple[str, ...]) -> str:
 def _missing(cls: type[BaseModel], key: str) -> str:
     """Say that a key is missing, and what to give for it: its description in the class."""
     text = cls.model_fields[key].description if key in cls.model_fields else None
+    text = " ".join((text or "").split())
     return f"missing; give {text[0].lower()}{text[1:].rstrip('.')}" if text else "missing"
 
 
@@ -306,6 +307,8 @@ def _wrong_value(details: ErrorDetails) -> str:
             return f"expected a list, {found}"
         case "too_short":
             return f"expected at least {context['min_length']} in the list, {found}"
+        case "too_long":
+            return f"expected at most {context['max_length']} in the list, {found}"
         case "dict_type":
             return f"expected a mapping of names, {found}"
     return f"{details['msg'][0].lower()}{details['msg'][1:]}, {found}"

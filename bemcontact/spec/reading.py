@@ -15,7 +15,7 @@ from bemcontact.problem import Problem, Variant
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path
 from bemcontact.problem.validation import described, number_hint, unknown_word
 from bemcontact.spec.document import Document, LocatedMessage, Mark, Place, error_text
-from bemcontact.spec.yaml_1_2 import MOST_CHARACTERS, READERS, TAG, Budget, Loader, Refused, to_yaml
+from bemcontact.spec.yaml_1_2 import MOST_CHARACTERS, MOST_KEYS, READERS, TAG, Budget, Loader, Refused, to_yaml
 
 _REQUIRED = ", ".join(key for key, item in Problem.model_fields.items() if item.is_required())
 _HINTS = {
@@ -228,6 +228,8 @@ class _Tree:
         for (_, before), (key, value) in zip([(None, None), *node.value], node.value, strict=False):
             mark = self._mark(key)
             self._budget.spend(len(self._above), key.start_mark)
+            if len(data) >= MOST_KEYS:
+                raise Refused(f"the mapping has more than {MOST_KEYS} keys; leave some out", key.start_mark)
             if key.tag == f"{TAG}merge":
                 merged += value.value if isinstance(value, yaml.SequenceNode) else [value]
             elif key.tag != f"{TAG}str":

@@ -10,6 +10,8 @@ MOST_CHARACTERS = 1_000_000
 """Largest length of a text: it is read within a few seconds."""
 MOST_VALUES = 30_000
 """Largest number of keys and values in a text."""
+MOST_KEYS = 1000
+"""Largest number of keys in one mapping."""
 DEEPEST = 64
 """Largest depth of lists and mappings in each other; a problem needs about ten."""
 TAG = "tag:yaml.org,2002:"
@@ -26,9 +28,17 @@ READERS: dict[str, Callable[[str], Any]] = {
     f"{TAG}str": str,
     f"{TAG}null": lambda _: None,
     f"{TAG}bool": lambda text: {"true": True, "false": False}[text.lower()],
-    f"{TAG}int": lambda text: int(text, {"0o": 8, "0x": 16}.get(text[:2], 10)),
+    f"{TAG}int": lambda text: _whole(text),
     f"{TAG}float": lambda text: float(re.sub(r"\.(?=inf|nan)", "", text.lower())),
 }
+
+
+def _whole(text: str) -> int:
+    """Read a whole number; `ValueError` for one that is beyond all numbers."""
+    number = int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
+    if abs(number) > 10**300:
+        raise ValueError
+    return number
 
 
 def _tag(kind: type[yaml.Node], value: Any, implicit: Any, otherwise: Callable[..., str]) -> str:

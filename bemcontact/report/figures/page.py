@@ -61,12 +61,12 @@ def save(figure: Figure, path: Path) -> None:
         temporary.write_bytes(picture)
 
 
-def _picture(figure: Figure, settings: dict[str, str], **form: Any) -> bytes:
+def _picture(figure: Figure, settings: Any, **form: Any) -> bytes:
     """Draw a figure as the content of a file, without hidden characters in its texts."""
     for text in figure.findobj(Text):
         text.set_text(escaped_lines(text.get_text()))
     stream = BytesIO()
-    with rc_context({"svg.hashsalt": "bemcontact", **settings}), without_glyph_warnings():
+    with rc_context({"svg.hashsalt": "bemcontact"}), rc_context(settings), without_glyph_warnings():
         figure.savefig(stream, bbox_inches="tight", **form)
     return stream.getvalue()
 
