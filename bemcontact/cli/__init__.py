@@ -7,48 +7,18 @@ import logging
 import os
 import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from importlib.metadata import PackageNotFoundError, version
 from io import TextIOWrapper
-from typing import Annotated, Any
+from typing import Annotated
 
-import click
 import typer
-from typer.core import TyperGroup
 
 from bemcontact.cli import check, compare, path, reproduce, solve
-from bemcontact.cli.command import INTERRUPTED, flattened, reported
+from bemcontact.cli.command import INTERRUPTED, flattened, refuse, reported
 from bemcontact.cli.terminal import standard_output
-from bemcontact.plain_text import escaped
-
-
-class _Commands(TyperGroup):
-    """The commands; what they repeat of a wrong command line has no hidden characters."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Read the options before the name of a command."""
-        with _escaped_usage():
-            return super().parse_args(ctx, args)
-
-    def invoke(self, ctx: click.Context) -> Any:
-        """Read the options of a command and run it."""
-        with _escaped_usage():
-            return super().invoke(ctx)
-
-
-@contextmanager
-def _escaped_usage() -> Iterator[None]:
-    """Escape the hidden characters of the command line in an error message."""
-    try:
-        yield
-    except click.UsageError as error:
-        error.message = escaped(error.message)
-        raise
-
+from bemcontact.plain_text import LINE_BREAKS, escaped, hidden_character
 
 app = typer.Typer(
-    cls=_Commands,
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -64,11 +34,19 @@ def main() -> None:
         sys.stdout.reconfigure(errors="replace")  # a letter that the terminal lacks becomes a question mark
     try:
         with reported(), standard_output():
+            _refuse_hidden_characters(sys.argv[1:])
             app()
     except typer.Exit as end:
         sys.exit(end.exit_code)
     finally:
         signal.signal(signal.SIGINT, lambda *_: os._exit(INTERRUPTED))  # nothing is left that could be interrupted
+
+
+def _refuse_hidden_characters(arguments: list[str]) -> None:
+    """Refuse arguments that the messages of the parser would print with hidden characters."""
+    for argument in arguments:
+        if hidden := hidden_character(argument, LINE_BREAKS):
+            refuse(f"the argument '{escaped(argument)}' contains the hidden character {hidden}; remove or rename it")
 
 
 def _show_version(wanted: bool) -> None:

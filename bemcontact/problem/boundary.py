@@ -14,7 +14,7 @@ from pydantic import model_validator
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.closeness import near_miss, sagitta
-from bemcontact.problem.curves import CircularArc, Curve, Edge
+from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc
 from bemcontact.problem.geometry import AnyEdge, Arc, Grading, Line, LoopSpec, Place
 from bemcontact.problem.validation import LARGEST_NUMBER, Point, SpecModel, unknown_word, validation_error
 
@@ -141,8 +141,9 @@ def _out_of_range(path: KeyPath, loop: Sequence[AnyEdge], size: float) -> Iterat
         message = f"the body has the size {size:.3g}, which is too small to compute with; choose another unit of length"
         yield Issue(path=path, message=message)
         return
-    for i, (edge, joined) in enumerate(zip(loop, _joined(loop), strict=True)):
-        round_parts = () if isinstance(edge, Line) else (edge.center, edge.curve(joined.start, joined.end).radii)
+    for i, joined in enumerate(_joined(loop)):
+        curve = joined.curve
+        round_parts = (curve.center, curve.radii) if isinstance(curve, CircularArc | EllipticArc) else ()
         if issue := far_issue((*path, i), (joined.start, joined.end, *round_parts), size):
             yield issue
 

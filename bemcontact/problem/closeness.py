@@ -21,7 +21,7 @@ def near_miss(one: Edge, other: Edge) -> Array | None:
 
     Edges that share an end, such as a fillet and its line, come as close as that without a mistake.
     """
-    between = sagitta(one) + sagitta(other)
+    between = 1.01 * (sagitta(one) + sagitta(other))
     if not between or {one.start, one.end} & {other.start, other.end}:
         return None
     lines = one.polyline(), other.polyline()

@@ -24,13 +24,6 @@ PLAIN_SCALARS = {
     ),
     f"{TAG}merge": re.compile("<<"),
 }
-READERS: dict[str, Callable[[str], Any]] = {
-    f"{TAG}str": str,
-    f"{TAG}null": lambda _: None,
-    f"{TAG}bool": lambda text: {"true": True, "false": False}[text.lower()],
-    f"{TAG}int": lambda text: _whole(text),
-    f"{TAG}float": lambda text: float(re.sub(r"\.(?=inf|nan)", "", text.lower())),
-}
 
 
 def _whole(text: str) -> int:
@@ -39,6 +32,15 @@ def _whole(text: str) -> int:
     if abs(number) > 10**300:
         raise ValueError
     return number
+
+
+READERS: dict[str, Callable[[str], Any]] = {
+    f"{TAG}str": str,
+    f"{TAG}null": lambda _: None,
+    f"{TAG}bool": lambda text: {"true": True, "false": False}[text.lower()],
+    f"{TAG}int": _whole,
+    f"{TAG}float": lambda text: float(re.sub(r"\.(?=inf|nan)", "", text.lower())),
+}
 
 
 def _tag(kind: type[yaml.Node], value: Any, implicit: Any, otherwise: Callable[..., str]) -> str:
