@@ -11,18 +11,20 @@ PACKAGE = TESTS.parent / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("errors", "arguments", "arrays", "serialization", "options", "version", "files")
+FOUNDATION = ("plain_text", "memory", "errors", "arguments", "arrays", "serialization", "options", "version", "files")
 
 ROOMS = {
-    "errors": (),
+    "plain_text": (),
+    "memory": (),
+    "errors": ("plain_text",),
     "arguments": ("errors",),
     "arrays": ("errors", "arguments"),
-    "serialization": (),
+    "serialization": ("plain_text",),
     "options": ("errors", "arguments"),
     "version": (),
-    "files": ("errors",),
-    "problem": ("errors", "arguments", "arrays", "options"),
-    "spec": ("errors", "arguments", "files", "problem"),
+    "files": ("plain_text", "errors"),
+    "problem": ("plain_text", "errors", "arguments", "arrays", "options"),
+    "spec": ("plain_text", "errors", "arguments", "files", "problem"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problem", "contact"),
     "formulations.local_solver": ("errors", "arguments", "arrays"),

@@ -24,9 +24,12 @@ from bemcontact.bem.rigid_motions import (
 from bemcontact.bem.system import System, solve
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError
+from bemcontact.memory import ensure_memory
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
 
+MATRICES = 3
+"""Number of full matrices of all degrees of freedom that are in memory at the same time."""
 IDLE = 1e-7
 """Least normal displacement, over that of the motion, of a motion that opens gaps."""
 
@@ -149,6 +152,7 @@ def body_of(problem: Problem) -> Body:
     which none acts is meshed without this check.
     """
     mesh = build(problem)
+    ensure_memory(MATRICES * 8 * mesh.degrees_of_freedom**2)
     permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
     added = [loading.values for loading in cases]
     points = contact_points(problem, mesh, permanent.values, deflections(problem, mesh), added)

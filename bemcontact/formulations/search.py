@@ -4,6 +4,7 @@ import json
 import os
 from dataclasses import dataclass, replace
 from itertools import groupby
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from bemcontact.formulations.local_solver import QPResult, QPStatus
 from bemcontact.formulations.program import Program, minimize
 from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
 from bemcontact.options import STARTS, SolveOptions, StartName, Weights, ensure_whole
+from bemcontact.plain_text import escaped
 
 SPREAD = 2.0
 """Largest random pressure over T, and size of a random displacement over U."""
@@ -89,23 +91,28 @@ class Start:
 
 def read_start(path: str | os.PathLike[str]) -> Start:
     """Read a start from a file that `bemcontact solve --json` wrote; `SpecError` says what is wrong with it."""
-    name, text = Path(path).name, text_of(path)
+    name, text = escaped(os.fspath(path)), text_of(path)
     try:
-        record = json.loads(text)
+        record = json.loads(text, parse_int=float)
     except json.JSONDecodeError as error:
         raise SpecError(
-            f"{path}:{error.lineno}:{error.colno}: is no JSON ({error.msg}); name a file of results"
+            f"{name}:{error.lineno}:{error.colno}: is no JSON ({error.msg}); name a file of results"
         ) from None
+    except RecursionError:
+        raise SpecError(f"{name}: has too many nested brackets; name a file of results") from None
     lists = []
     for key in ("pressure", "normal_displacement"):
         values = record.get(key) if isinstance(record, dict) else None
-        if not isinstance(values, list) or not all(type(value) in (int, float) for value in values):
+        if not isinstance(values, list) or not all(type(value) is float and isfinite(value) for value in values):
             raise SpecError(
-                f"{path}: has no list '{key}' of numbers, one for each contact point; name a file that "
+                f"{name}: has no list '{key}' of numbers, one for each contact point; name a file that "
                 "`bemcontact solve --json FILE` has written"
             )
-        lists.append(values)
-    return Start(pressure=np.array(lists[0], float), displacement=np.array(lists[1], float), label=f"file {name}")
+        lists.append(np.array(values))
+    try:
+        return Start(pressure=lists[0], displacement=lists[1], label=f"file {escaped(Path(path).name)}")
+    except OptionError as error:
+        raise SpecError(f"{name}: {error}") from None
 
 
 def with_start_read(options: SolveOptions) -> SolveOptions:

@@ -14,10 +14,11 @@ from pydantic import model_validator
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
+from bemcontact.problem.closeness import near_miss, sagitta
 from bemcontact.problem.closing import JOINT_TOLERANCE, gap_issues, other_way_round
-from bemcontact.problem.curves import CircularArc, Curve, Edge
+from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc
 from bemcontact.problem.geometry import AnyEdge, Arc, Grading, LoopSpec, Place
-from bemcontact.problem.validation import Point, SpecModel, unknown_word, validation_error
+from bemcontact.problem.validation import LARGEST_NUMBER, Point, SpecModel, unknown_word, validation_error
 
 RADIUS_TOLERANCE = 1e-6
 """Relative difference up to which the radii at both ends of an arc agree: users round coordinates."""
@@ -31,6 +32,8 @@ MOST_TRIED = 20
 """Number of arcs that are turned round to see whether that mends a boundary."""
 TOUCHING = 1e-9
 """Distance of two edges, relative to the size of the body, up to which they touch."""
+FARTHEST = 1e8
+"""Largest coordinate or radius over the size of the body: eight digits are left for the shape."""
 
 
 class Boundary(SpecModel):
@@ -49,6 +52,8 @@ class Boundary(SpecModel):
             *_repeated_names(loops),
             *(issue for path, loop in loops for issue in _unknown_joints(path, loop)),
         ]
+        if not issues:
+            issues = [issue for path, loop in loops for issue in _out_of_range(path, loop, self.size)]
         if not issues:
             issues = [issue for path, loop in loops for issue in _ill_joined(path, loop, self.size)]
         if not issues:
@@ -147,6 +152,28 @@ def _unknown_joints(path: KeyPath, loop: Sequence[AnyEdge]) -> Iterator[Issue]:
         if before.own_ends()[1] is None and edge.own_ends()[0] is None:
             message = f"both the start of '{edge.name}' and the end of '{before.name}' are missing; give one of them"
             yield Issue(path=(*path, i), message=message)
+
+
+def _out_of_range(path: KeyPath, loop: Sequence[AnyEdge], size: float) -> Iterator[Issue]:
+    """Issues of a body too small to compute with, and of coordinates and radii that leave no digits for its shape."""
+    if size < 1 / LARGEST_NUMBER:
+        message = f"the body has the size {size:.3g}, which is too small to compute with; choose another unit of length"
+        yield Issue(path=path, message=message)
+        return
+    for i, joined in enumerate(_joined(loop)):
+        curve = joined.curve
+        round_parts = (curve.center, curve.radii) if isinstance(curve, CircularArc | EllipticArc) else ()
+        if issue := far_issue((*path, i), (joined.start, joined.end, *round_parts), size):
+            yield issue
+
+
+def far_issue(path: KeyPath, lengths: object, size: float) -> Issue | None:
+    """Issue of coordinates or radii that are too large beside the size of the body; None if they are not."""
+    largest = float(np.abs(np.asarray(lengths, float)).max())
+    if largest <= FARTHEST * size:
+        return None
+    what = f"coordinates or radii of {largest:.3g} beside a body of the size {size:.3g} leave too few digits"
+    return Issue(path=path, message=f"{what}; move the origin to the body, or take a line or plane for a wide arc")
 
 
 def _ill_joined(path: KeyPath, loop: Sequence[AnyEdge], size: float) -> Iterator[Issue]:
@@ -269,13 +296,15 @@ def _crossings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Ite
     lines = [edge.polyline() for edge, _ in placed]
     tolerance = TOUCHING * float(np.hypot(*np.ptp(np.vstack(lines), axis=0)))
     reported: set[int] = set()
-    for i, j in _pairs_close_by(lines, tolerance):
+    for i, j in _pairs_close_by(lines, tolerance + 2 * max(sagitta(edge) for edge, _ in placed)):
         (one, _), (other, path) = placed[i], placed[j]
         if j in reported:
             continue
         point = first_meeting(lines[i], lines[j], tolerance, itself=i == j)
         if point is None and i != j and dist(one.start, other.start) <= tolerance:
             point = one.start
+        if point is None and i != j:
+            point = near_miss(one, other)
         if point is not None:
             reported.add(j)
             what = "itself" if i == j else f"'{one.name}'"

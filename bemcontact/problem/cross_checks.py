@@ -7,7 +7,7 @@ from math import degrees, radians
 import numpy as np
 
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problem.boundary import Boundary
+from bemcontact.problem.boundary import Boundary, far_issue
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.contact_zone import TOOL_COMPONENTS, ContactZone, RigidTool, ToolAction
 from bemcontact.problem.curves import Edge
@@ -24,6 +24,8 @@ LARGEST_TURNING = radians(60)
 
 ALONG = 0.5
 """Cosine of the angle between two normals above which they point the same way."""
+SAMPLES, PIECE = 1000, 200
+"""Largest number of points of an edge that are compared with a surface, and how many of them at the same time."""
 
 
 def edge_name_issues(boundary: RawValue, conditions: Iterable[RawValue], zones: RawValue) -> list[Issue]:
@@ -219,7 +221,7 @@ def _too_few_elements(edge: Edge, refine: int) -> str:
 
 
 def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> list[Issue]:
-    """Issues of rigid surfaces whose normal points out of the body where they are closest to it.
+    """Issues of rigid surfaces that are too far away or too wide, or whose normal points out of the body there.
 
     The direction of a deflected contour must not point out of the body at any point of the zone.
     """
@@ -227,6 +229,9 @@ def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> l
     issues = []
     for path, zone in zones.items():
         members = [edges[name] for name in zone.edges]
+        if far := far_issue((*path, "surface"), [*_lengths(zone.surface)], boundary.size):
+            issues.append(far)
+            continue
         if isinstance(zone.surface, DeflectedContour):
             cosine, name = max((_outward(edge, zone.surface), edge.name) for edge in members)
         else:
@@ -236,10 +241,25 @@ def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> l
     return issues
 
 
+def _lengths(surface: RigidSurface) -> Iterator[float]:
+    """Coordinates and radii of a surface."""
+    match surface:
+        case Plane():
+            yield from surface.point
+        case Circle():
+            yield from (*surface.center, surface.radius)
+        case Polyline() | Spline():
+            for point in surface.points:
+                yield from point
+        case DeflectedContour():
+            yield 0.0
+
+
 def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:
     """Least distance between edge and surface, and there the cosine between outward normal and surface normal."""
-    fractions = np.linspace(0, 1, 8 * edge.elements + 1)
-    gap, normals = surface.closest(edge.points(fractions))
+    fractions = np.linspace(0, 1, min(8 * edge.elements, SAMPLES) + 1)
+    pieces = [surface.closest(piece) for piece in np.array_split(edge.points(fractions), 1 + len(fractions) // PIECE)]
+    gap, normals = (np.concatenate(parts) for parts in zip(*pieces, strict=True))
     cosine = np.einsum("ki,ki->k", normals, edge.normals(fractions))
     closest = np.argmin(np.abs(gap))
     return float(np.abs(gap[closest])), float(cosine[closest])

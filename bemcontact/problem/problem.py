@@ -32,15 +32,17 @@ from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, with_entry
 from bemcontact.problem.load_case import Combination, LoadCase
-from bemcontact.problem.reference import NonEmptyText, ReferenceSpec
+from bemcontact.problem.reference import ReferenceSpec
 from bemcontact.problem.validation import (
     Count,
+    Finite,
     Flag,
+    Label,
     Name,
-    Number,
     Positive,
     SpecModel,
     Text,
+    Title,
     invalid,
     issues_of,
     unknown_word,
@@ -54,7 +56,7 @@ class Material(SpecModel):
     """The modulus of elasticity E (Young's modulus), in the unit of stress."""
     state: Literal["plane_strain", "plane_stress"] = "plane_strain"
     """The plane state: plane_strain (thick body, the default) or plane_stress (thin sheet)."""
-    poisson_ratio: Annotated[Number, Field(json_schema_extra={"exclusiveMinimum": -1, "maximum": 0.5})]
+    poisson_ratio: Annotated[Finite, Field(json_schema_extra={"exclusiveMinimum": -1, "maximum": 0.5})]
     """The Poisson ratio ν, for most materials between 0 and 0.5."""
 
     @field_validator("poisson_ratio")
@@ -82,9 +84,9 @@ class Material(SpecModel):
 class Units(SpecModel):
     """Labels of the units of all numbers. Numbers are not converted."""
 
-    length: Text = ""
+    length: Label = ""
     """The label of the unit of length, such as mm."""
-    force: Text = ""
+    force: Label = ""
     """The label of the unit of force, such as kN."""
 
     @property
@@ -159,7 +161,7 @@ class Problem(SpecModel):
         With an issue and its key path for each mistake. `bemcontact.condense` checks whether the body is held.
     """
 
-    name: Name
+    name: Title
     """A short name of the problem."""
     description: Text = ""
     """A description of the problem: its source, and what is known about its solution."""
@@ -187,7 +189,7 @@ class Problem(SpecModel):
     """The load case or combination to solve; if left out, all of them are solved one after the other."""
     mesh: MeshDensity = MeshDensity()
     """The refinement of the mesh."""
-    reference: dict[NonEmptyText, ReferenceSpec] = Field(default_factory=dict)
+    reference: dict[Title, ReferenceSpec] = Field(default_factory=dict)
     """The references by name: closed forms and published values, with which the result is compared."""
     variants: dict[Name, Variant] = Field(default_factory=dict)
     """The variants by name: values that replace others, such as another mesh."""

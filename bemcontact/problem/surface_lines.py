@@ -16,6 +16,8 @@ ON_CORNER = 1e-9
 """Distance of a point from a corner, relative to the extent of line and points, up to which it is on the corner."""
 ALIKE = 1e-9
 """Difference of two unit normals that counts as none."""
+MOST_POINTS = 1000
+"""Largest number of points of a line or curve."""
 SAMPLES = 16
 """Number of starting points for the nearest point, between two points of a spline."""
 NEWTON_STEPS = 60
@@ -60,7 +62,7 @@ class Polyline(SpecModel):
 
     kind: Literal["polyline"] = "polyline"
     """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
-    points: Annotated[tuple[Point, ...], Field(min_length=2)]
+    points: Annotated[tuple[Point, ...], Field(min_length=2, max_length=MOST_POINTS)]
     """The corners [x, y] in order; the body is on the left of the line."""
 
     @model_validator(mode="after")
@@ -212,7 +214,7 @@ class Spline(SmoothSurface):
 
     kind: Literal["spline"] = "spline"
     """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
-    points: Annotated[tuple[Point, ...], Field(min_length=2)]
+    points: Annotated[tuple[Point, ...], Field(min_length=2, max_length=MOST_POINTS)]
     """The points [x, y] in order; the body is on the left of the curve."""
 
     @model_validator(mode="after")

@@ -10,6 +10,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from bemcontact.assessment.contender import OUTCOMES, Outcome
+from bemcontact.plain_text import escaped_lines
 from bemcontact.problem import Units
 from bemcontact.report.facts import NOTHING, Record, facts, percent, scores_in_words, small
 from bemcontact.report.formatting import (
@@ -53,6 +54,7 @@ def template(name: str, **more: Callable[..., Any]) -> Template:
     environment = Environment(
         loader=PackageLoader("bemcontact.report"),
         autoescape=True,
+        finalize=lambda value: escaped_lines(value) if type(value) is str else value,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
