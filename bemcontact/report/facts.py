@@ -39,8 +39,12 @@ class Verdict(NamedTuple):
     words: str
 
 
-def equations_verdict(certificate: Record, words: str) -> Verdict:
-    """Verdict on the solution of the equations on the mesh, with its sentences."""
+def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:
+    """Verdict on the solution of the equations on the mesh, with its sentences, and on what penetrates a surface."""
+    if penetration is not None:
+        return Verdict(
+            "Equations", False, "penetrates a surface", f"{penetration['words']} At the contact points: {words}"
+        )
     kind: str = certificate["kind"]
     word = {"unique": "unique solution proved", "not a solution": "not solved"}.get(kind, kind)
     return Verdict("Equations", kind == "unique", word, words)
@@ -160,7 +164,9 @@ def size_of(record: Record) -> float:
 
 
 def pressed_by(record: Record) -> float:
-    """Sum of the magnitudes of all contact forces [p L], the scale of round-off in forces."""
+    """Sum of the magnitudes of all contact forces [p L], the scale of round-off in forces; infinity if none is more."""
+    if not record["peak"]:
+        return np.inf
     return sum(w * abs(p) for w, p in zip(record["tributary_lengths"], record["pressure"], strict=True))
 
 

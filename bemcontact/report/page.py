@@ -10,6 +10,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from bemcontact.assessment.contender import OUTCOMES, Outcome
+from bemcontact.plain_text import escaped_lines
 from bemcontact.problem import Units
 from bemcontact.report.facts import NOTHING, Record, facts, percent, scores_in_words, small
 from bemcontact.report.formatting import (
@@ -53,6 +54,7 @@ def template(name: str, **more: Callable[..., Any]) -> Template:
     environment = Environment(
         loader=PackageLoader("bemcontact.report"),
         autoescape=True,
+        finalize=lambda value: escaped_lines(value) if type(value) is str else value,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -140,9 +142,14 @@ def _contents(report: Record) -> dict[str, Any]:
         "acting": " + ".join(
             f"{factor:g} {case}" for case, factor in compared["contact"]["load_factors"].items() if factor
         ),
-        "uncertified": [item["refine"] for item in report["levels"][:-1] if not item["comparison"]["certified"]],
+        "uncertified": [item["refine"] for item in report["levels"][:-1] if not _certified(item)],
         "stages": [*dict.fromkeys(stage for item in report["levels"] for stage in item["seconds"])],
     }
+
+
+def _certified(level: Record) -> bool:
+    """Whether all is certified on a mesh."""
+    return level["comparison"]["certified"] and level["penetration"] is None
 
 
 def _quality(outcome: str) -> str:
@@ -157,7 +164,9 @@ def _headline(report: Record, compared: Record) -> str:
     outcomes = Counter(item["verdict"]["outcome"] for item in compared["contenders"])
     counted = (f"{count} {OUTCOMES[Outcome(name)].predicate[count > 1]}" for name, count in outcomes.items())
     direct = OUTCOMES[Outcome(compared["reference"]["verdict"]["outcome"])].of_direct
-    return f"Of {len(compared['contenders'])} settings {', '.join(counted)}. {sentence_case(direct)}."
+    deepest = report["levels"][-1]["penetration"]
+    first = "" if deepest is None else f"{deepest['words']} "
+    return f"{first}Of {len(compared['contenders'])} settings {', '.join(counted)}. {sentence_case(direct)}."
 
 
 def _facts(level: Record, units: Units) -> list[tuple[str, str]]:
@@ -191,12 +200,7 @@ def _certificate(answer: Record | None, units: Units) -> str:
             f"{holds} A second contact state cannot be ruled out, because the smallest eigenvalue of the compliance "
             f"({small(eigenvalue)}) is not positive. This is proved to be a solution, but not the only one."
         )
-    why = (
-        "Equilibrium alone determines the pressure, so there is no other solution."
-        if eigenvalue is None
-        else f"The compliance is positive definite (its smallest eigenvalue is {small(eigenvalue)}), so there is no "
-        "other solution."
-    )
+    why = f"There is no other solution: {proved['why_unique']}."
     return f"{holds} {why}{_bound(proved['error_bound'], answer['peak'], units)}"
 
 

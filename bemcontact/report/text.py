@@ -86,11 +86,8 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
         add(shown, "Tool", f"{name}, the surface of {' and '.join(tool.zones)}: {action}")
     total = vector(checked.total_load, per_thickness(units), scale=checked.load_magnitude)
     add(shown, "Total load", f"{total}, without reactions")
-    add(
-        shown,
-        "Held by conditions",
-        "all rigid motions except those below" if checked.free_motions else "all rigid motions",
-    )
+    held = {0: "all rigid motions", 3: "no rigid motion"}
+    add(shown, "Held by conditions", held.get(checked.free_motions, "all rigid motions except those below"))
     for motion in checked.held_by_contact:
         add(shown, "Held by contact", motion)
     for name, case in problem.load_cases.items():
@@ -173,8 +170,9 @@ def cases_summary(cases: CaseResults) -> RenderableType:
 
 def verdicts(result: Result) -> tuple[Verdict, Verdict]:
     """Verdicts on the equations and on the mesh."""
-    words = certificate_sentence(result.solution, result.certificate)
-    return equations_verdict(result.certificate.to_dict(), words), mesh_verdict(result.accuracy.to_dict())
+    words, deepest = certificate_sentence(result.solution, result.certificate), result.penetration
+    proved = equations_verdict(result.certificate.to_dict(), words, deepest.to_dict() if deepest else None)
+    return proved, mesh_verdict(result.accuracy.to_dict())
 
 
 def _mesh_in_a_word(result: Result) -> str:
@@ -214,7 +212,7 @@ def shortfall(results: Result | CaseResults) -> str:
 def study_shortfall(study: Study) -> str:
     """Why a comparison does not hold."""
     mesh = mesh_verdict(study.finest.answer.accuracy.to_dict())
-    words = [] if study.certified else [study.finest.comparison.verdict]
+    words = [] if study.certified else [study.verdict]
     return " ".join([*words, *([] if mesh.good else [f"{mesh.of}: {mesh.word}. {mesh.words}"])])
 
 
@@ -285,7 +283,9 @@ def path_sentence(path: ParameterPath) -> str:
     exact = f"The largest natural residual at a breakpoint is {path.residual:.0e}."
     if path.certified:
         return f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
-    return " ".join((*(f"{sentence_case(note)}." for note in path.notes), exact))
+    deepest = () if path.penetration is None else (path.penetration.words,)
+    where = () if path.penetrates_at is None else (f"This is at {path.key} = {number(path.penetrates_at)}.",)
+    return " ".join((*deepest, *where, *(f"{sentence_case(note)}." for note in path.notes), exact))
 
 
 def _cells(contact: CondensedContact, state: PathState) -> list[str]:
@@ -367,8 +367,8 @@ def study_summary(study: Study) -> RenderableType:
         add(shown, "Meshes", study.convergence.remark)
     for note in answer.notes:
         add(shown, "Note", note)
-    words = [sentence_case(compared.verdict), *_uncertified_meshes(study)]
-    heading = "unique solution proved" if study.certified else compared.heading
+    words = [sentence_case(study.verdict), *_uncertified_meshes(study)]
+    heading = "unique solution proved" if study.certified else study.heading
     add_verdict(shown, Verdict("Equations", study.certified, heading, " ".join(words)))
     add_verdict(shown, mesh_verdict(answer.accuracy.to_dict()))
     scores = _score_table(level, units_of(answer.contact))
@@ -384,7 +384,7 @@ def study_summary(study: Study) -> RenderableType:
 
 def _uncertified_meshes(study: Study) -> Iterator[str]:
     """Name coarser meshes on which not all is certified."""
-    coarser = [f"{level.refine}" for level in study.levels[:-1] if not level.comparison.certified]
+    coarser = [f"{level.refine}" for level in study.levels[:-1] if not level.certified]
     if coarser:
         yield f"On the coarser mesh{'es' * (len(coarser) > 1)} (refine {', '.join(coarser)}) not all is certified."
 
