@@ -304,7 +304,7 @@ def test_results_are_reported_in_a_line(cylinder):
 
 @pytest.mark.parametrize("task", [bemcontact.solve, bemcontact.condense])
 def test_a_file_name_is_no_problem(task):
-    with pytest.raises(bemcontact.ProblemError, match=r"found str; bemcontact\.load"):
+    with pytest.raises(bemcontact.ProblemError, match=r"found 'models/.*'; bemcontact\.load"):
         task("models/cylinder_on_plane.yaml")
 
 
