@@ -60,10 +60,10 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     end = float(to)
     if not (np.isfinite(begin) and np.isfinite(end)) or begin == end:
         raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
-    on_mesh = _on_mesh(problem, key, begin, end)
+    on_mesh, found = _on_mesh(problem, key, begin, end)
     ends = (replace(contact, name=problem.title) for contact in between(on_mesh, key, begin, end))
     path = load_path(*ends)
-    first, last = (_accuracy(on_mesh, key, value) for value in (begin, end))
+    first, last = (_accuracy(on_mesh, key, value).knowing(*found) for value in (begin, end))
     return ParameterPath(key=key, start=begin, end=end, path=path, start_accuracy=first, end_accuracy=last)
 
 
@@ -106,15 +106,19 @@ def _with_mesh(problem: Problem) -> Problem:
     return meshed(problem, errors=False).problem if problem.adapts else problem
 
 
-def _on_mesh(problem: Problem, key: str, start: float, end: float) -> Problem:
-    """The problem on a mesh that is accurate at both ends of a path, if a mesh is to be found."""
+def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Problem, tuple[Accuracy, ...]]:
+    """The problem on a mesh that is accurate at both ends of a path, if a mesh is to be found; accuracies of the search.
+
+    Only the search recognizes infinite peaks.
+    """
     if not problem.adapts:
-        return problem
-    found = _with_mesh(_varied(problem, key, start))
-    boundary, refine = found.boundary, found.mesh.refine
+        return problem, ()
+    one = meshed(_varied(problem, key, start))
+    boundary, refine = one.problem.boundary, one.problem.mesh.refine
     mesh = problem.mesh.model_copy(update={"adapt": True, "refine": refine})
-    there = _with_mesh(_varied(problem.model_copy(update={"boundary": boundary, "mesh": mesh}), key, end))
-    return problem.model_copy(update={"boundary": there.boundary, "mesh": there.mesh})
+    two = meshed(_varied(problem.model_copy(update={"boundary": boundary, "mesh": mesh}), key, end))
+    on_mesh = problem.model_copy(update={"boundary": two.problem.boundary, "mesh": two.problem.mesh})
+    return on_mesh, (*one.accuracies, *two.accuracies)
 
 
 def _accuracy(problem: Problem, key: str, value: float) -> Accuracy:

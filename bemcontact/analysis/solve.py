@@ -203,9 +203,7 @@ def assessed(
     with watch.stage("assessment"):
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
-        where = footprint(contact, solution)
-        if prepared.accuracy.infinite:
-            where = replace(where, peak=None)
+        where = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite))
         notes = (
             *contact.notes,
             *solution.notes,

@@ -2,7 +2,7 @@
 
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
@@ -105,6 +105,31 @@ def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
+AMBER = "#8a5a00"
+"""Colour of a title on paper that only half of its verdicts support."""
+QUALITY_COLOURS = {"good": BLACK, "fair": AMBER, "bad": VERMILION}
+"""Quality of an answer -> colour of the title of its picture."""
+CUT = 3.0
+"""Multiple of the mean pressure at which pictures cut off one that is infinite."""
+
+
+def ceiling(contact: CondensedContact, pressure: Array, infinite: Sequence[str]) -> float | None:
+    """Largest pressure (of n) to be drawn where that of some zones is infinite; None if none is."""
+    if not infinite:
+        return None
+    singular = np.isin(contact.zone, [contact.zone_names.index(name) for name in infinite])
+    pressed = singular & (pressure > 0)
+    mean = float(contact.weights[pressed] @ pressure[pressed] / (contact.weights[pressed].sum() or 1.0))
+    return max(CUT * mean, 1.18 * float(pressure[~singular].max(initial=0.0))) or None
+
+
+def mark_infinite(axes: Axes, zones: Sequence[str]) -> None:
+    """Write above the frame that the pressure of zones is infinite and cut off."""
+    where = f" in {', '.join(shortened(zone, 24) for zone in zones)}"
+    text = f"infinite{where}: cut off"
+    axes.text(1.0, 1.0, text, transform=axes.transAxes, ha="right", va="top", fontsize=8.5, color=BLACK)
+
+
 PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 
 
@@ -151,6 +176,7 @@ IN_THE_DARK = {
     GREEN: "#2fc08f",
     VERMILION: "#f0803c",
     PURPLE: "#dd9cc0",
+    AMBER: "#ecc765",
 }
 """Colour on paper -> colour on a dark page, for those that would not be seen there."""
 
