@@ -107,9 +107,9 @@ def _with_mesh(problem: Problem) -> Problem:
 
 
 def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Problem, tuple[Accuracy, ...]]:
-    """The problem on a mesh that is accurate at both ends of a path, if a mesh is to be found; accuracies of the search.
+    """The problem on a mesh that is accurate at both ends of a path, if a mesh is to be found.
 
-    Only the search recognizes infinite peaks.
+    With it come the accuracies of the search. Only the search recognizes infinite peaks.
     """
     if not problem.adapts:
         return problem, ()

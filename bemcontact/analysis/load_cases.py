@@ -74,7 +74,7 @@ class CaseResults(Recorded):
 
     @property
     def worst(self) -> str | None:
-        """The case or combination with the largest peak pressure; None if nothing touches in any, or one is infinite."""
+        """The case or combination with the largest peak pressure; None without contact, or if a peak is infinite."""
         if self.infinite:
             return None
         peaks = {name: item.footprint.peak.pressure for name, item in self.results.items() if item.footprint.peak}

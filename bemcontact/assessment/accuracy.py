@@ -83,7 +83,7 @@ class Accuracy(Leaf):
         return tuple(item for item in self.bars if item.quantity == "peak" and item.value is None)
 
     def knowing(self, *others: Self) -> Self:
-        """This accuracy of one mesh, with the infinite peaks that were recognized on others of the same problem."""
+        """Return the same, with the infinite peaks that were recognized on others of the same problem."""
         known = {item.zone: item for other in others for item in other.infinite_peaks}
         kept = [item for item in self.bars if item.quantity != "peak" or item.zone not in known]
         now = replace(self, bars=(*known.values(), *kept))

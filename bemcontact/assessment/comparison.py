@@ -263,7 +263,9 @@ def _verdict(direct: Contender, contenders: Sequence[Contender], differences: Se
         difference = "round-off" if apart <= ROUND_OFF else f"{apart:.1e} of the largest pressure"
         sentences.append(f"{_listed(solving, len(contenders))} {agree} with the direct solution to {difference}")
     elif solving:
-        sentences.append(f"{_listed([*solving, direct], 0)} meet all conditions, but differ by {apart:.1e} of its largest pressure")
+        sentences.append(
+            f"{_listed([*solving, direct], 0)} meet all conditions, but differ by {apart:.1e} of the largest pressure"
+        )
     for failure in (Outcome.NOT_THE_SOLUTION, Outcome.LEFT_OPEN, Outcome.REFUSED):
         if failing := [item for item in contenders if item.verdict.outcome is failure]:
             sentences.append(f"{failure}: {_listed(failing, 0)}")

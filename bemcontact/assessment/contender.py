@@ -51,7 +51,7 @@ OUTCOMES = {
         solves=True,
         meets_conditions=True,
         predicate=("finds the contact state", "find the contact state"),
-        of_direct="the direct solution is proved, and there is no other",
+        of_direct="the direct solution is proved to be the only one",
     ),
     Outcome.SOLVES_PERHAPS_NOT_ALONE: OutcomeFacts(
         quality="fair",

@@ -79,9 +79,13 @@ def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
     proved = [level["comparison"]["certified"] for level in report["levels"]]
     quality = "good" if all(proved) else "fair" if compared["reference"]["certified"] else "bad"
     sentences = [sentence_case(words or report["verdict"])]
-    if coarser := [str(level["refine"]) for level, fine in zip(report["levels"][:-1], proved, strict=False) if not fine]:
+    if coarser := [
+        str(level["refine"]) for level, fine in zip(report["levels"][:-1], proved, strict=False) if not fine
+    ]:
         meshes = plural("coarser mesh", 1) if len(coarser) == 1 else "coarser meshes"
-        sentences.append(f"On the {meshes} (refine {', '.join(coarser)}) not every answer is proved to be the solution.")
+        sentences.append(
+            f"On the {meshes} (refine {', '.join(coarser)}) not every answer is proved to be the solution."
+        )
     equations = Verdict("Equations", quality, compared["heading"], " ".join(sentences))
     return equations, mesh_verdict(finest["accuracy"])
 
@@ -97,7 +101,9 @@ def mesh_verdict(accuracy: Record) -> Verdict:
     where = "" if largest is None else bar_in_words(largest)
     if accuracy["met"]:
         word = f"error at most {error} (asked {100 * asked:.3g} %)"
-        return Verdict("Mesh", "good", word, f"The largest error bar is that of the {where}." if where else "No contact.")
+        return Verdict(
+            "Mesh", "good", word, f"The largest error bar is that of the {where}." if where else "No contact."
+        )
     found = f"The largest error bar is that of the {where}"
     if largest is not None and not known:
         error, found = "not known", f"The error of the {where} is not known: {largest['note']}"
@@ -154,7 +160,7 @@ def with_error(value: float, error: float) -> str:
     error = max(error, LEAST_SHOWN * abs(value))
     if not error:
         return number(value)
-    if not -3 <= power < 6:
+    if not -4 <= power < 6:
         mantissa = with_error(value / 10.0**power, error / 10.0**power)
         return f"({mantissa})e{power:+03d}"
     first = int(np.floor(np.log10(error) + ROUND_OFF))
@@ -173,7 +179,13 @@ def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
         size = abs(bar["value"] or 0.0) if bar["interval"] is None else lengths.get((bar["zone"], bar["interval"]), 0.0)
         interval = f" {bar['interval'] + 1}" if bar["interval"] is not None and _several(bars, bar) else ""
         over = error is not None and asked and bar["promised"] and error > asked
-        share = NOTHING if not bar["promised"] or not asked else "not known" if error is None else f"{100 * error / asked:.2g} %"
+        share = (
+            NOTHING
+            if not bar["promised"] or not asked
+            else "not known"
+            if error is None
+            else f"{100 * error / asked:.2g} %"
+        )
         yield {
             "quantity": sentence_case(QUANTITIES[bar["quantity"]]) + interval,
             "zone": bar["zone"] or NOTHING,
@@ -241,7 +253,9 @@ def _peaks(record: Record, size: float, units: Units) -> Iterator[tuple[str, str
         yield "Peak pressure", f"{peak_in_words(peak, size, units, _peak_bar(record))}; per UNDEFORMED length"
     if infinite:
         for bar in bars_of(record, "peak"):
-            written = bar["note"] if bar["value"] is None else with_unit(with_bar(bar["value"], bar["bar"]), units.stress)
+            written = (
+                bar["note"] if bar["value"] is None else with_unit(with_bar(bar["value"], bar["bar"]), units.stress)
+            )
             yield "Peak pressure", f"of {bar['zone']}: {written}"
 
 

@@ -7,7 +7,6 @@ into them as plain text, never as markup.
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-import numpy as np
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
@@ -184,7 +183,9 @@ def case_verdicts(cases: CaseResults) -> tuple[Verdict, Verdict]:
     pairs = {name: verdicts(result) for name, result in cases.results.items()}
     equations, mesh = ({name: pair[i] for name, pair in pairs.items() if not pair[i].good} for i in range(2))
     largest = max(cases.results, key=lambda name: cases.results[name].accuracy.worst)
-    shared = f"{pairs[largest][1].words[:-1]}, under {largest}; one mesh serves all load cases, so that they can be added"
+    shared = (
+        f"{pairs[largest][1].words[:-1]}, under {largest}; one mesh serves all load cases, so that they can be added"
+    )
     return (
         _together(pairs[largest][0]._replace(words="In every load case."), equations),
         _together(pairs[largest][1]._replace(words=f"{shared}."), mesh),
@@ -210,7 +211,9 @@ def shortfall(results: Result | CaseResults) -> str:
 
 def study_shortfall(study: Study) -> str:
     """Why a comparison does not hold."""
-    return " ".join(f"{item.of}: {item.word}. {item.words}" for item in study_verdicts(study.to_dict()) if not item.good)
+    return " ".join(
+        f"{item.of}: {item.word}. {item.words}" for item in study_verdicts(study.to_dict()) if not item.good
+    )
 
 
 def _places(record: Record, contact: CondensedContact) -> Iterator[str]:

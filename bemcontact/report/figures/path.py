@@ -32,7 +32,9 @@ def figure_of_path(path: ParameterPath) -> Figure:
         axes.spines[["top", "right"]].set_visible(False)
     ends[-1].set_xlabel(shortened(path.key, 60))
     of_it = [*path_verdicts(path)]
-    at = [f"at {number(value)}: {verdict.word}" for value, verdict in zip((path.start, path.end), of_it[1:], strict=True)]
+    at = [
+        f"at {number(value)}: {verdict.word}" for value, verdict in zip((path.start, path.end), of_it[1:], strict=True)
+    ]
     title = "\n".join((shortened(path.contact.name, 60), of_it[0].word, *at))
     peaks.set_title(title, fontsize=10, color=QUALITY_COLOURS[overall(of_it)])
     return figure
@@ -42,7 +44,9 @@ def draw_peaks(axes: Axes, path: ParameterPath) -> None:
     """Draw the largest pressure over the parameter, with a dot at each breakpoint; nothing if it is infinite."""
     axes.set_ylabel(labelled("peak pressure", units_of(path.contact).stress))
     if path.infinite:
-        axes.text(0.5, 0.5, f"infinite in {', '.join(path.infinite)}", transform=axes.transAxes, ha="center", color=BLACK)
+        axes.text(
+            0.5, 0.5, f"infinite in {', '.join(path.infinite)}", transform=axes.transAxes, ha="center", color=BLACK
+        )
         axes.set_yticks([])
         return
     _draw_line(axes, path, [state.peak or 0.0 for state in path.states], BLACK, "")

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
+from bemcontact.report.facts import Verdict, in_short, overall
 from bemcontact.report.figures.contact import draw_contact, draw_deformed, extent
 from bemcontact.report.figures.page import (
     BLACK,
@@ -25,7 +26,6 @@ from bemcontact.report.figures.page import (
     shortened,
     wrapped,
 )
-from bemcontact.report.facts import Verdict, in_short, overall
 from bemcontact.report.formatting import number, units_of, with_unit
 from bemcontact.report.text import case_verdicts, verdicts
 
@@ -175,9 +175,14 @@ def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
     if cases.infinite:
         answers = cases.results.values()
         tops = [ceiling(item.contact, item.solution.pressure, item.accuracy.infinite) for item in answers]
-        highest = [top or 1.18 * float(item.solution.pressure.max(initial=0.0)) for top, item in zip(tops, answers, strict=True)]
+        highest = [
+            top or 1.18 * float(item.solution.pressure.max(initial=0.0))
+            for top, item in zip(tops, answers, strict=True)
+        ]
         axes.set_ylim(top=max(highest))
-        mark_infinite(axes, [zone for zone in first.contact.zone_names if any(zone in it.accuracy.infinite for it in answers)])
+        mark_infinite(
+            axes, [zone for zone in first.contact.zone_names if any(zone in it.accuracy.infinite for it in answers)]
+        )
 
 
 def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
@@ -187,7 +192,9 @@ def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
     colours = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
     beyond = 2 * max(peaks) or 1.0
     lengths = [beyond if name in cases.infinite else peak for name, peak in zip(cases.results, peaks, strict=True)]
-    labels = ["infinite" if name in cases.infinite else f"{peak:.5g}" for name, peak in zip(cases.results, peaks, strict=True)]
+    labels = [
+        "infinite" if name in cases.infinite else f"{peak:.5g}" for name, peak in zip(cases.results, peaks, strict=True)
+    ]
     bars = axes.barh([shortened(name, 30) for name in cases.results], lengths, color=colours)
     axes.bar_label(bars, labels, padding=3)
     axes.margins(x=0.12)
