@@ -186,8 +186,8 @@ def comparison(
 ) -> Comparison:
     """Assess the solutions of formulations, without trust in a solver, and put them side by side.
 
-    The reference is the attempt of the direct solver. No peak is stated if it is known to be infinite. `ProblemError` if the problem does not carry the weights asked
-    for.
+    The reference is the attempt of the direct solver. No peak is stated if it is known to be infinite. `ProblemError`
+    if the problem does not carry the weights asked for.
     """
     asked = [item.options.weights for item in attempts if item.options.uses("weights")]
     weights = [*dict.fromkeys([Weights.TRIBUTARY, *asked])]

@@ -352,7 +352,10 @@ def assess(
     *,
     infinite: bool = False,
 ) -> Assessment:
-    """Recompute everything of a solution, without a peak that is infinite; `ProblemError` if the problem does not carry one of the weights."""
+    """Recompute everything of a solution; there is no peak if it is known to be infinite.
+
+    `ProblemError` if the problem does not carry one of the weights.
+    """
     recomputed = residuals(contact, solution)
     return Assessment(
         solution=solution,

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bemcontact.problem import Units
-from bemcontact.report.formatting import number, per_thickness, plural, sentence_case, settled, vector, with_unit
+from bemcontact.report.formatting import number, per_thickness, sentence_case, settled, vector, with_unit
 
 Record = Mapping[str, Any]
 """A JSON object of a result."""
@@ -79,13 +79,9 @@ def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
     proved = [level["comparison"]["certified"] for level in report["levels"]]
     quality = "good" if all(proved) else "fair" if compared["reference"]["certified"] else "bad"
     sentences = [sentence_case(words or report["verdict"])]
-    if coarser := [
-        str(level["refine"]) for level, fine in zip(report["levels"][:-1], proved, strict=False) if not fine
-    ]:
-        meshes = plural("coarser mesh", 1) if len(coarser) == 1 else "coarser meshes"
-        sentences.append(
-            f"On the {meshes} (refine {', '.join(coarser)}) not every answer is proved to be the solution."
-        )
+    if coarser := [str(level["refine"]) for level in report["levels"][:-1] if not level["comparison"]["certified"]]:
+        meshes = "coarser mesh" if len(coarser) == 1 else "coarser meshes"
+        sentences.append(f"On the {meshes} (refine {', '.join(coarser)}) not each answer is proved to be the solution.")
     equations = Verdict("Equations", quality, compared["heading"], " ".join(sentences))
     return equations, mesh_verdict(finest["accuracy"])
 
@@ -179,18 +175,12 @@ def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
         size = abs(bar["value"] or 0.0) if bar["interval"] is None else lengths.get((bar["zone"], bar["interval"]), 0.0)
         interval = f" {bar['interval'] + 1}" if bar["interval"] is not None and _several(bars, bar) else ""
         over = error is not None and asked and bar["promised"] and error > asked
-        share = (
-            NOTHING
-            if not bar["promised"] or not asked
-            else "not known"
-            if error is None
-            else f"{100 * error / asked:.2g} %"
-        )
+        share = "not known" if error is None else f"{100 * error / (asked or 1.0):.2g} %"
         yield {
             "quantity": sentence_case(QUANTITIES[bar["quantity"]]) + interval,
             "zone": bar["zone"] or NOTHING,
             "value": _bar_value(bar, size, units),
-            "share": share,
+            "share": share if asked and bar["promised"] else NOTHING,
             "colour": "bad" if over else "",
             "note": bar["note"],
         }

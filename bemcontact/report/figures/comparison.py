@@ -73,8 +73,8 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
     """Draw the pressures of all contenders, the direct solution and the references along the contact zones.
 
     The direct solution is a wide band below the other curves. A reference out of its range is gray. Curves far above
-    the direct solution are cut off, and their peaks are written above the frame. An infinite pressure is cut off at three
-    times the mean one.
+    the direct solution are cut off, and their peaks are written above the frame. An infinite pressure is cut off at
+    three times the mean one.
     """
     contact, unit = level.answer.contact, units_of(level.answer.contact).stress
     along, curves = _Along(contact=contact), _curves(level)

@@ -88,8 +88,9 @@ def draw_contact(axes: Axes, result: Result) -> None:
     """Draw the deformed body to scale, its supports and loads, the rigid surfaces, and the pressure as a fan.
 
     The fan lies outside the body, along the normals of the rigid surface. The largest pressure of each unbroken piece
-    of contact is written beside it; one that is infinite is cut off and written as such. If the contact is small beside the body, only the part of the body around it is
-    shown, without supports and loads. `ValueError` for the result of a condensed problem.
+    of contact is written beside it; one that is infinite is cut off and written as such. If the contact is small beside
+    the body, only the part of the body around it is shown, without supports and loads. `ValueError` for the result of a
+    condensed problem.
     """
     state, problem, units = result.boundary, result.problem, units_of(result.contact)
     if state is None or problem is None:
@@ -183,7 +184,7 @@ def _window(fans: Sequence[Fan], body: Array) -> tuple[Array, bool]:
 
 
 def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:
-    """The largest pressure of a fan as text, to be placed beyond its tip in the middle of a level stretch, or in a hole."""
+    """Text on the peak of a fan, to be placed beyond its tip in the middle of a level stretch, or in a hole."""
     if fan.closed:
         middle = tips.mean(axis=0, keepdims=True)
         return Name(text=text.replace(" ", "\n"), colour=BLACK, anchors=middle, directions=np.zeros((1, 2)))

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.report.facts import overall
+from bemcontact.report.facts import in_short, overall
 from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labelled, new_page, plain, shortened
 from bemcontact.report.formatting import number, per_thickness, units_of
 from bemcontact.report.text import path_verdicts
@@ -32,10 +32,9 @@ def figure_of_path(path: ParameterPath) -> Figure:
         axes.spines[["top", "right"]].set_visible(False)
     ends[-1].set_xlabel(shortened(path.key, 60))
     of_it = [*path_verdicts(path)]
-    at = [
-        f"at {number(value)}: {verdict.word}" for value, verdict in zip((path.start, path.end), of_it[1:], strict=True)
-    ]
-    title = "\n".join((shortened(path.contact.name, 60), of_it[0].word, *at))
+    ends = zip((path.start, path.end), of_it[1:], strict=True)
+    at = [f"at {number(value)}: {in_short([verdict])}" for value, verdict in ends]
+    title = "\n".join((shortened(path.contact.name, 60), in_short(of_it[:1]), *at))
     peaks.set_title(title, fontsize=10, color=QUALITY_COLOURS[overall(of_it)])
     return figure
 

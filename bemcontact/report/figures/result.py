@@ -173,29 +173,29 @@ def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
     axes.set_ylabel(labelled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
     axes.legend(frameon=False, fontsize=8.5)
     if cases.infinite:
-        answers = cases.results.values()
-        tops = [ceiling(item.contact, item.solution.pressure, item.accuracy.infinite) for item in answers]
-        highest = [
-            top or 1.18 * float(item.solution.pressure.max(initial=0.0))
-            for top, item in zip(tops, answers, strict=True)
-        ]
-        axes.set_ylim(top=max(highest))
-        mark_infinite(
-            axes, [zone for zone in first.contact.zone_names if any(zone in it.accuracy.infinite for it in answers)]
-        )
+        _cut_off(axes, [*cases.results.values()])
+
+
+def _cut_off(axes: Axes, results: Sequence[Result]) -> None:
+    """Cut infinite pressures off, and name their zones."""
+    tops = (
+        ceiling(item.contact, item.solution.pressure, item.accuracy.infinite)
+        or 1.18 * float(item.solution.pressure.max(initial=0.0))
+        for item in results
+    )
+    axes.set_ylim(top=max(tops))
+    mark_infinite(axes, [*dict.fromkeys(zone for item in results for zone in item.accuracy.infinite)])
 
 
 def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
     """Draw a bar for the peak pressure of each load case; an infinite one goes beyond the frame."""
     first = next(iter(cases.results.values()))
-    peaks = [result.footprint.peak.pressure if result.footprint.peak else 0.0 for result in cases.results.values()]
+    finite = {name: it.footprint.peak.pressure if it.footprint.peak else 0.0 for name, it in cases.results.items()}
+    beyond = 2 * max(finite.values()) or 1.0
+    peaks = [beyond if name in cases.infinite else peak for name, peak in finite.items()]
+    labels = ["infinite" if name in cases.infinite else f"{peak:.5g}" for name, peak in finite.items()]
     colours = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
-    beyond = 2 * max(peaks) or 1.0
-    lengths = [beyond if name in cases.infinite else peak for name, peak in zip(cases.results, peaks, strict=True)]
-    labels = [
-        "infinite" if name in cases.infinite else f"{peak:.5g}" for name, peak in zip(cases.results, peaks, strict=True)
-    ]
-    bars = axes.barh([shortened(name, 30) for name in cases.results], lengths, color=colours)
+    bars = axes.barh([shortened(name, 30) for name in cases.results], peaks, color=colours)
     axes.bar_label(bars, labels, padding=3)
     axes.margins(x=0.12)
     axes.invert_yaxis()
