@@ -101,7 +101,10 @@ def study(
         report = progress if len(refine) == 1 or progress is None else _prefixed(progress, f"refine {parts}: ")
         finer = problem.refined(parts) if isinstance(problem, Problem) and parts > 1 else problem
         watch = Stopwatch(progress=report, seconds={} if levels else finding.seconds)
-        prepared = found if found and parts == 1 else prepare(finer, watch, errors=parts == max(refine))
+        prepared = found if parts == 1 else None
+        if prepared is None:
+            singular = found.singular if found else ()
+            prepared = prepare(finer, watch, errors=parts == max(refine), singular=singular)
         if found:
             prepared = replace(prepared, accuracy=prepared.accuracy.knowing(found.accuracy))
         level = _compared(options, prepared, watch)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bemcontact.adaptivity.adapt import meshed
+from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy
@@ -63,7 +63,7 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     on_mesh, found = _on_mesh(problem, key, begin, end)
     ends = (replace(contact, name=problem.title) for contact in between(on_mesh, key, begin, end))
     path = load_path(*ends)
-    first, last = (_accuracy(on_mesh, key, value).knowing(*found) for value in (begin, end))
+    first, last = (_accuracy(on_mesh, key, value, found.get(value)) for value in (begin, end))
     return ParameterPath(key=key, start=begin, end=end, path=path, start_accuracy=first, end_accuracy=last)
 
 
@@ -106,28 +106,29 @@ def _with_mesh(problem: Problem) -> Problem:
     return meshed(problem, errors=False).problem if problem.adapts else problem
 
 
-def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Problem, tuple[Accuracy, ...]]:
+def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Problem, Mapping[float, Meshed]]:
     """The problem on a mesh that is accurate at both ends of a path, if a mesh is to be found.
 
-    With it come the accuracies of the search. Only the search recognizes infinite peaks.
+    With it comes what the searches at both ends found, for only a search recognizes infinite pressures.
     """
     if not problem.adapts:
-        return problem, ()
+        return problem, {}
     one = meshed(_varied(problem, key, start))
     boundary, refine = one.problem.boundary, one.problem.mesh.refine
     mesh = problem.mesh.model_copy(update={"adapt": True, "refine": refine})
     two = meshed(_varied(problem.model_copy(update={"boundary": boundary, "mesh": mesh}), key, end))
     on_mesh = problem.model_copy(update={"boundary": two.problem.boundary, "mesh": two.problem.mesh})
-    return on_mesh, (*one.accuracies, *two.accuracies)
+    return on_mesh, {start: one, end: two}
 
 
-def _accuracy(problem: Problem, key: str, value: float) -> Accuracy:
+def _accuracy(problem: Problem, key: str, value: float, found: Meshed | None) -> Accuracy:
     """Accuracy of the mesh at one value of a key; a load that presses nothing has no errors to estimate."""
     try:
-        (accuracy,) = meshed(_varied(problem, key, value)).accuracies
+        singular = found.singular if found else ()
+        (accuracy,) = meshed(_varied(problem, key, value), singular=singular).accuracies
     except ProblemError as error:
         return Accuracy(asked=problem.asked_accuracy, reason=str(error).splitlines()[0])
-    return accuracy
+    return accuracy.knowing(*found.accuracies) if found else accuracy
 
 
 def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:
