@@ -21,9 +21,9 @@ from bemcontact.report.figures.page import (
     PURPLE,
     Piece,
     ceiling,
+    cut_off,
     labelled,
     legend_below,
-    mark_infinite,
     pieces_of,
     plain,
     shortened,
@@ -98,8 +98,7 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
         _cut_off(axes, maxima, BEYOND * max(known), unit)
     else:
         _cut_off(axes, {}, top, unit)
-        axes.set_ylim(-0.1 * top, top)
-        mark_infinite(axes, infinite)
+        cut_off(axes, top, infinite)
     axes.set_ylabel(labelled("pressure", unit) + "\nper undeformed length")
     along.finish(axes)
 

@@ -123,11 +123,11 @@ def ceiling(contact: CondensedContact, pressure: Array, infinite: Sequence[str])
     return max(CUT * mean, 1.18 * float(pressure[~singular].max(initial=0.0))) or None
 
 
-def mark_infinite(axes: Axes, zones: Sequence[str]) -> None:
-    """Write above the frame that the pressure of zones is infinite and cut off."""
-    where = f" in {', '.join(shortened(zone, 24) for zone in zones)}"
-    text = f"infinite{where}: cut off"
-    axes.text(1.0, 1.0, text, transform=axes.transAxes, ha="right", va="top", fontsize=8.5, color=BLACK)
+def cut_off(axes: Axes, top: float, zones: Sequence[str]) -> None:
+    """End the frame at a pressure, and write above it that the pressure of zones is infinite."""
+    where = ", ".join(shortened(zone, 24) for zone in zones)
+    axes.set_ylim(-0.05 * top, top)
+    axes.set_title(f"infinite in {where}: cut off", loc="right", pad=16, fontsize=8.5, color=BLACK)
 
 
 PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)

@@ -18,8 +18,8 @@ from bemcontact.report.figures.page import (
     PIECE_COLOURS,
     QUALITY_COLOURS,
     ceiling,
+    cut_off,
     labelled,
-    mark_infinite,
     new_page,
     pieces_of,
     plain,
@@ -74,10 +74,9 @@ def draw_pressure(axes: Axes, result: Result) -> None:
     pressure, contact, infinite = result.solution.pressure, result.contact, result.accuracy.infinite
     _draw_along(axes, result, pressure)
     axes.set_ylabel(labelled("pressure", units_of(contact).stress) + "\nper undeformed length")
-    top = ceiling(contact, pressure, infinite)
-    axes.set_ylim(top=top or 1.18 * float(pressure.max(initial=0.0)) or 1.0)
-    if infinite:
-        mark_infinite(axes, infinite)
+    axes.set_ylim(top=1.18 * float(pressure.max(initial=0.0)) or 1.0)
+    if (top := ceiling(contact, pressure, infinite)) is not None:
+        cut_off(axes, top, infinite)
     peak = result.footprint.peak
     if peak is not None:
         nearest = int(np.argmin(np.hypot(*(contact.points - np.array(peak.at)).T)))
@@ -173,18 +172,13 @@ def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
     axes.set_ylabel(labelled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
     axes.legend(frameon=False, fontsize=8.5)
     if cases.infinite:
-        _cut_off(axes, [*cases.results.values()])
-
-
-def _cut_off(axes: Axes, results: Sequence[Result]) -> None:
-    """Cut infinite pressures off, and name their zones."""
-    tops = (
-        ceiling(item.contact, item.solution.pressure, item.accuracy.infinite)
-        or 1.18 * float(item.solution.pressure.max(initial=0.0))
-        for item in results
-    )
-    axes.set_ylim(top=max(tops))
-    mark_infinite(axes, [*dict.fromkeys(zone for item in results for zone in item.accuracy.infinite)])
+        tops = (
+            ceiling(item.contact, item.solution.pressure, item.accuracy.infinite)
+            or 1.18 * float(item.solution.pressure.max(initial=0.0))
+            for item in cases.results.values()
+        )
+        zones = dict.fromkeys(zone for item in cases.results.values() for zone in item.accuracy.infinite)
+        cut_off(axes, max(tops), [*zones])
 
 
 def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
@@ -197,6 +191,10 @@ def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
     colours = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
     bars = axes.barh([shortened(name, 30) for name in cases.results], peaks, color=colours)
     axes.bar_label(bars, labels, padding=3)
+    for bar, name in zip(bars, cases.results, strict=True):
+        bar.set(hatch="//" if name in cases.infinite else None, alpha=0.5 if name in cases.infinite else 1.0)
+    if not any(finite.values()) and cases.infinite:
+        axes.set_xticks([])
     axes.margins(x=0.12)
     axes.invert_yaxis()
     axes.set_xlabel(labelled("peak pressure", units_of(first.contact).stress))
