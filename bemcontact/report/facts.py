@@ -182,13 +182,15 @@ def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
             "value": _bar_value(bar, size, units),
             "share": share if asked and bar["promised"] else NOTHING,
             "colour": "bad" if over else "",
-            "note": bar["note"],
+            "note": bar["note"] if bar["quantity"] == "intensity" else sentence_case(bar["note"]),
         }
 
 
 def _bar_value(bar: Record, size: float, units: Units) -> str:
     """Write a quantity and its error relative to a size, with the unit."""
     value, error = bar["value"], bar["bar"]
+    if value is None and error is not None:
+        return f"± {error_percent(error)}"
     if value is None:
         return "infinite" if bar["quantity"] == "peak" else NOTHING
     return with_unit(with_error(value, error * size) if error else number(value), _unit_of_bar(bar, units))
