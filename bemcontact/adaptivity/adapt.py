@@ -69,6 +69,8 @@ class Meshed:
     problem: Problem
     condensation: Condensation
     accuracies: tuple[Accuracy, ...]
+    singular: tuple[tuple[Singularity, ...], ...] = ()
+    """Infinite pressures that the search recognized, under each load case; empty for a stated mesh."""
 
     @property
     def worst(self) -> float:
@@ -336,10 +338,17 @@ def penetrations(answer: Solved, case: Answer) -> Iterator[tuple[int, float]]:
                 yield element, -least
 
 
-def meshed(problem: Problem, progress: Callable[[str], object] | None = None, *, errors: bool = True) -> Meshed:
+def meshed(
+    problem: Problem,
+    progress: Callable[[str], object] | None = None,
+    *,
+    errors: bool = True,
+    singular: Sequence[Sequence[Singularity]] = (),
+) -> Meshed:
     """Condense a problem on the mesh that it states, or on one that is found for the accuracy asked.
 
-    The errors of a stated mesh are estimated, unless no accuracy is asked for or `errors` is false.
+    The errors of a stated mesh are estimated, unless no accuracy is asked for or `errors` is false. `singular` are
+    infinite pressures under each load case that the search for another mesh of the problem recognized.
 
     Raises
     ------
@@ -366,8 +375,8 @@ def meshed(problem: Problem, progress: Callable[[str], object] | None = None, *,
         progress("every element in two")
         fine = solved(_cut(problem, 2 * refine))
         bars = [
-            error_bars(Difference(coarse=coarse, fine=fine, number=i), (), of_fine=False)
-            for i in range(len(fine.answers))
+            error_bars(Difference(coarse=coarse, fine=fine, number=i), its, of_fine=False)
+            for i, its in enumerate(singular or [()] * len(fine.answers))
         ]
         accuracies = [Accuracy.of(asked, 1, its) for its in bars]
     except (ProblemError, SingularSystemError, SolverError) as error:
@@ -412,6 +421,7 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
             problem=fine.body.problem,
             condensation=fine.condensation,
             accuracies=tuple(Accuracy.of(asked, number, its) for its in bars),
+            singular=tuple(map(tuple, singular)),
         )
         progress(f"pass {number}, {fine.degrees_of_freedom} unknowns, error at most {100 * now.worst:.2g} %")
         best = now if best is None or now.worst <= best.worst else best

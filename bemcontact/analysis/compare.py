@@ -103,7 +103,12 @@ def study(
         report = progress if len(refine) == 1 or progress is None else _prefixed(progress, f"refine {parts}: ")
         finer = problem.refined(parts) if isinstance(problem, Problem) and parts > 1 else problem
         watch = Stopwatch(progress=report, seconds={} if levels else finding.seconds)
-        prepared = found if found and parts == 1 else prepare(finer, watch, errors=parts == max(refine))
+        prepared = found if parts == 1 else None
+        if prepared is None:
+            singular = found.singular if found else ()
+            prepared = prepare(finer, watch, errors=parts == max(refine), singular=singular)
+        if found:
+            prepared = replace(prepared, accuracy=prepared.accuracy.knowing(found.accuracy))
         level = _compared(options, prepared, watch)
         levels.append(replace(level, refine=parts, outdated=outdated(problem, changes)))
     return Study(settings=Settings(**options.to_dict(), changes=tuple(changes)), levels=tuple(levels))
@@ -138,7 +143,7 @@ def _compared(options: ComparisonOptions, prepared: Prepared, watch: Stopwatch) 
             qp3.load()
     attempts = [_attempted(attempt, options, contact, watch) for attempt in options.attempts]
     with watch.stage("comparison"):
-        compared = comparison(contact, reference, attempts)
+        compared = comparison(contact, reference, attempts, infinite=bool(prepared.accuracy.infinite))
     answer = assessed(prepared, reference.solution, Weights.TRIBUTARY, watch)
     return MeshLevel(refine=1, comparison=compared, answer=answer)
 

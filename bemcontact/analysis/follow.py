@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bemcontact.adaptivity.adapt import meshed
+from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.analysis.penetration import penetration_on_path
 from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
 from bemcontact.analysis.variation import Variation, case_of
@@ -64,11 +64,11 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
         ensure_acting(problem)
     if begin == end:
         raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
-    on_mesh = _on_mesh(problem, key, begin, end)
+    on_mesh, found = _on_mesh(problem, key, begin, end)
     varied = Variation(on_mesh, key)
     path = load_path(*(replace(contact, name=problem.title) for contact in between(varied, begin, end)))
     deepest, at = penetration_on_path(varied, path, begin, end)
-    first, last = (_accuracy(varied, value) for value in (begin, end))
+    first, last = (_accuracy(varied, value, found.get(value)) for value in (begin, end))
     return ParameterPath(
         key=key, start=begin, end=end, path=path, start_accuracy=first, end_accuracy=last,
         penetration=deepest, penetrates_at=at,
@@ -114,25 +114,30 @@ def _with_mesh(problem: Problem) -> Problem:
     return meshed(problem, errors=False).problem if problem.adapts else problem
 
 
-def _on_mesh(problem: Problem, key: str, start: float, end: float) -> Problem:
-    """The problem on a mesh that is accurate at both ends of a path, if a mesh is to be found."""
+def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Problem, Mapping[float, Meshed]]:
+    """The problem on a mesh that is accurate at both ends of a path, if a mesh is to be found.
+
+    With it comes what the searches at both ends found, for only a search recognizes infinite pressures.
+    """
     if not problem.adapts:
-        return problem
-    found = _with_mesh(Variation(problem, key).at(start))
-    boundary, refine = found.boundary, found.mesh.refine
+        return problem, {}
+    one = meshed(Variation(problem, key).at(start))
+    boundary, refine = one.problem.boundary, one.problem.mesh.refine
     mesh = problem.mesh.model_copy(update={"adapt": True, "refine": refine})
     finer = problem.model_copy(update={"boundary": boundary, "mesh": mesh})
-    there = _with_mesh(Variation(finer, key).at(end))
-    return problem.model_copy(update={"boundary": there.boundary, "mesh": there.mesh})
+    two = meshed(Variation(finer, key).at(end))
+    on_mesh = problem.model_copy(update={"boundary": two.problem.boundary, "mesh": two.problem.mesh})
+    return on_mesh, {start: one, end: two}
 
 
-def _accuracy(varied: Variation, value: float) -> Accuracy:
+def _accuracy(varied: Variation, value: float, found: Meshed | None) -> Accuracy:
     """Accuracy of the mesh at one value of a key; a load that presses nothing has no errors to estimate."""
     try:
-        (accuracy,) = meshed(varied.at(value)).accuracies
+        singular = found.singular if found else ()
+        (accuracy,) = meshed(varied.at(value), singular=singular).accuracies
     except ProblemError as error:
         return Accuracy(asked=varied.problem.asked_accuracy, reason=str(error).splitlines()[0])
-    return accuracy
+    return accuracy.knowing(*found.accuracies) if found else accuracy
 
 
 def _keys(changes: object) -> tuple[str, ...]:

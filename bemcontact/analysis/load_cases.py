@@ -24,7 +24,8 @@ class CasesRecord(Record):
     certified: bool
     """Whether all of them are proved to be the contact state."""
     worst: str | None
-    """Name of the load case or combination with the largest peak pressure; null if nothing touches in any."""
+    """Name of the load case or combination with the largest peak pressure; null if nothing touches in any, or if a peak
+    is infinite."""
     cases: dict[str, ResultRecord]
     """Result by the name of the load case or combination."""
     seconds: dict[str, float]
@@ -49,8 +50,12 @@ class CaseResults(Recorded):
     def __repr__(self) -> str:
         """One line: name, cases, verdict, largest peak."""
         worst = "no contact" if self.worst is None else f"largest peak pressure in '{self.worst}'"
-        verdict = "all certified" if self.certified else "NOT all certified"
-        return f"<CaseResults of {self.name!r}: {', '.join(self.results)}: {verdict}, {worst}>"
+        worst = f"infinite peak pressure in {', '.join(self.infinite)}" if self.infinite else worst
+        equations = "unique solutions proved" if self.certified else "NOT all solutions proved"
+        error = max(result.accuracy.worst for result in self.results.values())
+        known = all(result.accuracy.met is not None for result in self.results.values())
+        mesh = f"error at most {100 * error:.2g} %" if known else "error not estimated"
+        return f"<CaseResults of {self.name!r}: {', '.join(self.results)}: {equations}, {mesh}, {worst}>"
 
     @property
     def certified(self) -> bool:
@@ -63,8 +68,15 @@ class CaseResults(Recorded):
         return all(result.holds for result in self.results.values())
 
     @property
+    def infinite(self) -> tuple[str, ...]:
+        """The cases and combinations with an infinite peak pressure."""
+        return tuple(name for name, result in self.results.items() if result.accuracy.infinite)
+
+    @property
     def worst(self) -> str | None:
-        """The case or combination with the largest peak pressure; None if nothing touches in any."""
+        """The case or combination with the largest peak pressure; None without contact, or if a peak is infinite."""
+        if self.infinite:
+            return None
         peaks = {name: item.footprint.peak.pressure for name, item in self.results.items() if item.footprint.peak}
         return max(peaks, key=lambda name: peaks[name], default=None)
 

@@ -276,8 +276,9 @@ def _below(progress: Progress | None, name: str) -> Progress:
 
 
 def _problem(paper: PaperProblem, variant: str | None) -> Problem:
-    """Read a problem, or a variant of it."""
-    return spec.loads(shipped_model(paper.model), f"models/{paper.model}.yaml", variant=variant)
+    """Read a problem, or a variant of it, on the mesh that it states; references and refinement judge its errors."""
+    stated = spec.loads(shipped_model(paper.model), f"models/{paper.model}.yaml", variant=variant)
+    return stated.model_copy(update={"accuracy": None})
 
 
 def shipped_model(name: str) -> str:

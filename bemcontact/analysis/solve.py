@@ -1,12 +1,13 @@
 """From a problem to an assessed result: condense, solve, recover and assess, with the time of each stage."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Unpack
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
+from bemcontact.adaptivity.singularities import Singularity
 from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.penetration import penetration, surface_gaps
 from bemcontact.analysis.result import Result
@@ -170,23 +171,36 @@ class Prepared:
     """None for a problem that was given condensed."""
     accuracy: Accuracy = NO_MESH
     """Accuracy of the mesh."""
+    singular: tuple[tuple[Singularity, ...], ...] = ()
+    """Infinite pressures that the search for the mesh recognized."""
 
 
-def prepare(problem: Problem | CondensedContact, watch: Stopwatch, *, errors: bool = True) -> Prepared:
+def prepare(
+    problem: Problem | CondensedContact,
+    watch: Stopwatch,
+    *,
+    errors: bool = True,
+    singular: Sequence[Sequence[Singularity]] = (),
+) -> Prepared:
     """Condense a problem on its mesh or on one that is found, and estimate the errors of a stated mesh if wanted."""
     ensure_kind(problem)
     if isinstance(problem, CondensedContact):
         return Prepared(contact=problem)
-    on_mesh = mesh_of(problem, watch, errors=errors)
+    on_mesh = mesh_of(problem, watch, errors=errors, singular=singular)
     return Prepared(
-        contact=on_mesh.condensation.contact, condensation=on_mesh.condensation, accuracy=on_mesh.accuracies[0]
+        contact=on_mesh.condensation.contact,
+        condensation=on_mesh.condensation,
+        accuracy=on_mesh.accuracies[0],
+        singular=on_mesh.singular,
     )
 
 
-def mesh_of(problem: Problem, watch: Stopwatch, *, errors: bool = True) -> Meshed:
+def mesh_of(
+    problem: Problem, watch: Stopwatch, *, errors: bool = True, singular: Sequence[Sequence[Singularity]] = ()
+) -> Meshed:
     """Condense a problem on its mesh or on one that is found, with the accuracy under each load case."""
     with watch.stage("mesh") as say:
-        return meshed(problem, say, errors=errors)
+        return meshed(problem, say, errors=errors, singular=singular)
 
 
 def assessed(
@@ -205,9 +219,7 @@ def assessed(
     with watch.stage("assessment"):
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
-        where, deepest, unseen = footprint(contact, solution), None, ()
-        if prepared.accuracy.infinite:
-            where = replace(where, peak=None)
+        where, deepest, unseen = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
         if boundary is not None and condensation is not None:
             deepest, unseen = penetration(surface_gaps(condensation.body.problem, boundary, contact, solution), contact)
         notes = (

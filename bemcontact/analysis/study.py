@@ -115,7 +115,8 @@ class MeshLevel:
         """Values that the references of the problem expect at the contact points."""
         problem = self.answer.problem
         items = () if problem is None else expected(problem, self.answer.contact)
-        return tuple(_outdated(item) if item.name in self.outdated else item for item in items)
+        items = (_outdated(item) if item.name in self.outdated else item for item in items)
+        return tuple(item.without_peak(self.answer.accuracy.infinite) for item in items)
 
     @cached_property
     def scores(self) -> tuple[Score, ...]:

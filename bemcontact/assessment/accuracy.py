@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 from math import inf
 from typing import Literal, Self
 
+from pydantic import computed_field
+
 from bemcontact.serialization import Leaf
 
 Quantity = Literal["peak", "force", "start", "end", "pressure", "displacement", "intensity"]
@@ -30,6 +32,7 @@ class ErrorBar(Leaf):
     note: str = ""
     """Why there is no value or no error bar, or what they mean."""
 
+    @computed_field
     @property
     def promised(self) -> bool:
         """Whether the accuracy asked for applies to it: not to intensities, nor where there is nothing to estimate."""
@@ -72,4 +75,16 @@ class Accuracy(Leaf):
     @property
     def infinite(self) -> tuple[str, ...]:
         """Names of the zones whose peak pressure is infinite."""
-        return tuple(item.zone or "" for item in self.bars if item.quantity == "peak" and item.value is None)
+        return tuple(item.zone or "" for item in self.infinite_peaks)
+
+    @property
+    def infinite_peaks(self) -> tuple[ErrorBar, ...]:
+        """The entries of peaks that are infinite."""
+        return tuple(item for item in self.bars if item.quantity == "peak" and item.value is None)
+
+    def knowing(self, *others: Self) -> Self:
+        """Return the same, with the infinite peaks that were recognized on others of the same problem."""
+        known = {item.zone: item for other in others for item in other.infinite_peaks}
+        kept = [item for item in self.bars if item.quantity != "peak" or item.zone not in known]
+        now = replace(self, bars=(*known.values(), *kept))
+        return now if self.met is None else replace(now, met=self.asked is not None and now.worst <= self.asked)

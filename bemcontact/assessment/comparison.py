@@ -32,6 +32,14 @@ SAME = 1e-6
 """Difference of two pressures over the peak from which they are two states and not one."""
 ROUND_OFF = 1e-12
 """Difference of pressures over the peak that the verdict calls round-off: it varies with the threads of a machine."""
+HEADINGS = {
+    Outcome.SOLVES: "unique solution proved",
+    Outcome.SOLVES_PERHAPS_NOT_ALONE: "local only",
+    Outcome.LEFT_OPEN: "left open by round-off",
+    Outcome.NOT_THE_SOLUTION: "not solved",
+    Outcome.REFUSED: "not solved",
+}
+"""What is shown of the direct solution -> the verdict on the equations."""
 MANY = 4
 """Number of contenders above which those that agree are counted and not named."""
 
@@ -71,7 +79,7 @@ class ComparisonRecord(Record):
     certified: bool
     """Whether the direct solution and all contenders are proved to be the contact state, the only one."""
     heading: str
-    """What is certified, in a few words."""
+    """What is proved of the solution of the equations on this mesh, in a few words."""
     verdict: str
     """What the comparison shows, in sentences."""
     agreement: float | None
@@ -145,13 +153,11 @@ class Comparison(Recorded):
 
     @property
     def heading(self) -> str:
-        """What is certified, in a few words."""
-        if self.certified:
-            return "certified"
+        """What is proved of the solution of the equations on this mesh, in a few words."""
         if not self.reference.certified:
-            return "NOT certified"
-        failing = sum(not item.certified for item in self.contenders)
-        return f"the contact state is certified, but {failing} of {len(self.contenders)} formulations did not find it"
+            return HEADINGS[self.reference.verdict.outcome]
+        proved, failing = HEADINGS[Outcome.SOLVES], sum(not item.certified for item in self.contenders)
+        return f"{proved}, but {failing} of {len(self.contenders)} formulations did not find it" if failing else proved
 
     def difference(self, label: str) -> Difference | None:
         """How far a contender is from the reference; None if it has no pressure, or is the reference."""
@@ -175,18 +181,20 @@ class Comparison(Recorded):
         )
 
 
-def comparison(contact: CondensedContact, reference: Attempt, attempts: Sequence[Attempt]) -> Comparison:
+def comparison(
+    contact: CondensedContact, reference: Attempt, attempts: Sequence[Attempt], *, infinite: bool = False
+) -> Comparison:
     """Assess the solutions of formulations, without trust in a solver, and put them side by side.
 
-    The reference is the attempt of the direct solver. `ProblemError` if the problem does not carry the weights asked
-    for.
+    The reference is the attempt of the direct solver. No peak is stated if it is known to be infinite. `ProblemError`
+    if the problem does not carry the weights asked for.
     """
     asked = [item.options.weights for item in attempts if item.options.uses("weights")]
     weights = [*dict.fromkeys([Weights.TRIBUTARY, *asked])]
     penalties = tuple(dict.fromkeys(item.options.penalty for item in attempts if item.options.uses("penalty")))
     matrices = {item: weighted_compliance(contact, item) for item in weights}
     assessments = [
-        None if item.solution is None else assess(contact, item.solution, weights, penalties)
+        None if item.solution is None else assess(contact, item.solution, weights, penalties, infinite=infinite)
         for item in (reference, *attempts)
     ]
     direct, *contenders = (
@@ -252,10 +260,12 @@ def _verdict(direct: Contender, contenders: Sequence[Contender], differences: Se
         sentences.append(f"{OUTCOMES[outcome].of_direct}{did}")
     elif solving and (apart <= SAME or outcome is not Outcome.SOLVES_PERHAPS_NOT_ALONE):
         agree = "agrees" if len(solving) == 1 else "agree"
-        difference = "round-off" if apart <= ROUND_OFF else f"{apart:.1e} of the peak"
+        difference = "round-off" if apart <= ROUND_OFF else f"{apart:.1e} of the largest pressure"
         sentences.append(f"{_listed(solving, len(contenders))} {agree} with the direct solution to {difference}")
     elif solving:
-        sentences.append(f"{_listed([*solving, direct], 0)} meet all conditions, but differ by {apart:.1e} of the peak")
+        sentences.append(
+            f"{_listed([*solving, direct], 0)} meet all conditions, but differ by {apart:.1e} of the largest pressure"
+        )
     for failure in (Outcome.NOT_THE_SOLUTION, Outcome.LEFT_OPEN, Outcome.REFUSED):
         if failing := [item for item in contenders if item.verdict.outcome is failure]:
             sentences.append(f"{failure}: {_listed(failing, 0)}")

@@ -51,7 +51,7 @@ OUTCOMES = {
         solves=True,
         meets_conditions=True,
         predicate=("finds the contact state", "find the contact state"),
-        of_direct="the direct solution is certified, and there is no other",
+        of_direct="the direct solution is proved to be the only one",
     ),
     Outcome.SOLVES_PERHAPS_NOT_ALONE: OutcomeFacts(
         quality="fair",
@@ -338,16 +338,24 @@ def _answer_record(contact: CondensedContact, assessment: Assessment) -> AnswerR
 
 
 def assess(
-    contact: CondensedContact, solution: ContactSolution, weights: Sequence[Weights], penalties: tuple[float, ...]
+    contact: CondensedContact,
+    solution: ContactSolution,
+    weights: Sequence[Weights],
+    penalties: tuple[float, ...],
+    *,
+    infinite: bool = False,
 ) -> Assessment:
-    """Recompute everything of a solution; `ProblemError` if the problem does not carry one of the weights."""
+    """Recompute everything of a solution; there is no peak if it is known to be infinite.
+
+    `ProblemError` if the problem does not carry one of the weights.
+    """
     recomputed = residuals(contact, solution)
     return Assessment(
         solution=solution,
         objectives=tuple(objectives(contact, solution, item, penalties) for item in weights),
         residuals=recomputed,
         certificate=certify(contact, solution, recomputed),
-        footprint=footprint(contact, solution),
+        footprint=footprint(contact, solution, infinite=infinite),
         peak=float(solution.pressure.max(initial=0.0)) / contact.scales.pressure,
     )
 

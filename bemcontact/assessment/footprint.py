@@ -98,14 +98,14 @@ def footprint_record(footprint: Footprint) -> FootprintRecord:
     )
 
 
-def footprint(contact: CondensedContact, solution: ContactSolution) -> Footprint:
+def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite: bool = False) -> Footprint:
     """Find contact intervals, peak and resultant of a solution of any formulation.
 
     A point touches if p/T > δ/U. The end of an interval is read off the gap, which grows like s^(3/2) beyond it: the
     zero of the line through δ^(2/3) at the first three open points, as long as the gap grows, kept between the last
     point in contact and the first open one. With two open points the line goes through both; with one the end is put
     half-way. Contact up to the end of a run ends at its last point, or at the node beyond it that a condition holds on
-    the rigid surface.
+    the rigid surface. There is no peak if it is known to be infinite.
     """
     return Footprint(
         intervals=tuple(
@@ -113,7 +113,7 @@ def footprint(contact: CondensedContact, solution: ContactSolution) -> Footprint
             for zone, path in _paths(contact, solution)
             for interval in _intervals(path, contact.zone_names[zone])
         ),
-        peak=_peak(contact, solution.pressure),
+        peak=None if infinite else _peak(contact, solution.pressure),
         resultant=_resultant(contact, solution.pressure),
     )
 

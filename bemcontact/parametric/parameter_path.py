@@ -37,10 +37,10 @@ class PathState(Leaf):
     """Indices of the points that enter contact, as the parameter goes from start to end."""
     left: tuple[int, ...]
     """Indices of the points that leave contact."""
-    peak: float
-    """Largest pressure [p]."""
+    peak: float | None
+    """Largest pressure [p]; null if it is infinite."""
     at: int | None
-    """Index of the point with the largest pressure; null without contact."""
+    """Index of the point with the largest pressure; null without contact, or if it is infinite."""
     resultant: tuple[Pair, ...]
     """Force (x, y) of the rigid surface of each zone on the body, per thickness [p L]."""
     touching: tuple[int, ...]
@@ -91,6 +91,11 @@ class ParameterPath(Leaf):
     def contact(self) -> CondensedContact:
         """The contact problem at the start; points, zones and units are those of all."""
         return self.path.start
+
+    @property
+    def infinite(self) -> tuple[str, ...]:
+        """Names of the zones whose peak pressure is infinite at an end of the path, so that no peak is stated on it."""
+        return tuple(dict.fromkeys((*self.start_accuracy.infinite, *self.end_accuracy.infinite)))
 
     @computed_field
     @property
@@ -189,11 +194,11 @@ class ParameterPath(Leaf):
             breakpoint=i is not None,
             entered=() if i is None else self.path.entered[i],
             left=() if i is None else self.path.left[i],
-            peak=float(p.max(initial=0.0)),
-            at=int(p.argmax()) if p.any() else None,
+            peak=None if self.infinite else float(p.max(initial=0.0)),
+            at=int(p.argmax()) if p.any() and not self.infinite else None,
             resultant=tuple((float(x), float(y)) for x, y in contact.resultants(p)),
             touching=tuple(np.flatnonzero(p > 0).tolist()),
-            footprint=footprint(contact, solution),
+            footprint=footprint(contact, solution, infinite=bool(self.infinite)),
         )
 
     def to_csv(self) -> str:
@@ -207,8 +212,9 @@ class ParameterPath(Leaf):
             + ["nodes in contact"]
         )
         for state in self.states:
+            peak = "" if state.peak is None else state.peak
             place = ["", ""] if state.at is None else self.contact.points[state.at].tolist()
-            row = [state.value, int(state.breakpoint), _cell(state.entered), _cell(state.left), state.peak, *place]
+            row = [state.value, int(state.breakpoint), _cell(state.entered), _cell(state.left), peak, *place]
             for zone, force in zip(zones, state.resultant, strict=True):
                 row += [*force, *map(_cell, state.ends(zone))]
             table.writerow([*row, _cell(state.touching)])

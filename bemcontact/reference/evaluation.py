@@ -1,7 +1,8 @@
 """Values that the references of a spec expect at the contact points."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Self
 
 import numpy as np
 from pydantic import PlainSerializer, computed_field
@@ -114,10 +115,20 @@ class Expected(Leaf):
     """Contact points (x, y) nearest to `start` and `end`, for drawing [L]."""
     resultant: float | None = None
     """Magnitude of the contact force on what is modelled, per thickness [p L]."""
+    infinite: bool = False
+    """Whether it states a peak, and that of the solution is infinite, so that the solution is not judged by it."""
     in_range: bool = True
     """Whether the reference is valid for this problem, so that the solution is judged by it."""
     remark: str = ""
-    """Reason why the reference is not valid, or empty."""
+    """Reason why the reference, or its peak, is not judged; or empty."""
+
+    def without_peak(self, infinite: Sequence[str]) -> Self:
+        """The same, with a remark if it states a peak where the peak of the solution is infinite, by names of zones."""
+        own = [name for name in infinite if self.zone in (None, name)]
+        if self.peak is None or not own:
+            return self
+        why = f"the peak pressure of {' and '.join(own)} is infinite, and is not judged"
+        return replace(self, infinite=True, remark=f"{self.remark}; {why}" if self.remark else why)
 
     @computed_field
     @property

@@ -1,7 +1,7 @@
 """Differences between a solution and its references."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,7 +23,7 @@ class Score(Leaf):
     quantity: str
     """Name of the quantity, such as peak, half-width, start of contact or pressure (largest difference)."""
     computed: float | None
-    """Computed value, [p], [L], [p L] or degrees; null without contact, which has no ends."""
+    """Computed value, [p], [L], [p L] or degrees; null without contact, which has no ends, and for an infinite peak."""
     expected: float
     """Expected value in the same unit; 0 if the quantity is a difference of pressures."""
     difference: float | None
@@ -32,7 +32,7 @@ class Score(Leaf):
     tolerance: float
     """Relative difference that the reference allows."""
     judged: bool
-    """Whether the solution is judged by it; false if the reference is out of its range."""
+    """Whether the solution is judged by it; false if the reference is out of its range, or the peak is infinite."""
     holds: bool
     """Whether the difference is within the tolerance."""
 
@@ -49,7 +49,10 @@ def _scores(expected: Expected, contact: CondensedContact, footprint: Footprint,
     here = in_zone(contact, expected.zone)
     intervals = [item for item in footprint.intervals if expected.zone in (None, item.zone)]
     if expected.peak is not None:
-        yield _relative(expected, "peak", float(pressure[here].max()), expected.peak)
+        if expected.infinite:
+            yield replace(_score(expected, "peak", None, expected.peak, None), judged=False)
+        else:
+            yield _relative(expected, "peak", float(pressure[here].max()), expected.peak)
     if expected.half_width is not None:
         ends = np.array([end for item in intervals for end in (item.start, item.end)]).reshape(-1, 2)
         distances = np.abs(Frame.at(contact, expected.zone, expected.center).distances(ends))

@@ -25,55 +25,116 @@ ROUND_OFF = 1e-9
 
 QUANTITIES = {
     "peak": "peak pressure", "force": "force", "start": "start of contact", "end": "end of contact",
-    "pressure": "pressure", "displacement": "largest displacement", "intensity": "intensity",
+    "pressure": "pressure as a whole", "displacement": "largest displacement",
+    "intensity": "intensity of the infinite pressure",
 }  # fmt: skip
 """Name of a quantity with an error bar -> the same in words."""
+LEAST_SHOWN = 1e-5
+"""Least error that is written, relative: smaller ones are written as this one."""
+BARS_ARE = (
+    "Error bars are estimates, from the change of each quantity when every element is cut in two. They are not proved."
+)
+"""What an error bar is."""
 
 
 class Verdict(NamedTuple):
-    """A verdict on the equations or on the mesh: whether it is good, in a word, and in sentences."""
+    """A verdict on the equations or on the mesh: its quality (good, fair or bad), in a few words, and in sentences."""
 
     of: str
-    good: bool
+    quality: str
     word: str
     words: str
+
+    @property
+    def good(self) -> bool:
+        """Whether nothing is left open."""
+        return self.quality == "good"
+
+
+def overall(verdicts: Sequence[Verdict]) -> str:
+    """Quality of an answer: good only if all verdicts are, bad if one is, else fair."""
+    qualities = {item.quality for item in verdicts}
+    return next(quality for quality in ("bad", "fair", "good") if quality in qualities)
+
+
+def in_short(verdicts: Sequence[Verdict]) -> str:
+    """Verdicts in few words, for a title: ``unique solution proved; error at most 0.4 % (asked 1 %)``."""
+    return "; ".join(item.word if item.good else f"{item.of.lower()} {item.word}" for item in verdicts)
 
 
 def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:
     """Verdict on the solution of the equations on the mesh, with its sentences, and on what penetrates a surface."""
     if penetration is not None:
         return Verdict(
-            "Equations", False, "penetrates a surface", f"{penetration['words']} At the contact points: {words}"
+            "Equations", "bad", "penetrates a surface", f"{penetration['words']} At the contact points: {words}"
         )
     kind: str = certificate["kind"]
     word = {"unique": "unique solution proved", "not a solution": "not solved"}.get(kind, kind)
-    return Verdict("Equations", kind == "unique", word, words)
+    return Verdict("Equations", "good" if kind == "unique" else "bad", word, words)
+
+
+def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
+    """Verdicts on the equations and on the finest mesh of a study, from its JSON; `words` replace its own.
+
+    The equations are solved if the direct solution is proved; a formulation that did not find it is a fair result.
+    """
+    finest = report["levels"][-1]
+    compared = finest["comparison"]
+    deepest = finest["penetration"]
+    proved = [level["comparison"]["certified"] and not level["penetration"] for level in report["levels"]]
+    quality = "good" if all(proved) else "fair" if compared["reference"]["certified"] and not deepest else "bad"
+    sentences = [sentence_case(words or report["verdict"])]
+    levels = zip(report["levels"][:-1], proved, strict=False)
+    if coarser := [str(level["refine"]) for level, good in levels if not good]:
+        meshes = "coarser mesh" if len(coarser) == 1 else "coarser meshes"
+        sentences.append(f"On the {meshes} (refine {', '.join(coarser)}) not each answer is proved to be the solution.")
+    heading = "penetrates a surface" if deepest else compared["heading"]
+    equations = Verdict("Equations", quality, heading, " ".join(sentences))
+    return equations, mesh_verdict(finest["accuracy"])
 
 
 def mesh_verdict(accuracy: Record) -> Verdict:
     """Verdict on the errors of the mesh."""
     asked, reason = accuracy["asked"], accuracy["reason"]
     if accuracy["met"] is None:
-        return Verdict("Mesh", asked is None, "not assessed", f"{sentence_case(reason)}.")
+        return Verdict("Mesh", "fair", "not assessed", f"{sentence_case(reason)}.")
     largest = worst_bar(accuracy)
-    error = "no error bar" if largest is None else f"{100 * (largest['bar'] or 0):.2g} %"
-    where = "" if largest is None else f" of the {bar_in_words(largest)}"
+    known = largest is not None and largest["bar"] is not None
+    error = error_percent(largest["bar"]) if largest is not None and known else "0 %"
+    where = "" if largest is None else bar_in_words(largest)
     if accuracy["met"]:
+        word = f"error at most {error} (asked {100 * asked:.3g} %)"
         return Verdict(
-            "Mesh", True, f"error at most {error}", f"Asked: {100 * asked:.3g} %. The largest error bar is that{where}."
+            "Mesh", "good", word, f"The largest error bar is that of the {where}." if where else "No contact."
         )
-    estimate = f"error about {error}{where}"
-    if largest is not None and largest["bar"] is None:
-        estimate = f"the error{where} is not known: {largest['note']}"
-    remedy = f"; {reason}" if reason else "; leave elements out, or give --accuracy, and a mesh is found"
-    return Verdict("Mesh", False, "not met", f"Asked: {100 * asked:.3g} %; {estimate}{remedy}.")
+    found = f"The largest error bar is that of the {where}"
+    if largest is not None and not known:
+        error, found = "not known", f"The error of the {where} is not known: {largest['note']}"
+    remedy = reason or "leave elements out, or give --accuracy, and a mesh is found"
+    word = f"not met, error {'about ' * known}{error} (asked {100 * asked:.3g} %)"
+    return Verdict("Mesh", "fair", word, f"{found}. {sentence_case(remedy)}.")
+
+
+def mesh_in_short(accuracy: Record) -> str:
+    """Error of a mesh, for a column of a table: ``0.4 %``, ``not met: 30 %``, ``not assessed``."""
+    if accuracy["met"] is None:
+        return "not assessed"
+    largest = worst_bar(accuracy)
+    error = "not known" if largest is not None and largest["bar"] is None else error_percent((largest or {}).get("bar"))
+    return error if accuracy["met"] else f"not met: {error}"
 
 
 def worst_bar(accuracy: Record) -> Record | None:
     """The largest error bar of those to which the accuracy applies, an unknown one first; None if there is none."""
-    judged = [bar for bar in accuracy["bars"] if bar["quantity"] != "intensity"]
-    judged = [bar for bar in judged if bar["bar"] is not None or (bar["value"] and bar["quantity"] != "force")]
+    judged = [bar for bar in accuracy["bars"] if bar["promised"]]
     return max(judged, key=lambda bar: np.inf if bar["bar"] is None else bar["bar"], default=None)
+
+
+def error_percent(error: float | None) -> str:
+    """A relative error in per cent, rounded up to two figures: 0.41 %."""
+    error = max(error or 0.0, LEAST_SHOWN)
+    power = 10.0 ** (np.floor(np.log10(100 * error)) - 1)
+    return f"{power * np.ceil(100 * error / power * (1 - ROUND_OFF)):.3g} %"
 
 
 def bar_in_words(bar: Record) -> str:
@@ -86,15 +147,115 @@ def bars_of(record: Record, quantity: str) -> Iterator[Record]:
     return (bar for bar in record.get("accuracy", {}).get("bars", ()) if bar["quantity"] == quantity)
 
 
+def infinite_peaks(record: Record) -> dict[str, str]:
+    """Zones whose peak pressure is infinite, with the reason."""
+    return {bar["zone"]: bar["note"] for bar in bars_of(record, "peak") if bar["value"] is None}
+
+
 def with_bar(value: float, bar: float | None) -> str:
-    """Write a number and its error: 183.3 ± 0.4; the number has the digits that the error leaves."""
-    if not bar or not value:
+    """Write a number and its relative error: 183.3 ± 0.4."""
+    return number(value) if bar is None or not value else with_error(value, abs(value) * bar)
+
+
+def with_error(value: float, error: float) -> str:
+    """Write a number and its error: 183.3 ± 0.4; the error is rounded up, and the number has no digit beyond it."""
+    power = int(np.floor(np.log10(abs(value)))) if value else 0
+    error = max(error, LEAST_SHOWN * abs(value))
+    if not error:
         return number(value)
-    error = abs(value) * bar
-    digits = max(0, min(12, -int(np.floor(np.log10(error)))))
-    if 1e-3 <= abs(value) < 1e6 and digits <= 6 and error < abs(value):
-        return f"{value:.{digits}f} ± {error:.{digits}f}"
-    return f"{number(value)} ± {error:.1g}"
+    if not -4 <= power < 6:
+        mantissa = with_error(value / 10.0**power, error / 10.0**power)
+        return f"({mantissa})e{power:+03d}"
+    first = int(np.floor(np.log10(error) + ROUND_OFF))
+    place = first - 1 if error < 2 * 10.0**first else first  # 0.14 keeps two figures, 0.4 one
+    shown = np.ceil(error / 10.0**place * (1 - ROUND_OFF)) * 10.0**place
+    digits = max(0, -place)
+    return f"{round(value, -place):.{digits}f} ± {shown:.{digits}f}"
+
+
+def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
+    """Write each quantity with its error bar, the share of the accuracy asked, and what is noted, for a table."""
+    asked, bars = accuracy["asked"], accuracy["bars"]
+    lengths = _interval_lengths(bars)
+    for bar in bars:
+        error = bar["bar"]
+        size = abs(bar["value"] or 0.0) if bar["interval"] is None else lengths.get((bar["zone"], bar["interval"]), 0.0)
+        interval = f" {bar['interval'] + 1}" if bar["interval"] is not None and _several(bars, bar) else ""
+        over = error is not None and asked and bar["promised"] and error > asked
+        share = "not known" if error is None else f"{100 * error / (asked or 1.0):.2g} %"
+        yield {
+            "quantity": sentence_case(QUANTITIES[bar["quantity"]]) + interval,
+            "zone": bar["zone"] or NOTHING,
+            "value": _bar_value(bar, size, units),
+            "share": share if asked and bar["promised"] else NOTHING,
+            "colour": "bad" if over else "",
+            "note": bar["note"] if bar["quantity"] == "intensity" else sentence_case(bar["note"]),
+        }
+
+
+def _bar_value(bar: Record, size: float, units: Units) -> str:
+    """Write a quantity and its error relative to a size, with the unit."""
+    value, error = bar["value"], bar["bar"]
+    if value is None and error is not None:
+        return f"± {error_percent(error)}"
+    if value is None:
+        return "infinite" if bar["quantity"] == "peak" else NOTHING
+    return with_unit(with_error(value, error * size) if error else number(value), _unit_of_bar(bar, units))
+
+
+def _interval_lengths(bars: Sequence[Record]) -> dict[tuple[str, int], float]:
+    """Length of each contact interval, by zone and number, to which the errors of its ends are relative."""
+    ends = {(bar["quantity"], bar["zone"], bar["interval"]): bar["value"] for bar in bars}
+    return {
+        (zone, i): abs(ends["end", zone, i] - value)
+        for (quantity, zone, i), value in ends.items()
+        if quantity == "start" and ("end", zone, i) in ends
+    }
+
+
+def _several(bars: Sequence[Record], bar: Record) -> bool:
+    """Whether a zone has several contact intervals."""
+    return any(other["zone"] == bar["zone"] and (other["interval"] or 0) > 0 for other in bars)
+
+
+def _unit_of_bar(bar: Record, units: Units) -> str:
+    """Label of the unit of a quantity with an error bar; K of p = K s^-α has that of p times a length to the α."""
+    match bar["quantity"]:
+        case "peak" | "pressure":
+            return units.stress
+        case "force":
+            return per_thickness(units)
+        case "intensity":
+            return f"{units.stress}·{units.length}^{bar['note'].rpartition('s^-')[2]}" if units.stress else ""
+    return units.length
+
+
+def peak_of(record: Record, units: Units) -> str:
+    """The largest pressure with its error in a few words: a number, ``infinite``, or ``no contact``."""
+    if infinite_peaks(record):
+        return "infinite"
+    if peak := record["peak"]:
+        return with_unit(with_bar(peak["pressure"], _peak_bar(record)), units.stress)
+    return "no contact"
+
+
+def _peak_bar(record: Record) -> float | None:
+    """Error of the largest pressure of all zones."""
+    bars = [item for item in bars_of(record, "peak") if item["value"] is not None]
+    return max(bars, key=lambda item: item["value"], default={"bar": None})["bar"]
+
+
+def _peaks(record: Record, size: float, units: Units) -> Iterator[tuple[str, str]]:
+    """Write the largest pressure; where that of a zone is infinite, each zone by itself."""
+    infinite = infinite_peaks(record)
+    if not infinite and (peak := record["peak"]):
+        yield "Peak pressure", f"{peak_in_words(peak, size, units, _peak_bar(record))}; per UNDEFORMED length"
+    if infinite:
+        for bar in bars_of(record, "peak"):
+            written = (
+                bar["note"] if bar["value"] is None else with_unit(with_bar(bar["value"], bar["bar"]), units.stress)
+            )
+            yield "Peak pressure", f"of {bar['zone']}: {written}"
 
 
 def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
@@ -105,15 +266,11 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     for interval, error in zip(record["intervals"], _end_errors(record), strict=False):
         ends = f", ends ± {with_unit(small(error), units.length)}" if error else ""
         yield "Contact", f"{interval['zone']}: {span(interval, size, units)}{ends}"
-    if peak := record["peak"]:
-        bar = next((item["bar"] for item in bars_of(record, "peak") if item["value"] == peak["pressure"]), None)
-        yield "Peak pressure", f"{peak_in_words(peak, size, units, bar)}; per UNDEFORMED length"
-    for bar in bars_of(record, "peak"):
-        if bar["value"] is None:
-            yield "Peak pressure", f"of {bar['zone']}: {bar['note']}"
+    yield from _peaks(record, size, units)
     for bar in bars_of(record, "intensity"):
         if bar["value"] is not None:
-            yield "Intensity", f"of {bar['zone']}: K = {with_bar(bar['value'], bar['bar'])} in {bar['note']}"
+            value = with_unit(with_bar(bar["value"], bar["bar"]), _unit_of_bar(bar, units))
+            yield "Intensity", f"of {bar['zone']}: K = {value} in {bar['note']}"
     for bar in bars_of(record, "displacement"):
         yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most"
     force = vector(record["resultant"], per_thickness(units), scale=pressed)

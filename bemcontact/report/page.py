@@ -12,7 +12,20 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from bemcontact.assessment.contender import OUTCOMES, Outcome
 from bemcontact.plain_text import escaped_lines
 from bemcontact.problem import Units
-from bemcontact.report.facts import NOTHING, Record, facts, percent, scores_in_words, small
+from bemcontact.report.facts import (
+    BARS_ARE,
+    NOTHING,
+    Record,
+    accuracy_rows,
+    facts,
+    infinite_peaks,
+    overall,
+    peak_of,
+    percent,
+    scores_in_words,
+    small,
+    study_verdicts,
+)
 from bemcontact.report.formatting import (
     number,
     penalty_unit,
@@ -125,6 +138,8 @@ def _contents(report: Record) -> dict[str, Any]:
     compared = level["comparison"]
     contenders, reference = compared["contenders"], compared["reference"]
     units = Units(**report["units"])
+    headline = _headline(report, compared)
+    verdicts = study_verdicts(report, headline)
     return {
         "report": report,
         "level": level,
@@ -133,7 +148,13 @@ def _contents(report: Record) -> dict[str, Any]:
         "differences": {item["one"]: item for item in compared["differences"] if item["other"] == reference["label"]},
         "answer": reference["answer"],
         "units": {"p": units.stress, "L": units.length, "1": ""},
-        "verdict": _headline(report, compared),
+        "verdict": headline,
+        "verdicts": verdicts,
+        "overall": overall(verdicts),
+        "peak": peak_of({**compared["contact"], **(reference["answer"] or {"peak": None}), **level}, units),
+        "infinite": infinite_peaks(level),
+        "bars": [*accuracy_rows(level["accuracy"], units)],
+        "bars_are": BARS_ARE,
         "description": [" ".join(part.split()) for part in report["description"].split("\n\n") if part.strip()],
         "facts": _facts(level, units),
         "scores": [*scores_in_words(level["scores"], level["references"], units)],
@@ -142,14 +163,8 @@ def _contents(report: Record) -> dict[str, Any]:
         "acting": " + ".join(
             f"{factor:g} {case}" for case, factor in compared["contact"]["load_factors"].items() if factor
         ),
-        "uncertified": [item["refine"] for item in report["levels"][:-1] if not _certified(item)],
         "stages": [*dict.fromkeys(stage for item in report["levels"] for stage in item["seconds"])],
     }
-
-
-def _certified(level: Record) -> bool:
-    """Whether all is certified on a mesh."""
-    return level["comparison"]["certified"] and level["penetration"] is None
 
 
 def _quality(outcome: str) -> str:
@@ -176,7 +191,8 @@ def _facts(level: Record, units: Units) -> list[tuple[str, str]]:
     if answer is None:
         return []
     residuals = {**answer["residuals"], "force_balance": level["force_balance"]}
-    return [*facts({**compared["contact"], **answer, "residuals": residuals}, units)]
+    record = {**compared["contact"], **answer, "residuals": residuals, "accuracy": level["accuracy"]}
+    return [*facts(record, units)]
 
 
 def _certificate(answer: Record | None, units: Units) -> str:
@@ -206,10 +222,11 @@ def _certificate(answer: Record | None, units: Units) -> str:
 
 def _bound(bound: float | None, peak: Record | None, units: Units) -> str:
     """Bound of the effect of round-off on the pressure."""
-    if bound is None or peak is None:
+    if bound is None:
         return ""
     size = with_unit(small(bound), units.stress)
-    return f" Round-off changes no pressure by more than {size}, {small(bound / peak['pressure'])} of the peak."
+    share = f", {small(bound / peak['pressure'])} of the peak" if peak else ""
+    return f" Round-off changes no pressure by more than {size}{share}."
 
 
 def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
@@ -236,7 +253,9 @@ def _picture(name: str, svg: bytes, level: Record) -> Picture:
         caption = f"{statement(solver)}{weighted}" if solver != "direct" else "The direct solver"
     answer = level["comparison"]["reference"]["answer"]
     peak = answer and answer["peak"]
+    infinite = name == "pressure" and infinite_peaks(level)
     extent = f"; the peak is {number(peak['pressure'])}" if name == "pressure" and peak else ""
+    extent = f"; infinite in {', '.join(infinite)}, and cut off" if infinite else extent
     shown = ": objective, infeasibility and residual over the iterations" if name.startswith(HISTORY) else ""
     return picture(svg, caption, f"{caption}{shown}{extent}")
 

@@ -8,13 +8,27 @@ from rich.table import Table
 from rich.text import Text
 
 from bemcontact.problem import Units
-from bemcontact.report.facts import NOTHING, QUALITIES, Record, Verdict, score_verdict, scores_in_words, small
+from bemcontact.report.facts import (
+    NOTHING,
+    QUALITIES,
+    Record,
+    Verdict,
+    mesh_verdict,
+    score_verdict,
+    scores_in_words,
+    small,
+)
 from bemcontact.report.formatting import number, seconds_in_words, sentence_case, with_unit
 from bemcontact.report.page import picture, statement, template
-from bemcontact.report.text import table_of, verdict_text
+from bemcontact.report.text import add_verdict, list_of_facts, table_of
 
 FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
 """Columns of the table of iterations."""
+MESHES = (
+    "The meshes are those of the paper and of the files, and parts of them. Their errors are not estimated: references "
+    "and refinement judge them."
+)
+"""What is known of the errors of the meshes."""
 TINY = 1e-4
 """Smaller numbers are written with two figures."""
 
@@ -28,7 +42,11 @@ def render(record: Record, pictures: Mapping[str, bytes]) -> str:
     problems = [_contents(item, pictures) for item in record["problems"]]
     counted = [statement(name) for item in record["problems"] for name in item["iterations"]]
     return template("reproduction.html", in_words=_in_words).render(
-        record=record, problems=problems, verdict=reproduction_sentence(record), counted=counted
+        record=record,
+        problems=problems,
+        verdict=reproduction_sentence(record),
+        verdicts=reproduction_verdicts(record),
+        counted=counted,
     )
 
 
@@ -36,7 +54,7 @@ def reproduction_summary(record: Record) -> RenderableType:
     """List the paper's statements, the computed quantities on each mesh, and the certificates."""
     parts = list[RenderableType]()
     for item in record["problems"]:
-        proved = "certified" if item["certified"] else "NOT certified"
+        proved = "unique solution proved" if item["certified"] else "NOT each solution proved"
         held = f"{item['held']} of {item['judged']} reference quantities hold"
         title = Text.assemble((sentence_case(item["name"]), "bold"), f" ({item['figure']}): ")
         parts += [
@@ -46,8 +64,22 @@ def reproduction_summary(record: Record) -> RenderableType:
         ]
     word = "reproduced" if record["reproduced"] else "NOT reproduced"
     took = f"All runs took {seconds_in_words(record['seconds'])}."
-    end = verdict_text(Verdict("Verdict", record["reproduced"], word, f"{reproduction_sentence(record)} {took}"))
-    return Group(*parts, _iteration_table(record), "", end)
+    quality = "good" if record["reproduced"] else "bad"
+    shown = list_of_facts()
+    add_verdict(shown, Verdict("Verdict", quality, word, f"{reproduction_sentence(record)} {took}"))
+    for verdict in reproduction_verdicts(record):
+        add_verdict(shown, verdict)
+    return Group(*parts, _iteration_table(record), "", shown)
+
+
+def reproduction_verdicts(record: Record) -> tuple[Verdict, Verdict]:
+    """Verdicts on the equations of all runs, and on their meshes."""
+    levels = [run["level"] for item in record["problems"] for run in item["runs"]]
+    proved = sum(item["certified"] for item in record["problems"])
+    word = "unique solution proved" if proved == len(record["problems"]) else "not each solution proved"
+    count = f"{len(levels)} runs of {len(record['problems'])} problems"
+    equations = Verdict("Equations", "good" if proved == len(record["problems"]) else "bad", word, f"In {count}.")
+    return equations, mesh_verdict(levels[-1]["accuracy"])._replace(words=MESHES)
 
 
 def reproduction_sentence(record: Record) -> str:

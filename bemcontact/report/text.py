@@ -7,7 +7,6 @@ into them as plain text, never as markup.
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-import numpy as np
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
@@ -25,12 +24,14 @@ from bemcontact.report.facts import (
     Verdict,
     equations_verdict,
     facts,
+    mesh_in_short,
     mesh_verdict,
-    peak_in_words,
+    peak_of,
     pressed_by,
     scores_in_words,
     size_of,
     span,
+    study_verdicts,
     zone_forces,
 )
 from bemcontact.report.formatting import (
@@ -142,17 +143,15 @@ def cases_summary(cases: CaseResults) -> RenderableType:
     table, shown = table_of("load case", "equations", "mesh", "peak", "at", "resultant", "contact"), list_of_facts()
     for name, result in cases.results.items():
         record, units = result.to_dict(), units_of(result.contact)
-        peak, _, at = (
-            ("", "", "")
-            if not record["peak"]
-            else peak_in_words(record["peak"], size_of(record), units).partition(" at ")
-        )
+        peak, at = record["peak"], ""
+        if peak:
+            at = vector(peak["at"], units.length, scale=size_of(record))
         force = vector(record["resultant"], per_thickness(units), scale=pressed_by(record))
         cells = [
             name,
             verdicts(result)[0].word,
-            _mesh_in_a_word(result),
-            peak,
+            mesh_in_short(result.accuracy.to_dict()),
+            peak_of(record, units) if record["intervals"] else "",
             at,
             "\n".join(zone_forces(record, units)) or force,
             "\n".join(_places(record, result.contact)) or "nowhere",
@@ -163,6 +162,8 @@ def cases_summary(cases: CaseResults) -> RenderableType:
         add(shown, "Note", note if len(names) == len(cases.results) else f"{', '.join(names)}: {note}")
     if cases.worst is not None:
         add(shown, "Largest peak", f"in {cases.worst}; pressures are per UNDEFORMED length")
+    if cases.infinite:
+        add(shown, "Largest peak", f"infinite in {', '.join(cases.infinite)}")
     for verdict in case_verdicts(cases):
         add_verdict(shown, verdict)
     return Group(Text(cases.name, "bold"), "", table, "", shown)
@@ -175,32 +176,29 @@ def verdicts(result: Result) -> tuple[Verdict, Verdict]:
     return proved, mesh_verdict(result.accuracy.to_dict())
 
 
-def _mesh_in_a_word(result: Result) -> str:
-    """Largest error of a result, for a table."""
-    accuracy = result.accuracy
-    if accuracy.met is None:
-        return "not assessed"
-    error = f"{100 * accuracy.worst:.2g} %" if np.isfinite(accuracy.worst) else "not known"
-    return error if accuracy.met else f"not met: {error}"
-
-
 def case_verdicts(cases: CaseResults) -> tuple[Verdict, Verdict]:
     """Verdicts on the equations and on the mesh under all load cases; sentences on the cases that fall short."""
     pairs = {name: verdicts(result) for name, result in cases.results.items()}
     equations, mesh = ({name: pair[i] for name, pair in pairs.items() if not pair[i].good} for i in range(2))
-    every = next(iter(pairs.values()))
+    largest = max(cases.results, key=lambda name: cases.results[name].accuracy.worst)
+    shared = (
+        f"{pairs[largest][1].words[:-1]}, under {largest}; one mesh serves all load cases, so that they can be added"
+    )
     return (
-        _together("Equations", every[0].of and "unique solution proved", equations, "in every load case"),
-        _together("Mesh", every[1].word, mesh, "one mesh serves all load cases, so that they can be combined"),
+        _together(pairs[largest][0]._replace(words="In every load case."), equations),
+        _together(pairs[largest][1]._replace(words=f"{shared}."), mesh),
     )
 
 
-def _together(of: str, word: str, short: Mapping[str, Verdict], words: str) -> Verdict:
-    """One verdict for all load cases."""
+def _together(every: Verdict, short: Mapping[str, Verdict]) -> Verdict:
+    """One verdict for all load cases: that on every one, or those that fall short, the same words once."""
     if not short:
-        return Verdict(of, True, word, f"{sentence_case(words)}.")
-    first = next(iter(short.values()))
-    return Verdict(of, False, first.word, " ".join(f"{name}: {item.words}" for name, item in short.items()))
+        return every
+    worst = next((item for item in short.values() if item.quality == "bad"), next(iter(short.values())))
+    names = dict[str, list[str]]()
+    for name, item in short.items():
+        names.setdefault(item.words, []).append(name)
+    return worst._replace(words=" ".join(f"{', '.join(own)}: {words}" for words, own in names.items()))
 
 
 def shortfall(results: Result | CaseResults) -> str:
@@ -211,9 +209,9 @@ def shortfall(results: Result | CaseResults) -> str:
 
 def study_shortfall(study: Study) -> str:
     """Why a comparison does not hold."""
-    mesh = mesh_verdict(study.finest.answer.accuracy.to_dict())
-    words = [] if study.certified else [study.verdict]
-    return " ".join([*words, *([] if mesh.good else [f"{mesh.of}: {mesh.word}. {mesh.words}"])])
+    return " ".join(
+        f"{item.of}: {item.word}. {item.words}" for item in study_verdicts(study.to_dict()) if not item.good
+    )
 
 
 def _places(record: Record, contact: CondensedContact) -> Iterator[str]:
@@ -259,19 +257,19 @@ def path_summary(path: ParameterPath) -> RenderableType:
     table = table_of("", "enter", "leave", "in contact", peak, "at", right=frozenset({"", "in contact", peak}))
     for state in path.breakpoints:
         table.add_row(*map(Text, _cells(path.contact, state)))
-    word = "unique solution proved" if path.certified else "not proved"
     where = f"{path.key} from {number(path.start)} to {number(path.end)}"
     counts = {"breakpoint": len(path.breakpoints), "pivot": path.pivots}
     how = ", ".join(f"{count} {plural(noun, count)}" for noun, count in counts.items())
     shown = list_of_facts()
-    add_verdict(shown, Verdict("Equations", path.certified, word, path_sentence(path)))
-    for verdict in path_mesh_verdicts(path):
+    for verdict in path_verdicts(path):
         add_verdict(shown, verdict)
     return Group(Text(path.contact.name, "bold"), Text(f"{where}; {how}", "dim"), "", table, "", shown)
 
 
-def path_mesh_verdicts(path: ParameterPath) -> Iterator[Verdict]:
-    """Verdicts on the mesh at both ends of a path."""
+def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
+    """Verdicts on the equations all along a path, and on the mesh at both ends."""
+    word = "unique solution proved" if path.certified else "not proved"
+    yield Verdict("Equations", "good" if path.certified else "bad", word, path_sentence(path))
     for value, accuracy in zip((path.start, path.end), (path.start_accuracy, path.end_accuracy), strict=True):
         verdict = mesh_verdict(accuracy.to_dict())
         yield verdict._replace(words=f"At {path.key} = {number(value)}. {verdict.words}")
@@ -292,7 +290,8 @@ def _cells(contact: CondensedContact, state: PathState) -> list[str]:
     """A row: value, what enters, what leaves, how many touch, the peak and where."""
     at = "" if state.at is None else _place(contact, state.at)
     entered, left = (_named(contact, points) for points in (state.entered, state.left))
-    return [number(state.value), entered, left, f"{len(state.touching)}", number(state.peak), at]
+    peak = "infinite" if state.peak is None else number(state.peak)
+    return [number(state.value), entered, left, f"{len(state.touching)}", peak, at]
 
 
 def _named(contact: CondensedContact, points: tuple[int, ...]) -> str:
@@ -334,9 +333,9 @@ def add_verdict(facts: Table, verdict: Verdict) -> None:
 
 
 def verdict_text(verdict: Verdict) -> Text:
-    """Write a verdict: green if it is good, else red for the equations and amber for the mesh."""
-    bad = "bold yellow" if verdict.of == "Mesh" else "bold red"
-    return Text.assemble((verdict.word, "bold green" if verdict.good else bad), ". ", verdict.words)
+    """Write a verdict: green, amber or red."""
+    style = {"good": "bold green", "fair": "bold yellow", "bad": "bold red"}[verdict.quality]
+    return Text.assemble((verdict.word, style), ". ", verdict.words)
 
 
 def table_of(*columns: str, right: frozenset[str] = RIGHT) -> Table:
@@ -367,10 +366,8 @@ def study_summary(study: Study) -> RenderableType:
         add(shown, "Meshes", study.convergence.remark)
     for note in answer.notes:
         add(shown, "Note", note)
-    words = [sentence_case(study.verdict), *_uncertified_meshes(study)]
-    heading = "unique solution proved" if study.certified else study.heading
-    add_verdict(shown, Verdict("Equations", study.certified, heading, " ".join(words)))
-    add_verdict(shown, mesh_verdict(answer.accuracy.to_dict()))
+    for verdict in study_verdicts(study.to_dict()):
+        add_verdict(shown, verdict)
     scores = _score_table(level, units_of(answer.contact))
     tables = [
         _contender_table(compared),
@@ -380,13 +377,6 @@ def study_summary(study: Study) -> RenderableType:
     ]
     parts = [part for table in tables if table.row_count for part in (table, "")]
     return Group(Text(study.name, "bold"), Text(_compared_how(study), "dim"), "", *parts, shown)
-
-
-def _uncertified_meshes(study: Study) -> Iterator[str]:
-    """Name coarser meshes on which not all is certified."""
-    coarser = [f"{level.refine}" for level in study.levels[:-1] if not level.certified]
-    if coarser:
-        yield f"On the coarser mesh{'es' * (len(coarser) > 1)} (refine {', '.join(coarser)}) not all is certified."
 
 
 def _contender_table(compared: Comparison) -> Table:

@@ -79,7 +79,7 @@ def test_two_contact_states_are_reported():
         Attempt(options=SolveOptions(formulation=FormulationName.COMPLEMENTARITY), label="direct", solution=mirrored),
         [Attempt(options=options, label=options.label(), solution=other)],
     )
-    assert "QP1 and direct meet all conditions, but differ by 1.0e+00 of the peak" in result.verdict
+    assert "QP1 and direct meet all conditions, but differ by 1.0e+00 of the largest pressure" in result.verdict
     assert result.contenders[0].verdict.outcome is Outcome.SOLVES_PERHAPS_NOT_ALONE
     assert not result.certified
 

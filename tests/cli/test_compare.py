@@ -54,10 +54,11 @@ def test_a_table_that_fits_and_a_verdict(block: Path):
         "QP3",
         "direct",
         "solves it",
-        "certified.",
+        "Equations      unique solution proved.",
+        "Mesh           error at most 0.001 % (asked 1 %).",
         "uniform",
         "within 1 %",
-        "Peak pressure  3",
+        "Peak pressure  3.00000 ± 0.00003 N/mm²",
     ):
         assert words in answer.output, words
 
@@ -99,7 +100,8 @@ def test_comparison_that_is_not_certified_ends_with_status_1(block: Path, monkey
     monkeypatch.setattr(comparing, "study", lambda *_: found)
     answer = run("compare", block)
     assert answer.exit_code == 1
-    assert "NOT certified" in answer.output
+    assert "Equations      local only." in answer.output
+    assert "Mesh           not assessed." in answer.output
     assert "stationary but not the solution" in answer.output
     assert "Not the solution: QP1" in " ".join(answer.output.split())
     told = run("compare", block, "--json", "-")

@@ -3,22 +3,29 @@
 import csv
 import io
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from contact_states import half_plane, rocker
 
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.parametric.parameter_path import BETWEEN, ParameterPath
-from bemcontact.parametric.path import load_path
+from bemcontact.parametric.path import LoadPath, load_path
+
+NO_MESH = Accuracy(asked=None, reason="no mesh is known")
+
+
+def path_of(key: str, start: float, end: float, path: LoadPath) -> ParameterPath:
+    return ParameterPath(key=key, start=start, end=end, path=path, start_accuracy=NO_MESH, end_accuracy=NO_MESH)
 
 
 def pressed_parabola() -> ParameterPath:
-    path = load_path(half_plane(21, 0.0), half_plane(21, 0.2))
-    return ParameterPath(key="load", start=0.0, end=-8.0, path=path)
+    return path_of("load", 0.0, -8.0, load_path(half_plane(21, 0.0), half_plane(21, 0.2)))
 
 
 def crossing(start: float, end: float) -> ParameterPath:
-    return ParameterPath(key="place", start=start, end=end, path=load_path(rocker(start), rocker(end)))
+    return path_of("place", start, end, load_path(rocker(start), rocker(end)))
 
 
 def test_states_are_breakpoints_and_three_between_each_two():
@@ -71,4 +78,17 @@ def test_numbers_are_json():
 
 def test_round_off_of_a_parameter_is_zero():
     """From 0.3 to -0.1 the value 0 is at t = 3/4, where round-off leaves 3e-17."""
-    assert ParameterPath(key="x", start=0.3, end=-0.1, path=pressed_parabola().path).value(0.75) == 0.0
+    assert path_of("x", 0.3, -0.1, pressed_parabola().path).value(0.75) == 0.0
+
+
+def test_accuracies_of_both_ends_are_json():
+    record = json.loads(crossing(-0.5, 1.5).to_json())
+    assert record["start_accuracy"]["reason"] == record["end_accuracy"]["reason"] == "no mesh is known"
+
+
+def test_an_infinite_peak_at_one_end_is_stated_nowhere_on_the_path():
+    bar = ErrorBar(quantity="peak", zone="contact", value=None, bar=None, note="infinite at a corner")
+    result = replace(pressed_parabola(), end_accuracy=Accuracy(asked=0.01, met=True, passes=3, bars=(bar,)))
+    assert {(state.peak, state.at, state.footprint.peak) for state in result.states} == {(None, None, None)}
+    head, *rows = csv.reader(io.StringIO(result.to_csv()))
+    assert {row[i] for row in rows for i, name in enumerate(head) if name.startswith("peak")} == {""}

@@ -49,6 +49,34 @@ def roller(**changes: object) -> Problem:
     return Problem(**{**stated, **changes})  # pyright: ignore
 
 
+def punch(**changes: object) -> Problem:
+    """Half of a block on a rigid punch with an edge at (2, 0), where the pressure is infinite; its force is 30."""
+    corners = {"under": [0, 0], "beside": [2, 0], "right": [10, 0], "top": [10, 10], "left": [0, 10]}
+    plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    stated = {
+        "name": "block on a punch",
+        "units": {"length": "mm", "force": "N"},
+        "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+        "boundary": {"outer": [{"name": name, "start": start} for name, start in corners.items()]},
+        "conditions": {"left": {"displacement": {"x": 0}}, "top": {"pressure": 3}},
+        "contact_zones": {"foot": {"edges": "under", "surface": plane}},
+        "reference": {"printed": {"kind": "values", "source": "a table", "peak": 50.0, "resultant": 30.0}},
+    }
+    return Problem(**{**stated, **changes})  # pyright: ignore
+
+
+@cache
+def with_infinite_peak() -> Study:
+    """The punch, on a mesh that is found and on a finer one."""
+    return comparing.study(ComparisonOptions.of(), punch(), (1, 2))
+
+
+@cache
+def on_a_coarse_mesh() -> Study:
+    """The roller on its stated mesh, whose error is above the accuracy asked."""
+    return comparing.study(ComparisonOptions.of(["qp3"]), roller())
+
+
 @cache
 def on_one_mesh() -> Study:
     """The block, with three random starts."""
@@ -90,4 +118,7 @@ def not_unique() -> Study:
     return comparing.study(ComparisonOptions.of(["qp1", "qp2"]), contact)
 
 
-ALL = (on_one_mesh, on_three_meshes, of_many_settings, without_a_body, without_contact, not_unique)
+ALL = (
+    on_one_mesh, on_three_meshes, of_many_settings, without_a_body, without_contact, not_unique, with_infinite_peak,
+    on_a_coarse_mesh,
+)  # fmt: skip

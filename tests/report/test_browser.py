@@ -7,13 +7,13 @@ import pytest
 from chromium import executable, opened, started
 from playwright.sync_api import Browser
 from reproductions import on_base_meshes
-from studies import of_many_settings, on_three_meshes
+from studies import of_many_settings, on_three_meshes, with_infinite_peak
 
 from bemcontact.report import folder
 
 pytestmark = pytest.mark.skipif(executable() is None, reason="there is no Chromium on this machine")
 
-STUDIES = {"meshes": on_three_meshes, "settings": of_many_settings}
+STUDIES = {"meshes": on_three_meshes, "settings": of_many_settings, "infinite": with_infinite_peak}
 PAPER = "paper"
 """The page of the paper's problems, beside those of studies."""
 

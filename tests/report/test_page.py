@@ -8,13 +8,25 @@ from typing import Any
 
 import pytest
 from page_reader import ensure_self_contained, read
-from studies import ALL, block, not_unique, of_many_settings, on_one_mesh, on_three_meshes, without_a_body
+from studies import (
+    ALL,
+    block,
+    not_unique,
+    of_many_settings,
+    on_a_coarse_mesh,
+    on_one_mesh,
+    on_three_meshes,
+    with_infinite_peak,
+    without_a_body,
+)
 from tool_problems import BETWEEN, made
 
 from bemcontact.analysis import compare as comparing
 from bemcontact.analysis.study import Study
 from bemcontact.options import ComparisonOptions
 from bemcontact.report import formatting
+from bemcontact.report.figures import figures_of, vector_graphic
+from bemcontact.report.figures.page import QUALITY_COLOURS
 from bemcontact.report.page import render
 
 SVG = b'<svg xmlns="http://www.w3.org/2000/svg"/>'
@@ -42,16 +54,21 @@ def test_numbers_come_from_the_report_alone():
     """Another peak, difference and eigenvalue in the report are others on the page, and those of the study are gone."""
     report = report_of(on_three_meshes())
     peak = formatting.number(report["levels"][-1]["comparison"]["reference"]["answer"]["peak"]["pressure"])
+    (bar,) = (item for item in report["levels"][-1]["accuracy"]["bars"] if item["quantity"] == "peak")
+    assert formatting.number(bar["value"]) == peak
     changed = copy.deepcopy(report)
     compared = changed["levels"][-1]["comparison"]
     compared["reference"]["answer"]["peak"]["pressure"] = 77.125
     changed["convergence"]["quantities"][0]["values"][-1] = 77.5
+    for item in changed["levels"][-1]["accuracy"]["bars"]:
+        if item["quantity"] == "peak":
+            item.update(value=77.125, bar=1e-3)
     compared["agreement"] = 0.0125
     compared["matrices"]["condition"] = 4321e5
     before, after = read(render(report, {}, None)).text, read(render(changed, {}, None)).text
-    assert f"{peak} " in before
-    assert f"{peak} " not in after
-    for told in ("77.125", "77.5", "0.013 × the peak", "4.3e+08"):
+    assert f"{peak} ± " in before
+    assert f"{peak} ± " not in after
+    for told in ("77.12 ± 0.08", "77.5", "0.013 × the peak", "4.3e+08"):
         assert told not in before
         assert told in after
 
@@ -81,8 +98,8 @@ def test_many_contenders_are_counted_at_the_head():
     head = read(render(report, {}, None)).text.split("Asked")[0]
     assert f"Of 8 settings {outcomes.count('solves it')} find the contact state" in head
     assert f"{outcomes.count('refused')} is refused" in head
-    assert "The direct solution is certified, and there is no other." in head
-    assert "The contact state is certified, but" in head
+    assert "The direct solution is proved to be the only one." in head
+    assert "Equations: unique solution proved, but 3 of 8 formulations did not find it." in head
     assert report["verdict"][1:] in read(render(report, {}, None)).text
 
 
@@ -90,7 +107,7 @@ def test_a_coarser_mesh_that_is_not_certified_is_named():
     report = report_of(on_three_meshes())
     report["certified"] = report["levels"][1]["comparison"]["certified"] = False
     head = read(render(report, {}, None)).text.split("Asked")[0]
-    assert "The comparison on the coarser mesh (refine 2) is not certified." in head
+    assert "On the coarser mesh (refine 2) not each answer is proved" in head
 
 
 def test_sections_without_content_are_left_out():
@@ -160,3 +177,111 @@ def test_the_page_shows_which_load_cases_act_and_where_the_tools_are():
     page = read(render(report_of(comparing.study(ComparisonOptions.of(), problem)), {}, None)).text
     assert "The load cases 0.5 more act in addition to the permanent loads." in page
     assert "the body presses on it with (0, 50), moment 0 about (1, 1)" in page
+
+
+def head_of(report: dict[str, Any]) -> tuple[str, str]:
+    """Class of the box at the head of a page, and its text."""
+    page = render(report, {}, None)
+    (quality,) = re.findall(r'<div class="verdict (\w+)"', page)
+    return quality, read(page).text.split(" Problem Solution ")[0]
+
+
+def with_state(report: dict[str, Any], *, met: bool | None, kind: str) -> dict[str, Any]:
+    """The report as if the accuracy of its mesh, and the outcome of the direct solution, were others."""
+    level = report["levels"][-1]
+    level["accuracy"].update(met=met, reason="nobody looked" if met is None else "")
+    compared = level["comparison"]
+    if kind != "unique":
+        compared["reference"]["certified"] = compared["certified"] = report["certified"] = False
+        compared["heading"] = "local only" if kind == "local only" else "not solved"
+        compared["reference"]["answer"]["certificate"]["kind"] = kind
+    return report
+
+
+@pytest.mark.parametrize("kind", ["unique", "local only", "not a solution"])
+@pytest.mark.parametrize("met", [True, False, None])
+def test_the_box_is_green_only_if_both_verdicts_hold(met: bool | None, kind: str):
+    """Amber if only the equations do; red without them, whatever the mesh."""
+    quality, text = head_of(with_state(report_of(on_one_mesh()), met=met, kind=kind))
+    expected = "bad" if kind != "unique" else "good" if met else "fair"
+    assert quality == expected
+    equations, mesh = text.index("Equations: "), text.index("Mesh: ")
+    assert equations < mesh
+    words = {"unique": "unique solution proved", "local only": "local only", "not a solution": "not solved"}
+    assert text[equations:].startswith(f"Equations: {words[kind]}.")
+    beginning = {True: "error at most ", False: "not met, error about ", None: "not assessed. Nobody looked."}[met]
+    assert text[mesh:].startswith(f"Mesh: {beginning}")
+
+
+def test_a_coarse_mesh_is_amber_and_its_error_is_stated():
+    quality, text = head_of(report_of(on_a_coarse_mesh()))
+    assert quality == "fair"
+    assert re.search(r"Mesh: not met, error about \d+ % \(asked 1 %\)", text)
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance of #rrggbb, as WCAG 2.2 defines it."""
+    channels = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    r, g, b = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels)
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b
+
+
+def test_the_text_of_each_box_can_be_read_on_its_ground():
+    """Green, amber and red, in the light and in the dark; and the colours of titles of pictures on paper."""
+    page = render(report_of(on_one_mesh()), {}, None)
+    themes = re.findall(r"--good: .*", page)
+    assert len(themes) == 2
+    for theme in themes:
+        colours = dict(re.findall(r"--([\w-]+): (#\w{6})", theme))
+        for quality in ("good", "fair", "bad"):
+            light, dark = sorted(map(luminance, (colours[quality], colours[f"{quality}-page"])), reverse=True)
+            assert (light + 0.05) / (dark + 0.05) >= 4.5, quality
+    for quality in ("good", "fair"):
+        assert 1.05 / (luminance(QUALITY_COLOURS[quality]) + 0.05) >= 4.5
+
+
+def test_an_infinite_peak_is_nowhere_on_the_page():
+    """Neither the largest nodal pressure of any solution nor of any mesh, in any form that a number may have."""
+    study = with_infinite_peak()
+    report = report_of(study)
+    pictures = {name: vector_graphic(figure) for name, figure in figures_of(study).items()}
+    page = render(report, pictures, None)
+    text = read(page).text + " ".join(str(attrs.get("alt")) for _, attrs in read(page).tags)
+    for level in study.levels:
+        largest = level.answer.solution.pressure.max()
+        assert largest > 50
+        for digits in range(3, 6):
+            assert f"{largest:.{digits}g}" not in text
+    assert "Peak pressureinfinite in foot" in text
+    assert "no contact" not in text
+    for level in report["levels"]:
+        answers = [item["answer"] for item in (*level["comparison"]["contenders"], level["comparison"]["reference"])]
+        assert [answer["peak"] for answer in answers] == [None] * len(answers)
+    assert [item["name"] for item in report["convergence"]["quantities"] if "peak" in item["name"]] == []
+
+
+def test_an_infinite_peak_is_not_judged_and_the_reason_is_stated():
+    report = report_of(with_infinite_peak())
+    (peak, resultant) = report["levels"][-1]["scores"]
+    assert (peak["judged"], peak["computed"]) == (False, None)
+    assert resultant["judged"]
+    assert resultant["holds"]
+    text = read(render(report, {}, None)).text
+    assert "The peak pressure of foot is infinite, and is not judged" in text
+    assert "1 of 1 quantities hold" in text
+
+
+def test_errors_of_a_finer_mesh_know_the_infinite_pressure():
+    """Found on refine 1; without it the pressure as a whole, whose square is not integrable, would never converge."""
+    first, second = (level.answer.accuracy for level in with_infinite_peak().levels)
+    assert first.infinite == second.infinite == ("foot",)
+    assert second.met
+    assert second.worst < 0.01
+
+
+def test_the_table_of_error_bars_is_that_of_the_report():
+    report = report_of(on_three_meshes())
+    section = render(report, {}, None).split('<section id="accuracy">')[1].split("</section>")[0]
+    bars = report["levels"][-1]["accuracy"]["bars"]
+    assert section.count('<tr><th scope="row">') == len(bars)
+    assert "They are not proved." in section

@@ -42,7 +42,9 @@ def test_the_page_is_whole_and_needs_nothing_else():
     assert len(pictures) == 10
     assert all(picture["alt"] for picture in pictures)
     assert "The paper's five problems" in reader.text
-    assert "Certified and in agreement with every reference." in reader.text
+    assert "Reproduced: in agreement with every reference." in reader.text
+    assert "Equations: unique solution proved." in reader.text
+    assert "Mesh: not assessed." in reader.text
 
 
 def test_page_has_the_statements_of_the_paper():

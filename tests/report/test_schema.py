@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from contact_problems import random_contact
 from jsonschema import Draft202012Validator, ValidationError, validate
+from studies import punch
 
 import bemcontact
 from bemcontact.analysis import compare as comparing
@@ -22,7 +23,8 @@ def reports() -> dict[str, dict]:
     cylinder = load("models/cylinder_on_plane.yaml")
     cases = {
         "cylinder": (ComparisonOptions.of(weights=["tributary", "consistent"], penalties=[1, 1e3]), cylinder, (1, 2)),
-        "fitted": (ComparisonOptions.of(["qp3"]), cylinder.with_value("mesh.fit_contact_edges", True), (1,)),
+        "fitted": (ComparisonOptions.of(["qp3"]), cylinder.with_value("accuracy", 0.01), (1,)),
+        "infinite": (ComparisonOptions.of(["qp3"]), punch(), (1, 2)),
         "refused": (ComparisonOptions.of(["qp3"]), SPURIOUS, (1,)),
         "spurious": (ComparisonOptions.of(["qp1", "qp2"], starts=3), SPURIOUS, (1,)),
         "no contact": (ComparisonOptions.of(), CondensedContact.from_compliance(np.eye(2), [1.0, 1.0]), (1,)),
@@ -83,14 +85,18 @@ def of_each_kind() -> dict[str, list[Any]]:
     return {
         "result": [
             bemcontact.solve(cylinder, "qp2"),
-            bemcontact.solve(cylinder.with_value("mesh.fit_contact_edges", True)),
+            bemcontact.solve(cylinder.with_value("accuracy", 0.01)),
             bemcontact.solve(tools),
+            bemcontact.solve(punch()),
             bemcontact.solve(loose),
             bemcontact.solve(contact, "qp1", starts=2),
         ],
         "cases": [bemcontact.solve_cases(cases)],
         "comparison": [bemcontact.compare(contact, starts=2)],
-        "path": [bemcontact.follow(cylinder, "conditions.top.pressure", 20.0, 0.0)],
+        "path": [
+            bemcontact.follow(cylinder, "conditions.top.pressure", 20.0, 0.0),
+            bemcontact.follow(punch(), "conditions.top.pressure", 1.0),
+        ],
         "load_path": [bemcontact.load_path(loose, CondensedContact.from_compliance(np.eye(2), [-1.0, 1.0]))],
         "sensitivities": [bemcontact.sensitivities(cylinder, ["conditions.top.pressure"])],
         "starts": [bemcontact.random_starts(contact, "qp1", count=2)],

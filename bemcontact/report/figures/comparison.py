@@ -20,6 +20,8 @@ from bemcontact.report.figures.page import (
     GREY,
     PURPLE,
     Piece,
+    ceiling,
+    cut_off,
     labelled,
     legend_below,
     pieces_of,
@@ -71,25 +73,32 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
     """Draw the pressures of all contenders, the direct solution and the references along the contact zones.
 
     The direct solution is a wide band below the other curves. A reference out of its range is gray. Curves far above
-    the direct solution are cut off, and their peaks are written above the frame.
+    the direct solution are cut off, and their peaks are written above the frame. An infinite pressure is cut off at
+    three times the mean one.
     """
     contact, unit = level.answer.contact, units_of(level.answer.contact).stress
     along, curves = _Along(contact=contact), _curves(level)
     for curve in curves:
         along.plot(axes, curve.solution.pressure, curve)
-    known = [float(np.abs(level.answer.solution.pressure).max(initial=0.0))]
+    infinite, direct = level.answer.accuracy.infinite, level.answer.solution.pressure
+    top = ceiling(contact, direct, infinite)
+    known = [float(np.abs(direct).max(initial=0.0))]
     for item in level.expected:
         colour, label = (PURPLE, item.name) if item.in_range else (GREY, f"{item.name}, out of its range")
         if np.isfinite(item.pressure).any():
             along.line(axes, item.pressure, colour, shortened(label, 40))
             known.append(float(np.nanmax(item.pressure)))
-        elif item.peak is not None:
+        elif item.peak is not None and not item.infinite:
             axes.axhline(
                 item.peak, color=colour, linewidth=1.2, linestyle="dotted", label=shortened(f"{label}: peak", 40)
             )
             known.append(item.peak)
     maxima = {curve.label: float(curve.solution.pressure.max(initial=0.0)) for curve in curves}
-    _cut_off(axes, maxima, BEYOND * max(known), unit)
+    if top is None:
+        _cut_off(axes, maxima, BEYOND * max(known), unit)
+    else:
+        _cut_off(axes, {}, top, unit)
+        cut_off(axes, top, infinite)
     axes.set_ylabel(labelled("pressure", unit) + "\nper undeformed length")
     along.finish(axes)
 
@@ -113,7 +122,7 @@ def draw_gaps(axes: Axes, level: MeshLevel) -> None:
 
 
 def draw_differences(axes: Axes, level: MeshLevel) -> None:
-    """Draw |p - p'| over the peak for each contender, with p' the direct solution; zero is not drawn."""
+    """Draw |p - p'| over the largest pressure for each contender, with p' the direct solution; zero is not drawn."""
     along, direct = _Along(contact=level.answer.contact), level.answer.solution.pressure
     peak = along.contact.peak(direct) or along.contact.scales.pressure
     for curve in _curves(level, merged=False):
@@ -121,7 +130,7 @@ def draw_differences(axes: Axes, level: MeshLevel) -> None:
         if difference.any():
             along.plot(axes, np.where(difference > 0, difference, np.nan), curve, marker=".")
     show_decades(axes)
-    axes.set_ylabel("difference of pressure from the\ndirect solution, over its peak")
+    axes.set_ylabel("difference of pressure from the direct\nsolution, over its largest value")
     along.finish(axes)
 
 

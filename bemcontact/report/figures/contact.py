@@ -17,6 +17,7 @@ from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.figures.page import (
     BLACK,
     BODY,
+    CUT,
     GREY,
     VERMILION,
     frame_plan,
@@ -36,8 +37,6 @@ CROSSING = 0.45
 """Share of the distance at which the normals of a hollow boundary cross that the fan may have."""
 BENT = 0.2
 """Turn of the normals of a fan, in radians, from which on their crossing would be seen."""
-CUT = 3.0
-"""Multiple of the mean pressure at which the fan is cut off, as at the edge of a punch."""
 SMALL, AROUND = 0.08, 4.0
 """Extent of the contact over the size of the body below which only the part around it is shown, and over how many
 extents to either side."""
@@ -49,11 +48,15 @@ LEVEL = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class Fan:
-    """Pressure (j,) on an unbroken stretch of contact, with deformed points (j, 2) and unit normals (j, 2)."""
+    """Pressure (j,) on an unbroken stretch of contact, with deformed points (j, 2) and unit normals (j, 2).
+
+    `zone` is the name of its zone.
+    """
 
     feet: Array
     normals: Array
     pressure: Array
+    zone: str
 
     @property
     def peak(self) -> float:
@@ -85,8 +88,9 @@ def draw_contact(axes: Axes, result: Result) -> None:
     """Draw the deformed body to scale, its supports and loads, the rigid surfaces, and the pressure as a fan.
 
     The fan lies outside the body, along the normals of the rigid surface. The largest pressure of each unbroken piece
-    of contact is written beside it. If the contact is small beside the body, only the part of the body around it is
-    shown, without supports and loads. `ValueError` for the result of a condensed problem.
+    of contact is written beside it; one that is infinite is cut off and written as such. If the contact is small beside
+    the body, only the part of the body around it is shown, without supports and loads. `ValueError` for the result of a
+    condensed problem.
     """
     state, problem, units = result.boundary, result.problem, units_of(result.contact)
     if state is None or problem is None:
@@ -102,6 +106,7 @@ def draw_contact(axes: Axes, result: Result) -> None:
     if not part:
         displacement = _displacement(state)
         covered += [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
+    infinite = result.accuracy.infinite
     scale = min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans)) if fans else 1.0
     length = max(TALL * float(np.sqrt(width * height)), LEAST * size)
     length = min([length, *(CROSSING * fan.longest(scale) for fan in fans)])
@@ -109,7 +114,11 @@ def draw_contact(axes: Axes, result: Result) -> None:
     for fan in fans:
         tips.append(fan.feet - length * np.minimum(fan.pressure / scale, 1.0)[:, None] * fan.normals)
         _draw_fan(axes, fan, tips[-1], 0.03 * size)
-        names.append(_label(fan, tips[-1], units.stress, cut=fan.peak > scale * (1 + LEVEL)))
+        if fan.zone not in infinite:
+            text = with_unit(number(fan.peak), plain(units.stress))
+            names.append(_label(fan, tips[-1], text, cut=fan.peak > scale * (1 + LEVEL)))
+        elif fan.peak == max(other.peak for other in fans if other.zone == fan.zone):
+            names.append(_label(fan, tips[-1], "infinite", cut=True))
     drawn = np.concatenate([window, *tips] if part else [window, *tips, *covered])
     frame_plan(axes, drawn, units.length)
     with without_glyph_warnings():
@@ -157,7 +166,10 @@ def _fans(result: Result, state: BoundaryState) -> Iterator[Fan]:
         shown = pressed | np.append(pressed[1:], False) | np.insert(pressed[:-1], 0, False)
         for stretch in np.split(index, np.flatnonzero(np.diff(shown)) + 1):
             if touching[stretch].any():
-                yield Fan(feet=feet[stretch], normals=contact.normals[stretch], pressure=pressure[stretch])
+                yield Fan(
+                    feet=feet[stretch], normals=contact.normals[stretch], pressure=pressure[stretch],
+                    zone=contact.zone_names[int(contact.zone[stretch[0]])],
+                )  # fmt: skip
 
 
 def _window(fans: Sequence[Fan], body: Array) -> tuple[Array, bool]:
@@ -171,9 +183,8 @@ def _window(fans: Sequence[Fan], body: Array) -> tuple[Array, bool]:
     return body, False
 
 
-def _label(fan: Fan, tips: Array, unit: str, *, cut: bool) -> Name:
-    """The largest pressure of a fan, to be placed beyond its tip in the middle of a level stretch, or in a hole."""
-    text = with_unit(number(fan.peak), plain(unit))
+def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:
+    """Text on the peak of a fan, to be placed beyond its tip in the middle of a level stretch, or in a hole."""
     if fan.closed:
         middle = tips.mean(axis=0, keepdims=True)
         return Name(text=text.replace(" ", "\n"), colour=BLACK, anchors=middle, directions=np.zeros((1, 2)))

@@ -2,7 +2,7 @@
 
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
@@ -119,6 +119,31 @@ def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
+AMBER = "#8a5a00"
+"""Colour of a title on paper that only half of its verdicts support."""
+QUALITY_COLOURS = {"good": BLACK, "fair": AMBER, "bad": VERMILION}
+"""Quality of an answer -> colour of the title of its picture."""
+CUT = 3.0
+"""Multiple of the mean pressure at which pictures cut off one that is infinite."""
+
+
+def ceiling(contact: CondensedContact, pressure: Array, infinite: Sequence[str]) -> float | None:
+    """Largest pressure (of n) to be drawn where that of some zones is infinite; None if none is."""
+    if not infinite:
+        return None
+    singular = np.isin(contact.zone, [contact.zone_names.index(name) for name in infinite])
+    pressed = singular & (pressure > 0)
+    mean = float(contact.weights[pressed] @ pressure[pressed] / (contact.weights[pressed].sum() or 1.0))
+    return max(CUT * mean, 1.18 * float(pressure[~singular].max(initial=0.0))) or None
+
+
+def cut_off(axes: Axes, top: float, zones: Sequence[str]) -> None:
+    """End the frame at a pressure, and write above it that the pressure of zones is infinite."""
+    where = ", ".join(shortened(zone, 24) for zone in zones)
+    axes.set_ylim(-0.05 * top, top)
+    axes.set_title(f"infinite in {where}: cut off", loc="right", pad=16, fontsize=8.5, color=BLACK)
+
+
 PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 
 
@@ -165,6 +190,7 @@ IN_THE_DARK = {
     GREEN: "#2fc08f",
     VERMILION: "#f0803c",
     PURPLE: "#dd9cc0",
+    AMBER: "#ecc765",
 }
 """Colour on paper -> colour on a dark page, for those that would not be seen there."""
 

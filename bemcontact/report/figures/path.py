@@ -8,8 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.report.figures.page import BLACK, CYCLE, labelled, new_page, plain, shortened
-from bemcontact.report.formatting import per_thickness, units_of
+from bemcontact.report.facts import in_short, overall
+from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labelled, new_page, plain, shortened
+from bemcontact.report.formatting import number, per_thickness, units_of
+from bemcontact.report.text import path_verdicts
 
 WIDTH, HEIGHT = 5.6, 2.5
 """Inches of each picture."""
@@ -29,14 +31,24 @@ def figure_of_path(path: ParameterPath) -> Figure:
     for axes in (peaks, forces, *ends):
         axes.spines[["top", "right"]].set_visible(False)
     ends[-1].set_xlabel(shortened(path.key, 60))
-    peaks.set_title(shortened(path.contact.name, 60), fontsize=11)
+    of_it = [*path_verdicts(path)]
+    ends = zip((path.start, path.end), of_it[1:], strict=True)
+    at = [f"at {number(value)}: {in_short([verdict])}" for value, verdict in ends]
+    title = "\n".join((shortened(path.contact.name, 60), in_short(of_it[:1]), *at))
+    peaks.set_title(title, fontsize=10, color=QUALITY_COLOURS[overall(of_it)])
     return figure
 
 
 def draw_peaks(axes: Axes, path: ParameterPath) -> None:
-    """Draw the largest pressure over the parameter, with a dot at each breakpoint."""
-    _draw_line(axes, path, [state.peak for state in path.states], BLACK, "")
+    """Draw the largest pressure over the parameter, with a dot at each breakpoint; nothing if it is infinite."""
     axes.set_ylabel(labelled("peak pressure", units_of(path.contact).stress))
+    if path.infinite:
+        axes.text(
+            0.5, 0.5, f"infinite in {', '.join(path.infinite)}", transform=axes.transAxes, ha="center", color=BLACK
+        )
+        axes.set_yticks([])
+        return
+    _draw_line(axes, path, [state.peak or 0.0 for state in path.states], BLACK, "")
     axes.set_ylim(bottom=0)
 
 

@@ -1,5 +1,8 @@
 """The page of a result or of several load cases: contact, pressure, gap, deformed shape, peaks."""
 
+from collections.abc import Sequence
+from textwrap import wrap
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -7,12 +10,15 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
+from bemcontact.report.facts import Verdict, in_short, overall
 from bemcontact.report.figures.contact import draw_contact, draw_deformed, extent
 from bemcontact.report.figures.page import (
     BLACK,
     GREY,
     PIECE_COLOURS,
-    VERMILION,
+    QUALITY_COLOURS,
+    ceiling,
+    cut_off,
     labelled,
     new_page,
     pieces_of,
@@ -21,6 +27,7 @@ from bemcontact.report.figures.page import (
     wrapped,
 )
 from bemcontact.report.formatting import number, units_of, with_unit
+from bemcontact.report.text import case_verdicts, verdicts
 
 CLOSED = 1e-9
 """Gap over the displacement scale that is round-off."""
@@ -45,20 +52,31 @@ def figure_of_result(result: Result) -> Figure:
         draw_deformed(figure.add_subplot(grid[2, :] if wide else grid[1, 0]), result)
     draw_pressure(pressure, result)
     draw_gap(gap, result)
-    verdict = "certified" if result.certified else "NOT certified"
-    title = f"{wrapped(result.contact.name, 6 * inches)}: {result.solution.formulation}, {verdict}"
-    figure.suptitle(title, x=0.01, ha="left", fontweight="bold", color=BLACK if result.certified else VERMILION)
+    title = f"{wrapped(result.contact.name, 6 * inches)}: {result.solution.formulation}"
+    _entitle(figure, title, verdicts(result), 9 * inches)
     if contact is not None:
         draw_contact(contact, result)  # the last one: labels are placed on the page as it is laid out
     return figure
 
 
+def _entitle(figure: Figure, title: str, of_it: Sequence[Verdict], columns: int) -> None:
+    """Write a title with both verdicts in short, in the colour of their quality."""
+    short = "\n".join(wrap(in_short(of_it), columns))
+    colour = QUALITY_COLOURS[overall(of_it)]
+    figure.suptitle(f"{title}; {short}", x=0.01, ha="left", fontweight="bold", color=colour, wrap=True)
+
+
 def draw_pressure(axes: Axes, result: Result) -> None:
-    """Draw the contact pressure, per undeformed length, over the distance along each contact zone."""
-    pressure, contact = result.solution.pressure, result.contact
+    """Draw the contact pressure, per undeformed length, over the distance along each contact zone.
+
+    An infinite pressure is cut off at three times the mean one.
+    """
+    pressure, contact, infinite = result.solution.pressure, result.contact, result.accuracy.infinite
     _draw_along(axes, result, pressure)
     axes.set_ylabel(labelled("pressure", units_of(contact).stress) + "\nper undeformed length")
     axes.set_ylim(top=1.18 * float(pressure.max(initial=0.0)) or 1.0)
+    if (top := ceiling(contact, pressure, infinite)) is not None:
+        cut_off(axes, top, infinite)
     peak = result.footprint.peak
     if peak is not None:
         nearest = int(np.argmin(np.hypot(*(contact.points - np.array(peak.at)).T)))
@@ -132,9 +150,7 @@ def figure_of_cases(cases: CaseResults) -> Figure:
         axes.spines[["top", "right"]].set_visible(False)
     draw_case_pressures(above, cases)
     draw_case_peaks(below, cases)
-    verdict = "all certified" if cases.certified else "NOT all certified"
-    title = f"{wrapped(cases.name, 6 * INCHES)}: {verdict}"
-    figure.suptitle(title, x=0.01, ha="left", fontweight="bold", color=BLACK if cases.certified else VERMILION)
+    _entitle(figure, f"{wrapped(cases.name, 6 * INCHES)}: all load cases", case_verdicts(cases), 9 * INCHES)
     return figure
 
 
@@ -155,15 +171,30 @@ def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
     axes.set_xlabel(labelled("distance along the contact zone", units_of(first.contact).length))
     axes.set_ylabel(labelled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
     axes.legend(frameon=False, fontsize=8.5)
+    if cases.infinite:
+        tops = (
+            ceiling(item.contact, item.solution.pressure, item.accuracy.infinite)
+            or 1.18 * float(item.solution.pressure.max(initial=0.0))
+            for item in cases.results.values()
+        )
+        zones = dict.fromkeys(zone for item in cases.results.values() for zone in item.accuracy.infinite)
+        cut_off(axes, max(tops), [*zones])
 
 
 def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
-    """Draw a bar for the peak pressure of each load case."""
+    """Draw a bar for the peak pressure of each load case; an infinite one goes beyond the frame."""
     first = next(iter(cases.results.values()))
-    peaks = [result.footprint.peak.pressure if result.footprint.peak else 0.0 for result in cases.results.values()]
+    finite = {name: it.footprint.peak.pressure if it.footprint.peak else 0.0 for name, it in cases.results.items()}
+    beyond = 2 * max(finite.values()) or 1.0
+    peaks = [beyond if name in cases.infinite else peak for name, peak in finite.items()]
+    labels = ["infinite" if name in cases.infinite else f"{peak:.5g}" for name, peak in finite.items()]
     colours = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
     bars = axes.barh([shortened(name, 30) for name in cases.results], peaks, color=colours)
-    axes.bar_label(bars, fmt="%.5g", padding=3)
+    axes.bar_label(bars, labels, padding=3)
+    for bar, name in zip(bars, cases.results, strict=True):
+        bar.set(hatch="//" if name in cases.infinite else None, alpha=0.5 if name in cases.infinite else 1.0)
+    if not any(finite.values()) and cases.infinite:
+        axes.set_xticks([])
     axes.margins(x=0.12)
     axes.invert_yaxis()
     axes.set_xlabel(labelled("peak pressure", units_of(first.contact).stress))

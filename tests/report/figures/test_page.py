@@ -58,7 +58,7 @@ def test_every_colour_has_contrast_on_paper_and_in_the_dark():
     dark = dict(re.findall(r'\[style\*="stroke: (#\w{6})"\] \{ stroke: (#\w{6})', text))
     page = dark.pop("#ffffff")
     dark.pop("#e8ecf2")
-    assert len(dark) == 7
+    assert len(dark) == 8
     for there in dark.values():
         assert contrast(there, page) > 4.5
     strokes = {colour for colour in re.findall(r"stroke: (#\w{6})", text.split("</style>")[1]) if colour != "#ffffff"}

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from studies import punch
 
 import bemcontact
 from bemcontact.parametric.parameter_path import ParameterPath
@@ -48,3 +49,19 @@ def test_a_path_written_twice_is_the_same(link: ParameterPath, tmp_path: Path):
 
 def test_verdict_is_a_sentence(link: ParameterPath):
     assert text.path_sentence(link).startswith("Each state from 0 to 20 is proved to be the only contact state.")
+
+
+def test_accuracies_of_both_ends_are_in_the_title(link: ParameterPath):
+    title = figures.figure_of_path(link).axes[0].get_title()
+    assert "unique solution proved" in title
+    assert all(f"at {value}: " in title for value in (0, 20))
+
+
+def test_an_infinite_peak_is_not_drawn():
+    path = bemcontact.follow(punch(), "conditions.top.pressure", 1.0)
+    peaks, forces, _ = figures.figure_of_path(path).axes
+    assert not peaks.lines
+    assert "infinite in foot" in [text.get_text() for text in peaks.texts]
+    assert np.asarray(forces.lines[0].get_ydata())[[0, -1]] == pytest.approx([30, 10])  # statics
+    assert path.start_accuracy.met
+    assert path.end_accuracy.met

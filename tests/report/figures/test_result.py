@@ -1,5 +1,6 @@
 """The picture of several load cases: each has its curve, its bar and its name."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -7,11 +8,13 @@ import numpy as np
 import pytest
 from drawings import block_in_a_corner
 from matplotlib.figure import Figure
+from studies import punch
 from tool_problems import FREE, FREE_CASES, made
 
 import bemcontact
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.problem import Problem
 from bemcontact.report import figures
 
@@ -38,9 +41,9 @@ def test_each_case_has_its_curves_and_its_bar():
     assert [label.get_text() for label in below.get_yticklabels()] == [*found().results]
 
 
-def test_it_states_whether_all_are_certified():
-    title = figures.figure_of(found()).get_suptitle()
-    assert title == "free block: all certified"
+def test_title_states_both_verdicts():
+    title = " ".join(figures.figure_of(found()).get_suptitle().split())
+    assert title.startswith("free block: all load cases; unique solution proved; mesh not met, error about ")
 
 
 @pytest.mark.parametrize(("ending", "magic"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")])
@@ -105,3 +108,43 @@ def test_result_of_a_condensed_problem_has_no_shape():
         figures.draw_deformed(Figure().add_subplot(), result)
     with pytest.raises(ValueError, match="no boundary"):
         figures.draw_contact(Figure().add_subplot(), result)
+
+
+@cache
+def on_a_punch() -> CaseResults:
+    """The punch under two loads; the pressure at its edge is infinite under both."""
+    cases = {name: {"conditions": {"top": {"pressure": size}}} for name, size in (("low", 1.0), ("high", 3.0))}
+    return bemcontact.solve_cases(
+        punch(conditions={"left": {"displacement": {"x": 0}}}, load_cases=cases, reference={})
+    )
+
+
+def texts_of(figure: Figure) -> str:
+    """All texts of a figure."""
+    titles = [axes.get_title(loc=loc) for axes in figure.axes for loc in ("left", "center", "right")]
+    return " ".join([*titles, *(text.get_text() for axes in figure.axes for text in axes.texts)])
+
+
+def test_infinite_pressures_are_cut_off_at_three_times_the_mean():
+    """The mean is statics: 30 on 2 mm, and 10 for a third of the load."""
+    one = on_a_punch().results["high"]
+    assert one.solution.pressure.max() > 100
+    page = figures.figure_of(one)
+    assert page.axes[1].get_ylim()[1] == pytest.approx(3 * 15, rel=1e-3)
+    assert "infinite in foot: cut off" in texts_of(page)
+    assert "peak" not in texts_of(page)
+    assert f"{one.solution.pressure.max():.5g}" not in texts_of(page)
+    above, below = figures.figure_of(on_a_punch()).axes
+    assert above.get_ylim()[1] == pytest.approx(3 * 15, rel=1e-3)
+    assert [text.get_text() for text in below.texts] == ["infinite", "infinite"]
+
+
+def test_colour_of_the_title_is_that_of_the_worse_verdict():
+    def colour_of(result: analysis.Result) -> str:
+        return figures.figure_of(result)._suptitle.get_color()  # pyright: ignore
+
+    one = on_a_punch().results["low"]
+    doubtful = replace(one.certificate, kind=CertificateKind.LOCAL)
+    unmet = replace(one, accuracy=replace(one.accuracy, met=False))
+    colours = [colour_of(item) for item in (one, unmet, replace(unmet, certificate=doubtful))]
+    assert colours == ["#222222", "#8a5a00", "#d55e00"]

@@ -1,0 +1,144 @@
+"""Verdicts and error bars in words: what is written never states more than what is known."""
+
+import re
+from decimal import Decimal
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar, Quantity
+from bemcontact.problem import Units
+from bemcontact.report.facts import (
+    LEAST_SHOWN,
+    accuracy_rows,
+    error_percent,
+    facts,
+    in_short,
+    mesh_in_short,
+    mesh_verdict,
+    overall,
+    peak_of,
+    with_bar,
+)
+
+UNITS = Units(length="cm", force="kN")
+
+
+def bar(
+    quantity: Quantity, value: float | None, error: float | None, zone: str | None = "foot", note: str = "", **more
+):
+    return ErrorBar(quantity=quantity, zone=zone, value=value, bar=error, note=note, **more)
+
+
+def accuracy(*bars: ErrorBar, asked: float = 0.01, reason: str = "") -> dict:
+    return Accuracy(**{**Accuracy.of(asked, 2, bars).__dict__, "reason": reason}).to_dict()
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (183.335, 0.002, "183.3 ± 0.4"),
+        (183335.0, 0.01, "183300 ± 1900"),
+        (1.83335e7, 0.01, "(1.833 ± 0.019)e+07"),
+        (0.0183335, 0.0075, "0.01833 ± 0.00014"),
+        (3.0, 0.0, "3.00000 ± 0.00003"),
+        (0.0, 0.1, "0"),
+        (12.5, None, "12.5"),
+    ],
+)
+def test_numbers_with_error_bars(value: float, error: float | None, text: str):
+    assert with_bar(value, error) == text
+
+
+@given(st.floats(1e-9, 1e12), st.floats(0, 0.9), st.booleans())
+@example(9.9999, 0.00999, False)
+def test_a_number_has_no_digit_beyond_its_error(value: float, error: float, negative: bool):
+    """The error is rounded up, by less than its double; the last digits of both are the same; the value is rounded."""
+    value = -value if negative else value
+    written = with_bar(value, error)
+    number, shown, power = re.fullmatch(r"\(?(-?[\d.]+) ± ([\d.]+)\)?(?:e([+-]\d+))?", written).groups()  # pyright: ignore
+    scale = 10.0 ** int(power or 0)
+    least = max(error, LEAST_SHOWN) * abs(value)
+    assert least * (1 - 1e-6) <= float(shown) * scale < 2 * least * (1 + 1e-6)
+    assert Decimal(number).as_tuple().exponent == Decimal(shown).as_tuple().exponent
+    assert len(shown.replace(".", "").strip("0")) <= 2
+    assert abs(float(number) * scale - value) <= 0.5 * float(shown) * scale * (1 + 1e-6)
+
+
+@given(st.floats(1e-5, 1e3))
+def test_an_error_in_per_cent_is_rounded_up(error: float):
+    written = float(error_percent(error).removesuffix(" %"))
+    assert 100 * error * (1 - 1e-6) <= written <= 110 * error * (1 + 1e-6)
+
+
+def test_mesh_that_meets_the_accuracy():
+    verdict = mesh_verdict(accuracy(bar("peak", 183.3, 0.0041), bar("force", 405.0, 1e-4)))
+    assert (verdict.of, verdict.quality) == ("Mesh", "good")
+    assert verdict.word == "error at most 0.41 % (asked 1 %)"
+    assert "peak pressure of foot" in verdict.words
+
+
+def test_mesh_that_does_not_meet_the_accuracy():
+    met = accuracy(bar("peak", 183.3, 0.3), reason="a finer mesh would have more than 4000 unknowns")
+    assert mesh_verdict(met).word == "not met, error about 30 % (asked 1 %)"
+    assert mesh_verdict(met).quality == "fair"
+    assert "More than 4000".lower() in mesh_verdict(met).words
+    unknown = mesh_verdict(accuracy(bar("start", 2.0, None, note="the number of intervals changes", interval=0)))
+    assert unknown.word == "not met, error not known (asked 1 %)"
+    assert "number of intervals changes" in unknown.words
+
+
+def test_mesh_that_was_not_assessed_is_never_good():
+    """Neither if no accuracy is asked for, nor if errors could not be estimated."""
+    for asked in (None, 0.01):
+        verdict = mesh_verdict(Accuracy(asked=asked, reason="no errors are estimated").to_dict())
+        assert (verdict.quality, verdict.word) == ("fair", "not assessed")
+        assert mesh_in_short(Accuracy(asked=asked, reason="x").to_dict()) == "not assessed"
+
+
+def test_an_answer_is_good_only_if_both_verdicts_are():
+    good = mesh_verdict(accuracy(bar("peak", 1.0, 0.001)))
+    fair, bad = (
+        good._replace(quality="fair", word="not met"),
+        good._replace(quality="bad", word="not solved", of="Equations"),
+    )
+    qualities = [overall(pair) for pair in ((good, good), (good, fair), (fair, fair), (bad, good), (bad, fair))]
+    assert qualities == ["good", "fair", "fair", "bad", "bad"]
+    assert in_short((bad, fair)) == "equations not solved; mesh not met"
+
+
+def test_rows_have_units_and_errors_of_ends_relative_to_their_interval():
+    """The ends of an interval of length 4, known to 0.5 %: 0.02. The intensity has the unit of p times √s."""
+    bars = (
+        bar("peak", 183.335, 0.002), bar("force", 405.0, 0.001), bar("start", 1.0, 0.005, interval=0),
+        bar("end", 5.0, 0.02, interval=0), bar("intensity", 9.68, 0.018, note="p = K s^-0.5"),
+        bar("displacement", 1.05, 0.003, zone=None),
+    )  # fmt: skip
+    rows = [*accuracy_rows(accuracy(*bars), UNITS)]
+    assert [row["value"] for row in rows] == [
+        "183.3 ± 0.4 kN/cm²", "405.0 ± 0.5 kN/cm", "1.00 ± 0.02 cm", "5.00 ± 0.08 cm", "9.68 ± 0.18 kN/cm²·cm^0.5",
+        "1.050 ± 0.004 cm",
+    ]  # fmt: skip
+    assert [row["share"] for row in rows] == ["20 %", "10 %", "50 %", "2e+02 %", "–", "30 %"]
+    assert [row["colour"] for row in rows] == ["", "", "", "bad", "", ""]
+
+
+def test_an_infinite_peak_has_no_number():
+    record = {"accuracy": accuracy(bar("peak", None, None, note="infinite at a corner")), "peak": None}
+    assert peak_of(record, UNITS) == "infinite"
+    assert next(accuracy_rows(record["accuracy"], UNITS))["value"] == "infinite"
+    assert peak_of({"accuracy": accuracy(), "peak": None}, UNITS) == "no contact"
+
+
+def test_of_two_zones_one_of_which_is_infinite_the_other_has_its_peak():
+    lists = dict.fromkeys(("nodes", "intervals", "tributary_lengths", "pressure", "zone", "normals", "tools"), ())
+    bars = (bar("peak", None, None, note="infinite at a corner"), bar("peak", 12.5, 0.01, zone="wall"))
+    record = {
+        **lists, "peak": None, "resultant": (0.0, 0.0), "resultant_moment": 0.0,
+        "scales": {"displacement": 1.0}, "motion_names": (), "rigid_amplitudes": (),
+        "residuals": dict.fromkeys(("penetration", "tension", "complementarity", "equilibrium", "force_balance")),
+        "accuracy": accuracy(*bars),
+    }  # fmt: skip
+    peaks = [words for name, words in facts(record, UNITS) if name == "Peak pressure"]
+    assert peaks == ["of foot: infinite at a corner", "of wall: 12.50 ± 0.13 kN/cm²"]
