@@ -387,7 +387,8 @@ class CondensedContact(MotionAlgebra):
 
     def pressed(self, pressure: Array, displacement: Array) -> BoolArray:
         """Which points (n,) are in contact under pressure; none if the largest pressure is round-off beside T."""
-        return self.touching(pressure, displacement) & (pressure > 0) & (self.peak(pressure) > 0)
+        p = self._by_point(pressure, "pressure")
+        return self.touching(p, displacement) & (p > 0) & (self.peak(p) > 0)
 
     def peak(self, pressure: Array) -> float:
         """Largest of the pressures p (n,), [p]; zero if it is round-off beside T."""
