@@ -8,9 +8,9 @@ from typing import Unpack
 from bemcontact.adaptivity.fitting import MeshFit
 from bemcontact.analysis.solve import Progress, Stopwatch, assessed, condensation_of, fitted_to_contact
 from bemcontact.analysis.study import MeshLevel, Settings, Study
-from bemcontact.arguments import ensure_callable
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
+from bemcontact.checks.arguments import ensure_callable
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import KeyPath, NotConvexError, OptionError, SolverError
 from bemcontact.formulations import FORMULATIONS, qp3

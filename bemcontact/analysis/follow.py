@@ -11,8 +11,8 @@ from bemcontact.adaptivity.fitting import fitted
 from bemcontact.analysis.penetration import penetration_on_path
 from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
 from bemcontact.analysis.variation import Variation, case_of
-from bemcontact.arguments import real_number, text_of_argument, texts
 from bemcontact.arrays import Array
+from bemcontact.checks.arguments import real_number, text_of_argument, texts
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import Issue, KeyPath, ProblemError

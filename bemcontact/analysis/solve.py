@@ -10,13 +10,13 @@ from bemcontact.adaptivity.fitting import MeshFit, fitted
 from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.penetration import penetration, surface_gaps
 from bemcontact.analysis.result import Result
-from bemcontact.arguments import ensure_callable, shown
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.condense import condense as condense_body
+from bemcontact.checks.arguments import ensure_callable, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.solution import ContactSolution

@@ -13,8 +13,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bemcontact.arguments import file_path, instance_of, real_number, shown, whole_number
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays, real_array, whole_array
+from bemcontact.checks.arguments import file_path, instance_of, real_number, shown, whole_number
 from bemcontact.contact import archive
 from bemcontact.contact.consistency import ensure_arrays, ensure_independent, ensure_labels, ensure_parts_fit
 from bemcontact.contact.free_motions import (

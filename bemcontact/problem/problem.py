@@ -14,8 +14,8 @@ from pydantic import (
     model_validator,
 )
 
-from bemcontact.arguments import real_number, shown, text_of_argument, whole_number
 from bemcontact.arrays import real_array
+from bemcontact.checks.arguments import real_number, shown, text_of_argument, whole_number
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition, Loads
