@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.arguments import LARGEST_NUMBER, shown
+from bemcontact.checks.arguments import LARGEST_NUMBER, shown
 from bemcontact.errors import ProblemError
 
 Array = NDArray[np.float64]

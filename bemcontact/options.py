@@ -11,7 +11,7 @@ from itertools import product
 from textwrap import fill
 from typing import Any, Protocol, TypedDict, TypeVar, Unpack, cast, runtime_checkable
 
-from bemcontact.arguments import LARGEST_COUNT, real_number, shown, whole_number
+from bemcontact.checks.arguments import LARGEST_COUNT, real_number, shown, whole_number
 from bemcontact.errors import OptionError, ProblemError
 
 Name = TypeVar("Name", bound=StrEnum)

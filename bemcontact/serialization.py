@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
-from bemcontact.plain_text import escaped_json
+from bemcontact.errors import escaped_json
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 CONFIG = ConfigDict(

@@ -11,23 +11,21 @@ PACKAGE = TESTS.parent / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("plain_text", "memory", "errors", "arguments", "arrays", "serialization", "options", "version", "files")
+FOUNDATION = ("errors", "checks", "arrays", "serialization", "options", "version", "files")
 
 ROOMS = {
-    "plain_text": (),
-    "memory": (),
-    "errors": ("plain_text",),
-    "arguments": ("errors",),
-    "arrays": ("errors", "arguments"),
-    "serialization": ("plain_text",),
-    "options": ("errors", "arguments"),
+    "errors": (),
+    "checks": ("errors",),
+    "arrays": ("errors", "checks"),
+    "serialization": ("errors",),
+    "options": ("errors", "checks"),
     "version": (),
-    "files": ("plain_text", "errors"),
-    "problem": ("plain_text", "errors", "arguments", "arrays", "options"),
-    "spec": ("plain_text", "errors", "arguments", "files", "problem"),
+    "files": ("errors",),
+    "problem": ("errors", "checks", "arrays", "options"),
+    "spec": ("errors", "checks", "files", "problem"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problem", "contact"),
-    "formulations.local_solver": ("errors", "arguments", "arrays"),
+    "formulations.local_solver": ("errors", "checks", "arrays"),
     "formulations": (*FOUNDATION, "contact", "formulations.local_solver"),
     "assessment": (*FOUNDATION, "contact"),
     "adaptivity": (*FOUNDATION, "problem", "contact", "bem", "formulations", "assessment"),

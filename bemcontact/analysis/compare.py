@@ -7,9 +7,9 @@ from typing import Unpack
 
 from bemcontact.analysis.solve import Prepared, Progress, Stopwatch, assessed, ensure_acting, prepare
 from bemcontact.analysis.study import MeshLevel, Settings, Study
-from bemcontact.arguments import ensure_callable
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
+from bemcontact.checks.arguments import ensure_callable
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import KeyPath, NotConvexError, OptionError, SolverError
 from bemcontact.formulations import FORMULATIONS, qp3

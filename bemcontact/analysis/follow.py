@@ -11,9 +11,9 @@ from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.analysis.penetration import penetration_on_path
 from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
 from bemcontact.analysis.variation import Variation, case_of
-from bemcontact.arguments import real_number, text_of_argument, texts
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.checks.arguments import real_number, text_of_argument, texts
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import Issue, KeyPath, ProblemError

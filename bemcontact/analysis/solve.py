@@ -11,12 +11,12 @@ from bemcontact.adaptivity.singularities import Singularity
 from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.penetration import penetration, surface_gaps
 from bemcontact.analysis.result import Result
-from bemcontact.arguments import ensure_callable, shown
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
 from bemcontact.bem.condense import Condensation, boundary_state
+from bemcontact.checks.arguments import ensure_callable, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.solution import ContactSolution

@@ -22,9 +22,9 @@ from bemcontact.bem.rigid_motions import (
     placed_tools,
 )
 from bemcontact.bem.system import System, solve
+from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError
-from bemcontact.memory import ensure_memory
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
 

@@ -16,7 +16,7 @@ import typer
 from bemcontact.cli import check, compare, path, reproduce, solve
 from bemcontact.cli.command import INTERRUPTED, flattened, refuse, reported
 from bemcontact.cli.terminal import standard_output
-from bemcontact.plain_text import LINE_BREAKS, escaped, hidden_character
+from bemcontact.errors import LINE_BREAKS, escaped, hidden_character
 
 app = typer.Typer(
     add_completion=False,

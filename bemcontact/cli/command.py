@@ -15,12 +15,11 @@ from typing import Annotated, Any, NoReturn, TypeVar, get_type_hints
 
 import typer
 
+from bemcontact.checks.memory import ensure_memory
 from bemcontact.cli.terminal import RenderableType, Report, show, stages, standard_output, tell
-from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError
+from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError, escaped
 from bemcontact.files import output
-from bemcontact.memory import ensure_memory
 from bemcontact.options import ComparisonOptions, SolveOptions, StartName
-from bemcontact.plain_text import escaped
 
 Number = TypeVar("Number", int, float)
 

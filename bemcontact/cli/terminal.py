@@ -10,7 +10,7 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.segment import Segments
 from rich.text import Text
 
-from bemcontact.plain_text import escaped, escaped_lines
+from bemcontact.errors import escaped, escaped_lines
 
 PATIENCE = 1.0
 """Seconds of work before progress is shown."""

@@ -13,8 +13,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bemcontact.arguments import file_path, instance_of, real_number, shown, whole_number
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays, real_array, whole_array
+from bemcontact.checks.arguments import file_path, instance_of, real_number, shown, whole_number
 from bemcontact.contact import archive
 from bemcontact.contact.consistency import ensure_arrays, ensure_independent, ensure_labels, ensure_parts_fit
 from bemcontact.contact.free_motions import (
@@ -387,7 +387,8 @@ class CondensedContact(MotionAlgebra):
 
     def pressed(self, pressure: Array, displacement: Array) -> BoolArray:
         """Which points (n,) are in contact under pressure; none if the largest pressure is round-off beside T."""
-        return self.touching(pressure, displacement) & (pressure > 0) & (self.peak(pressure) > 0)
+        p = self._by_point(pressure, "pressure")
+        return self.touching(p, displacement) & (p > 0) & (self.peak(p) > 0)
 
     def peak(self, pressure: Array) -> float:
         """Largest of the pressures p (n,), [p]; zero if it is round-off beside T."""

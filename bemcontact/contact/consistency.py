@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from bemcontact.arguments import shown, text_of_argument, texts
 from bemcontact.arrays import Array, IntArray, Shape, read_arrays, real_array, whole_array
+from bemcontact.checks.arguments import shown, text_of_argument, texts
 from bemcontact.errors import ProblemError
 
 UNIT = 1e-9

@@ -9,8 +9,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bemcontact.arguments import real_number, texts
 from bemcontact.arrays import Array, BoolArray, flag_array, freeze_arrays, read_arrays
+from bemcontact.checks.arguments import real_number, texts
 from bemcontact.errors import ProblemError
 
 BALANCED = 1e-9

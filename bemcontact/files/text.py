@@ -6,8 +6,7 @@ import stat
 from difflib import get_close_matches
 from pathlib import Path
 
-from bemcontact.errors import SpecError
-from bemcontact.plain_text import escaped
+from bemcontact.errors import SpecError, escaped
 
 MOST_BYTES = 20_000_000
 """Largest size of a file that is read."""

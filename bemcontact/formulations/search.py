@@ -9,18 +9,17 @@ from pathlib import Path
 
 import numpy as np
 
-from bemcontact.arguments import text_of_argument
 from bemcontact.arrays import Array, real_array
+from bemcontact.checks.arguments import text_of_argument
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, LocalSearch, Penalty, Status, Trace, traces_in_turn
-from bemcontact.errors import OptionError, ProblemError, SpecError
+from bemcontact.errors import OptionError, ProblemError, SpecError, escaped
 from bemcontact.files.text import text_of
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.local_solver import QPResult, QPStatus
 from bemcontact.formulations.program import Program, minimize
 from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
 from bemcontact.options import STARTS, SolveOptions, StartName, Weights, ensure_whole
-from bemcontact.plain_text import escaped
 
 SPREAD = 2.0
 """Largest random pressure over T, and size of a random displacement over U."""

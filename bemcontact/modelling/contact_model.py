@@ -9,8 +9,8 @@ from typing import Any, cast
 import cvxpy as cp
 import numpy as np
 
-from bemcontact.arguments import instance_of, real_number, shown
 from bemcontact.arrays import Array
+from bemcontact.checks.arguments import instance_of, real_number, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
 from bemcontact.errors import ProblemError

@@ -7,7 +7,7 @@ from typing import Any, cast
 import cvxpy as cp
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, real_array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 
@@ -23,26 +23,13 @@ class RowParameter(cp.Parameter):
         return cast(Any, cp.Parameter.value).fget(self)
 
     @value.setter
-    def value(self, given: Any) -> None:
+    def value(self, val: Any) -> None:
         """Set the value; `ProblemError` unless it is an array of finite numbers in the shape of the parameter."""
-        cast(Any, cp.Parameter.value).fset(self, None if given is None else _numbers(given, self.shape, self.name()))
+        cast(Any, cp.Parameter.value).fset(self, None if val is None else self._read(val))
 
-
-def _numbers(given: Any, shape: tuple[int, ...], name: str) -> Array:
-    """Read an array of finite numbers, lists by rows."""
-    try:
-        if np.ma.is_masked(given):
-            raise ProblemError(f"the value of {name} has masked entries; fill them with numbers")
-        stated = np.asarray(given)
-    except ValueError:
-        raise ProblemError(f"the value of {name} has rows of unequal length; give an array {shape}") from None
-    if stated.dtype.kind not in "iuf":
-        raise ProblemError(f"the value of {name} is an array {shape} of real numbers; found {given!r:.80}")
-    if stated.shape != shape:
-        raise ProblemError(f"the value of {name} is an array {shape}; found {stated.shape}")
-    if not np.isfinite(stated).all():
-        raise ProblemError(f"the value of {name} has entries that are not finite numbers")
-    return stated.astype(float)
+    def _read(self, given: Any) -> Array:
+        """The array of a value."""
+        return real_array(given, f"the value of {self.name()}", self.shape).copy()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

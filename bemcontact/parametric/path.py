@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 from pydantic import computed_field
 
-from bemcontact.arguments import real_number, shown, whole_number
 from bemcontact.arrays import Array, BoolArray, freeze_arrays
 from bemcontact.assessment.footprint import Footprint, footprint
+from bemcontact.checks.arguments import real_number, shown, whole_number
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change, LoadCases
 from bemcontact.contact.solution import ContactSolution, Status

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from pydantic import computed_field
 
-from bemcontact.arguments import shown
 from bemcontact.arrays import Array, IntArray, freeze_arrays, real_array
 from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint, resting_ends
+from bemcontact.checks.arguments import shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import ContactSolution, Status

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, Self, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from bemcontact.arguments import text_of_argument
+from bemcontact.checks.arguments import text_of_argument
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.validation import SpecModel, described, misspelled, unknown_word
 

@@ -15,8 +15,8 @@ from pydantic import (
     model_validator,
 )
 
-from bemcontact.arguments import real_number, shown, text_of_argument, whole_number
 from bemcontact.arrays import real_array
+from bemcontact.checks.arguments import real_number, shown, text_of_argument, whole_number
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition, Loads
@@ -194,8 +194,8 @@ class Problem(SpecModel):
     case: Name | None = None
     """The load case or combination to solve; if left out, all of them are solved one after the other."""
     accuracy: Annotated[float, Strict(), Field(gt=0, lt=1)] | Literal["default"] | None = "default"
-    """The accuracy to reach, relative: 0.003 is 0.3 %; default is 1 %. With null no accuracy is asked for, and errors
-    are not estimated."""
+    """The accuracy to reach, relative: 0.003 is 0.3 %. A mesh is found for it. The default is 1 % if a mesh is to be
+    found; for a mesh that is stated no accuracy is asked for, and its errors are not estimated, as with null."""
     mesh: MeshDensity = MeshDensity()
     """The refinement of the mesh."""
     reference: dict[Title, ReferenceSpec] = Field(default_factory=dict)
@@ -276,7 +276,9 @@ class Problem(SpecModel):
     @property
     def asked_accuracy(self) -> float | None:
         """The relative accuracy to reach; None if none is asked for."""
-        return ACCURACY if self.accuracy == "default" else self.accuracy
+        if self.accuracy == "default":
+            return ACCURACY if self.adapts else None
+        return self.accuracy
 
     @property
     def adapts(self) -> bool:

@@ -23,8 +23,7 @@ from pydantic import (
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, ErrorDetails, InitErrorDetails, PydanticCustomError, core_schema
 
-from bemcontact.errors import Issue, ProblemError
-from bemcontact.plain_text import LINE_BREAKS, hidden_character
+from bemcontact.errors import LINE_BREAKS, Issue, ProblemError, hidden_character
 
 LARGEST_NUMBER = 1e30
 """The eighth power of this number is still finite, so that products of any four numbers can be squared."""

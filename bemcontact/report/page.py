@@ -10,7 +10,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from bemcontact.assessment.contender import OUTCOMES, Outcome
-from bemcontact.plain_text import escaped_lines
+from bemcontact.errors import escaped_lines
 from bemcontact.problem import Units
 from bemcontact.report.facts import (
     BARS_ARE,

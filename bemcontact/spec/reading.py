@@ -8,10 +8,9 @@ from typing import Any
 
 import yaml
 
-from bemcontact.arguments import shown, text_of_argument, texts
-from bemcontact.errors import Issue, KeyPath, ProblemError, SpecError
+from bemcontact.checks.arguments import shown, text_of_argument, texts
+from bemcontact.errors import Issue, KeyPath, ProblemError, SpecError, escaped
 from bemcontact.files.text import place_after, text_of
-from bemcontact.plain_text import escaped
 from bemcontact.problem import Problem, Variant
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path
 from bemcontact.problem.readable import readable_part

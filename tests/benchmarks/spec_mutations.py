@@ -9,6 +9,7 @@ FOLDER.
 """
 
 import copy
+import json
 import random
 import signal
 import sys
@@ -105,7 +106,7 @@ def mutated(texts: list[str], data: list[Any], rng: random.Random) -> str:
         for _ in range(changes):
             if mutant:
                 change_data(mutant, data, rng)
-        text = to_yaml(mutant)
+        text = to_yaml(mutant) if rng.random() < 0.2 else json.dumps(mutant, ensure_ascii=rng.random() < 0.5)
         changes = rng.choice([0, 0, 0, 1])
     for _ in range(changes):
         text = change_text(text, texts, rng)

@@ -15,7 +15,7 @@ import bemcontact
 from bemcontact import cli
 from bemcontact.cli import terminal
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.plain_text import LINE_BREAKS, hidden_character
+from bemcontact.errors import LINE_BREAKS, hidden_character
 from bemcontact.report import text
 from bemcontact.report.figures import figure_of, vector_graphic
 

@@ -5,9 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from bemcontact.errors import SpecError
+from bemcontact.errors import LINE_BREAKS, SpecError, hidden_character
 from bemcontact.files.text import MOST_BYTES, text_of
-from bemcontact.plain_text import LINE_BREAKS, hidden_character
 
 
 def refusal(path: Path | str) -> str:

@@ -88,7 +88,7 @@ def test_numbers_whose_powers_underflow_are_refused(key, value):
 @pytest.mark.parametrize("size", [1e-31, 1e-200, 5e-310])
 def test_a_body_too_small_to_compute_with_is_refused(size):
     corners = [[0, 0], [4 * size, 0], [4 * size, 2 * size], [0, 2 * size]]
-    edges = [{"name": f"e{i}", "start": corner, "elements": 2} for i, corner in enumerate(corners)]
+    edges: Any = [{"name": f"e{i}", "start": corner, "elements": 2} for i, corner in enumerate(corners)]
     with pytest.raises(bemcontact.ProblemError, match="too small to compute with; choose another unit of length"):
         Boundary(outer=edges)
 

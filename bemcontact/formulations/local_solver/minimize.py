@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bemcontact.arguments import shown
 from bemcontact.arrays import Array, BoolArray, whole_array
+from bemcontact.checks.arguments import shown
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unscaled
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia

@@ -9,11 +9,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from bemcontact.arguments import instance_of, shown
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
+from bemcontact.checks.arguments import instance_of, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError

@@ -5,11 +5,11 @@ from enum import StrEnum
 
 import numpy as np
 
-from bemcontact.arguments import shown
 from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
 from bemcontact.assessment.residual import Residuals
+from bemcontact.checks.arguments import shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError

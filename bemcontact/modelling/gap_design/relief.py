@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import linprog
 
-from bemcontact.arguments import real_number, shown
 from bemcontact.arrays import Array, IntArray, freeze_arrays, real_array
+from bemcontact.checks.arguments import real_number, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 

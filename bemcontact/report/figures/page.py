@@ -20,9 +20,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.errors import escaped_lines
 from bemcontact.files import output
 from bemcontact.options import FormulationName
-from bemcontact.plain_text import escaped_lines
 
 FORMATS = (".png", ".svg", ".pdf")
 """Endings of the files that can be written."""

@@ -182,6 +182,7 @@ CALLS: dict[str, Call] = {
     "in_order": (CONTACT.in_order, {"index": np.arange(4)}),
     "points_of_run": (CONTACT.points_of_run, {"run": 0}),
     "touching": (CONTACT.touching, {"pressure": P, "displacement": ONES}),
+    "pressed": (CONTACT.pressed, {"pressure": P, "displacement": ONES}),
     "peak": (CONTACT.peak, {"pressure": P}),
     "weight_matrix": (CONTACT.weight_matrix, {"weights": "tributary"}),
     "CondensedContact.load": (CondensedContact.load, {"path": "no such file.npz"}),

@@ -7,8 +7,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bemcontact.errors import Issue, ProblemError, SpecError
-from bemcontact.plain_text import LINE_BREAKS, escaped, escaped_json, escaped_lines, hidden_character
+from bemcontact.errors import (
+    LINE_BREAKS,
+    Issue,
+    ProblemError,
+    SpecError,
+    escaped,
+    escaped_json,
+    escaped_lines,
+    hidden_character,
+)
 from bemcontact.problem.problem import Units
 from bemcontact.serialization import json_text
 

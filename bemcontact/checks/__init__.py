@@ -1,0 +1,1 @@
+"""Checks before any work: arguments of functions, and memory."""
