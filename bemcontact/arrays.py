@@ -1,15 +1,68 @@
-"""Types of arrays, and read-only arrays in frozen dataclasses."""
+"""Types of arrays, the reading of arrays that users give, and read-only arrays in frozen dataclasses."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import fields
+from decimal import Decimal
+from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bemcontact.arguments import LARGEST_NUMBER, shown
+from bemcontact.errors import ProblemError
+
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 ComplexArray = NDArray[np.complex128]
+
+Shape = tuple[int | None, ...]
+"""Shape of an array that is needed; None is any length."""
+
+
+def real_array(value: Any, what: str, shape: Shape | None = None, *, finite: bool = True) -> Array:
+    """Read an array of real numbers, which errors call `what`; `ProblemError` says what is wrong with it.
+
+    Refused are other shapes, masked entries, truth values, texts, complex numbers, and entries that are not finite or
+    too large to compute with, unless `finite` is False. The array is not copied if it is one already.
+    """
+    array = _as_array(value, what)
+    if array.dtype.kind == "O" and all(_is_real(entry) for entry in array.flat):
+        array = _as_floats(array, what)
+    if array.dtype.kind not in "iuf" and array.size:
+        raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
+    _ensure_shape(array, what, shape)
+    array = np.asarray(array, dtype=float)
+    if finite and not (np.abs(array) <= LARGEST_NUMBER).all():  # false also for what is not a number
+        _complain(array, what)
+    return array
+
+
+def whole_array(value: Any, what: str, shape: Shape | None = None) -> IntArray:
+    """Read an array of whole numbers, as `real_array` does."""
+    array = _as_array(value, what)
+    if array.dtype.kind not in "iu" and array.size:
+        raise ProblemError(f"{what} must contain whole numbers; found {_described(value, array)}")
+    _ensure_shape(array, what, shape)
+    return np.asarray(array, dtype=np.int64)
+
+
+def flag_array(value: Any, what: str, shape: Shape | None = None) -> BoolArray:
+    """Read an array of truth values, as `real_array` does."""
+    array = _as_array(value, what)
+    if array.dtype.kind != "b" and array.size:
+        raise ProblemError(f"{what} must contain True and False; found {_described(value, array)}")
+    _ensure_shape(array, what, shape)
+    return np.asarray(array, dtype=bool)
+
+
+def read_arrays(
+    instance: Any, shapes: Mapping[str, Shape], prefix: str = "", reader: Callable[..., NDArray[Any]] = real_array
+) -> None:
+    """Read fields of a frozen dataclass as arrays with given shapes; errors call them by the prefix and their names."""
+    for name, shape in shapes.items():
+        object.__setattr__(instance, name, reader(getattr(instance, name), prefix + name, shape))
 
 
 def freeze_arrays(instance: Any) -> None:
@@ -19,3 +72,61 @@ def freeze_arrays(instance: Any) -> None:
             frozen = array.copy()
             frozen.setflags(write=False)
             object.__setattr__(instance, item.name, frozen)
+
+
+def _as_array(value: Any, what: str) -> NDArray[Any]:
+    """The array of NumPy that a value is or can be made into, without masked entries."""
+    if _is_masked(value):
+        raise ProblemError(f"{what} has masked entries; fill them with numbers, or leave these points out")
+    try:
+        return np.asarray(value)
+    except Exception:  # lists of unequal length, and whatever an object of the user raises
+        raise ProblemError(
+            f"{what} cannot be read as an array: found {shown(value)}; give numbers, in rows of equal length"
+        ) from None
+
+
+def _is_masked(value: Any) -> bool:
+    """Whether entries are masked, in lists of masked arrays too, of which NumPy would take the numbers behind."""
+    if isinstance(value, list | tuple):
+        return any(_is_masked(item) for item in value if not isinstance(item, int | float))
+    return isinstance(value, np.ma.MaskedArray) and bool(np.ma.getmaskarray(value).any())
+
+
+def _is_real(entry: object) -> bool:
+    """Whether an entry of an array of objects is a real number, such as a fraction."""
+    return isinstance(entry, Real | Decimal) and not isinstance(entry, bool)
+
+
+def _as_floats(array: NDArray[Any], what: str) -> Array:
+    """Fractions, decimals and long integers as floats."""
+    try:
+        return array.astype(float)
+    except (OverflowError, ValueError):
+        raise ProblemError(f"{what} has entries that are not finite numbers of double precision; scale them") from None
+
+
+def _ensure_shape(array: NDArray[Any], what: str, shape: Shape | None) -> None:
+    """Refuse another shape."""
+    if shape is None:
+        return
+    fits = array.ndim == len(shape) and all(want in (None, has) for want, has in zip(shape, array.shape, strict=True))
+    if not fits:
+        needed = ", ".join("any" if length is None else str(length) for length in shape)
+        needed = f"({needed},)" if len(shape) == 1 else f"({needed})"
+        raise ProblemError(f"{what} has shape {array.shape} where {needed} is needed")
+
+
+def _complain(array: Array, what: str) -> None:
+    """Refuse the first entry that is not finite, or too large."""
+    place = tuple(int(i) for i in np.argwhere(~(np.abs(array) <= LARGEST_NUMBER))[0])
+    where = f"; [{', '.join(map(str, place))}] is {array[place]:g}" if place else ""
+    if np.isfinite(array).all():
+        raise ProblemError(f"{what} has entries that are too large to compute with{where}; choose other units")
+    raise ProblemError(f"{what} has entries that are not finite numbers{where}")
+
+
+def _described(value: Any, array: NDArray[Any]) -> str:
+    """What was found instead of numbers."""
+    kinds = {"b": "truth values", "c": "complex numbers", "U": "texts", "S": "bytes", "f": "numbers with fractions"}
+    return f"{kinds.get(array.dtype.kind, 'other objects')} ({shown(value)})"

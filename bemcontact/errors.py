@@ -7,6 +7,8 @@ An error means that a problem or a request has no answer. A solver that does not
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from bemcontact.plain_text import escaped, escaped_lines
+
 KeyPath = tuple[str | int, ...]
 """Keys and list positions from the top of a spec to a value, such as ``("conditions", "top", "pressure")``."""
 
@@ -25,8 +27,8 @@ class Issue:
     message: str
 
     def __str__(self) -> str:
-        """The key path with dots, then the message."""
-        return f"{dotted(self.path)}: {self.message}" if self.path else self.message
+        """The key path with dots, then the message, in one line without hidden characters."""
+        return escaped(f"{dotted(self.path)}: {self.message}" if self.path else self.message)
 
 
 def dotted(path: KeyPath) -> str:
@@ -38,7 +40,10 @@ def dotted(path: KeyPath) -> str:
 
 
 class BemContactError(Exception):
-    """Base class of all errors that the package raises."""
+    """Base class of all errors that the package raises; its text has no hidden characters besides ends of lines."""
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(escaped_lines(message))
 
 
 class ProblemError(BemContactError):

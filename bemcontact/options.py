@@ -8,15 +8,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from itertools import product
-from numbers import Integral, Real
 from textwrap import fill
 from typing import Any, Protocol, TypedDict, TypeVar, Unpack, cast, runtime_checkable
 
-from bemcontact.errors import OptionError
+from bemcontact.arguments import LARGEST_COUNT, real_number, shown, whole_number
+from bemcontact.errors import OptionError, ProblemError
 
 Name = TypeVar("Name", bound=StrEnum)
 Options = TypeVar("Options")
 
+STARTS = "number of starts"
+MOST_STARTS = 1_000_000
+"""Largest number of random starts, which are drawn before the first search."""
 LEAST_PENALTY, LARGEST_PENALTY = 1e-8, 1e8
 """Outside this range the smaller of QP2's two terms is lost in the round-off of the other."""
 
@@ -196,7 +199,7 @@ class SolveOptions:
     starts: int | None = _option(
         None,
         "qp1, qp2: search from N random starts; the result is the best of them.",
-        noun="number of starts",
+        noun=STARTS,
         metavar="N",
         least=1,
         shown=False,
@@ -221,17 +224,12 @@ class SolveOptions:
                 object.__setattr__(self, item.name, name)
         if isinstance(self.start, str) and self.start in [*StartName]:
             object.__setattr__(self, "start", StartName(self.start))
-        is_number = isinstance(self.penalty, Real) and not isinstance(self.penalty, bool)
-        if not (is_number and LEAST_PENALTY <= self.penalty <= LARGEST_PENALTY):
-            raise OptionError(
-                f"the penalty must be a number from {LEAST_PENALTY:g} to {LARGEST_PENALTY:g}; found {self.penalty!r}: "
-                "outside this range the work or the equations are lost in the round-off of the other; 1 is the default"
-            )
+        object.__setattr__(self, "penalty", _penalty(self.penalty))
         ensure_whole_fields(self)
         if not isinstance(self.polish, bool):
-            raise OptionError(f"polish must be True or False; found {self.polish!r}")
+            raise OptionError(f"polish must be True or False; found {shown(self.polish)}")
         if not (self.start is None or isinstance(self.start, StartName | os.PathLike | GivenStart)):
-            given = f"'{self.start}'" if isinstance(self.start, str) else f"of type {type(self.start).__name__}"
+            given = shown(self.start) if isinstance(self.start, str) else f"of type {type(self.start).__name__}"
             raise OptionError(f"there is no start {given}; take {', '.join(StartName)}, or a Start of your own")
         if not self.is_random and not (self.seed is None and self.starts is None):
             raise OptionError("a seed or a number of starts needs random starts; leave out the other start")
@@ -323,7 +321,7 @@ class ComparisonOptions:
     starts: int | None = _option(
         None,
         "qp1, qp2: count how many of N random starts end at the solution.",
-        noun="number of starts",
+        noun=STARTS,
         metavar="N",
         least=1,
         shown=False,
@@ -340,7 +338,7 @@ class ComparisonOptions:
         """Read names and numbers, a single one as a list; refuse what is out of range, given twice, or of no use."""
         formulations = tuple(_compared(name) for name in _listed(self.formulations))
         weights = tuple(named(Weights, name, "weights") for name in _listed(self.weights))
-        penalties = None if self.penalties is None else tuple(_as_float(value) for value in _listed(self.penalties))
+        penalties = None if self.penalties is None else tuple(_penalty(value) for value in _listed(self.penalties))
         for name, value in (("formulations", formulations), ("weights", weights), ("penalties", penalties)):
             object.__setattr__(self, name, value)
         for what in ("formulations", "weights", "penalties"):
@@ -406,15 +404,18 @@ def options_of(formulation: FormulationName, options: SolveOptions | None) -> So
 def named(kind: type[Name], name: object, what: str) -> Name:
     """Read a name of a kind, which errors call `what`."""
     try:
-        return kind(name)
+        return kind(name if isinstance(name, str) else "")
     except ValueError:
-        raise OptionError(f"no {what} '{name}'; take one of {', '.join(item.value for item in kind)}") from None
+        given = f"'{name}'" if isinstance(name, str) else shown(name)
+        raise OptionError(f"no {what} {given:.80}; take one of {', '.join(item.value for item in kind)}") from None
 
 
 def ensure_whole(value: object, what: str, least: int) -> None:
-    """Refuse all but a whole number of at least `least`; errors call it `what`."""
-    if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
-        raise OptionError(f"the {what} must be a whole number of at least {least}; found {value!r}")
+    """Refuse all but a whole number of at least `least`, and too many starts; errors call it `what`."""
+    try:
+        whole_number(value, what, least, MOST_STARTS if what == STARTS else LARGEST_COUNT)
+    except ProblemError as error:
+        raise OptionError(str(error)) from None
 
 
 def ensure_whole_fields(options: SolveOptions | ComparisonOptions) -> None:
@@ -423,7 +424,7 @@ def ensure_whole_fields(options: SolveOptions | ComparisonOptions) -> None:
         value, least = getattr(options, item.name), item.metadata["least"]
         if least is not None and value is not None:
             ensure_whole(value, item.metadata["noun"] or item.name, least)
-            object.__setattr__(options, item.name, int(value))
+            object.__setattr__(options, item.name, whole_number(value, item.name, least))
 
 
 def ensure_known(options: Iterable[str], known: Iterable[str]) -> None:
@@ -436,19 +437,30 @@ def ensure_known(options: Iterable[str], known: Iterable[str]) -> None:
 
 def _compared(name: object) -> FormulationName:
     """Read the name of a formulation that can be compared with the direct solution."""
-    if name not in [*FormulationName]:
-        raise OptionError(f"no formulation '{name}' to compare; take one of {', '.join(COMPARED)}")
+    if not isinstance(name, str) or name not in [*FormulationName]:
+        given = f"'{name}'" if isinstance(name, str) else shown(name)
+        raise OptionError(f"no formulation {given:.80} to compare; take one of {', '.join(COMPARED)}")
     return FormulationName(name)
 
 
 def _listed(items: Any) -> Iterable[Any]:
-    """The items; a single one as a list."""
-    return [items] if isinstance(items, str | Real) else items
+    """The items; a single one, which is no list, as a list."""
+    is_list = isinstance(items, Iterable) and not isinstance(items, str | bytes | Mapping)
+    return items if is_list and getattr(items, "shape", None) != () else [items]
 
 
-def _as_float(value: object) -> Any:
-    """A number of any kind as a float; `SolveOptions` refuses other values."""
-    return float(value) if isinstance(value, Real) else value
+def _penalty(value: object) -> float:
+    """Read a penalty, a number of any kind in its range."""
+    try:
+        number = real_number(value, "the penalty")
+    except ProblemError:
+        number = 0.0
+    if not LEAST_PENALTY <= number <= LARGEST_PENALTY:
+        raise OptionError(
+            f"the penalty must be a number from {LEAST_PENALTY:g} to {LARGEST_PENALTY:g}; found {shown(value)}: "
+            "outside this range the work or the equations are lost in the round-off of the other; 1 is the default"
+        )
+    return number
 
 
 def _ensure_different(items: Sequence[object] | None, what: str) -> None:

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
+from bemcontact.plain_text import escaped_json
+
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 CONFIG = ConfigDict(
     extra="forbid",
@@ -94,8 +96,11 @@ class Recorded(ABC):
 
 
 def json_text(record: dict[str, Any], indent: int | None = 2) -> str:
-    """Write numbers, lists and texts as JSON; `ValueError` for a number that is not finite."""
-    return json.dumps(record, indent=indent, allow_nan=False, ensure_ascii=False)
+    """Write numbers, lists and texts as JSON; hidden characters are escaped.
+
+    `ValueError` for a number that is not finite.
+    """
+    return escaped_json(json.dumps(record, indent=indent, allow_nan=False, ensure_ascii=False))
 
 
 class _Schema(GenerateJsonSchema):

@@ -11,20 +11,23 @@ PACKAGE = TESTS.parent / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("errors", "arrays", "serialization", "options", "version", "files")
+FOUNDATION = ("plain_text", "memory", "errors", "arguments", "arrays", "serialization", "options", "version", "files")
 
 ROOMS = {
-    "errors": (),
-    "arrays": (),
-    "serialization": (),
-    "options": ("errors",),
+    "plain_text": (),
+    "memory": (),
+    "errors": ("plain_text",),
+    "arguments": ("errors",),
+    "arrays": ("errors", "arguments"),
+    "serialization": ("plain_text",),
+    "options": ("errors", "arguments"),
     "version": (),
-    "files": ("errors",),
-    "problem": ("errors", "arrays", "options"),
-    "spec": ("errors", "files", "problem"),
+    "files": ("plain_text", "errors"),
+    "problem": ("plain_text", "errors", "arguments", "arrays", "options"),
+    "spec": ("plain_text", "errors", "arguments", "files", "problem"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problem", "contact"),
-    "formulations.local_solver": ("errors", "arrays"),
+    "formulations.local_solver": ("errors", "arguments", "arrays"),
     "formulations": (*FOUNDATION, "contact", "formulations.local_solver"),
     "assessment": (*FOUNDATION, "contact"),
     "adaptivity": (*FOUNDATION, "problem", "contact", "bem", "formulations", "assessment"),
@@ -46,7 +49,7 @@ ROOMS = {
 
 EXCEPTIONS = {
     ("report.figures", "bem.mesh"): "figures draw elements, and the values that are prescribed on them",
-    ("modelling", "problem.rigid_surface"): "a designed gap is written as a rigid surface of a spec",
+    ("modelling", "problem.surface_lines"): "a designed gap is written as a rigid surface of a spec",
 }
 """(Who imports, what) -> why. There is no other exception to `ROOMS`."""
 

@@ -84,6 +84,8 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
     for number in range(len(points.run_length)):
         own = middle & (points.run[points.point] == number)
         elements = points.element[own]
+        if not len(elements):
+            continue  # a corner of the body that stands on a face by itself
         names = [mesh.edge_names[i] for i in dict.fromkeys(mesh.edge[elements].tolist())]
         edges = tuple(problem.edge(name) for name in names)
         closed = bool(np.isfinite(points.run_length[number]))
@@ -151,7 +153,7 @@ def contact_stretches(
 def _points(run: ZoneRun, contact: CondensedContact, solution: ContactSolution) -> tuple[Array, BoolArray]:
     """Arc lengths of the points of a run in order, and which of them touch; of a closed run all several times over."""
     own = contact.points_of_run(run.number)
-    touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
+    touching = contact.pressed(solution.pressure, solution.displacement)
     arcs, touching = contact.arc_position[own], touching[own]
     if not run.closed:
         return arcs, touching

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from bemcontact.adaptivity.adapt import first_mesh
 from bemcontact.arrays import Array
 from bemcontact.bem.body import body_of, deflections, each_case, ensure_held
-from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.mesh import Mesh, build
+from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.problem import DeflectedContour, Problem
 
 
@@ -36,7 +37,7 @@ def check(problem: Problem) -> CheckedProblem:
     body = body_of(first_mesh(problem) if problem.adapts else problem)
     for acting in each_case(body):
         ensure_held(acting)
-    x, y = body.acting.resultant(body.mesh)
+    x, y = body.acting.true_force
     return CheckedProblem(
         problem=body.problem,
         mesh=body.mesh,
@@ -47,6 +48,18 @@ def check(problem: Problem) -> CheckedProblem:
         load_magnitude=float(body.pinned.total(body.factors, body.forces)),
         notes=tuple(body.notes),
     )
+
+
+def drawable(problem: Problem) -> tuple[Problem, Mesh]:
+    """A problem that may be refused and its mesh, for a picture; without contours that cannot be computed."""
+    mesh = build(problem)
+    try:
+        contours(problem, mesh)
+    except (ProblemError, SingularSystemError):
+        kept = {k: zone for k, zone in problem.contact_zones.items() if not isinstance(zone.surface, DeflectedContour)}
+        tools = {name: tool for name, tool in problem.tools.items() if kept.keys() >= {*tool.zones}}
+        problem = problem.model_copy(update={"contact_zones": kept, "tools": tools, "load_cases": {}, "case": None})
+    return problem, mesh
 
 
 def contours(problem: Problem, mesh: Mesh) -> dict[str, tuple[Array, Array]]:

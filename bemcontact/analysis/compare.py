@@ -7,6 +7,7 @@ from typing import Unpack
 
 from bemcontact.analysis.solve import Prepared, Progress, Stopwatch, assessed, ensure_acting, prepare
 from bemcontact.analysis.study import MeshLevel, Settings, Study
+from bemcontact.arguments import ensure_callable
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -66,6 +67,7 @@ def compare(
     ProblemError
         The problem has no answer, or does not carry the weights asked for.
     """
+    ensure_callable(progress, "progress")
     read = ComparisonOptions.of(formulations, weights, penalties, **options)
     watch = Stopwatch(progress=progress)
     ensure_acting(problem)

@@ -9,8 +9,10 @@ from bemcontact.adaptivity.zone_runs import SAME
 from bemcontact.assessment.footprint import Footprint
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import element_lengths
+from bemcontact.bem.mesh import BoundaryState
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.problem.surface_lines import Polyline, Spline
 
 FEW_POINTS = 5
 """Points under pressure below which a contact is not resolved: three make a parabola, two more its ends."""
@@ -20,21 +22,35 @@ UNBOUNDED = "the pressure there is infinite in theory, and its values at the las
 """Note on an end of contact where the stresses are singular."""
 LONG_NEIGHBOR = 4.0
 """Length of the element beyond the end of a zone over that inside, above which pressure at that end suffers."""
-LARGE_PRESSURE = 0.5
-"""Peak pressure over Young's modulus beyond which displacements are not small."""
+SMALL_NET_LOAD = 1e-3
+"""Net load over the sum of the magnitudes of all loads below which it may be due to rounded numbers in the input."""
+LARGE = 0.25
+"""Change of the displacement over the length along which it changes, and peak pressure over Young's modulus, that are
+not small. Linear theory leaves out half the square of this change, here 3 % of the length and an eighth of a strain; a
+cantilever whose end has this slope deflects 3 % less than linear theory says (Bisshopp and Drucker 1945)."""
+LARGE_PART = 0.05
+"""Share of the boundary on which displacements may be large: singular corners and tips of slits."""
 
 
 def diagnostics(
-    contact: CondensedContact, solution: ContactSolution, where: Footprint, body: Body | None
+    contact: CondensedContact,
+    solution: ContactSolution,
+    where: Footprint,
+    body: Body | None,
+    boundary: BoundaryState | None,
 ) -> Iterator[str]:
-    """Notes on a solution; those on mesh and size need a body."""
-    touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
+    """Notes on a solution; those on mesh and size need a body, and those on displacements its boundary."""
+    touching = contact.pressed(solution.pressure, solution.displacement)
     yield from floating(contact, touching)
+    yield from nearly_balanced(contact)
     yield from few_points(contact, touching, where)
     if body is not None:
         yield from reached_zone_ends(body, touching)
         yield from long_neighbors(body, touching)
+        yield from beyond_ends(body, touching)
         yield from large_pressure(body, where)
+    if boundary is not None:
+        yield from large_displacements(boundary)
 
 
 def floating(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator[str]:
@@ -44,6 +60,16 @@ def floating(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator
         yield (
             f"no contact point carries pressure, so contact does not determine the {motions}; if there should be "
             "contact, check the directions of loads and displaced tools"
+        )
+
+
+def nearly_balanced(contact: CondensedContact) -> Iterator[str]:
+    """Note that what presses the body onto its support is a small difference of large loads."""
+    if 0 < contact.net_load < SMALL_NET_LOAD:
+        yield (
+            f"the loads nearly balance: what drives the {' and the '.join(contact.motion_names)} is "
+            f"{contact.net_load:.1g} of the sum of their magnitudes, and contact carries only that; errors of this "
+            "size in the loads change the contact entirely"
         )
 
 
@@ -102,13 +128,43 @@ def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
             )
 
 
+def beyond_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Note contact with the straight continuation of a polyline or a spline beyond its ends."""
+    points = body.points
+    for number, (name, zone) in enumerate(body.problem.contact_zones.items()):
+        if not isinstance(zone.surface, Polyline | Spline):
+            continue
+        pressed = body.mesh.nodes[points.node[touching & (points.zone == number)]]
+        beyond = pressed[zone.surface.beyond_ends(pressed)] if len(pressed) else pressed
+        if len(beyond):
+            x, y = beyond[0]
+            yield (
+                f"contact in {name} at ({x:.5g}, {y:.5g}) is with the straight continuation of its {zone.surface.kind} "
+                "beyond the last point: the line has no ends; if the surface ends there, add a point that leads away"
+            )
+
+
 def large_pressure(body: Body, where: Footprint) -> Iterator[str]:
     """Note a pressure that is too large for small displacements."""
     modulus = body.problem.material.young_modulus
-    if where.peak is not None and where.peak.pressure > LARGE_PRESSURE * modulus:
+    if where.peak is not None and where.peak.pressure > LARGE * modulus:
         yield (
             f"the peak pressure is {where.peak.pressure / modulus:.2g} times Young's modulus: displacements are "
             "not small, so that the linear theory does not hold"
+        )
+
+
+def large_displacements(boundary: BoundaryState) -> Iterator[str]:
+    """Note strains, slopes or rotations that are not small on a part of the boundary; translations do not count."""
+    along, change = (values[:, 2] - values[:, 0] for values in (boundary.points, boundary.displacement))
+    length = np.hypot(*along.T)
+    gradient = np.hypot(*change.T) / length
+    share = length[gradient > LARGE].sum() / length.sum()
+    if share > LARGE_PART:
+        yield (
+            f"displacements are not small: on {100 * share:.0f} % of the boundary they change by more than {LARGE:g} "
+            f"of the length along it, by strain or rotation, and up to {gradient.max():.2g}; the linear theory does "
+            "not hold; check units, loads and Young's modulus"
         )
 
 

@@ -8,7 +8,10 @@ from typing import Any
 import numpy as np
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
+from bemcontact.analysis.penetration import penetration_on_path
 from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
+from bemcontact.analysis.variation import Variation, case_of
+from bemcontact.arguments import real_number, text_of_argument, texts
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -54,17 +57,22 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
         contact state at either end.
     """
     ensure_kind(problem, Problem)
-    begin = stated_value(problem, key) if start is None else float(start)
-    if _case_of(problem, key) is None:
+    text_of_argument(key, "key")
+    end = real_number(to, f"{key}: the value at the end of the path (to)")
+    begin = stated_value(problem, key) if start is None else real_number(start, f"{key}: the start value")
+    if case_of(problem, key) is None:
         ensure_acting(problem)
-    end = float(to)
-    if not (np.isfinite(begin) and np.isfinite(end)) or begin == end:
+    if begin == end:
         raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
     on_mesh, found = _on_mesh(problem, key, begin, end)
-    ends = (replace(contact, name=problem.title) for contact in between(on_mesh, key, begin, end))
-    path = load_path(*ends)
-    first, last = (_accuracy(on_mesh, key, value, found.get(value)) for value in (begin, end))
-    return ParameterPath(key=key, start=begin, end=end, path=path, start_accuracy=first, end_accuracy=last)
+    varied = Variation(on_mesh, key)
+    path = load_path(*(replace(contact, name=problem.title) for contact in between(varied, begin, end)))
+    deepest, at = penetration_on_path(varied, path, begin, end)
+    first, last = (_accuracy(varied, value, found.get(value)) for value in (begin, end))
+    return ParameterPath(
+        key=key, start=begin, end=end, path=path, start_accuracy=first, end_accuracy=last,
+        penetration=deepest, penetrates_at=at,
+    )  # fmt: skip
 
 
 def sensitivities(
@@ -91,13 +99,13 @@ def sensitivities(
         If the equations of contact are singular to working precision.
     """
     ensure_acting(problem)
+    given = changes if changes is None or isinstance(changes, Mapping) else _keys(changes)
     stated = _with_mesh(problem) if isinstance(problem, Problem) else None
     contact = problem if isinstance(problem, CondensedContact) else condense(stated or problem)
-    if changes is None or isinstance(changes, Mapping):
-        return sensitivities_of_contact(contact, changes)
+    if given is None or isinstance(given, Mapping):
+        return sensitivities_of_contact(contact, given)
     solution, known = complementarity.solve(contact), contact.changes
-    keys = [changes] if isinstance(changes, str) else changes
-    wanted = {key: known[key] if key in known else _change(contact, stated, key, solution.pressure) for key in keys}
+    wanted = {key: known[key] if key in known else _change(contact, stated, key, solution.pressure) for key in given}
     return sensitivities_of_contact(contact, wanted, solution)
 
 
@@ -113,29 +121,41 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Prob
     """
     if not problem.adapts:
         return problem, {}
-    one = meshed(_varied(problem, key, start))
+    one = meshed(Variation(problem, key).at(start))
     boundary, refine = one.problem.boundary, one.problem.mesh.refine
     mesh = problem.mesh.model_copy(update={"adapt": True, "refine": refine})
-    two = meshed(_varied(problem.model_copy(update={"boundary": boundary, "mesh": mesh}), key, end))
+    two = meshed(Variation(problem.model_copy(update={"boundary": boundary, "mesh": mesh}), key).at(end))
     on_mesh = problem.model_copy(update={"boundary": two.problem.boundary, "mesh": two.problem.mesh})
     return on_mesh, {start: one, end: two}
 
 
-def _accuracy(problem: Problem, key: str, value: float, found: Meshed | None) -> Accuracy:
+def _accuracy(varied: Variation, value: float, found: Meshed | None) -> Accuracy:
     """Accuracy of the mesh at one value of a key; a load that presses nothing has no errors to estimate."""
     try:
         singular = found.singular if found else ()
-        (accuracy,) = meshed(_varied(problem, key, value), singular=singular).accuracies
+        (accuracy,) = meshed(varied.at(value), singular=singular).accuracies
     except ProblemError as error:
-        return Accuracy(asked=problem.asked_accuracy, reason=str(error).splitlines()[0])
+        return Accuracy(asked=varied.problem.asked_accuracy, reason=str(error).splitlines()[0])
     return accuracy.knowing(*found.accuracies) if found else accuracy
+
+
+def _keys(changes: object) -> tuple[str, ...]:
+    """Read key paths, a single one as a list."""
+    keys = texts((changes,) if isinstance(changes, str) else changes, "the keys of changes")
+    for key in keys:
+        parsed_path(key)
+    return keys
 
 
 def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:
     """Change of gap and load per unit of a key that is neither a load case nor a tool component."""
     path = parsed_path(key)
-    if path[0] == "initial_gap" and isinstance(path[-1], int) and path[-1] < contact.size and len(path) == 2:
-        return Change(np.eye(contact.size)[path[-1]], np.zeros(contact.free_motions))
+    if path[0] == "initial_gap":
+        if len(path) == 2 and isinstance(path[1], int) and path[1] < contact.size:
+            return Change(np.eye(contact.size)[path[1]], np.zeros(contact.free_motions))
+        raise ProblemError(
+            f"there is no '{key}': the contact points have initial_gap[0] to initial_gap[{contact.size - 1}]"
+        )
     if problem is None:
         known = ", ".join((*contact.changes, f"initial_gap[0] to initial_gap[{contact.size - 1}]"))
         raise ProblemError(f"there is no '{key}' in this condensed problem; it has: {known}")
@@ -144,14 +164,14 @@ def _change(contact: CondensedContact, problem: Problem | None, key: str, pressu
         return modulus_change(contact, condense(problem.with_value(MODULUS, 2 * E)), E, pressure)
     value = stated_value(problem, key)
     other = 2 * value or 1.0
-    first, last = between(problem, key, value, other)
+    first, last = between(Variation(problem, key), value, other)
     width = other - value
     return Change((last.offset - first.offset) / width, (last.motion_load - first.motion_load) / width)
 
 
 def stated_value(problem: Problem, key: str) -> float:
     """Number at a key path, the value of a constant field, or the factor of a load case; else `ProblemError`."""
-    if (case := _case_of(problem, key)) is not None:
+    if (case := case_of(problem, key)) is not None:
         return problem.factors().get(case, 0.0)
     data: Any = problem.model_dump()
     path = existing_path(data, parsed_path(key))
@@ -171,44 +191,37 @@ def stated_value(problem: Problem, key: str) -> float:
     return float(data)
 
 
-def between(problem: Problem, key: str, start: float, end: float) -> tuple[CondensedContact, CondensedContact]:
+def between(varied: Variation, start: float, end: float) -> tuple[CondensedContact, CondensedContact]:
     """Condense a problem at two values of a key, and check that gaps and loads change linearly between them.
 
     At one of the two values the load may fail to press the body onto its support. The contact problem at this value is
     extrapolated. `ProblemError` if neither value can be condensed, more than gaps and loads depends on the key, or the
     dependence is not linear. The mesh of the problem must not be one to be fitted.
     """
-    if parsed_path(key)[0] in BODY:
-        raise ProblemError(Issue(path=parsed_path(key), message=f"the compliance depends on it; {EXACT}"))
-    if _acts_on_contact(problem, key):
-        return _stepped(problem, key, start, end)
-    first, last = (_attempted(problem, key, value) for value in (start, end))
+    if varied.path[0] in BODY:
+        raise ProblemError(Issue(path=varied.path, message=f"the compliance depends on it; {EXACT}"))
+    if varied.acts_on_contact:
+        return _stepped(varied, start, end)
+    first, last = (varied.attempted(value) for value in (start, end))
     if isinstance(first, ProblemError):
         if isinstance(last, ProblemError):
             raise last
-        return _extended(problem, key, last, end, start), last
+        return _extended(varied, last, end, start), last
     if isinstance(last, ProblemError):
-        return first, _extended(problem, key, first, start, end)
-    share, middle = _farthest(problem, key, start, end)
-    _ensure_linear(key, first, middle, last, share)
+        return first, _extended(varied, first, start, end)
+    share, middle = _farthest(varied, start, end)
+    _ensure_linear(varied.key, first, middle, last, share)
     return first, last
 
 
-def _acts_on_contact(problem: Problem, key: str) -> bool:
-    """Whether a key is the factor of a load case or a component of a tool, which needs no second condensation."""
-    path = parsed_path(key)
-    of_tool = path[0] == "tools" and len(path) == 4 and path[2] in ("displacement", "force")
-    return of_tool or _case_of(problem, key) is not None
-
-
-def _stepped(problem: Problem, key: str, start: float, end: float) -> tuple[CondensedContact, CondensedContact]:
+def _stepped(varied: Variation, start: float, end: float) -> tuple[CondensedContact, CondensedContact]:
     """The ends of a path over a factor or a component of a tool, condensed once: at an end that can be condensed."""
-    at, contact = start, _attempted(problem, key, start)
+    at, contact = start, varied.attempted(start)
     if isinstance(contact, ProblemError):
-        at, contact = end, _attempted(problem, key, end)
+        at, contact = end, varied.attempted(end)
     if isinstance(contact, ProblemError):
         raise contact
-    first, last = (_with_step(contact, parsed_path(key), value, value - at) for value in (start, end))
+    first, last = (_with_step(contact, varied.path, value, value - at) for value in (start, end))
     return first, last
 
 
@@ -223,36 +236,15 @@ def _with_step(contact: CondensedContact, path: KeyPath, value: float, step: flo
     return contact.with_tools(contact.tools.position + steps, contact.tools.force + steps)
 
 
-def _farthest(problem: Problem, key: str, start: float, end: float) -> tuple[float, CondensedContact]:
+def _farthest(varied: Variation, start: float, end: float) -> tuple[float, CondensedContact]:
     """Largest of `SHARES` at which the problem can be condensed, and this contact problem; else `ProblemError`."""
     refused: list[ProblemError] = []
     for share in SHARES:
-        contact = _attempted(problem, key, start + share * (end - start))
+        contact = varied.attempted(start + share * (end - start))
         if isinstance(contact, CondensedContact):
             return share, contact
         refused.append(contact)
     raise refused[0]
-
-
-def _varied(problem: Problem, key: str, value: float) -> Problem:
-    """The problem with another value, or with another factor of a load case."""
-    case = _case_of(problem, key)
-    return problem.with_value(key, value) if case is None else problem.with_factors({**problem.factors(), case: value})
-
-
-def _case_of(problem: Problem, key: str) -> str | None:
-    """The load case whose factor a key path means, as `load_cases.wind` does; None for other paths."""
-    room, *rest = parsed_path(key)
-    return str(rest[0]) if room == "load_cases" and len(rest) == 1 and rest[0] in problem.load_cases else None
-
-
-def _attempted(problem: Problem, key: str, value: float) -> CondensedContact | ProblemError:
-    """Condense the problem at a value that is allowed; the error where nothing presses the body onto its support."""
-    varied = _varied(problem, key, value)
-    try:
-        return condense(varied)
-    except ProblemError as error:
-        return error
 
 
 def _ensure_linear(
@@ -284,11 +276,11 @@ def _differs(one: Array, other: Array) -> bool:
     return one.shape != other.shape or bool(np.abs(one - other).max(initial=0.0) > SAME * np.abs(one).max(initial=0.0))
 
 
-def _extended(problem: Problem, key: str, first: CondensedContact, start: float, end: float) -> CondensedContact:
+def _extended(varied: Variation, first: CondensedContact, start: float, end: float) -> CondensedContact:
     """The contact problem at an end where nothing presses the body onto its support, extrapolated from the start."""
-    reached, there = _farthest(problem, key, start, end)
-    share, middle = _farthest(problem, key, start, start + reached * (end - start))
-    _ensure_linear(key, first, middle, there, share)
+    reached, there = _farthest(varied, start, end)
+    share, middle = _farthest(varied, start, start + reached * (end - start))
+    _ensure_linear(varied.key, first, middle, there, share)
 
     def beyond(one: Array, other: Array) -> Array:
         value = one + (other - one) / reached

@@ -9,6 +9,7 @@ from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
+from bemcontact.assessment.penetration import Penetration
 from bemcontact.assessment.residual import Residuals
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -52,7 +53,7 @@ class HeadRecord(Record):
     formulation: FormulationName
     """Statement that was solved."""
     certified: bool
-    """Whether this is proved to be the contact state, and the only one."""
+    """Whether this is proved to be the contact state, and the only one, and the body penetrates no rigid surface."""
     units: UnitsRecord
     """Labels of the units."""
     dof: int | None
@@ -78,6 +79,8 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     """Imbalance of the discrete equations relative to the loads; null for a condensed problem."""
     certificate: Certificate
     """Certificate of the solution."""
+    penetration: Penetration | None
+    """Deepest penetration of the boundary that is not tolerated; null if there is none, or for a condensed problem."""
     boundary: BoundaryRecord | None
     """State of the whole boundary; null for a condensed problem."""
     seconds: dict[str, float]
@@ -104,6 +107,8 @@ class Result(Recorded):
     """Certificate of the solution."""
     footprint: Footprint
     """Contact intervals, peak pressure and resultant; no peak where it is infinite."""
+    penetration: Penetration | None
+    """Deepest penetration of the boundary that is not tolerated; None if there is none, or for a condensed problem."""
     boundary: BoundaryState | None
     """Displacement and traction of the whole boundary; None for a condensed problem."""
     degrees_of_freedom: int | None
@@ -124,14 +129,16 @@ class Result(Recorded):
         else:
             peak = "infinite peak pressure" if self.footprint.intervals else "no contact"
         equations = "unique solution proved" if self.certified else self.certificate.kind
+        if self.penetration is not None:
+            equations = f"penetrates '{self.penetration.zone}'"
         known, accuracy = bool(self.accuracy.bars), self.accuracy
         mesh = f"error at most {100 * accuracy.worst:.2g} %" if known else "error not estimated"
         return f"<Result of {self.contact.name!r} by {self.solution.formulation}: {equations}, {mesh}, {peak}>"
 
     @property
     def certified(self) -> bool:
-        """Whether this is proved to be the solution of the equations on the mesh, and the only one."""
-        return self.certificate.certified
+        """Whether this is proved to be the only solution of the equations on the mesh, and penetrates no surface."""
+        return self.certificate.certified and self.penetration is None
 
     @property
     def holds(self) -> bool:
@@ -165,10 +172,14 @@ class Result(Recorded):
         pressure, gap = np.zeros(boundary.points.shape[:2]), np.full(boundary.points.shape[:2], np.nan)
         for number, name in enumerate(contact.zone_names):
             edges = [boundary.edge_names.index(edge) for edge in problem.contact_zones[name].edges]
-            at = {tuple(contact.points[i]): i for i in np.flatnonzero(contact.zone == number)}
+            own = np.flatnonzero(contact.zone == number)
+            at = {tuple(contact.points[i]): i for i in own}
+            on_run = {(run, *point): i for i in own for run, point in [(contact.run[i], contact.points[i])]}
             for element in np.flatnonzero(np.isin(boundary.edge, edges)):
-                for local, point in enumerate(boundary.points[element]):
-                    if (i := at.get(tuple(point))) is not None:
+                places = [*map(tuple, boundary.points[element])]
+                run = contact.run[at[places[1]]] if places[1] in at else -1
+                for local, place in enumerate(places):
+                    if (i := on_run.get((run, *place), at.get(place))) is not None:
                         pressure[element, local], gap[element, local] = self.solution.pressure[i], gaps[i]
         return pressure, gap
 
@@ -193,6 +204,7 @@ class Result(Recorded):
             residuals=self.residuals,
             equilibrium_slack=self.equilibrium_slack,
             certificate=self.certificate,
+            penetration=self.penetration,
             boundary=None
             if boundary is None
             else BoundaryRecord(

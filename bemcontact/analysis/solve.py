@@ -9,7 +9,9 @@ from typing import Unpack
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
 from bemcontact.analysis.diagnostics import diagnostics
+from bemcontact.analysis.penetration import penetration, surface_gaps
 from bemcontact.analysis.result import Result
+from bemcontact.arguments import ensure_callable, shown
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
@@ -22,6 +24,7 @@ from bemcontact.errors import Issue, ProblemError
 from bemcontact.formulations.multistart import multistart, solve_contact
 from bemcontact.formulations.search import with_start_read
 from bemcontact.options import (
+    STARTS,
     FormulationName,
     SolveKeywords,
     SolveOptions,
@@ -91,9 +94,7 @@ def ensure_kind(problem: object, *kinds: type) -> None:
     kinds = kinds or (Problem, CondensedContact)
     if not isinstance(problem, kinds):
         names = " or a ".join(kind.__name__ for kind in kinds)
-        raise ProblemError(
-            f"a {names} is needed, found {type(problem).__name__}; bemcontact.load reads one from a file"
-        )
+        raise ProblemError(f"a {names} is needed, found {shown(problem)}; bemcontact.load reads one from a file")
 
 
 def ensure_acting(problem: Problem | CondensedContact) -> None:
@@ -139,6 +140,7 @@ def solve(
     NotConvexError
         If the formulation needs a convex program and this is none.
     """
+    ensure_callable(progress, "progress")
     return solve_with(SolveOptions.of(formulation, weights, **options), problem, progress)
 
 
@@ -218,10 +220,14 @@ def assessed(
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
         where = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite))
+        deepest, unseen = None, ()
+        if boundary is not None and condensation is not None:
+            deepest, unseen = penetration(surface_gaps(condensation.body.problem, boundary, contact, solution), contact)
         notes = (
             *contact.notes,
             *solution.notes,
-            *diagnostics(contact, solution, where, None if condensation is None else condensation.body),
+            *unseen,
+            *diagnostics(contact, solution, where, None if condensation is None else condensation.body, boundary),
         )
     gap = contact.initial_gap + solution.displacement
     return Result(
@@ -233,6 +239,7 @@ def assessed(
         residuals=recomputed,
         certificate=certificate,
         footprint=where,
+        penetration=deepest,
         boundary=boundary,
         degrees_of_freedom=None if condensation is None else condensation.body.mesh.degrees_of_freedom,
         notes=notes,
@@ -272,8 +279,9 @@ def random_starts(
     ProblemError
         As of `solve`.
     """
+    ensure_callable(progress, "progress")
     ensure_known(options, StatementKeywords.__annotations__)
-    ensure_whole(count, "number of starts", 1)
+    ensure_whole(count, STARTS, 1)
     ensure_whole(seed, "seed", 0)
     read = SolveOptions.of(formulation, weights, start=StartName.RANDOM, starts=count, seed=seed, **options)
     ensure_kind(problem)

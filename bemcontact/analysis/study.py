@@ -9,6 +9,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.comparison import Comparison, ComparisonRecord
 from bemcontact.assessment.convergence import Convergence, convergence
+from bemcontact.assessment.penetration import Penetration
 from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
@@ -56,6 +57,8 @@ class LevelRecord(Record):
     """Imbalance of the discrete equations relative to the loads; null without a boundary."""
     accuracy: Accuracy
     """Accuracy of the mesh: error bars, and whether they are as small as was asked."""
+    penetration: Penetration | None
+    """Deepest penetration of the boundary that is not tolerated; null if there is none, or for a condensed problem."""
     comparison: ComparisonRecord
     """The formulations side by side."""
     references: tuple[Expected, ...]
@@ -75,7 +78,9 @@ class StudyRecord(Record):
     description: str
     """Description as the problem has it."""
     certified: bool
-    """Whether all solutions on all meshes are proved to be the contact state."""
+    """Whether all solutions on all meshes are proved to be the contact state, and the body penetrates no surface."""
+    heading: str
+    """What is proved of the solution of the equations, in a few words."""
     verdict: str
     """Result of the comparison on the finest mesh, in sentences."""
     units: UnitsRecord
@@ -119,6 +124,11 @@ class MeshLevel:
         answer = self.answer
         return score(self.expected, answer.contact, answer.footprint, answer.solution.pressure)
 
+    @property
+    def certified(self) -> bool:
+        """Whether all solutions are proved to be the contact state, and the body penetrates no rigid surface."""
+        return self.comparison.certified and self.answer.penetration is None
+
     def record(self) -> LevelRecord:
         """Return the record that is written as JSON."""
         answer = self.answer
@@ -130,6 +140,7 @@ class MeshLevel:
             force_balance=answer.residuals.force_balance,
             equilibrium_slack=answer.equilibrium_slack,
             accuracy=answer.accuracy,
+            penetration=answer.penetration,
             comparison=self.comparison.record(),
             references=self.expected,
             scores=self.scores,
@@ -147,7 +158,7 @@ class Study(Recorded):
 
     def __repr__(self) -> str:
         """One line: name, meshes, verdict."""
-        return f"<Study of {self.name!r} on {len(self.levels)} meshes: {self.finest.comparison.verdict}>"
+        return f"<Study of {self.name!r} on {len(self.levels)} meshes: {self.verdict}>"
 
     @property
     def finest(self) -> MeshLevel:
@@ -166,8 +177,19 @@ class Study(Recorded):
 
     @property
     def certified(self) -> bool:
-        """Whether all solutions on all meshes are proved to be the contact state."""
-        return all(level.comparison.certified for level in self.levels)
+        """Whether all solutions on all meshes are proved to be the contact state, which penetrates no surface."""
+        return all(level.certified for level in self.levels)
+
+    @property
+    def heading(self) -> str:
+        """What is proved of the solution of the equations, in a few words."""
+        return "penetrates a surface" if self.finest.answer.penetration else self.finest.comparison.heading
+
+    @property
+    def verdict(self) -> str:
+        """What the comparison on the finest mesh shows, in sentences."""
+        deepest, shown = self.finest.answer.penetration, self.finest.comparison.verdict
+        return shown if deepest is None else f"{deepest.words} At the contact points: {shown}"
 
     @property
     def holds(self) -> bool:
@@ -197,7 +219,8 @@ class Study(Recorded):
             name=self.name,
             description="" if problem is None else problem.description,
             certified=self.certified,
-            verdict=self.finest.comparison.verdict,
+            heading=self.heading,
+            verdict=self.verdict,
             units=units_record(self.finest.comparison.contact),
             settings=self.settings,
             levels=[level.record() for level in self.levels],

@@ -15,6 +15,8 @@ so that |y - p*| <= |s|/λ, and for any p at all |p - p*| <= |p - y| + |s|/λ. H
 and brought into equilibrium by the smallest change. This sharpens Pang's bound for strongly monotone problems,
 (1 + ‖DM‖)/λ·|min(p, Dδ)| (Math. Oper. Res. 12(3), 1987, 474-484), which does not carry over to bodies with free
 motions: a small pressure on a body lifted off its support has a small min(p, Dδ), however far it is from the solution.
+
+Where λ is not positive, `uniqueness` may still exclude other states, and gives a λ for the error bound.
 """
 
 from dataclasses import dataclass
@@ -26,6 +28,7 @@ from scipy.linalg import eigvalsh
 
 from bemcontact.arrays import Array
 from bemcontact.assessment.residual import Residuals
+from bemcontact.assessment.uniqueness import NearState, effective_eigenvalue
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.options import FormulationName
@@ -61,6 +64,8 @@ class Certificate(Leaf):
 
     The pressure is unique if λ > 0. Null if equilibrium alone fixes the pressure.
     """
+    why_unique: str
+    """Why there is no other contact state, as a clause; empty where this is not proved."""
     error_bound: float | None
     """Bound on the difference of each pressure from that of the solution [p]; null if there is none."""
     relative_error_bound: float | None
@@ -86,8 +91,9 @@ def certify(
     """
     D, M = _scaled_compliance(contact)
     eigenvalue = _smallest_eigenvalue(D, M, contact.equilibrium_space)
-    unique = eigenvalue is None or eigenvalue > contact.size * np.finfo(float).eps
-    bound = _error_bound(contact, solution, eigenvalue) if unique else None
+    definite = eigenvalue is None or eigenvalue > contact.size * np.finfo(float).eps
+    bound = _error_bound(contact, solution, eigenvalue, definite)
+    unique = definite or bound is not None
     peak = contact.peak(solution.pressure)
     violation = _violation(residuals, tolerance, max(1.0, peak / contact.scales.pressure))
     kind = CertificateKind.UNIQUE if unique else CertificateKind.LOCAL
@@ -98,10 +104,11 @@ def certify(
     return Certificate(
         kind=kind,
         smallest_eigenvalue=eigenvalue,
+        why_unique=_why_unique(eigenvalue, definite) if kind is CertificateKind.UNIQUE else "",
         error_bound=bound,
         relative_error_bound=relative,
         violation=violation,
-        words=_certificate_sentence(kind, violation, eigenvalue, relative, advice(solution)),
+        words=_certificate_sentence(kind, violation, eigenvalue, definite, relative, advice(solution)),
     )
 
 
@@ -119,8 +126,13 @@ def _smallest_eigenvalue(D: Array, M: Array, Z: Array) -> float | None:
     return float(eigvalsh(Z.T @ (weighted + weighted.T) @ Z / 2, subset_by_index=(0, 0))[0])
 
 
-def _error_bound(contact: CondensedContact, solution: ContactSolution, eigenvalue: float | None) -> float | None:
-    """|p - y| + |s|/λ, as in the module's docstring, in units of pressure; s includes the round-off of δ."""
+def _error_bound(
+    contact: CondensedContact, solution: ContactSolution, eigenvalue: float | None, definite: bool
+) -> float | None:
+    """|p - y| + |s|/λ, as in the module's docstring, in units of pressure; s includes the round-off of δ.
+
+    If the compliance is not definite, λ is that of `uniqueness`; None if there is none.
+    """
     U, T = contact.scales
     D, M = _scaled_compliance(contact)
     p = solution.pressure / T
@@ -136,8 +148,14 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, eigenvalu
     delta = q + M @ y + R @ a
     s = D * np.where(y > 0, delta, np.minimum(delta, 0.0))
     round_off = len(D) * np.finfo(float).eps * D * (np.abs(q) + np.abs(M) @ y + np.abs(R) @ np.abs(a))
+    work = np.where(y > 0, 0.0, np.maximum(D * delta - round_off, 0.0))
     round_off = np.where((y > 0) | (D * delta < round_off), round_off, 0.0)
-    return (off + float(np.linalg.norm(s) + np.linalg.norm(round_off)) / eigenvalue) * T
+    residual = float(np.linalg.norm(s) + np.linalg.norm(round_off))
+    if not definite:
+        ell, _ = _unit_rows(contact)
+        state = NearState(pressure=y, contact_set=y > 0, equilibrium=ell, work=work, residual=residual)
+        eigenvalue = effective_eigenvalue(state, D, M, contact.equilibrium_space)
+    return None if eigenvalue is None else (off + residual / eigenvalue) * T
 
 
 def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> float:
@@ -188,18 +206,37 @@ def _violation(residuals: Residuals, tolerance: float, size: float) -> str:
     return "" if value <= allowed else f"the residual of {name} is {value:.1e} where {allowed:.1e} is allowed"
 
 
+def _why_unique(eigenvalue: float | None, definite: bool) -> str:
+    """The reason for uniqueness, as a clause."""
+    if eigenvalue is None:
+        return "equilibrium alone fixes the pressure"
+    if definite:
+        return f"the compliance is positive definite (its smallest eigenvalue is {eigenvalue:.2e})"
+    return (
+        f"the load and the gaps exclude it, although the compliance is not positive definite (its smallest eigenvalue "
+        f"is {eigenvalue:.2e})"
+    )
+
+
 def _certificate_sentence(
-    kind: CertificateKind, violation: str, eigenvalue: float | None, relative: float | None, way_out: str
+    kind: CertificateKind,
+    violation: str,
+    eigenvalue: float | None,
+    definite: bool,
+    relative: float | None,
+    way_out: str,
 ) -> str:
     """Two or three sentences for an engineer."""
     sure = "equilibrium alone fixes it" if eigenvalue is None else f"its smallest eigenvalue is {eigenvalue:.2e}"
     error = "" if relative is None else f" {_bound_sentence(relative)}"
     match kind:
         case CertificateKind.UNIQUE:
-            return (
-                f"All contact conditions hold. The compliance is positive definite ({sure}), so no other state "
-                f"exists.{error}"
-            )
+            if definite:
+                return (
+                    f"All contact conditions hold. The compliance is positive definite ({sure}), so no other state "
+                    f"exists.{error}"
+                )
+            return f"All contact conditions hold. No other state exists: {_why_unique(eigenvalue, definite)}.{error}"
         case CertificateKind.LOCAL:
             return (
                 f"All contact conditions hold, but the compliance is not positive definite ({sure}), so another "

@@ -138,7 +138,7 @@ def verdict(
             return Verdict(
                 outcome=Outcome.SOLVES,
                 words=f"solves the contact problem: {objective}all conditions hold, and no other state exists, because "
-                f"{_why_unique(certificate)}",
+                f"{certificate.why_unique}",
             )
         case CertificateKind.LOCAL:
             return Verdict(
@@ -164,13 +164,6 @@ def verdict(
 def refused(reason: str, matrices: WeightedCompliance, tributary: WeightedCompliance) -> Verdict:
     """The verdict on a formulation that refused the problem, with the effect of its weights on the matrices."""
     return Verdict(outcome=Outcome.REFUSED, words=f"{reason}.", reason=_of_weights(matrices, tributary))
-
-
-def _why_unique(certificate: Certificate) -> str:
-    """The reason for uniqueness."""
-    if certificate.smallest_eigenvalue is None:
-        return "equilibrium alone fixes the pressure"
-    return f"the compliance is positive definite (smallest eigenvalue {certificate.smallest_eigenvalue:.1e})"
 
 
 def _why_not(solution: ContactSolution, certificate: Certificate, reached: Reached | None) -> str:

@@ -8,6 +8,7 @@ from pydantic import computed_field
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.load_cases import BALANCED
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.serialization import Internal, Leaf, Pair, Record
 
@@ -59,7 +60,7 @@ class Resultant:
     moment: float
     """Its moment about the origin, counterclockwise, per thickness [p L²]."""
     line_point: Pair | None
-    """Point of the line of action that is nearest to the origin [L]; None without a force."""
+    """Point of the line of action that is nearest to the origin [L]; None if the contact forces balance each other."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,7 +173,7 @@ class _Path:
 def _paths(contact: CondensedContact, solution: ContactSolution) -> list[tuple[int, _Path]]:
     """All runs, each with the number of its zone."""
     gap = contact.initial_gap + solution.displacement
-    touching = contact.touching(solution.pressure, solution.displacement) & (solution.pressure > 0)
+    touching = contact.pressed(solution.pressure, solution.displacement)
     pieces = sorted(set(zip(contact.zone.tolist(), contact.run.tolist(), strict=True)))
     return [(zone, _path(contact, zone, run, gap, touching)) for zone, run in pieces]
 
@@ -287,7 +288,7 @@ def _at(path: _Path, position: float) -> Pair:
 def _peak(contact: CondensedContact, pressure: Array) -> Peak | None:
     """The point of largest pressure."""
     i = int(np.argmax(pressure))
-    if pressure[i] <= 0:
+    if not contact.peak(pressure):
         return None
     x, y = contact.points[i]
     return Peak(pressure=float(pressure[i]), at=(float(x), float(y)))
@@ -300,5 +301,6 @@ def _resultant(contact: CondensedContact, pressure: Array) -> Resultant:
     fx, fy = map(float, forces.sum(axis=0))
     moment = float((x * forces[:, 1] - y * forces[:, 0]).sum())
     square = fx**2 + fy**2
-    line_point = (moment * fy / square, -moment * fx / square) if square > 0 else None
+    acts = square > (BALANCED * np.hypot(*forces.T).sum()) ** 2  # else the force, and so its line, is round-off
+    line_point = (moment * fy / square, -moment * fx / square) if acts else None
     return Resultant(force=(fx, fy), moment=moment, line_point=line_point)

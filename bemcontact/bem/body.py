@@ -24,9 +24,12 @@ from bemcontact.bem.rigid_motions import (
 from bemcontact.bem.system import System, solve
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError
+from bemcontact.memory import ensure_memory
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
 
+MATRICES = 3
+"""Number of full matrices of all degrees of freedom that are in memory at the same time."""
 IDLE = 1e-7
 """Least normal displacement, over that of the motion, of a motion that opens gaps."""
 
@@ -66,9 +69,15 @@ class Body:
         return combined(self.loadings, self.factors.tolist())
 
     def motion_load(self, motions: FreeMotions) -> Array:
-        """Work (k, 1 + c) of each loading, forces on tools included, in free motions [p L]."""
-        on_body = np.column_stack([loading.work(self.mesh, motions.body) for loading in self.loadings])
-        return on_body + motions.tools.T @ self.tools.force
+        """Work (k, 1 + c) of each loading, forces on tools included, in free motions [p L]; zero where they balance.
+
+        It is that on the exact curves: the mesh does not decide whether large loads balance.
+        """
+        on_body = np.column_stack([loading.true_work(self.mesh, motions.body) for loading in self.loadings])
+        work = on_body + motions.tools.T @ self.tools.force
+        unit = np.eye(len(self.loadings))
+        total = [self.pinned.total(alone, force) for alone, force in zip(unit, self.tools.force.T, strict=True)]
+        return np.where(abs(work) > BALANCED * np.array(total), work, 0.0)
 
     @cached_property
     def pinned(self) -> Pinned:
@@ -143,6 +152,7 @@ def body_of(problem: Problem) -> Body:
     which none acts is meshed without this check.
     """
     mesh = build(problem)
+    ensure_memory(MATRICES * 8 * mesh.degrees_of_freedom**2)
     permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
     added = [loading.values for loading in cases]
     points = contact_points(problem, mesh, permanent.values, deflections(problem, mesh), added)

@@ -138,7 +138,8 @@ def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes
     displacement, traction = system.fields(z, body.acting)
     displacement += body.seen.body.displacement(mesh.nodes) @ amplitudes
     points = body.points
-    traction[points.element, points.local] += pressure[points.point, None] * points.normals[points.point]
+    carried = pressure[points.point, None] * points.normals[points.point]
+    np.add.at(traction, (points.element, points.local), carried)
     return BoundaryState(
         points=mesh.nodes[mesh.elements],
         displacement=displacement[mesh.elements],
@@ -151,13 +152,12 @@ def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes
 
 
 def _force_balance(condensation: Condensation, traction: Array) -> float:
-    """Resultant force and moment of everything that acts on the body, over the sum of the magnitudes."""
+    """Resultant force and moment of loads, on the exact curves, and reactions, over the sum of the magnitudes."""
     body = condensation.body
-    mesh, every = body.mesh, all_rigid_motions(body.mesh)
+    mesh, acting, every = body.mesh, body.acting, all_rigid_motions(body.mesh)
     forces = mesh.tributary[..., None] * traction
-    volume = body.acting.particular
-    resultant = every.work(mesh.nodes[mesh.elements], forces) + every.work_of(volume.force, volume.moment)
-    magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + volume.magnitude
+    resultant = every.work(mesh.nodes[mesh.elements], forces - acting.forces(mesh)) + acting.true_work(mesh, every)
+    magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + acting.particular.magnitude
     return float(abs(resultant).max() / magnitude) if magnitude > 0 else 0.0
 
 

@@ -1,9 +1,8 @@
 """The contact points of a mesh: pairs (zone, node) with their gaps, normals and weights."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -11,8 +10,10 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import BoundaryValues, Mesh
+from bemcontact.bem.outline import Outline
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import Closest, DeflectedContour, RigidSurface
+from bemcontact.problem.rigid_surface import DeflectedContour, RigidSurface
+from bemcontact.problem.surface_lines import Closest, Polyline
 
 PARALLEL = 1e-9
 """Sine of the angle below which the rigid normal lies along a prescribed axis."""
@@ -20,6 +21,8 @@ ALIKE = 1e-9
 """Difference of two normals, or of two gaps over the size of the body, at one node that counts as none."""
 SMOOTH = 0.05
 """Sine of the angle between elements below which the boundary is smooth: quadratic elements on a curve kink a bit."""
+ROUGH = 1e-7
+"""Difference of the unit normals of two edges below which they meet smoothly."""
 ARC_ORDER = 12
 """Gauss points for arc lengths and the consistent weights."""
 
@@ -134,9 +137,10 @@ def contact_points(
     pieces: list[_Piece] = []
     for number, (name, zone) in enumerate(problem.contact_zones.items()):
         in_zone = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in zone.edges])
-        for elements, closed in _runs(mesh, in_zone):
+        faces = _faces(problem, zone.surface, mesh, halves, deflections.get(name))
+        for elements, closed in _between_corners(mesh, _runs(mesh, in_zone), faces):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
-            gap, normals = _closest(zone.surface, mesh, nodes, deflections.get(name))
+            gap, normals = faces.along(nodes, closed=closed)
             free = ~_held_along(normals, values.displacement_given[nodes])
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
             fixed = not closed and name not in tool_of
@@ -149,15 +153,77 @@ def contact_points(
                     gap[free], held, mesh.nodes[nodes[[0, -1]]],
                 )
             )  # fmt: skip
+        pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, values.displacement_given)
     return _joined(mesh, pieces)
 
 
-def _closest(surface: RigidSurface, mesh: Mesh, nodes: IntArray, deflection: Array | None) -> Closest:
-    """Gap and normal at nodes, to the shape at their places or to the deflected contour."""
+class _NodeFaces(NamedTuple):
+    """Gap (N, 3) [L] and normals (N, 3, 2) at the nodes before, at and after each, as `Faces`; and what is alike."""
+
+    gap: Array
+    normals: Array
+    differs: BoolArray
+
+    def along(self, nodes: IntArray, *, closed: bool) -> Closest:
+        """Gap and normals at the nodes of a piece in order, of that side of each which is on the piece."""
+        side = np.full(len(nodes), 2)
+        side[-1] = 2 if closed else 0
+        return Closest(self.gap[nodes, side], self.normals[nodes, side])
+
+
+def _faces(problem: Problem, surface: RigidSurface, mesh: Mesh, halves: Array, deflection: Array | None) -> _NodeFaces:
+    """Faces of a surface at all nodes, or of the deflected contour."""
     if isinstance(surface, DeflectedContour):
         assert deflection is not None
-        return surface.behind(deflection[nodes])
-    return surface.closest(mesh.nodes[nodes])
+        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.behind(deflection))
+    elif isinstance(surface, Polyline):
+        gap, normals = surface.faces(mesh.nodes, *_sides_of_nodes(problem, mesh, halves))
+    else:
+        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.closest(mesh.nodes))
+    other = np.hypot(*np.moveaxis(normals - normals[:, [2, 0, 0]], 2, 0)) > ALIKE
+    return _NodeFaces(gap, normals, other | (abs(gap - gap[:, [2, 0, 0]]) > ALIKE * mesh.size))
+
+
+def _sides_of_nodes(problem: Problem, mesh: Mesh, halves: Array) -> tuple[Array, Array]:
+    """Normals (N, 2, 2) into the body before and after each node, and the distance (N,) [L] that is near to it.
+
+    They are those of the edges themselves, and equal where these are smooth up to round-off.
+    """
+    before, elements = mesh.before, np.arange(len(mesh.elements))
+    inward = Outline(problem=problem).places(elements, np.tile(reference_element.NODES, (len(elements), 1))).inward
+    ends = np.stack([inward[before, 2], inward[:, 0]], axis=1)
+    smooth = np.hypot(*(ends[:, 1] - ends[:, 0]).T) < ROUGH
+    ends[smooth] = ends[smooth, :1]
+    middles = np.repeat(inward[:, 1, None], 2, axis=1)
+    near = np.minimum(halves[before, 1], halves[:, 0])
+    return np.concatenate([ends, middles]), np.concatenate([near, np.zeros(len(near))])
+
+
+def _between_corners(
+    mesh: Mesh, runs: Iterable[tuple[IntArray, bool]], faces: _NodeFaces
+) -> Iterator[tuple[IntArray, bool]]:
+    """Divide runs at nodes that two faces of the surface hold."""
+    for elements, closed in runs:
+        corner = faces.differs[mesh.elements[elements, 0], 0]
+        if closed and corner.any():
+            first = int(np.argmax(corner))
+            elements, corner, closed = np.roll(elements, -first), np.roll(corner, -first), False
+        for piece in np.split(elements, np.flatnonzero(corner[1:]) + 1):
+            yield piece, closed
+
+
+def _standing(
+    mesh: Mesh, zone: int, tool: str | None, in_zone: BoolArray, faces: _NodeFaces, given: BoolArray
+) -> Iterator["_Piece"]:
+    """Corners of the body that stand on a face of the surface to which neither side of them is turned."""
+    for node in np.flatnonzero(faces.differs[: len(mesh.elements), 1] & (in_zone | in_zone[mesh.before])):
+        elements = np.array([element for element in (mesh.before[node], node) if in_zone[element]])
+        normals, nodes = faces.normals[[node], 1], np.array([node])
+        if not _held_along(normals, given[nodes])[0]:
+            yield _Piece(
+                zone, tool, elements, np.inf, (False, False), nodes, np.zeros(1), normals, faces.gap[[node], 1],
+                np.full(2, np.nan), mesh.nodes[[node, node]],
+            )  # fmt: skip
 
 
 def _on_surface(mesh: Mesh, values: Sequence[BoundaryValues], nodes: IntArray, normals: Array, gap: Array) -> BoolArray:
@@ -235,11 +301,12 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
 def _first_alike(mesh: Mesh, node: IntArray, normals: Array, gap: Array, tool: Sequence[str | None]) -> IntArray:
     """The first point (n,) with the same node, normal, gap and tool: zones that meet on one surface share it."""
     first = np.arange(len(node))
-    order = np.argsort(node, kind="stable")
-    for i, j in pairwise(order):
-        alike = node[i] == node[j] and tool[i] == tool[j] and np.hypot(*(normals[i] - normals[j])) <= ALIKE
-        if alike and abs(gap[i] - gap[j]) <= ALIKE * mesh.size:
-            first[j] = first[i]
+    for j in np.flatnonzero(np.bincount(node)[node] > 1).tolist():
+        for i in np.flatnonzero(node[:j] == node[j]).tolist():
+            alike = tool[i] == tool[j] and np.hypot(*(normals[i] - normals[j])) <= ALIKE
+            if alike and abs(gap[i] - gap[j]) <= ALIKE * mesh.size:
+                first[j] = first[i]
+                break
     return first
 
 

@@ -200,12 +200,7 @@ class Root(NamedTuple):
 
 
 def nearest_root(tau: ComplexArray) -> Root:
-    """Solve τ(r) = 0, counted from the node nearest to z so that no digit is lost however close z lies.
-
-    Parameters
-    ----------
-    tau : (p, 3) ζ - z at the element nodes
-    """
+    """Solve τ(r) = 0 for τ = ζ - z (p, 3) at the nodes, counted from the nearest one, so that no digit is lost."""
     _, c1, c2 = element_coefficients(tau)
     nearest = abs(tau).argmin(axis=1)
     start = NODES[nearest]
@@ -218,28 +213,17 @@ def nearest_root(tau: ComplexArray) -> Root:
 
 
 def near_singular(tau: ComplexArray, root: Root) -> Integrals:
-    """Pairs whose point is near the element but not on it.
-
-    Parameters
-    ----------
-    tau : (p, 3) ζ - z at the element nodes
-    root : as from `nearest_root`
-    """
+    """Pairs whose point is near the element but not on it, from τ = ζ - z (p, 3) at the nodes and its nearest root."""
     log_ratio = np.log(root.minus / root.plus)
     ends = tau[:, [0, 2]]
     return _with_root_split_off(tau, root, log_ratio, ends / ends.conj())
 
 
 def singular(nodes: ComplexArray, local: Array) -> Integrals:
-    """Pairs whose point lies on the element, at local coordinate ξ0; one-sided limits from outside the body.
+    """Pairs whose point lies on the element of nodes (p, 3), at ξ0 (p,); one-sided limits from outside the body.
 
     At an end of the element A_k of the node there diverges like ln|τ|; that part cancels against the neighbor's and
     is left out here: with the neighbor's share goes -i times the interior angle.
-
-    Parameters
-    ----------
-    nodes : (p, 3) element nodes
-    local : (p,) ξ0 of the collocation point
     """
     _, c1, c2 = element_coefficients(nodes)
     r = local.astype(complex)

@@ -19,27 +19,23 @@ from bemcontact.problem.conditions import AxisFields, Centrifugal, Condition, Fi
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.problem import Material, Problem
 
-EXACT_ORDER = 6
-"""Gauss points that integrate x² y dx exactly along a quadratic element."""
+EXACT_ORDER = 2
+"""Gauss points that integrate x dy exactly along a quadratic element."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ParticularSolution:
-    """A field in equilibrium with the volume loads, on a mesh, and the resultant of these loads.
+    """A field in equilibrium with the volume loads, on a mesh.
 
     Parameters
     ----------
     displacement : (N, 2) u_p [L]
     traction : (m, 3, 2) t_p [p]
-    force : (2,) resultant of the body force [p L]
-    moment : moment of the body force about the origin [p L²]
     magnitude : sum of the magnitudes of the body forces, or a bound of it [p L]
     """
 
     displacement: Array
     traction: Array
-    force: Array = field(default_factory=lambda: np.zeros(2))
-    moment: float = 0.0
     magnitude: float = 0.0
 
 
@@ -55,35 +51,36 @@ def particular_solution(loads: Loads, material: Material, mesh: Mesh) -> Particu
     return ParticularSolution(
         displacement=sum((part.displacement for part in parts), np.zeros_like(mesh.nodes)),
         traction=sum((part.traction for part in parts), np.zeros((*mesh.elements.shape, 2))),
-        force=sum((part.force for part in parts), np.zeros(2)),
-        moment=sum(part.moment for part in parts),
         magnitude=sum(part.magnitude for part in parts),
     )
 
 
-def true_resultant(problem: Problem) -> tuple[Array, float]:
-    """Resultant (2,) [p L] of the body forces and its moment about the origin [p L²], on the curves themselves."""
+def true_resultant(problem: Problem, center: Array) -> tuple[Array, float]:
+    """Resultant (2,) [p L] of the body forces and its moment about the center [p L²], on the curves themselves.
+
+    The center is near the body, so that coordinates far from the origin do no harm.
+    """
     area, moments = 0.0, np.zeros(2)
     for edge in problem.boundary.edges:
         points, normals, lengths = along_curve(edge)
-        flux = lengths * np.sum(points * normals, axis=1)
+        arms = points - center
+        flux = lengths * np.sum(arms * normals, axis=1)
         area += float(flux.sum()) / 2
-        moments += flux @ points / 3
+        moments += flux @ arms / 3
     force, moment = np.zeros(2), 0.0
-    for load in (problem.loads.gravity, problem.loads.centrifugal):
-        if load:
-            its_force, its_moment = _resultant(load, area, moments)
-            force, moment = force + its_force, moment + its_moment
+    if gravity := problem.loads.gravity:
+        b = gravity.density * np.array(gravity.acceleration)
+        force, moment = force + area * b, moment + float(moments[0] * b[1] - moments[1] * b[0])
+    if centrifugal := problem.loads.centrifugal:
+        density, arm = _spin(centrifugal), center - centrifugal.center
+        force = force + density * (moments + area * arm)
+        moment += density * float(moments[0] * arm[1] - moments[1] * arm[0])
     return force, moment
 
 
-def _resultant(load: Gravity | Centrifugal, area: float, moments: Array) -> tuple[Array, float]:
-    """Resultant (2,) and moment about the origin, from the area and its first moments ∫ x dA, ∫ y dA (2,)."""
-    if isinstance(load, Gravity):
-        b = load.density * np.array(load.acceleration)
-        return area * b, float(moments[0] * b[1] - moments[1] * b[0])
-    density, axis = load.density * load.angular_velocity**2, np.array(load.center)
-    return density * (moments - area * axis), float(density * (axis[0] * moments[1] - axis[1] * moments[0]))
+def _spin(centrifugal: Centrifugal) -> float:
+    """ρω², the body force per distance from the axis."""
+    return centrifugal.density * centrifugal.angular_velocity**2
 
 
 def _gravity(gravity: Gravity, material: Material, mesh: Mesh) -> ParticularSolution:
@@ -93,20 +90,16 @@ def _gravity(gravity: Gravity, material: Material, mesh: Mesh) -> ParticularSolu
     alpha = -(1 - 2 * nu) / (2 * material.shear_modulus * (3 - 4 * nu))
     x = mesh.nodes - mesh.center
     gradient = 2 * alpha * np.einsum("i,mkj->mkij", b, x[mesh.elements])
-    area, moments = _moments_of_area(mesh)
-    force, moment = _resultant(gravity, area, moments)
     return ParticularSolution(
         displacement=alpha * np.sum(x * x, axis=1)[:, None] * b,
         traction=_traction(gradient, material, mesh),
-        force=force,
-        moment=moment,
-        magnitude=area * float(np.hypot(*b)),
+        magnitude=_area(mesh) * float(np.hypot(*b)),
     )
 
 
 def _centrifugal(centrifugal: Centrifugal, material: Material, mesh: Mesh) -> ParticularSolution:
     """u_p = γ r² x with 16 G γ (1-ν)/(1-2ν) = -ρω², x and r from the axis of rotation."""
-    density = centrifugal.density * centrifugal.angular_velocity**2
+    density = _spin(centrifugal)
     nu = material.effective_poisson_ratio
     gamma = -density * (1 - 2 * nu) / (16 * material.shear_modulus * (1 - nu))
     axis = np.array(centrifugal.center)
@@ -114,14 +107,10 @@ def _centrifugal(centrifugal: Centrifugal, material: Material, mesh: Mesh) -> Pa
     r2 = np.sum(x * x, axis=1)
     at = x[mesh.elements]
     gradient = gamma * (r2[mesh.elements][..., None, None] * np.eye(2) + 2 * np.einsum("mki,mkj->mkij", at, at))
-    area, moments = _moments_of_area(mesh)
-    force, moment = _resultant(centrifugal, area, moments)
     return ParticularSolution(
         displacement=gamma * r2[:, None] * x,
         traction=_traction(gradient, material, mesh),
-        force=force,
-        moment=moment,
-        magnitude=density * area * float(np.sqrt(r2.max())),
+        magnitude=density * _area(mesh) * float(np.sqrt(r2.max())),
     )
 
 
@@ -146,15 +135,13 @@ def _traction(gradient: Array, material: Material, mesh: Mesh) -> Array:
     return np.einsum("mkij,mkj->mki", G * strain + spherical, mesh.normals)
 
 
-def _moments_of_area(mesh: Mesh) -> tuple[float, Array]:
-    """Area [L²] and its first moments ∫ x dA, ∫ y dA (2,) [L³], by Green's theorem on the elements, exactly."""
+def _area(mesh: Mesh) -> float:
+    """Area [L²] by Green's theorem on the elements, exactly."""
     xi, weights = reference_element.gauss_legendre(EXACT_ORDER)
     points = np.einsum("gk,mkx->mgx", reference_element.values(xi), mesh.nodes[mesh.elements] - mesh.center)
     tangents = mesh.tangents_at(xi)
     flux = points[..., 0] * tangents[..., 1] - points[..., 1] * tangents[..., 0]
-    area = float(np.einsum("mg,g->", flux, weights)) / 2
-    moments = np.einsum("mgx,mg,g->x", points, flux, weights) / 3
-    return area, moments + area * mesh.center
+    return float(np.einsum("mg,g->", flux, weights)) / 2
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -178,17 +165,8 @@ class Loading:
         """Forces of the prescribed tractions at each (element, local node), (m, 3, 2) [p L]."""
         return mesh.tributary[..., None] * self.values.traction
 
-    def resultant(self, mesh: Mesh) -> Array:
-        """Force (2,) of all tractions and volume loads on the mesh [p L]."""
-        return self.forces(mesh).sum(axis=(0, 1)) + self.particular.force
-
-    def work(self, mesh: Mesh, motions: RigidMotions) -> Array:
-        """Work (k,) in rigid motions [p L], with tributary weights as in all of equilibrium."""
-        work = motions.work(mesh.nodes[mesh.elements], self.forces(mesh))
-        return work + motions.work_of(self.particular.force, self.particular.moment)
-
     def true_work(self, mesh: Mesh, motions: RigidMotions) -> Array:
-        """Work (k,) on the exact curves, to round-off, so that the balance of loads does not depend on the mesh."""
+        """Work (k,) in rigid motions [p L] on the exact curves, to round-off: it does not depend on the mesh."""
         return motions.work_of(self.true_force, self.true_moment, about=mesh.center)
 
     def magnitude(self, mesh: Mesh) -> float:
@@ -221,8 +199,6 @@ def combined(loadings: Sequence[Loading], factors: Sequence[float]) -> Loading:
         particular=ParticularSolution(
             displacement=_sum(factors, (part.displacement for part in parts)),
             traction=_sum(factors, (part.traction for part in parts)),
-            force=_sum(factors, (part.force for part in parts)),
-            moment=float(_sum(factors, (part.moment for part in parts))),
             magnitude=float(_sum(np.abs(factors), (part.magnitude for part in parts))),
         ),
         true_force=_sum(factors, (loading.true_force for loading in loadings)),
@@ -237,8 +213,7 @@ def _sum(factors: Iterable[float], arrays: Iterable[Array | float]) -> Array:
 def _loading(problem: Problem, mesh: Mesh, conditions: Mapping[str, Condition], loads: Loads) -> Loading:
     """Spread conditions and volume loads over the mesh."""
     acting = problem.model_copy(update={"conditions": dict(conditions), "loads": loads})
-    force, moment = true_resultant(acting)
-    moment -= mesh.center[0] * force[1] - mesh.center[1] * force[0]
+    force, moment = true_resultant(acting, mesh.center)
     for edge in problem.boundary.edges:
         if edge.name in conditions:
             points, normals, lengths = along_curve(edge)

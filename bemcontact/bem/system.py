@@ -230,22 +230,27 @@ class System:
     def _unit_tractions(self) -> list[_Carried]:
         """Traction times Jacobian along each axis for unit unknown tractions."""
         first = int((self.unknowns.displacement >= 0).sum())
-        columns = self.unknowns.traction[self.influence.traction_elements]
-        return [self._carried(columns[..., axis] - first, np.ones(self.unknowns.size - first)) for axis in range(2)]
+        columns = self.unknowns.traction[self.influence.traction_elements] - first
+        factors = np.ones(self.unknowns.size - first)
+        carried = []
+        for axis in range(2):
+            element, local = np.nonzero(columns[..., axis] >= 0)
+            carried.append(self._carried(element, local, columns[element, local, axis], factors))
+        return carried
 
     @cached_property
     def _unit_pressures(self) -> list[_Carried]:
         """Traction times Jacobian along each axis for unit pressures: t = p n."""
-        columns = np.full(self.mesh.elements.shape, -1)
-        columns[self.points.element, self.points.local] = self.points.point
-        return [self._carried(columns[self.influence.traction_elements], n) for n in self.points.normals.T]
+        points = self.points
+        element = np.searchsorted(self.influence.traction_elements, points.element)
+        return [self._carried(element, points.local, points.point, n) for n in points.normals.T]
 
-    def _carried(self, columns: IntArray, factors: Array) -> _Carried:
-        """Jacobian times the factor of its column, at each (local node, element) that has a column, given as (e, 3)."""
-        at = np.flatnonzero(columns.T.ravel() >= 0)
-        column = columns.T.ravel()[at]
-        values = self._jacobians.T.ravel()[at] * factors[column]
-        return _Carried(at, sparse.csr_array((values, (column, np.arange(len(at)))), shape=(len(factors), len(at))))
+    def _carried(self, element: IntArray, local: IntArray, column: IntArray, factors: Array) -> _Carried:
+        """Jacobian times the factor of its column (q,), at (element, local node) pairs (q,); several may be at one."""
+        carried = self._jacobians.shape[0]
+        values = self._jacobians[element, local] * factors[column]
+        at, index = np.unique(local * carried + element, return_inverse=True)
+        return _Carried(at, sparse.csr_array((values, (column, index)), shape=(len(factors), len(at))))
 
     def rows(self, block: InfluenceRows) -> Iterator[SystemRows]:
         """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations."""

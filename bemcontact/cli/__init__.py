@@ -3,6 +3,9 @@
 The numerical half of the package is imported inside the commands, so that ``bemcontact --help`` answers at once.
 """
 
+import logging
+import os
+import signal
 import sys
 from importlib.metadata import PackageNotFoundError, version
 from io import TextIOWrapper
@@ -11,7 +14,9 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli import check, compare, path, reproduce, solve
-from bemcontact.cli.command import flattened
+from bemcontact.cli.command import INTERRUPTED, flattened, refuse, reported
+from bemcontact.cli.terminal import standard_output
+from bemcontact.plain_text import LINE_BREAKS, escaped, hidden_character
 
 app = typer.Typer(
     add_completion=False,
@@ -24,9 +29,24 @@ app = typer.Typer(
 
 def main() -> None:
     """Run the command line; the entry point of the ``bemcontact`` program."""
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns if it cannot keep its caches
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a letter that the terminal lacks becomes a question mark
-    app()
+    try:
+        with reported(), standard_output():
+            _refuse_hidden_characters(sys.argv[1:])
+            app()
+    except typer.Exit as end:
+        sys.exit(end.exit_code)
+    finally:
+        signal.signal(signal.SIGINT, lambda *_: os._exit(INTERRUPTED))  # nothing is left that could be interrupted
+
+
+def _refuse_hidden_characters(arguments: list[str]) -> None:
+    """Refuse arguments that the messages of the parser would print with hidden characters."""
+    for argument in arguments:
+        if hidden := hidden_character(argument, LINE_BREAKS):
+            refuse(f"the argument '{escaped(argument)}' contains the hidden character {hidden}; remove or rename it")
 
 
 def _show_version(wanted: bool) -> None:

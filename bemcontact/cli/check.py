@@ -7,14 +7,15 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.command import CommandOutput, FigureOption, RefineOption, Source, refuse, reported, run, write_json
-from bemcontact.cli.terminal import Report
+from bemcontact.cli.terminal import Report, tell
+from bemcontact.errors import ProblemError, SingularSystemError, SpecError
 
 
 def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1) -> None:
     """Validate a spec and show its edges, contact zones, mesh, loads and supports.
 
     No contact is solved. It is an error if nothing holds the body, or if the load of any load case pulls it off its
-    supports.
+    supports. --figure then shows the parts of the problem that could be read.
 
     [bold]Examples[/bold]
       bemcontact check models/cylinder_on_plane.yaml
@@ -26,7 +27,12 @@ def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1)
         from bemcontact.analysis.check import check as checked
         from bemcontact.report import text
 
-        body = checked(source.problem(refine))
+        try:
+            body = checked(source.problem(refine))
+        except (SpecError, ProblemError, SingularSystemError):
+            if figure:
+                draw_refused(source, figure)
+            raise
         if figure:
             from bemcontact.report import figures
 
@@ -34,6 +40,17 @@ def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1)
         return CommandOutput(summary=lambda: text.problem_summary(body))
 
     run("checking", work, source=source, files={"--figure": figure})
+
+
+def draw_refused(source: Source, figure: Path) -> None:
+    """Draw what can be read of a problem that is refused, and say where; nothing without a sound boundary."""
+    from bemcontact.analysis.check import drawable
+    from bemcontact.report import figures
+
+    if problem := source.readable():
+        note = "REFUSED: parts with mistakes may be missing here"
+        figures.save(figures.figure_of_problem(*drawable(problem), note), figure)
+        tell("note: ", f"{figure} shows the parts of the problem that could be read", "bold")
 
 
 def condense(

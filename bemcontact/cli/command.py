@@ -2,28 +2,61 @@
 
 import inspect
 import json
+import re
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass
-from functools import wraps
+from enum import StrEnum
+from functools import cached_property, wraps
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, TypeVar, get_type_hints
 
 import typer
 
-from bemcontact.cli.terminal import RenderableType, Report, show, stages, tell
+from bemcontact.cli.terminal import RenderableType, Report, show, stages, standard_output, tell
 from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError
 from bemcontact.files import output
+from bemcontact.memory import ensure_memory
 from bemcontact.options import ComparisonOptions, SolveOptions, StartName
+from bemcontact.plain_text import escaped
 
 Number = TypeVar("Number", int, float)
 
 UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 """Exit statuses other than 0."""
-STANDARD_OUTPUT = Path("-")
-"""The file name that means standard output."""
+STANDARD_STREAM = Path("-")
+"""The file name that means standard input or output."""
 
-RefineOption = Annotated[int, typer.Option(min=1, metavar="K", help="Split each element into K equal parts.")]
+
+def reader(kind: type[Any], least: int | None = None, *, finite: bool = True) -> Callable[[Any], Any]:
+    """A parser of an option that says in plain words what it expects."""
+
+    def read(text: Any) -> Any:
+        try:
+            value = kind(text.strip() if isinstance(text, str) else text)
+        except (ValueError, OverflowError):
+            value = None
+        if value is None or (least is not None and value < least) or (kind is float and finite and not isfinite(value)):
+            hint = "; the decimal sign is a point" if kind is float and re.fullmatch(r"[-+]?\d+,\d+", text) else ""
+            raise typer.BadParameter(f"expected {_expected(kind, least)}, found '{text[:40]}'{hint}")
+        return value
+
+    return read
+
+
+def _expected(kind: type[Any], least: int | None) -> str:
+    """Name the values that an option takes."""
+    if issubclass(kind, StrEnum):
+        return f"one of {', '.join(kind)}"
+    return "a number" if kind is float else f"a whole number{'' if least is None else f' of at least {least}'}"
+
+
+RefineOption = Annotated[
+    int, typer.Option(parser=reader(int, 1), metavar="K", help="Split each element into K equal parts.")
+]
+read_number = reader(float)
 FigureOption = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Draw a picture; FILE ends in .png, .svg or .pdf.", show_default=False),
@@ -38,13 +71,17 @@ JsonOption = Annotated[
 class Source:
     """The spec that a command reads, with the changes made to it on the command line."""
 
-    spec: Annotated[Path, typer.Argument(metavar="SPEC", help="Problem to read, a YAML file.", show_default=False)]
+    spec: Annotated[
+        Path,
+        typer.Argument(metavar="SPEC", help="Problem to read, a YAML file; - for standard input.", show_default=False),
+    ]
     overrides: Annotated[
         list[str] | None,
         typer.Option(
             "--set",
             metavar="KEY.PATH=VALUE",
-            help="Replace one value of the spec before it is checked; repeatable.",
+            help="Replace one value of the spec, stated or at its default, before it is checked; repeatable. "
+            "It adds no zone, tool or load case.",
             show_default=False,
         ),
     ] = None
@@ -81,39 +118,69 @@ class Source:
         stated = [f"{key}={json.dumps(value)}" for key, value in options.items() if value is not None]
         return [*(self.overrides or ()), *stated]
 
+    @property
+    def name(self) -> str:
+        """Name of the spec in messages."""
+        return "standard input" if self.spec == STANDARD_STREAM else str(self.spec)
+
+    @cached_property
+    def text(self) -> str:
+        """Text of the spec, read once."""
+        from bemcontact.files.text import MOST_BYTES, decoded, text_of
+
+        if self.spec == STANDARD_STREAM:
+            return decoded(sys.stdin.buffer.read(MOST_BYTES + 1), self.name)
+        return text_of(self.spec)
+
     def problem(self, refine: int = 1):  # its type costs the time of importing it
         """Read the problem, with each element split."""
         from bemcontact import spec
 
-        return spec.load(self.spec, self.changes, self.variant).refined(refine)
+        problem = spec.loads(self.text, self.name, self.changes, self.variant)
+        try:
+            return problem.refined(refine)
+        except ProblemError as error:
+            raise OptionError(f"--refine {refine}: {'; '.join(issue.message for issue in error.issues)}") from None
+
+    def readable(self):
+        """What can be read of a problem that is refused, for a picture; None without a sound boundary."""
+        from bemcontact import spec
+
+        return spec.readable(self.text, self.name, self.changes, self.variant)
 
     def as_run(self) -> str:
         """The spec with all changes, as YAML."""
         from bemcontact import spec
 
-        return spec.as_run(self.spec, self.changes, self.variant)
+        return spec.as_run(self.text, self.name, self.changes, self.variant)
 
     def located(self, error: ProblemError) -> str:
         """The text of an error with file, line and column."""
         from bemcontact import spec
 
-        return str(spec.located(error, self.spec, self.changes, self.variant))
+        return str(spec.located(error, self.text, self.name, self.changes, self.variant))
 
 
 def option(kind: type[SolveOptions | ComparisonOptions], name: str) -> Any:
     """An option of the command line as `SolveOptions` or `ComparisonOptions` declares it."""
-    about = next(item.metadata for item in fields(kind) if item.name == name)
-    return typer.Option(
-        metavar=about["metavar"],
-        help=about["meaning"],
-        min=about["least"],
-        show_default=about["shown"],
-        parser=_start if name == "start" else None,
-    )
+    item = next(item for item in fields(kind) if item.name == name)
+    about, default = item.metadata, item.default
+    parser, metavar = None, about["metavar"]
+    if name == "start":
+        parser = _start
+    elif about["least"] is not None:
+        parser = reader(int, about["least"])
+    elif isinstance(default, StrEnum):
+        parser, metavar = reader(type(default)), f"<{'|'.join(type(default))}>"
+    elif isinstance(default, float):
+        parser = reader(float, finite=False)  # the options state the range
+    return typer.Option(metavar=metavar, help=about["meaning"], show_default=about["shown"], parser=parser)
 
 
 def _start(text: str) -> StartName | Path:
     """Read --start: a name, or else a file."""
+    if not text.strip():
+        raise typer.BadParameter(f"expected {', '.join(StartName)} or the name of a file, found nothing")
     return StartName(text) if text in [*StartName] else Path(text)
 
 
@@ -191,8 +258,9 @@ def run(
     json_file: Path | None = None,
 ) -> NoReturn:
     """Run a command: check outputs, do the work with progress, write and print results, exit with the status."""
-    files = {**(files or {}), "--json": None if json_file == STANDARD_OUTPUT else json_file}
+    files = {**(files or {}), "--json": None if json_file == STANDARD_STREAM else json_file}
     with reported(source, (folder, *files.values())), stages() as report:
+        ensure_memory()
         check_outputs(source, files)
         check_folder(source, folder, files["--json"], kind)
         report(stage, "")
@@ -201,7 +269,7 @@ def run(
             with output.whole_file(path) as temporary:
                 temporary.write_text(outcome.json() + "\n", encoding="utf-8")
     with reported(source):
-        if json_file != STANDARD_OUTPUT:
+        if json_file != STANDARD_STREAM:
             show(outcome.summary())
         else:
             write_json(outcome.json())
@@ -212,33 +280,47 @@ def run(
 
 def check_outputs(source: Source | None, files: Mapping[str, Path | None]) -> None:
     """Refuse files (by option) that cannot be written, or that would overwrite another, before any work is done."""
-    taken = {} if source is None else {source.spec.resolve(): "the spec itself"}
+    taken = {output.real(path): "the spec itself" for path in _spec_file(source)}
     for option, path in files.items():
         if path is None:
             continue
-        if path.resolve() in taken:
-            refuse(f"{option} {path} would overwrite {taken[path.resolve()]}; name another file")
-        taken[path.resolve()] = f"the file of {option}"
         try:
+            target = output.real(path)
             _ensure_possible(option, path)
             output.ensure_writable(path)
         except (OSError, ValueError, ModuleNotFoundError) as error:
-            refuse(f"{option}: {error}")
+            refuse(escaped(f"{option}: {_reason(error)}"))
+        if target in taken:
+            refuse(escaped(f"{option} {path} would overwrite {taken[target]}; name another file"))
+        taken[target] = f"the file of {option}"
+
+
+def _spec_file(source: Source | None) -> list[Path]:
+    """The file of a spec, if there is one."""
+    return [] if source is None or source.spec == STANDARD_STREAM else [source.spec]
+
+
+def _reason(error: Exception) -> str:
+    """Text of an error; of one by the system, the file and what is wrong, without its number."""
+    if isinstance(error, OSError) and error.errno and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return str(error)
 
 
 def check_folder(source: Source | None, folder: Path | None, json_file: Path | None, kind: str) -> None:
     """Refuse a folder that cannot be written, or that would replace the spec or the file of --json."""
     if folder is None:
         return
-    for path in (source and source.spec, json_file):
-        if path is not None and folder.resolve() in (path.resolve(), *path.resolve().parents):
-            refuse(f"--out {folder} would replace {path}; name another folder")
     from bemcontact.report.folder import KINDS, ensure_folder_writable
 
     try:
+        target = output.real(folder)
         ensure_folder_writable(folder, KINDS[kind])
     except OSError as error:
-        refuse(f"--out: {error}")
+        refuse(escaped(f"--out: {_reason(error)}"))
+    for path in (*_spec_file(source), *([] if json_file is None else [json_file])):
+        if target in (output.real(path), *output.real(path).parents):
+            refuse(escaped(f"--out {folder} would replace {path}; name another folder"))
 
 
 def _ensure_possible(option: str, path: Path) -> None:
@@ -258,7 +340,8 @@ def _ensure_possible(option: str, path: Path) -> None:
 
 def write_json(text: str) -> None:
     """Write JSON on standard output, in UTF-8 whatever the encoding of the terminal."""
-    typer.echo(text.encode() + b"\n", nl=False)
+    with standard_output():
+        typer.echo(text.encode() + b"\n", nl=False)
 
 
 def refuse(message: str) -> NoReturn:
@@ -288,13 +371,13 @@ def reported(source: Source | None = None, outputs: Sequence[Path | None] | None
     except ProblemError as error:
         refuse(str(error) if source is None else source.located(error))
     except OSError as error:
-        where = error.filename or ("standard output" if error.errno else "")
-        refuse(f"{where}: {error.strerror}" if where else str(error))
+        refuse(escaped(_reason(error)))
     except BemContactError as error:
         tell("failed: ", str(error))
         raise typer.Exit(UNCERTIFIED) from error
     except MemoryError as error:
-        tell("failed: ", "not enough memory for so many elements; take a smaller --refine")
+        reason = f" ({error})" if error.args else ""
+        tell("failed: ", f"there is not enough memory{reason}; take fewer elements, or raise the limit")
         raise typer.Exit(UNCERTIFIED) from error
 
 

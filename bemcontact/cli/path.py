@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import CommandOutput, JsonOption, RefineOption, Source, run
+from bemcontact.cli.command import CommandOutput, JsonOption, RefineOption, Source, read_number, run
 from bemcontact.cli.terminal import Report
 
 
@@ -14,10 +14,14 @@ def path(
     vary: Annotated[
         str, typer.Option(metavar="KEY.PATH", help="Value to vary, by the same paths as --set.", show_default=False)
     ],
-    to: Annotated[float, typer.Option(metavar="VALUE", help="Where the path ends.", show_default=False)],
+    to: Annotated[
+        float, typer.Option(parser=read_number, metavar="VALUE", help="Where the path ends.", show_default=False)
+    ],
     start: Annotated[
         float | None,
-        typer.Option("--from", metavar="VALUE", help="Where the path begins.", show_default="as in the spec"),
+        typer.Option(
+            "--from", parser=read_number, metavar="VALUE", help="Where the path begins.", show_default="as in the spec"
+        ),
     ] = None,
     refine: RefineOption = 1,
     out: Annotated[

@@ -7,7 +7,10 @@ from contextlib import contextmanager
 
 from rich.console import Console, RenderableType
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.segment import Segments
 from rich.text import Text
+
+from bemcontact.plain_text import escaped, escaped_lines
 
 PATIENCE = 1.0
 """Seconds of work before progress is shown."""
@@ -17,22 +20,34 @@ Report = Callable[[str, str], None]
 
 
 def show(renderable: RenderableType) -> None:
-    """Print on standard output; into a file or a pipe, without blanks at the ends of lines."""
+    """Print on standard output without hidden characters; into a file or pipe, without blanks at the ends of lines."""
     console = Console(highlight=False, markup=False, emoji=False)
-    if console.is_terminal:
-        console.print(renderable)
-        return
-    with console.capture() as captured:
-        console.print(renderable)
-    print(re.sub(r" +$", "", captured.get(), flags=re.MULTILINE), end="", flush=True)
+    rendered = (part._replace(text=escaped_lines(part.text)) for part in console.render(renderable))
+    visible = Segments([part for part in rendered if not part.control])
+    with standard_output():
+        if console.is_terminal:
+            console.print(visible)
+            return
+        with console.capture() as captured:
+            console.print(visible)
+        print(re.sub(r" +$", "", captured.get(), flags=re.MULTILINE), end="", flush=True)
+
+
+@contextmanager
+def standard_output() -> Iterator[None]:
+    """Let errors of writing name standard output; a closed pipe is none."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, error.filename or "standard output") from error
 
 
 def tell(head: str, message: str, style: str = "bold red") -> None:
     """Print a message on standard error, without markup and without folding, so that paths stay whole."""
-    printable = "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in message)
-    Console(stderr=True, highlight=False, markup=False, emoji=False).print(
-        Text.assemble((head, style), printable), soft_wrap=True
-    )
+    text = Text.assemble((head, style), escaped_lines(message))
+    Console(stderr=True, highlight=False, markup=False, emoji=False).print(text, soft_wrap=True)
 
 
 @contextmanager
@@ -47,7 +62,7 @@ def stages() -> Iterator[Report]:
                     progress.update(task, total=1, completed=1)
                 progress.add_task(stage, total=None)
                 names.append(stage)
-            progress.update(progress.task_ids[-1], description=f"{stage}, {now}" if now else stage)
+            progress.update(progress.task_ids[-1], description=escaped(f"{stage}, {now}" if now else stage))
 
         yield report
 

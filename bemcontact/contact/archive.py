@@ -1,43 +1,121 @@
-"""Frozen dataclasses of arrays as one ``.npz`` file. The name of an array is the path to its field, with dots."""
+"""Frozen dataclasses of arrays as one ``.npz`` file. The name of an array is the path to its field, with dots.
 
+Members are not compressed, so that nothing grows when it is read, and known members alone are read. The checksum tells
+a damaged file from a whole one; the dataclasses check what it contains.
+"""
+
+import hashlib
+import io
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any, TypeVar, get_origin, get_type_hints
-from zipfile import BadZipFile
+from types import NoneType
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+from zipfile import ZIP_STORED, BadZipFile, ZipFile
 
 import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
 
 from bemcontact.errors import ProblemError
 from bemcontact.files import output
 
 Kind = TypeVar("Kind")
+Arrays = dict[str, NDArray[Any]]
 
-FILE_FORMAT = "bemcontact.condensed.3"
+FILE_FORMAT = "bemcontact.condensed.4"
+HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
+"""Versions of the form of an array in a file, and how their heads are read."""
+PLAIN = "biufU"
+"""Kinds of data of an array that can be read without running anything: truth values, numbers, texts."""
+AGAIN = "condense the problem again"
 
 
 def write(path: Path, stored: Any) -> None:
     """Write a dataclass, whole or not at all; `OSError` if it cannot be written."""
-    arrays: dict[str, Any] = {"format": np.array(FILE_FORMAT), **dict(_arrays(stored, ""))}
+    arrays = dict(_arrays(stored, ""))
+    heads = {"format": np.array(FILE_FORMAT), "checksum": np.array(_checksum(arrays))}
     with output.whole_file(path) as temporary, open(temporary, "xb") as stream:
-        np.savez_compressed(stream, **arrays)
+        np.savez(stream, **{**heads, **arrays})
 
 
 def read(path: Path, kind: type[Kind]) -> Kind:
-    """Read a dataclass that `write` wrote; `ProblemError` if the file is something else."""
+    """Read a dataclass that `write` wrote; `ProblemError` if the file is something else, or is damaged."""
     try:
-        with np.load(path, allow_pickle=False) as data:
-            stored = {key: data[key] for key in data.files}
+        if not path.is_file():
+            raise ProblemError("there is no such file" if not path.exists() else "this is no regular file; name a file")
+        with path.open("rb") as stream, _opened(stream) as package:
+            arrays = _known_arrays(package, kind)
+        return _made(kind, arrays, "")
     except OSError as error:
-        raise ProblemError(f"{path}: cannot be read ({error.strerror or 'not an .npz file'})") from error
-    except (ValueError, EOFError, BadZipFile) as error:
-        raise ProblemError(f"{path}: not an .npz file; CondensedContact.save writes one") from error
-    if str(stored.pop("format", "")) != FILE_FORMAT:
-        raise ProblemError(f"{path}: not a condensed contact problem of format {FILE_FORMAT}; write it again")
-    return _made(kind, stored, "")
+        raise ProblemError(f"{path}: cannot be read ({error.strerror or error})") from error
+    except ProblemError as error:
+        raise ProblemError(f"{path}: {error}") from error
 
 
-def _arrays(stored: Any, prefix: str) -> Iterator[tuple[str, Any]]:
+def _opened(stream: io.BufferedReader) -> ZipFile:
+    """The archive in a file."""
+    try:
+        return ZipFile(stream)
+    except Exception as error:  # zipfile raises errors of many kinds for what is no archive
+        raise ProblemError("not an .npz file; CondensedContact.save writes one") from error
+
+
+def _known_arrays(package: ZipFile, kind: type[Any]) -> Arrays:
+    """The members that a dataclass has, checked against the format and the checksum; others are not read."""
+    stated = _member(package, "format") if "format.npy" in package.namelist() else None
+    if stated is None or str(stated) != FILE_FORMAT:
+        raise ProblemError(f"not a condensed contact problem of format {FILE_FORMAT}; {AGAIN} with this version")
+    present = {*package.namelist()}
+    arrays = {name: _member(package, name) for name in _names(kind, "") if f"{name}.npy" in present}
+    checksum = str(_member(package, "checksum")) if "checksum.npy" in present else "none"
+    if checksum != _checksum(arrays):
+        raise ProblemError(f"the file is damaged: its checksum does not fit its members; {AGAIN}")
+    return arrays
+
+
+def _member(package: ZipFile, name: str) -> NDArray[Any]:
+    """Read one array of plain data; not more is read than the file has."""
+    try:
+        item = package.getinfo(f"{name}.npy")
+        if item.compress_type != ZIP_STORED or item.file_size != item.compress_size:
+            raise ProblemError("it is compressed, and CondensedContact.save does not compress")
+        with package.open(item) as stream:
+            content = stream.read(item.compress_size)
+            if len(content) != item.file_size or stream.read(1):
+                raise BadZipFile("its size is not the stated one")
+        return _array(content)
+    except Exception as error:  # zipfile and NumPy raise errors of many kinds for damaged bytes
+        reason = str(error) if isinstance(error, ProblemError) else "its bytes are no array"
+        raise ProblemError(f"member '{name}' is damaged: {reason}; {AGAIN}") from error
+
+
+def _array(content: bytes) -> NDArray[Any]:
+    """The array in the bytes of a member, if its size is the stated one; nothing is unpickled."""
+    stream = io.BytesIO(content)
+    shape, by_columns, dtype = HEADERS[npy.read_magic(stream)](stream)
+    data = content[stream.tell() :]
+    if dtype.kind not in PLAIN or dtype.shape:
+        raise ProblemError(f"it has data of type {dtype}, which is not read")
+    size = dtype.itemsize
+    for length in shape:
+        size *= length
+    if size != len(data) or min(shape, default=0) < 0:
+        raise ProblemError(f"it has {len(data)} bytes where its shape {shape} needs {size}")
+    flat = np.frombuffer(data, dtype) if data else np.zeros(0, dtype)
+    return flat.reshape(shape, order="F" if by_columns else "C")
+
+
+def _checksum(arrays: Mapping[str, NDArray[Any]]) -> str:
+    """The SHA-256 of names, types, shapes and entries of arrays."""
+    digest = hashlib.sha256()
+    for name, array in sorted(arrays.items()):
+        digest.update(f"{name} {array.dtype.str} {array.shape}\n".encode())
+        digest.update(array.tobytes())
+    return digest.hexdigest()
+
+
+def _arrays(stored: Any, prefix: str) -> Iterator[tuple[str, NDArray[Any]]]:
     """Names and arrays of all fields of a dataclass."""
     for item in fields(stored):
         value = getattr(stored, item.name)
@@ -47,17 +125,39 @@ def _arrays(stored: Any, prefix: str) -> Iterator[tuple[str, Any]]:
             yield prefix + item.name, np.array(sorted(value.items()) if isinstance(value, Mapping) else value)
 
 
-def _made(kind: type[Kind], arrays: Mapping[str, Any], prefix: str) -> Kind:
-    """Make a dataclass from the arrays under a prefix; a missing array was None."""
+def _names(kind: type[Any], prefix: str) -> Iterator[str]:
+    """Names of the arrays of all fields of a dataclass."""
+    for name, hint in get_type_hints(kind).items():
+        if is_dataclass(hint):
+            yield from _names(hint, f"{prefix}{name}.")  # pyright: ignore[reportArgumentType]
+        else:
+            yield prefix + name
+
+
+def _made(kind: type[Kind], arrays: Arrays, prefix: str) -> Kind:
+    """Make a dataclass from the arrays under a prefix."""
     return kind(**{name: _field(hint, arrays, prefix + name) for name, hint in get_type_hints(kind).items()})
 
 
-def _field(hint: Any, arrays: Mapping[str, Any], key: str) -> Any:
-    """One field, converted to its type."""
+def _field(hint: Any, arrays: Arrays, key: str) -> Any:
+    """One field, converted to its type; one that may be None may be missing."""
     if is_dataclass(hint):
         return _made(hint, arrays, f"{key}.")  # pyright: ignore[reportArgumentType]
     array = arrays.get(key)
     if array is None:
+        if NoneType not in get_args(hint):
+            raise ProblemError(f"member '{key}' is missing; {AGAIN}")
         return None
-    forms = {str: lambda: str(array), tuple: lambda: tuple(array.tolist()), Mapping: lambda: dict(array.tolist())}
-    return forms.get(get_origin(hint) or hint, lambda: array)()
+    try:
+        return _converted(get_origin(hint) or hint, array)
+    except (TypeError, ValueError):
+        raise ProblemError(f"member '{key}' is no {hint}: it has the shape {array.shape}; {AGAIN}") from None
+
+
+def _converted(kind: Any, array: NDArray[Any]) -> Any:
+    """An array as a text, a number, a tuple or a mapping, if it is one; else the array."""
+    if kind is str or kind is float:
+        return kind(array.item())
+    if kind is tuple:
+        return tuple(array.tolist())
+    return dict(array.tolist()) if kind is Mapping else array

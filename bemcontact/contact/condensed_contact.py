@@ -8,17 +8,15 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import isfinite
-from numbers import Real
-from operator import attrgetter
-from pathlib import Path
 from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
+from bemcontact.arguments import file_path, instance_of, real_number, shown, whole_number
+from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays, real_array, whole_array
 from bemcontact.contact import archive
+from bemcontact.contact.consistency import ensure_arrays, ensure_independent, ensure_labels, ensure_parts_fit
 from bemcontact.contact.free_motions import (
     ContactScales,
     MotionAlgebra,
@@ -29,8 +27,10 @@ from bemcontact.contact.free_motions import (
 )
 from bemcontact.contact.load_cases import Change, LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
-from bemcontact.options import Weights
+from bemcontact.options import Weights, named
 
+CANCELLED = 64 * float(np.finfo(float).eps)
+"""Fraction of the terms of a sum below which the sum is round-off."""
 PEAK = 1e-12
 """Fraction of T below which the largest pressure is round-off, so that nothing touches."""
 
@@ -93,45 +93,20 @@ class CondensedContact(MotionAlgebra):
     pinned: Pinned = field(default_factory=lambda: Pinned.none(0, 0))
 
     def __post_init__(self) -> None:
-        """Check shapes, refuse numbers that are not finite, make arrays read-only."""
-        n, k = self.rigid_motions.shape
-        shapes = {
-            "points": (n, 2), "normals": (n, 2), "zone": (n,), "run": (n,), "arc_position": (n,),
-            "compliance": (n, n), "free_displacement": (n,), "motion_load": (k,), "initial_gap": (n,),
-            "weights": (n,), "consistent_weights": (n, n), "element_length_weights": (n,),
-        }  # fmt: skip
-        for key, shape in shapes.items():
-            array = getattr(self, key)
-            if array is None:
-                continue
-            if array.shape != shape:
-                raise ProblemError(f"{key} has shape {array.shape} where {shape} is needed; n = {n}, k = {k}")
-            if not np.isfinite(array).all():
-                raise ProblemError(f"{key} has entries that are not finite numbers")
-        if not (self.weights > 0).all():
-            raise ProblemError(f"weights must be positive; the smallest is {self.weights.min():.3g}")
-        freeze_arrays(self)
-        self._ensure_actions_fit()
-
-    def _ensure_actions_fit(self) -> None:
-        """Give empty tools and load cases their shapes, and refuse those of another body."""
+        """Refuse what is inconsistent, give empty tools and load cases their shapes, and make arrays read-only."""
+        ensure_labels(self)
+        ensure_arrays(self)
+        for name, kind in (("tools", Tools), ("cases", LoadCases), ("pinned", Pinned)):
+            instance_of(getattr(self, name), kind, name, "leave it out if there is none")
         n, k = self.rigid_motions.shape
         if not len(self.tools):
             object.__setattr__(self, "tools", Tools.none(n, k))
         if not len(self.cases):
             object.__setattr__(self, "cases", LoadCases.none(n, k, len(self.tools)))
-        c, t, j = len(self.cases), 3 * len(self.tools), len(self.pinned.motions)
-        if not j:
-            object.__setattr__(self, "pinned", Pinned.none(c, len(self.tools)))
-        shapes = {
-            "cases.displacement": (n, c), "cases.motion_load": (k, c), "cases.position": (t, c), "cases.force": (t, c),
-            "cases.factors": (c,), "tools.motions": (n, t), "tools.amplitudes": (t, k), "tools.position": (t,),
-            "tools.free": (t,), "tools.force": (t,), "tools.point": (t // 3, 2), "pinned.load": (j, 1 + c),
-            "pinned.tools": (t, j), "pinned.turns": (j,), "pinned.magnitude": (1 + c,),
-        }  # fmt: skip
-        for key, shape in shapes.items():
-            if (stated := attrgetter(key)(self).shape) != shape:
-                raise ProblemError(f"{key} has shape {stated} where {shape} is needed; n = {n}, k = {k}")
+        if not len(self.pinned.motions) and not self.pinned.magnitude.any():
+            object.__setattr__(self, "pinned", Pinned.none(len(self.cases), len(self.tools)))
+        ensure_parts_fit(self)
+        freeze_arrays(self)
 
     @classmethod
     def from_compliance(
@@ -165,20 +140,22 @@ class CondensedContact(MotionAlgebra):
         ProblemError
             Shapes that do not fit, weights that are not positive, or entries that are not finite.
         """
-        M = np.array(compliance, float, ndmin=2)
-        q = np.array(offset, float, ndmin=1)
-        n = len(q)
-        J = np.ones(n) if weights is None else np.array(weights, float, ndmin=1)
-        R = np.zeros((n, 0)) if rigid_motions is None else np.array(rigid_motions, float)
-        R = R[:, None] if R.ndim == 1 else R
-        load = np.zeros(R.shape[1]) if motion_load is None else np.array(motion_load, float, ndmin=1)
-        if not (M.shape == (n, n) and J.shape == (n,) and R.shape[0] == n and load.shape == R.shape[1:]):
+        M = np.atleast_2d(real_array(compliance, "compliance"))
+        q = np.atleast_1d(real_array(offset, "offset"))
+        n = q.size
+        J = np.ones(n) if weights is None else np.atleast_1d(real_array(weights, "weights"))
+        R = np.zeros((n, 0)) if rigid_motions is None else real_array(rigid_motions, "rigid_motions")
+        R = R.reshape(-1, 1) if R.ndim < 2 else R
+        load = np.zeros(R.shape[1:]) if motion_load is None else np.atleast_1d(real_array(motion_load, "motion_load"))
+        shapes = M.shape, q.shape, J.shape, R.shape[:1], load.shape, R.ndim
+        if shapes != ((n, n), (n,), (n,), (n,), R.shape[1:], 2):
             raise ProblemError(
                 f"offset has {n} entries; then compliance needs ({n}, {n}), weights ({n},), rigid_motions ({n}, k), "
                 f"motion_load (k,); found {M.shape}, {J.shape}, {R.shape}, {load.shape}"
             )
-        if R.shape[1] and np.linalg.matrix_rank(R) < R.shape[1]:
-            raise ProblemError("rigid_motions needs independent columns: a motion that no point sees holds nothing")
+        ensure_independent(R)
+        if not (J > 0).all():
+            raise ProblemError(f"weights must be positive; the smallest is {J.min():.3g}")
         gauge = fix_gauge(MotionAlgebra(rigid_motions=R, weights=J, motion_load=load), M, np.zeros(n))
         return cls(
             name=name,
@@ -222,9 +199,26 @@ class CondensedContact(MotionAlgebra):
         """Scales with U = ‖M‖∞ T: the larger of those of the load and of the interference.
 
         A load that presses a free body needs the balancing pressure. Interference is the penetration without pressure
-        at the best position of the body. Wide gaps far from contact do not count. If there is neither, U = max|q|.
+        at the best position of the body. Wide gaps far from contact do not count. If there is neither, U is the largest
+        of the terms that are added up in q: what they leave of each other by round-off is no interference.
         """
-        return typical_scales(self.compliance, self.offset, self.rigid_motions, self.balancing_pressure)
+        return typical_scales(
+            self.compliance, self.offset, self.terms_of_offset, self.rigid_motions, self.balancing_pressure
+        )
+
+    @property
+    def terms_of_offset(self) -> Array:
+        """Sum of the magnitudes (n,) [L] of all that is added up in q: ε, Δ1, load cases and displacements of tools."""
+        cases, tools = self.cases, self.tools
+        added, moved = cases.displacement * cases.factors, tools.motions * tools.position
+        permanent = abs(self.free_displacement - added.sum(axis=1)) + abs(self.initial_gap - moved.sum(axis=1))
+        return permanent + abs(added).sum(axis=1) + abs(moved).sum(axis=1)
+
+    @property
+    def net_load(self) -> float:
+        """Largest work of the loads in a free motion, over the sum of their magnitudes; 1 if these are not known."""
+        total = self.pinned.total(np.append(1.0, self.cases.factors), self.tools.force)
+        return float(abs(self.motion_load).max(initial=0.0)) / total if total > 0 else 1.0
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
         """Apply load cases, each by its factor, and no other ones; nothing is condensed anew.
@@ -243,13 +237,12 @@ class CondensedContact(MotionAlgebra):
             If there is no such case, a factor is no finite number, or loads act along a motion that nothing resists.
         """
         if not isinstance(factors, Mapping):
-            raise ProblemError(f"factors by load case are needed, such as {{'wind': 1.5}}; found {factors!r}")
+            raise ProblemError(f"factors by load case are needed, such as {{'wind': 1.5}}; found {shown(factors)}")
         if unknown := [name for name in factors if name not in self.cases.names]:
             known = ", ".join(self.cases.names) or "none"
             raise ProblemError(f"there is no load case '{unknown[0]}'; there are: {known}")
-        if wrong := [name for name, factor in factors.items() if not isinstance(factor, Real) or not isfinite(factor)]:
-            raise ProblemError(f"the factor of '{wrong[0]}' must be a finite number, found {factors[wrong[0]]!r}")
-        given = np.array([factors.get(name, 0.0) for name in self.cases.names], float)
+        numbers = {name: real_number(factor, f"the factor of '{name}'") for name, factor in factors.items()}
+        given = np.array([numbers.get(name, 0.0) for name in self.cases.names], float)
         step = given - self.cases.factors
         return self.stepped(step, self.cases.position @ step, self.cases.force @ step).balanced()
 
@@ -271,18 +264,16 @@ class CondensedContact(MotionAlgebra):
             If the shapes do not fit, a number is not finite, or forces act along a motion that nothing resists.
         """
         tools, steps = self.tools, []
-        for new, now, used in ((position, tools.position, ~tools.free), (force, tools.force, tools.free)):
-            try:
-                given = now if new is None else np.array(new, float)
-            except (TypeError, ValueError):
-                raise ProblemError(
-                    f"tools, {', '.join(tools.names) or 'none'}, have x, y and rotation or moment each, in an array "
-                    f"({len(tools)}, 3); found {new!r}"
-                ) from None
+        moves, loads = (
+            f"displacements x, y, rotation of {len(tools)} tools",
+            f"forces x, y, moment on {len(tools)} tools",
+        )
+        for what, new, now, used in (
+            (moves, position, tools.position, ~tools.free), (loads, force, tools.force, tools.free)
+        ):  # fmt: skip
+            given = now if new is None else real_array(new, what)
             if given.shape not in ((len(tools), 3), now.shape):
                 raise ProblemError(f"tools have {len(tools)} x 3 components; found an array of shape {given.shape}")
-            if not np.isfinite(given).all():
-                raise ProblemError("displacements of tools, and forces on them, must be finite numbers")
             steps.append(np.where(used, given.ravel() - now, 0.0))
         return self.stepped(np.zeros(len(self.cases)), *steps).balanced()
 
@@ -293,13 +284,18 @@ class CondensedContact(MotionAlgebra):
         return self
 
     def stepped(self, factors: Array, position: Array, force: Array) -> Self:
-        """Add to the factors (c,), and to the displacements (3 t,) and forces (3 t,) of tools, balanced or not."""
+        """Add to the factors (c,), and to the displacements (3 t,) and forces (3 t,) of tools, balanced or not.
+
+        What round-off leaves where terms cancel is zero.
+        """
         cases, tools = self.cases, self.tools
+        loads = np.column_stack([cases.motion_load * factors, tools.amplitudes.T * force])
+        acting = np.append(1.0, cases.factors + factors), tools.force + force
         return replace(
             self,
-            free_displacement=self.free_displacement + cases.displacement @ factors,
-            initial_gap=self.initial_gap + tools.motions @ position,
-            motion_load=self.motion_load + cases.motion_load @ factors + tools.amplitudes.T @ force,
+            free_displacement=_sum(self.free_displacement, cases.displacement * factors),
+            initial_gap=_sum(self.initial_gap, tools.motions * position),
+            motion_load=_sum(self.motion_load, loads, self.pinned.total(*acting)),
             cases=replace(cases, factors=cases.factors + factors),
             tools=replace(tools, position=tools.position + position, force=tools.force + force),
         )
@@ -338,7 +334,9 @@ class CondensedContact(MotionAlgebra):
 
     def gap(self, pressure: Array, rigid_amplitudes: Array) -> Array:
         """δ = ε + Δ1 + M p + R a, (n,) [L], from p (n,) [p] and a (k,)."""
-        return self.offset + self.compliance @ pressure + self.rigid_motions @ rigid_amplitudes
+        p = self._by_point(pressure, "pressure")
+        a = real_array(rigid_amplitudes, "rigid_amplitudes", (self.free_motions,), finite=False)
+        return self.offset + self.compliance @ p + self.rigid_motions @ a
 
     def resultants(self, pressure: Array) -> Array:
         """Σ w p n (..., zones, 2) [p L]: the force of each zone's rigid surface on the body, from p (..., n) [p]."""
@@ -348,19 +346,31 @@ class CondensedContact(MotionAlgebra):
 
     def forces(self, pressure: Array) -> Array:
         """Forces w p n (..., n, 2) [p L] at the contact points, from p (..., n) [p]."""
-        return (self.weights * pressure)[..., None] * self.normals
+        p = self._by_point(pressure, "pressure", 0)
+        with np.errstate(invalid="ignore"):  # a solver that failed may leave an infinite pressure
+            return (self.weights * p)[..., None] * self.normals
 
     def tool_reactions(self, pressure: Array) -> Array:
         """Force (t, 3) of the body on each tool: x, y [p L] and moment [p L²], from p (n,) [p]."""
-        return (self.tools.motions.T @ (self.weights * pressure)).reshape(-1, 3)
+        return (self.tools.motions.T @ (self.weights * self._by_point(pressure, "pressure"))).reshape(-1, 3)
+
+    def _by_point(self, values: Array, what: str, dimensions: int = 1) -> Array:
+        """Refuse all but numbers by contact point (n,), or (..., n) where any number of dimensions may come first."""
+        array = real_array(values, what, finite=False)
+        if array.shape[-1:] != (self.size,) or (dimensions and array.ndim != dimensions):
+            raise ProblemError(f"{what} has shape {array.shape} where ({self.size},) is needed")
+        return array
 
     def in_order(self, index: IntArray) -> IntArray:
         """Contact points (m,) run by run, in the order of the boundary."""
+        index = whole_array(index, "index of points", (None,))
+        if index.size and not (index.min() >= 0 and index.max() < self.size):
+            raise ProblemError(f"points are numbered from 0 to {self.size - 1}; found {index.min()} to {index.max()}")
         return index[np.lexsort((self.arc_position[index], self.run[index]))]
 
     def points_of_run(self, run: int) -> IntArray:
         """Contact points of a run in the order of the boundary."""
-        return self.in_order(np.flatnonzero(self.run == run))
+        return self.in_order(np.flatnonzero(self.run == whole_number(run, "number of a run", 0)))
 
     def at_rest(self) -> Self:
         """Switch all load cases off, and leave all tools undisplaced and unloaded, balanced or not."""
@@ -368,17 +378,22 @@ class CondensedContact(MotionAlgebra):
 
     def touching(self, pressure: Array, displacement: Array) -> BoolArray:
         """Which points (n,) are in contact, p/T > δ/U, from p (n,) [p] and u_n (n,) [L]; robust to tolerances."""
+        p, u_n = self._by_point(pressure, "pressure"), self._by_point(displacement, "displacement")
         U, T = self.scales
-        return pressure / T > (self.initial_gap + displacement) / U
+        return p / T > (self.initial_gap + u_n) / U
+
+    def pressed(self, pressure: Array, displacement: Array) -> BoolArray:
+        """Which points (n,) are in contact under pressure; none if the largest pressure is round-off beside T."""
+        return self.touching(pressure, displacement) & (pressure > 0) & (self.peak(pressure) > 0)
 
     def peak(self, pressure: Array) -> float:
         """Largest of the pressures p (n,), [p]; zero if it is round-off beside T."""
-        peak = float(pressure.max(initial=0.0))
+        peak = float(self._by_point(pressure, "pressure").max(initial=0.0))
         return peak if peak > PEAK * self.scales.pressure else 0.0
 
     def weight_matrix(self, weights: Weights) -> Array:
         """The J (n, n) [L] of the objective; `ProblemError` if the problem does not have these weights."""
-        match weights:
+        match named(Weights, weights, "weights"):
             case Weights.TRIBUTARY:
                 return np.diag(self.weights)
             case Weights.CONSISTENT:
@@ -386,14 +401,21 @@ class CondensedContact(MotionAlgebra):
             case Weights.ELEMENT_LENGTH:
                 J = None if self.element_length_weights is None else np.diag(self.element_length_weights)
         if J is None:
-            raise ProblemError(f"the condensed problem carries no {weights.value} weights; use tributary ones")
+            raise ProblemError(f"the condensed problem carries no {weights} weights; use tributary ones")
         return J
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the problem as one ``.npz`` file, whole or not at all; `OSError` if it cannot be written."""
-        archive.write(Path(path), self)
+        archive.write(file_path(path, "the file to write"), self)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read what `save` wrote; `ProblemError` if the file is something else."""
-        return archive.read(Path(path), cls)
+        return archive.read(file_path(path, "the file to read"), cls)
+
+
+def _sum(start: Array, terms: Array, least: float = 0.0) -> Array:
+    """Sum (m,) of the start (m,) and terms (m, t); zero if it is round-off beside the terms, or beside a least size."""
+    total = start + terms.sum(axis=1)
+    size = np.maximum(abs(start) + abs(terms).sum(axis=1), least)
+    return np.where(abs(total) > CANCELLED * size, total, 0.0)

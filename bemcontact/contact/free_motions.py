@@ -11,9 +11,9 @@ from bemcontact.arrays import Array
 from bemcontact.errors import SingularSystemError
 
 INTERFERENCE = 1e-6
-"""Fraction of the widest gap from which there is interference: the accuracy of a linear program."""
-ROUND_OFF = 64 * float(np.finfo(float).eps)
-"""This fraction for a body that is held: less is a gap that has just closed."""
+"""Fraction of the largest gap from which there is interference: the accuracy of a linear program."""
+ROUND_OFF = 1e-12
+"""Fraction of the terms of a gap from which there is interference of a body that is held: less has just closed."""
 
 
 class ContactScales(NamedTuple):
@@ -23,27 +23,31 @@ class ContactScales(NamedTuple):
     pressure: float
 
 
-def typical_scales(compliance: Array, offset: Array, rigid_motions: Array, balancing_pressure: Array) -> ContactScales:
+def typical_scales(
+    compliance: Array, offset: Array, terms: Array, rigid_motions: Array, balancing_pressure: Array
+) -> ContactScales:
     """Scales with U = ‖M‖∞ T: the larger of those of the load and of the interference.
 
-    From M (n, n) [L/p], the gap without contact q (n,) [L], R (n, k) and the balancing pressure (n,) [p] of the load.
+    From M (n, n) [L/p], the gap without contact q (n,) [L], the magnitudes (n,) [L] of all that is added up in it, R
+    (n, k) and the balancing pressure (n,) [p] of the load.
     """
     norm = float(np.abs(compliance).sum(axis=1).max(initial=0.0))
     pressure = float(np.abs(balancing_pressure).max(initial=0.0))
-    widest = float(np.abs(offset).max(initial=0.0))
-    displacement = max(norm * pressure, _interference(offset, rigid_motions, widest)) or widest or 1.0
+    largest = float(np.maximum(terms, np.abs(offset)).max(initial=0.0))
+    displacement = max(norm * pressure, _interference(offset, terms, rigid_motions)) or largest or 1.0
     return ContactScales(displacement, displacement / norm if norm > 0 else pressure or 1.0)
 
 
-def _interference(offset: Array, rigid_motions: Array, widest: float) -> float:
-    """Least s >= 0 [L] with q + R a >= -s for some a, by a linear program; zero below 1e-6 of the widest gap."""
+def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:
+    """Least s >= 0 [L] with q + R a >= -s for some a, by a linear program; zero where it is round-off."""
     n, k = rigid_motions.shape
-    if k == 0 or widest == 0:
-        deepest = float(np.maximum(-offset, 0.0).max(initial=0.0))
-        return deepest if deepest > ROUND_OFF * widest else 0.0
+    q = np.where(np.abs(offset) > ROUND_OFF * terms, offset, 0.0)
+    widest = float(np.abs(q).max(initial=0.0))
+    if k == 0 or not (q < 0).any():
+        return -float(q.min(initial=0.0))
     columns = np.column_stack([rigid_motions, np.ones(n)])
     cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
-    optimum = linprog(cost, A_ub=-columns, b_ub=offset / widest, bounds=bounds)
+    optimum = linprog(cost, A_ub=-columns, b_ub=q / widest, bounds=bounds)
     return widest * optimum.fun if optimum.success and optimum.fun > INTERFERENCE else 0.0
 
 

@@ -9,7 +9,9 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, freeze_arrays
+from bemcontact.arguments import real_number, texts
+from bemcontact.arrays import Array, BoolArray, flag_array, freeze_arrays, read_arrays
+from bemcontact.errors import ProblemError
 
 BALANCED = 1e-9
 """Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as zero."""
@@ -52,7 +54,10 @@ class LoadCases:
     factors: Array
 
     def __post_init__(self) -> None:
-        """Make arrays read-only."""
+        """Refuse arrays of other shapes, and numbers that are not finite; make arrays read-only."""
+        c = len(_names(self, "names", "cases.names"))
+        shapes = {"displacement": (None, c), "motion_load": (None, c), "position": (None, c), "force": (None, c)}
+        read_arrays(self, {**shapes, "factors": (c,)}, "cases.")
         freeze_arrays(self)
 
     @classmethod
@@ -97,7 +102,11 @@ class Tools:
     force: Array
 
     def __post_init__(self) -> None:
-        """Make arrays read-only."""
+        """Refuse arrays of other shapes, and numbers that are not finite; make arrays read-only."""
+        t = len(_names(self, "names", "tools.names"))
+        read_arrays(self, {"free": (3 * t,)}, "tools.", flag_array)
+        shapes = {"point": (t, 2), "motions": (None, 3 * t), "amplitudes": (3 * t, None)}
+        read_arrays(self, {**shapes, "position": (3 * t,), "force": (3 * t,)}, "tools.")
         freeze_arrays(self)
 
     @classmethod
@@ -149,7 +158,13 @@ class Pinned:
     length: float
 
     def __post_init__(self) -> None:
-        """Make arrays read-only."""
+        """Refuse arrays of other shapes, and numbers that are not finite; make arrays read-only."""
+        j = len(_names(self, "motions", "pinned.motions"))
+        read_arrays(self, {"turns": (j,)}, "pinned.", flag_array)
+        read_arrays(self, {"load": (j, None), "tools": (None, j), "magnitude": (None,)}, "pinned.")
+        object.__setattr__(self, "length", real_number(self.length, "pinned.length"))
+        if not self.length > 0 or (self.magnitude < 0).any():
+            raise ProblemError("pinned.length must be positive, and pinned.magnitude not negative")
         freeze_arrays(self)
 
     @classmethod
@@ -175,3 +190,12 @@ class Pinned:
                     f"{done:.6g}); prescribe a displacement that holds it, or balance the loads"
                 )
         return None
+
+
+def _names(instance: object, field: str, what: str) -> tuple[str, ...]:
+    """Read a field of a frozen dataclass as different texts."""
+    names = texts(getattr(instance, field), what)
+    if len({*names}) < len(names):
+        raise ProblemError(f"{what} must be different from each other; found {', '.join(names)}")
+    object.__setattr__(instance, field, names)
+    return names

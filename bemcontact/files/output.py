@@ -25,9 +25,28 @@ def _beside(target: Path) -> Path:
     return target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
 
 
+def real(path: Path) -> Path:
+    """Path without links; `OSError` if links lead back to themselves."""
+    target = Path(os.path.realpath(path))
+    if target.is_symlink():
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
+    return target
+
+
+@contextmanager
+def _named(path: Path, temporary: Path) -> Iterator[None]:
+    """Let errors of writing name the path, not the temporary one or none."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno is None or not str(error.filename or temporary).startswith(str(temporary)):
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
 def ensure_writable(path: Path) -> None:
     """Raise `OSError` with the reason if `whole_file` cannot write this file."""
-    target = path.resolve()
+    target = real(path)
     if target.is_dir():
         raise IsADirectoryError(f"{path} is a directory; name a file in it")
     if target.exists() and not target.is_file():
@@ -48,18 +67,19 @@ def whole_file(path: Path) -> Iterator[Path]:
 
     The temporary file is in the same directory, so that the replacement is one rename; it is removed on a failure.
     """
-    target = path.resolve()
+    target = real(path)
     temporary = _beside(target)
     try:
-        yield temporary
-        os.replace(temporary, target)
+        with _named(path, temporary):
+            yield temporary
+            os.replace(temporary, target)
     finally:
         temporary.unlink(missing_ok=True)
 
 
 def ensure_folder_place(path: Path) -> None:
     """Raise `OSError` with the reason if `whole_folder` cannot write this folder; its contents are not checked."""
-    target = path.resolve()
+    target = real(path)
     if target.exists() and not target.is_dir():
         raise NotADirectoryError(f"{path} is a file; name a folder")
     if target.is_mount():
@@ -95,14 +115,15 @@ def whole_folder(path: Path) -> Iterator[Path]:
     renamed to ``.NAME.xxxxxxxx.old`` before the new one is renamed. If the run is killed between these two steps, both
     folders are complete, but neither has the name.
     """
-    target = path.resolve()
+    target = real(path)
     _remove_abandoned(target)
     temporary = _beside(target)
-    temporary.mkdir()
     try:
-        yield temporary
-        _flush(temporary)
-        _put(temporary, target)
+        with _named(path, temporary):
+            temporary.mkdir()
+            yield temporary
+            _flush(temporary)
+            _put(temporary, target)
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
 

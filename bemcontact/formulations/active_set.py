@@ -18,6 +18,7 @@ from bemcontact.formulations.scaling import ScaledContact
 
 EPS = float(np.finfo(float).eps)
 STEP_LIMIT = 100
+"""Steps allowed beyond one for each point: on slender bodies contact recedes by a point or two in a step."""
 SETTLED = 1e-14
 """Residual of `ScaledContact.residual` that no further step can lower."""
 
@@ -111,7 +112,7 @@ def first_active_set(contact: ScaledContact) -> BoolArray:
     return contact.offset <= R @ contact.amplitudes_of(contact.offset)
 
 
-def primal_dual(contact: ScaledContact, active: BoolArray, limit: int = STEP_LIMIT) -> ActiveSetEnd:
+def primal_dual(contact: ScaledContact, active: BoolArray, limit: int | None = None) -> ActiveSetEnd:
     """Iterate from an active set (n,) until nothing changes, a set comes back, or the limit of steps is reached.
 
     Each step solves `solve_active_set`, then releases the points in tension and adds the points that penetrate. Only
@@ -120,6 +121,7 @@ def primal_dual(contact: ScaledContact, active: BoolArray, limit: int = STEP_LIM
     points: list[tuple[Array, Array]] = []
     residuals: list[float] = []
     visited: set[bytes] = set()
+    limit = STEP_LIMIT + len(active) if limit is None else limit
     while len(points) < limit and active.tobytes() not in visited:
         visited.add(active.tobytes())
         p, a = solve_active_set(contact, active)

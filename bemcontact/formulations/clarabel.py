@@ -3,9 +3,14 @@
 Clarabel is called directly, because cvxpy does not pass on the progress of a solver. Clarabel stops where residuals are
 small beside one, whatever the unit of a row is. So rows and columns are brought to size one before (Ruiz,
 RAL-TR-2001-034), cone by cone, unless the problem is dimensionless already.
+
+No settings serve all programs. Clarabel's own regularization is too weak for Hessians that are semidefinite to
+round-off, a stronger one slows down others. So a few `ATTEMPTS` are made. The residuals of each end are computed anew
+from the data of the program, and they alone decide whether it is an answer.
 """
 
 import warnings
+from collections.abc import Iterator, Mapping
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -17,23 +22,68 @@ from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.solution import Status
 from bemcontact.errors import SolverError
 
-TOLERANCES = 1e-11, 1e-8
-"""Asked of Clarabel one after the other: the second if the first cannot be reached."""
+ASKED, RAY = 1e-11, 1e-13
+"""Tolerances that are asked of Clarabel, for a point and for a ray."""
+AT_ONCE, GOOD, POOR = 1e-10, 1e-8, 1e-5
+"""Residual that ends the attempts; up to which the best of them is an optimum; up to which it is an inaccurate one."""
+PROOF = 1e-6
+"""Error of a ray up to which it is a proof: nothing feasible is then smaller than a million times the data."""
 ITERATIONS = 200
 ROUNDS = 12
 """Iterations of Ruiz's method; each takes the square root of how far rows and columns are from one."""
-FAILED = "InsufficientProgress", "NumericalError", "Unsolved"
-"""Ends of Clarabel without an answer."""
+REFINEMENT = {
+    "iterative_refinement_max_iter": 50,
+    "iterative_refinement_stop_ratio": 1.5,
+    "iterative_refinement_reltol": 1e-14,
+    "iterative_refinement_abstol": 1e-14,
+}
 STATUSES = {
     "optimal": Status.SOLVED,
     "optimal_inaccurate": Status.SOLVED,
     "user_limit": Status.ITERATION_LIMIT,
     "infeasible": Status.INFEASIBLE,
-    "infeasible_inaccurate": Status.INFEASIBLE,
     "unbounded": Status.UNBOUNDED,
-    "unbounded_inaccurate": Status.UNBOUNDED,
+    "infeasible_inaccurate": Status.NO_SOLUTION_FOUND,
+    "unbounded_inaccurate": Status.NO_SOLUTION_FOUND,
 }
 """Status of a cvxpy problem -> ours."""
+
+
+LARGEST_COUNT = 2**32 - 1
+"""Largest number of iterations that Clarabel can count to."""
+
+
+class Attempt(NamedTuple):
+    """Settings of Clarabel, and whether the program is scaled the other way."""
+
+    words: str
+    settings: Mapping[str, Any]
+    rescaled: bool = False
+
+
+ATTEMPTS = (
+    Attempt("", {"static_regularization_constant": 1e-7, **REFINEMENT}),
+    Attempt("with less regularization", {"static_regularization_constant": 1e-8}),
+    Attempt("in another scaling", {"static_regularization_constant": 1e-7, **REFINEMENT}, rescaled=True),
+    Attempt("with more regularization", {"static_regularization_constant": 1e-6, **REFINEMENT}),
+)
+"""Made one after the other until one gives an answer."""
+
+
+class Answer(NamedTuple):
+    """How the attempts on a program ended.
+
+    Parameters
+    ----------
+    progress : (iterations + 1, 2) the objective without its constant, and the residual of the constraints that Clarabel
+        holds against its tolerance; one row less if Clarabel gave up in the last iteration
+    failed : whether all attempts failed, so that the point that is left is no optimum
+    note : which attempt gave the answer, or how inaccurate it is; empty if the first one did what was asked
+    """
+
+    progress: Array
+    failed: bool
+    note: str
 
 
 class _Scaling(NamedTuple):
@@ -44,13 +94,13 @@ class _Scaling(NamedTuple):
     s: float = 1.0
 
 
-def minimize(problem: Any, max_iterations: int | None = None, *, equilibrate: bool = True, size: float = 1.0) -> Array:
+def minimize(
+    problem: Any, max_iterations: int | None = None, *, equilibrate: bool = True, leave_point: bool = False
+) -> Answer:
     """Solve a convex cvxpy problem; its status and values are set as by its own `solve`, which has coarser tolerances.
 
-    Rows and columns are scaled (`equilibrate`), unless the problem is dimensionless: then all variables and right sides
-    are divided by `size`. The result (iterations + 1, 2) is the objective without its constant and the residual of the
-    constraints that Clarabel holds against its tolerance. It has one row less if Clarabel gave up in the last
-    iteration. `SolverError` if Clarabel cannot state or solve the problem.
+    Rows and columns are scaled (`equilibrate`), unless the problem is dimensionless. `SolverError` if Clarabel cannot
+    state the problem, or no attempt is an answer; with `leave_point` the best point is left as an inaccurate one.
     """
     import cvxpy as cp
 
@@ -58,29 +108,118 @@ def minimize(problem: Any, max_iterations: int | None = None, *, equilibrate: bo
         data, chain, inverse = problem.get_problem_data(cp.CLARABEL, solver_opts={})
     except cp.SolverError as error:
         raise SolverError(f"Clarabel cannot solve this model: {error}; state it without integers") from error
-    scaled, scaling = _equilibrated(data) if equilibrate else _divided(data, size)
-    ends = (_solve(scaled, tolerance, max_iterations or ITERATIONS) for tolerance in TOLERANCES)
-    end = next((end for end in ends if str(end[0].status) not in FAILED), None)
-    if end is None:
+    end = _best_end(data, max_iterations, equilibrate=equilibrate)
+    failed = end.residual > POOR and end.status != LIMIT
+    if (failed and not leave_point) or not np.isfinite(end.residual):
         raise SolverError(
             "Clarabel found no solution of this model; look for terms of very different size, or loosen what was added"
         )
-    solution, progress = end
     with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status says the same
-        problem.unpack_results(_unscaled(solution, *scaling), chain, inverse)
-    return progress / np.array([scaling.s, 1.0])
+        problem.unpack_results(_unscaled(end.solution, end.status, end.scaling), chain, inverse)
+    return Answer(end.progress / np.array([end.scaling.s, 1.0]), failed, end.note)
 
 
-def _solve(data: dict[str, Any], tolerance: float, max_iterations: int) -> tuple[Any, Array]:
-    """Clarabel's solution of the cone program of cvxpy, and its progress as of `minimize`."""
+LIMIT = "MaxIterations"
+RAYS = "PrimalInfeasible", "DualInfeasible"
+"""Ends of Clarabel that are proofs."""
+
+
+class _End(NamedTuple):
+    """End of an attempt, with its status as Clarabel names it, and its residuals computed anew."""
+
+    status: str
+    residual: float
+    note: str
+    solution: Any
+    progress: Array
+    scaling: _Scaling
+
+
+def _best_end(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> _End:
+    """The first end that is an answer or at the limit of iterations, or the best one."""
+    ends: list[_End] = []
+    for end in _ends(data, max_iterations, equilibrate=equilibrate):
+        ends.append(end)
+        if end.status in RAYS or end.residual <= AT_ONCE or end.solution.iterations >= (max_iterations or np.inf):
+            return end
+    return min(ends, key=lambda end: end.residual)
+
+
+def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> Iterator[_End]:
+    """Make the attempts."""
+    for attempt in ATTEMPTS:
+        scaled, scaling = _equilibrated(data) if equilibrate is not attempt.rescaled else (data, _Scaling())
+        solution, progress = _solve(scaled, attempt.settings, max_iterations or ITERATIONS)
+        status, residual = _judged(scaled, solution)
+        if status not in RAYS and residual > GOOD and solution.iterations >= (max_iterations or np.inf):
+            status = LIMIT
+        yield _End(status, residual, _note(attempt, status, residual), solution, progress, scaling)
+
+
+def _note(attempt: Attempt, status: str, residual: float) -> str:
+    """Say which attempt this was, unless it is the first, and how inaccurate its end is."""
+    notes = [f"Clarabel answered {attempt.words}, after other attempts"] if attempt.words else []
+    if status not in (*RAYS, LIMIT) and residual > GOOD:
+        notes.append(f"the tolerance asked of the solver was not reached: residual {residual:.0e}")
+    return "; ".join(notes)
+
+
+def _judged(data: dict[str, Any], solution: Any) -> tuple[str, float]:
+    """The status that the residuals of an end allow, and the largest of them: relative for a point, 0 for a proof."""
+    x, z, s = (np.array(part) for part in (solution.x, solution.z, solution.s))
+    A, b, c = data["A"], data["b"], data["c"]
+    curved = _symmetric(data) @ x
+    status = str(solution.status).removeprefix("Almost")
+    if status in RAYS:
+        proved = _is_ray(b, z, A.T @ z) if status == RAYS[0] else _is_ray(c, x, np.append(curved, A @ x + s))
+        return (status, 0.0) if proved else ("Unsolved", np.inf)
+    primal, dual = c @ x + x @ curved / 2, -(b @ z) - x @ curved / 2
+    residuals = (
+        _size(A @ x + s - b) / max(1.0, _size(b) + _size(x) + _size(s)),
+        _size(curved + c + A.T @ z) / max(1.0, _size(c) + _size(x) + _size(z)),
+        abs(primal - dual) / max(1.0, min(abs(primal), abs(dual))),
+        _outside(data["dims"], s, z),
+    )
+    residual = float(np.max(residuals))  # with nan if one is
+    if not np.isfinite(residual):
+        return "Unsolved", np.inf
+    return "Solved" if residual <= GOOD else "AlmostSolved", residual
+
+
+def _symmetric(data: dict[str, Any]) -> Any:
+    """P, of which cvxpy gives all entries."""
+    n = len(data["c"])
+    return csc_array(data["P"]) if "P" in data else csc_array((n, n))
+
+
+def _is_ray(slope: Array, ray: Array, rest: Array) -> bool:
+    """Whether a ray goes down, and by more than the rest, which should vanish, could feign where the slope is large."""
+    return bool(max(1.0, _size(slope)) * _size(rest) <= -PROOF * (slope @ ray))
+
+
+def _outside(dims: Any, s: Array, z: Array) -> float:
+    """How far slacks and multipliers of equations and inequalities are outside; other cones Clarabel never leaves."""
+    inequalities = slice(dims.zero, dims.zero + dims.nonneg)
+    return max(_size(s[: dims.zero]), *(_size(np.minimum(part[inequalities], 0.0)) for part in (s, z)))
+
+
+def _size(values: Array) -> float:
+    """Largest magnitude."""
+    return float(np.abs(values).max(initial=0.0))
+
+
+def _solve(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations: int) -> tuple[Any, Array]:
+    """Clarabel's solution of the cone program of cvxpy, and its progress as of `Answer`."""
     from clarabel import DefaultSettings, DefaultSolver  # pyright: ignore (has no stubs)
     from cvxpy.reductions.solvers.conic_solvers.clarabel_conif import dims_to_solver_cones
 
     settings = DefaultSettings()
-    settings.verbose, settings.max_iter = False, max_iterations
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
-    n = len(data["c"])
-    P = triu(data["P"], format="csc") if "P" in data else csc_array((n, n))
+    settings.verbose, settings.max_iter = False, min(max_iterations, LARGEST_COUNT)
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ASKED
+    settings.tol_infeas_abs = settings.tol_infeas_rel = RAY
+    for name, value in chosen.items():
+        setattr(settings, name, value)
+    P = triu(_symmetric(data), format="csc")
     solver = DefaultSolver(P, data["c"], data["A"], data["b"], dims_to_solver_cones(data["dims"]), settings)
     rows: list[tuple[float, float]] = []
 
@@ -96,11 +235,6 @@ def _solve(data: dict[str, Any], tolerance: float, max_iterations: int) -> tuple
     return solution, progress[np.logical_and.accumulate(np.isfinite(progress).all(axis=1))]
 
 
-def _divided(data: dict[str, Any], size: float) -> tuple[dict[str, Any], _Scaling]:
-    """Variables and right sides over a size, the objective over its square."""
-    return {**data, "b": data["b"] / size, "c": data["c"] / size}, _Scaling(size, 1 / size, size**-2)
-
-
 def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], _Scaling]:
     """Bring min ½xᵀP x + cᵀx, b - A x in cones, to size one.
 
@@ -108,7 +242,7 @@ def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], _Scaling]:
     """
     # by the constraints alone: costs have a unit of their own, which would pull the columns along
     A, c, b = csc_array(data["A"]), data["c"], data["b"]
-    P = csc_array(data["P"]) if "P" in data else csc_array((len(c), len(c)))
+    P = _symmetric(data)
     cone, work = _cone_of_rows(data["dims"]), A.tocoo()
     D, E = np.ones(len(c)), np.ones(len(b))
     for _ in range(ROUNDS):
@@ -138,12 +272,13 @@ def _cone_of_rows(dims: Any) -> IntArray:
     return np.repeat(np.arange(len(sizes)), sizes)
 
 
-def _unscaled(solution: Any, D: Array | float, E: Array | float, s: float) -> SimpleNamespace:
+def _unscaled(solution: Any, status: str, scaling: _Scaling) -> SimpleNamespace:
     """Clarabel's solution of the scaled problem, in the numbers of the problem itself."""
+    D, E, s = scaling
     return SimpleNamespace(
         x=D * np.array(solution.x),
         z=E * np.array(solution.z) / s,
-        status=solution.status,
+        status=status,
         obj_val=solution.obj_val / s,
         solve_time=solution.solve_time,
         iterations=solution.iterations,

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from scipy.linalg import qr
 from scipy.optimize import nnls
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.errors import ProblemError
@@ -195,9 +195,9 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
     ProblemError
         Shapes that do not fit, or entries that are not finite numbers.
     """
-    M, q = np.array(M, float, ndmin=2), np.array(q, float, ndmin=1)
-    n = len(q)
-    if M.shape != (n, n) or not (np.isfinite(M).all() and np.isfinite(q).all()):
+    M, q = np.atleast_2d(real_array(M, "M")), np.atleast_1d(real_array(q, "q"))
+    n = q.size
+    if (M.shape, q.shape) != ((n, n), (n,)) and (n or M.size):
         raise ProblemError(f"M (n, n) and q (n,) of finite numbers are needed; found shapes {M.shape} and {q.shape}")
     U = float(np.abs(q).max(initial=0.0)) or 1.0
     T = U / (float(np.abs(M).sum(axis=1).max(initial=0.0)) or 1.0)

@@ -17,8 +17,8 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace
 from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.clarabel import STATUSES, minimize
-from bemcontact.formulations.complementarity import escape_note, polish
-from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_weights, unscaled
+from bemcontact.formulations.complementarity import ACCEPTED, escape_note, polish
+from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, scaled_weights, unscaled
 from bemcontact.options import FormulationName, SolveOptions, Weights, options_of
 
 NEGLIGIBLE = 1e-10
@@ -108,7 +108,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     ProblemError
         The problem does not carry the weights asked for, or an option has no meaning for QP3.
     SolverError
-        Clarabel broke down.
+        Clarabel broke down, and left no point. A point that it leaves is polished, and a note says what happened.
     """
     options = options_of(FormulationName.QP3, options)
     body, J = scaled(contact), scaled_weights(contact, options.weights)
@@ -122,13 +122,9 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
             "negative part of its Hessian, as a start for the active-set step"
         )
     optimum = _minimized(body, work, options.max_iterations)
-    widest, escape = float(np.abs(body.offset).max(initial=0.0)), None
-    if optimum.status in (Status.UNBOUNDED, Status.INFEASIBLE):
-        escape = escape_note(contact)
-        if widest > 1 and not escape:  # the widest gaps drown the pressures
-            optimum = _minimized(body, work, options.max_iterations, widest)
-    if optimum.status is Status.INFEASIBLE and escape:
+    if optimum.status is Status.INFEASIBLE and (escape := escape_note(contact)):
         notes.append(escape)
+    notes += [optimum.note] if optimum.note else []
     p, u_n, a = unscaled(contact, optimum.pressure, optimum.amplitudes)
     solution = ContactSolution(
         formulation=FormulationName.QP3,
@@ -145,8 +141,18 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
         ),
         notes=tuple(notes),
     )
-    exact = options.weights is not Weights.CONSISTENT
-    return polish(contact, solution) if options.polish and exact and optimum.has_point else solution
+    if not (options.polish and options.weights is not Weights.CONSISTENT and optimum.has_point):
+        return solution
+    polished = polish(contact, solution)
+    return _rescued(contact, polished) if optimum.status is Status.NUMERICAL_FAILURE else polished
+
+
+def _rescued(contact: CondensedContact, solution: ContactSolution) -> ContactSolution:
+    """A solution of which Clarabel gave the start only: solved if the active-set steps led to a contact state."""
+    if scaled(contact).residual(*scaled_point(contact, solution.pressure, solution.rigid_amplitudes)) > ACCEPTED:
+        return solution
+    note = "the active-set steps from the point that Clarabel left led to the contact state"
+    return replace(solution, status=Status.SOLVED, notes=(*solution.notes, note))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -162,10 +168,11 @@ class _Optimum:
     iterations: int
     has_point: bool
     progress: Array
+    note: str
 
 
-def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | None, size: float = 1.0) -> _Optimum:
-    """State the quadratic program in cvxpy, and solve it with pressures and gaps divided by a size."""
+def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | None) -> _Optimum:
+    """State the quadratic program in cvxpy, and solve it."""
     import cvxpy as cp
 
     M, R, ell, load = contact.compliance, contact.rigid_motions, contact.equilibrium, contact.motion_load
@@ -178,7 +185,7 @@ def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | No
         goal, gap, balance = goal + work.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
     program = cp.Problem(cp.Minimize(goal), [gap >= 0, *balance])
     try:
-        progress = minimize(program, max_iterations, equilibrate=False, size=size)
+        answer = minimize(program, max_iterations, equilibrate=False, leave_point=True)
     except SolverError as error:
         raise SolverError(
             "Clarabel found no solution of QP3; check the mesh for very short elements, or solve the "
@@ -186,12 +193,13 @@ def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | No
         ) from error
     has_point = p.value is not None
     return _Optimum(
-        status=STATUSES[str(program.status)],
+        status=Status.NUMERICAL_FAILURE if answer.failed else STATUSES[str(program.status)],
         pressure=np.asarray(p.value, float) if has_point else np.zeros(n),
         amplitudes=np.asarray(a.value, float) if has_point and a is not None else np.zeros(k),
         iterations=program.solver_stats.num_iters or 0,
         has_point=has_point,
-        progress=progress + np.array([work.constant, 0.0]),
+        progress=answer.progress + np.array([work.constant, 0.0]),
+        note=answer.note,
     )
 
 

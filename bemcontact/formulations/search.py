@@ -4,20 +4,23 @@ import json
 import os
 from dataclasses import dataclass, replace
 from itertools import groupby
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arguments import text_of_argument
+from bemcontact.arrays import Array, real_array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, LocalSearch, Penalty, Status, Trace, traces_in_turn
-from bemcontact.errors import OptionError, SpecError
+from bemcontact.errors import OptionError, ProblemError, SpecError
 from bemcontact.files.text import text_of
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.local_solver import QPResult, QPStatus
 from bemcontact.formulations.program import Program, minimize
 from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
-from bemcontact.options import SolveOptions, StartName, Weights, ensure_whole
+from bemcontact.options import STARTS, SolveOptions, StartName, Weights, ensure_whole
+from bemcontact.plain_text import escaped
 
 SPREAD = 2.0
 """Largest random pressure over T, and size of a random displacement over U."""
@@ -71,10 +74,10 @@ class Start:
         """Refuse all but two equally long vectors of finite numbers; make them read-only."""
         for name in ("pressure", "displacement"):
             try:
-                vector = np.array(getattr(self, name), float, ndmin=1)
-            except (TypeError, ValueError):
-                vector = np.array([np.nan])
-            if vector.ndim != 1 or not np.isfinite(vector).all():
+                vector = np.atleast_1d(real_array(getattr(self, name), f"the {name} of a start")).copy()
+            except ProblemError as error:
+                raise OptionError(f"{error}; give finite numbers, one for each contact point") from None
+            if vector.ndim != 1:
                 raise OptionError(f"the {name} of a start needs finite numbers, one for each contact point")
             vector.setflags(write=False)
             object.__setattr__(self, name, vector)
@@ -83,27 +86,33 @@ class Start:
                 f"a start needs one pressure and one displacement for each contact point; found {self.pressure.size} "
                 f"pressures and {self.displacement.size} displacements"
             )
+        text_of_argument(self.label, "the label of a start")
 
 
 def read_start(path: str | os.PathLike[str]) -> Start:
     """Read a start from a file that `bemcontact solve --json` wrote; `SpecError` says what is wrong with it."""
-    name, text = Path(path).name, text_of(path)
+    name, text = escaped(os.fspath(path)), text_of(path)
     try:
-        record = json.loads(text)
+        record = json.loads(text, parse_int=float)
     except json.JSONDecodeError as error:
         raise SpecError(
-            f"{path}:{error.lineno}:{error.colno}: is no JSON ({error.msg}); name a file of results"
+            f"{name}:{error.lineno}:{error.colno}: is no JSON ({error.msg}); name a file of results"
         ) from None
+    except RecursionError:
+        raise SpecError(f"{name}: has too many nested brackets; name a file of results") from None
     lists = []
     for key in ("pressure", "normal_displacement"):
         values = record.get(key) if isinstance(record, dict) else None
-        if not isinstance(values, list) or not all(type(value) in (int, float) for value in values):
+        if not isinstance(values, list) or not all(type(value) is float and isfinite(value) for value in values):
             raise SpecError(
-                f"{path}: has no list '{key}' of numbers, one for each contact point; name a file that "
+                f"{name}: has no list '{key}' of numbers, one for each contact point; name a file that "
                 "`bemcontact solve --json FILE` has written"
             )
-        lists.append(values)
-    return Start(pressure=np.array(lists[0], float), displacement=np.array(lists[1], float), label=f"file {name}")
+        lists.append(np.array(values))
+    try:
+        return Start(pressure=lists[0], displacement=lists[1], label=f"file {escaped(Path(path).name)}")
+    except OptionError as error:
+        raise SpecError(f"{name}: {error}") from None
 
 
 def with_start_read(options: SolveOptions) -> SolveOptions:
@@ -132,7 +141,7 @@ def draw_starts(contact: CondensedContact, count: int, seed: int = 0) -> tuple[S
     The same seed gives the same starts, in any units, and fewer starts are the first of more. `OptionError` for a count
     below 1, a negative seed, or numbers that are not whole.
     """
-    ensure_whole(count, "number of starts", 1)
+    ensure_whole(count, STARTS, 1)
     ensure_whole(seed, "seed", 0)
     rng = np.random.default_rng(seed)
     U, T = contact.scales

@@ -4,22 +4,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
-from typing import Any
+from typing import Any, cast
 
 import cvxpy as cp
 import numpy as np
 
+from bemcontact.arguments import instance_of, real_number, shown
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import qp3
-from bemcontact.formulations.clarabel import minimize
+from bemcontact.formulations.clarabel import Answer, minimize
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
 from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
 from bemcontact.modelling.model_result import ModelResult, judged, read_back, solution_at
 from bemcontact.modelling.parameters import Parameters, Value
-from bemcontact.options import Weights
+from bemcontact.options import Weights, ensure_whole
 
 
 class ContactProblem(cp.Problem):
@@ -48,7 +49,8 @@ class ContactModel:
     displacement : (n,) u_n = Δ1 + M p + R a [L]
     tool_displacement : (t, 3) x, y [L] and rotation [rad] of the tools; None without tools
     objective : F3 [p L²], which is zero at a contact state; in equilibrium it is pᵀJ gap
-    constraints : "no_penetration", "no_tension" and, with free motions, "equilibrium"
+    constraints : "no_penetration", "no_tension" and, with free motions, "equilibrium", scaled; `duals` has their
+        multipliers in the user's units
     scales : displacement [L] and pressure [p] that the variables behind the expressions are divided by
     notes : warnings to the user
     """
@@ -109,10 +111,50 @@ class ContactModel:
             There is no such zone.
         """
         names = self.original.zone_names
-        if zone is not None and zone not in names:
-            raise ProblemError(f"there is no contact zone '{zone}'; there are: {', '.join(names)}")
+        if zone is not None and not (isinstance(zone, str) and zone in names):
+            raise ProblemError(f"there is no contact zone {shown(zone)}; there are: {', '.join(names)}")
         inside = np.ones(self.original.size, bool) if zone is None else self.original.zone == names.index(zone)
         return self.original.forces(inside.astype(float)).T @ self.pressure
+
+    @property
+    def duals(self) -> dict[str, Array]:
+        """Multipliers of the named constraints, right after a solve, in the user's units.
+
+        "no_penetration" (n,) [p], "no_tension" (n,) [L] and "equilibrium" (k,) belong to w gap >= 0, w p >= 0 and
+        ℓᵀp + load = 0. If the first or the second zero becomes s at a point, the least objective changes by the
+        multiplier times s. At a contact state they are the pressure, the gap and the motions themselves.
+
+        Raises
+        ------
+        ProblemError
+            No problem with these constraints has been solved to an optimum.
+        """
+        values = {name: constraint.dual_value for name, constraint in self.constraints.items()}
+        if any(value is None for value in values.values()):
+            raise ProblemError("there are no multipliers yet; solve the model to an optimum first")
+        duals = {name: np.asarray(value, float) / self._dual_units[name] for name, value in values.items()}
+        if "equilibrium" in duals:
+            duals["equilibrium"] = duals["equilibrium"] - self._carried_by_form
+        return duals
+
+    @property
+    def _carried_by_form(self) -> Array:
+        """What `_work` adds to the multiplier of equilibrium (k,), because it sees P p and p0 apart.
+
+        Its gradient lacks (I - Pᵀ)H(p - ½ p0) = ℓ c, which ℓᵀp = -load makes good: this is c.
+        """
+        body, (U, _) = scaled(self.contact, self.scales), self.scales
+        p = cast(Array, self.pressure.variables()[0].value) - body.balancing_pressure / 2
+        weighted = body.weights[:, None] * body.compliance
+        R, ell = body.rigid_motions, body.equilibrium
+        return U / motion_sizes(self.original) * np.linalg.solve(R.T @ ell, R.T @ ((weighted + weighted.T) @ p))
+
+    @cached_property
+    def _dual_units(self) -> dict[str, Array]:
+        """What the multipliers of the scaled constraints are divided by."""
+        (U, T), w = self.scales, self.original.weights
+        units = {"no_penetration": U * w, "no_tension": T * w}
+        return units | {"equilibrium": T * w.max() * motion_sizes(self.original)}
 
     @property
     def contact(self) -> CondensedContact:
@@ -140,6 +182,18 @@ class ContactModel:
             raise ProblemError(f"extra_objective is an expression, which is added to F3 and minimized; found {kind}")
         if isinstance(extra_constraints, cp.Constraint):
             raise ProblemError("extra_constraints is a list of constraints; put the one that is given into brackets")
+        if not isinstance(extra_constraints, Sequence) or not all(map(_is_constraint, extra_constraints)):
+            raise ProblemError(
+                "extra_constraints is a list of constraints, such as [model.pressure <= 2.0]; found "
+                f"{shown(extra_constraints)}"
+            )
+        if isinstance(extra_objective, cp.Expression):
+            if not extra_objective.is_scalar() or extra_objective.is_complex():
+                raise ProblemError(
+                    f"extra_objective must be one real number, and its shape is {extra_objective.shape}; sum it"
+                )
+        elif extra_objective is not None:
+            extra_objective = real_number(extra_objective, "extra_objective")
         goal = self.objective if extra_objective is None else self.objective + extra_objective
         problem = ContactProblem(cp.Minimize(goal), [*self.constraints.values(), *extra_constraints])
         ensure_convex(problem)
@@ -176,18 +230,21 @@ class ContactModel:
         ProblemError
             As in `problem`, or if both a problem and additions are given.
         SolverError
-            Clarabel cannot state the model, or breaks down.
+            Clarabel cannot state the model, or none of several attempts leads to an optimum.
         """
-        added = (
-            extra_objective is not None or isinstance(extra_constraints, cp.Constraint) or len(extra_constraints) > 0
-        )
+        several = isinstance(extra_constraints, Sequence) and not isinstance(extra_constraints, cp.Constraint)
+        added = extra_objective is not None or not several or len(extra_constraints) > 0
+        if max_iterations is not None:
+            ensure_whole(max_iterations, "limit of iterations", 1)
+        if problem is not None:
+            instance_of(problem, cp.Problem, "problem", "model.problem makes one")
         if problem is not None and added:
             raise ProblemError("give either a problem that was made before, or what is to be added, not both")
         chosen = problem or (self.problem(extra_objective, extra_constraints) if added else self._pure)
         if chosen is self._pure and (result := self._from_last()) is not None:
             return result
-        minimize(chosen, max_iterations)
-        return self.result(chosen)
+        answer = minimize(chosen, max_iterations, leave_point=chosen is self._pure)
+        return self._read_back(chosen, answer)
 
     def _from_last(self) -> ModelResult | None:
         """The contact state by a few active-set steps from the last solve; None if they do not lead to one."""
@@ -202,6 +259,10 @@ class ContactModel:
         self.pressure.variables()[0].value = solution.pressure / T
         if motions is not None:
             motions.variables()[0].value = solution.rigid_amplitudes * (motion_sizes(self.original) / U)
+        p, a = solution.pressure, solution.rigid_amplitudes
+        for (name, constraint), value in zip(self.constraints.items(), (p, contact.gap(p, a), a), strict=False):
+            own = self._carried_by_form if name == "equilibrium" else 0.0
+            constraint.save_dual_value(self._dual_units[name] * (value + own))
         return result
 
     def result(self, problem: cp.Problem) -> ModelResult:
@@ -216,6 +277,11 @@ class ContactModel:
         ProblemError
             It has not been solved, or does not contain the pressure of the model.
         """
+        instance_of(problem, cp.Problem, "problem", "model.problem makes one")
+        return self._read_back(problem, None)
+
+    def _read_back(self, problem: cp.Problem, answer: Answer | None) -> ModelResult:
+        """The result of a problem, with the answer of Clarabel if it was called here."""
         parts = zip(problem.constraints, self.constraints.values(), strict=False)
         pure = len(problem.constraints) == len(self.constraints) and all(one is other for one, other in parts)
         return read_back(
@@ -223,6 +289,7 @@ class ContactModel:
             problem,
             self.pressure,
             self.motions,
+            answer,
             added=not pure or problem.objective.expr is not self.objective,
         )
 
@@ -232,9 +299,12 @@ def model(contact: CondensedContact) -> ContactModel:
 
     Raises
     ------
+    ProblemError
+        It is no condensed contact.
     NotConvexError
         The Hessian has a negative eigenvalue on the equilibrium space, of more than a hundredth of the largest.
     """
+    instance_of(contact, CondensedContact, "contact", "bemcontact.condense makes one of a problem")
     U, T = scales = typical_scales(contact)
     problem, given = scaled(contact, scales), Parameters.of(contact)
     n, k = contact.rigid_motions.shape
@@ -259,6 +329,11 @@ def model(contact: CondensedContact) -> ContactModel:
         scales=scales,
         notes=notes,
     )
+
+
+def _is_constraint(item: object) -> bool:
+    """Whether cvxpy takes an item as a constraint: a comparison of numbers, True or False, is one too."""
+    return isinstance(item, cp.Constraint | bool | np.bool_)
 
 
 def ensure_convex(problem: cp.Problem) -> None:

@@ -12,7 +12,7 @@ from bemcontact.assessment.residual import Residuals, residuals
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.clarabel import STATUSES
+from bemcontact.formulations.clarabel import STATUSES, Answer
 from bemcontact.formulations.complementarity import escape_note, polish
 
 SEEN = 1e-5
@@ -65,16 +65,20 @@ def read_back(
     problem: cp.Problem,
     pressure: cp.Expression,
     motions: cp.Expression | None,
+    answer: Answer | None,
     *,
     added: bool,
 ) -> ModelResult:
     """Take the arrays out of a solved problem and assess them; `added` if it is more than the contact problem.
 
+    `answer` is that of Clarabel, None if the user solved the problem.
+
     `ProblemError` if the problem has not been solved, has no pressure of the model, or is not the last one solved.
     """
     if problem.status is None:
         raise ProblemError("the problem has not been solved; solve it first, or let model.solve do both")
-    status = STATUSES.get(problem.status, Status.NUMERICAL_FAILURE)
+    failed = answer is not None and answer.failed
+    status = Status.NUMERICAL_FAILURE if failed else STATUSES.get(problem.status, Status.NUMERICAL_FAILURE)
     _ensure_of_the_model(problem, pressure)
     if pressure.value is None:
         return ModelResult(status=status, words=_without_optimum(contact, status, added=added))
@@ -83,10 +87,17 @@ def read_back(
         solution_at(contact, pressure, motions, str(statistics.solver_name).capitalize()),
         status=status,
         iterations=int(statistics.num_iters or 0),
-        notes=("the tolerance asked of the solver was not reached",) if problem.status == INACCURATE else (),
+        notes=_notes(problem, answer),
     )
     result = judged(contact, solution if added else polish(contact, solution), added=added)
     return replace(result, objective=float(value)) if added else result
+
+
+def _notes(problem: cp.Problem, answer: Answer | None) -> tuple[str, ...]:
+    """Say which attempt of Clarabel gave the answer, and whether an answer is inaccurate."""
+    if answer is not None:
+        return (answer.note,) if answer.note else ()
+    return ("the tolerance asked of the solver was not reached",) if problem.status == INACCURATE else ()
 
 
 def solution_at(
@@ -113,7 +124,7 @@ def judged(contact: CondensedContact, solution: ContactSolution, *, added: bool)
     gap = contact.initial_gap + solution.displacement
     return ModelResult(
         status=solution.status,
-        words=_words(solution.status, certificate, recomputed, added=added),
+        words=_words(solution, certificate, recomputed, added=added),
         contact_state=not certificate.violation,
         objective=float(contact.weights @ (solution.pressure * gap)),
         pressure=solution.pressure,
@@ -152,9 +163,10 @@ def _without_optimum(contact: CondensedContact, status: Status, *, added: bool) 
             return f"No optimum was found: the solver {status.words}."
 
 
-def _words(status: Status, certificate: Certificate, recomputed: Residuals, *, added: bool) -> str:
+def _words(solution: ContactSolution, certificate: Certificate, recomputed: Residuals, *, added: bool) -> str:
     """The assessment in words."""
-    cut = "" if status is Status.SOLVED else f" The solver {status.words}."
+    cut = "" if solution.status is Status.SOLVED else f" The solver {solution.status.words}."
+    cut += "".join(f" {note[0].upper()}{note[1:]}." for note in solution.notes) if added else ""
     if certificate.violation and added:
         return f"This is the {NOT_CONTACT}: {certificate.violation}.{cut}"
     if added:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any, cast
 
 import cvxpy as cp
 import numpy as np
@@ -11,6 +12,37 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 
 Value = cp.Expression | Array
+
+
+class RowParameter(cp.Parameter):
+    """A parameter of cvxpy that reads a value as NumPy does; cvxpy itself reads nested lists by columns."""
+
+    @property
+    def value(self) -> Any:
+        """The value; None before there is one."""
+        return cast(Any, cp.Parameter.value).fget(self)
+
+    @value.setter
+    def value(self, given: Any) -> None:
+        """Set the value; `ProblemError` unless it is an array of finite numbers in the shape of the parameter."""
+        cast(Any, cp.Parameter.value).fset(self, None if given is None else _numbers(given, self.shape, self.name()))
+
+
+def _numbers(given: Any, shape: tuple[int, ...], name: str) -> Array:
+    """Read an array of finite numbers, lists by rows."""
+    try:
+        if np.ma.is_masked(given):
+            raise ProblemError(f"the value of {name} has masked entries; fill them with numbers")
+        stated = np.asarray(given)
+    except ValueError:
+        raise ProblemError(f"the value of {name} has rows of unequal length; give an array {shape}") from None
+    if stated.dtype.kind not in "iuf":
+        raise ProblemError(f"the value of {name} is an array {shape} of real numbers; found {given!r:.80}")
+    if stated.shape != shape:
+        raise ProblemError(f"the value of {name} is an array {shape}; found {stated.shape}")
+    if not np.isfinite(stated).all():
+        raise ProblemError(f"the value of {name} has entries that are not finite numbers")
+    return stated.astype(float)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,10 +72,10 @@ class Parameters:
         force = (tools.force - cases.force @ cases.factors).reshape(-1, 3)
         return cls(
             rest=rest,
-            initial_gap=cp.Parameter(contact.size, name="initial_gap", value=rest.initial_gap),
-            case_factors=cp.Parameter(len(cases), name="case_factors", value=cases.factors) if len(cases) else None,
-            tool_position=cp.Parameter((len(tools), 3), name="tool_position", value=position) if len(tools) else None,
-            tool_force=cp.Parameter((len(tools), 3), name="tool_force", value=force) if len(tools) else None,
+            initial_gap=RowParameter(contact.size, name="initial_gap", value=rest.initial_gap),
+            case_factors=RowParameter(len(cases), name="case_factors", value=cases.factors) if len(cases) else None,
+            tool_position=RowParameter((len(tools), 3), name="tool_position", value=position) if len(tools) else None,
+            tool_force=RowParameter((len(tools), 3), name="tool_force", value=force) if len(tools) else None,
         )
 
     @cached_property

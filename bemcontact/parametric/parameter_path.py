@@ -11,6 +11,7 @@ from pydantic import computed_field
 
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.footprint import ContactInterval, Footprint, footprint
+from bemcontact.assessment.penetration import Penetration
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.parametric.path import LoadPath
@@ -75,6 +76,10 @@ class ParameterPath(Leaf):
     """Accuracy of the mesh at the start."""
     end_accuracy: Accuracy
     """Accuracy of the mesh at the end."""
+    penetration: Penetration | None = None
+    """Deepest penetration of the boundary at a breakpoint that is not tolerated; null if there is none."""
+    penetrates_at: float | None = None
+    """Value of the parameter there; null if there is none."""
 
     def __repr__(self) -> str:
         """One line: key, values, the path."""
@@ -101,8 +106,12 @@ class ParameterPath(Leaf):
     @computed_field
     @property
     def certified(self) -> bool:
-        """Whether the path reaches its end, and each state on it is proved to be the contact state, the only one."""
-        return self.path.complete and self.path.unique and self.path.residual <= RESIDUAL
+        """Whether the path reaches its end, and each state on it is proved to be the contact state, the only one.
+
+        At breakpoints the body penetrates no rigid surface either.
+        """
+        proved = self.path.complete and self.path.unique and self.path.residual <= RESIDUAL
+        return proved and self.penetration is None
 
     def value(self, t: float) -> float:
         """The parameter at t of the path; round-off of its ends counts as zero."""

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from pydantic import computed_field
 
+from bemcontact.arguments import real_number, shown, whole_number
 from bemcontact.arrays import Array, BoolArray, freeze_arrays
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -163,7 +164,7 @@ class LoadPath(Leaf):
 
     def contact(self, t: float) -> CondensedContact:
         """The contact problem at t; `ProblemError` where the path does not reach."""
-        self._ensure_reached(t)
+        t = self._reached(t)
         first, last = self.start, self.end
 
         def between(one: Array, other: Array) -> Array:
@@ -206,7 +207,7 @@ class LoadPath(Leaf):
         ProblemError
             The path does not reach t.
         """
-        self._ensure_reached(t)
+        t = self._reached(t)
         i = int(np.searchsorted(self.parameter, t, side="right")) - 1
         j = min(i + 1, len(self.parameter) - 1)
         width = self.parameter[j] - self.parameter[i]
@@ -217,6 +218,8 @@ class LoadPath(Leaf):
 
     def breakpoint(self, i: int) -> ContactSolution:
         """The contact state at breakpoint i, of `contact(parameter[i])`."""
+        if whole_number(i, "number of a breakpoint", 0) >= len(self.parameter):
+            raise ProblemError(f"there is no breakpoint {shown(i)}: there are {len(self.parameter)}, numbered from 0")
         return self._solution(float(self.parameter[i]), self.pressure[i], self.rigid_amplitudes[i])
 
     def _solution(self, t: float, pressure: Array, amplitudes: Array) -> ContactSolution:
@@ -236,13 +239,15 @@ class LoadPath(Leaf):
         """Intervals, peak and resultant at t; the ends of intervals are not linear in t."""
         return footprint(self.contact(t), self.at(t))
 
-    def _ensure_reached(self, t: float) -> None:
+    def _reached(self, t: float) -> float:
         """Refuse a t outside of the path."""
+        t = real_number(t, "t of a path")
         if not self.begins_at <= t <= self.ends_at:
             raise ProblemError(
                 f"the path reaches from {self.begins_at:g} to {self.ends_at:g}, there is nothing at {t:g}"
                 + (f": {self.note}" if self.note else "")
             )
+        return t
 
 
 def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 from pydantic import computed_field
 
-from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.arguments import shown
+from bemcontact.arrays import Array, IntArray, freeze_arrays, real_array
 from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint, resting_ends
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
@@ -94,8 +94,8 @@ class Sensitivities(Leaf):
 
     def __getitem__(self, key: str) -> Sensitivity:
         """Return the sensitivity to a parameter; `ProblemError` if there is none of that key."""
-        if key not in self.each:
-            raise ProblemError(f"there is no sensitivity to '{key}'; there are: {', '.join(self.each) or 'none'}")
+        if not isinstance(key, str) or key not in self.each:
+            raise ProblemError(f"there is no sensitivity to {shown(key)}; there are: {', '.join(self.each) or 'none'}")
         return self.each[key]
 
     def __iter__(self) -> Iterator[str]:
@@ -144,7 +144,7 @@ def sensitivities(
     SingularSystemError
         The equations of contact are singular to working precision.
     """
-    wanted = contact.changes if changes is None else {key: _fitting(contact, key, *changes[key]) for key in changes}
+    wanted = contact.changes if changes is None else {key: _fitting(contact, key, changes[key]) for key in changes}
     state = complementarity.solve(contact) if solution is None else solution
     if state.status is not Status.SOLVED:
         why = "; ".join(state.notes) or state.status.words
@@ -179,16 +179,19 @@ def modulus_change(contact: CondensedContact, doubled: CondensedContact, modulus
     return Change(-(loads + M @ pressure) / modulus, np.zeros(contact.free_motions))
 
 
-def _fitting(contact: CondensedContact, key: str, offset: ArrayLike, load: ArrayLike) -> Change:
+def _fitting(contact: CondensedContact, key: str, change: Change) -> Change:
     """Refuse a change that does not fit the problem."""
     n, k = contact.rigid_motions.shape
-    change = Change(np.array(offset, float), np.array(load, float))
-    shapes = change.offset.shape, change.motion_load.shape
-    if shapes != ((n,), (k,)):
-        raise ProblemError(f"{key}: a change needs an offset ({n},) and a load ({k},); found shapes {shapes}")
-    if not (np.isfinite(change.offset).all() and np.isfinite(change.motion_load).all()):
-        raise ProblemError(f"{key}: a change needs finite numbers")
-    return change
+    if not isinstance(change, tuple) or len(change) != 2:
+        raise ProblemError(
+            f"{key}: a change needs an offset ({n},) and a load ({k},), as in bemcontact.Change(offset, load); found "
+            f"{shown(change)}"
+        )
+    offset, load = change
+    return Change(
+        real_array(offset, f"{key}: the offset of the change", (n,)),
+        real_array(load, f"{key}: the load of the change", (k,)),
+    )
 
 
 def _sensitivity(

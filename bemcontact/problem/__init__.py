@@ -34,10 +34,10 @@ from bemcontact.problem.reference import Table as Table
 from bemcontact.problem.reference import Uniform as Uniform
 from bemcontact.problem.reference import Values as Values
 from bemcontact.problem.rigid_surface import Circle as Circle
-from bemcontact.problem.rigid_surface import Closest as Closest
 from bemcontact.problem.rigid_surface import DeflectedContour as DeflectedContour
 from bemcontact.problem.rigid_surface import Plane as Plane
-from bemcontact.problem.rigid_surface import Polyline as Polyline
 from bemcontact.problem.rigid_surface import RigidSurface as RigidSurface
 from bemcontact.problem.rigid_surface import Shape as Shape
-from bemcontact.problem.rigid_surface import Spline as Spline
+from bemcontact.problem.surface_lines import Closest as Closest
+from bemcontact.problem.surface_lines import Polyline as Polyline
+from bemcontact.problem.surface_lines import Spline as Spline

@@ -5,7 +5,8 @@ The loops enclose one body: they do not cross, they have the right orientation, 
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from math import dist, pi
+from itertools import islice
+from math import dist
 from typing import Self
 
 import numpy as np
@@ -13,22 +14,26 @@ from pydantic import model_validator
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
-from bemcontact.problem.curves import CircularArc, Curve, Edge
-from bemcontact.problem.geometry import AnyEdge, Arc, Grading, Line, LoopSpec, Place
-from bemcontact.problem.validation import Point, SpecModel, unknown_word, validation_error
+from bemcontact.problem.closeness import near_miss, sagitta
+from bemcontact.problem.closing import JOINT_TOLERANCE, gap_issues, other_way_round
+from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc
+from bemcontact.problem.geometry import AnyEdge, Arc, Grading, LoopSpec, Place
+from bemcontact.problem.validation import LARGEST_NUMBER, Point, SpecModel, unknown_word, validation_error
 
 RADIUS_TOLERANCE = 1e-6
 """Relative difference up to which the radii at both ends of an arc agree: users round coordinates."""
-JOINT_TOLERANCE = 1e-9
-"""Distance of two edge ends, relative to the size of the body, up to which they are one point."""
 ON_EDGE = 1e-3
 """Distance of a point from an edge, relative to its length, up to which the point is on it: users round."""
 APART = 1e-10
 """Difference of two fractions of the length of an edge below which no element fits between them: round-off of nodes."""
 ROUND_OFF = 1e-12
 """Difference of two fractions of the length of an edge below which they are the same."""
+MOST_TRIED = 20
+"""Number of arcs that are turned round to see whether that mends a boundary."""
 TOUCHING = 1e-9
 """Distance of two edges, relative to the size of the body, up to which they touch."""
+FARTHEST = 1e8
+"""Largest coordinate or radius over the size of the body: eight digits are left for the shape."""
 
 
 class Boundary(SpecModel):
@@ -48,14 +53,33 @@ class Boundary(SpecModel):
             *(issue for path, loop in loops for issue in _unknown_joints(path, loop)),
         ]
         if not issues:
+            issues = [issue for path, loop in loops for issue in _out_of_range(path, loop, self.size)]
+        if not issues:
             issues = [issue for path, loop in loops for issue in _ill_joined(path, loop, self.size)]
         if not issues:
-            issues = loop_issues(self.loops, self.loop_paths)
+            issues = [*self._with_hints(loop_issues(self.loops, self.loop_paths))]
             for (path, loop), joined in zip(loops, self.loops, strict=True):
                 issues += _misplaced_ends(path, loop, joined)
         if issues:
             raise validation_error("Boundary", issues)
         return self
+
+    def _with_hints(self, issues: Sequence[Issue]) -> Iterator[Issue]:
+        """Add to issues of loops the arc that would mend all of them if it ran the other way round its center."""
+        hint = self._hint_of_direction() if issues else ""
+        return (Issue(path=issue.path, message=issue.message + hint) for issue in issues)
+
+    def _hint_of_direction(self) -> str:
+        """Name the arc that leaves no issue of loops if it runs the other way round; empty if there is none."""
+        places = [(number, i) for number, loop in enumerate(self.loop_specs) for i in range(len(loop))]
+        changes = ((*place, other_way_round(self.loop_specs[place[0]][place[1]])) for place in places)
+        for number, i, other in islice((change for change in changes if change[2]), MOST_TRIED):
+            loop = self.loop_specs[number]
+            assert other is not None
+            joined = _joined([*loop[:i], other[0], *loop[i + 1 :]])
+            if not loop_issues([*self.loops[:number], joined, *self.loops[number + 1 :]], self.loop_paths):
+                return f"; or does '{loop[i].name}' run the wrong way round its center? Then give {other[1]}"
+        return ""
 
     @property
     def loop_specs(self) -> tuple[tuple[AnyEdge, ...], ...]:
@@ -135,14 +159,35 @@ def _unknown_joints(path: KeyPath, loop: Sequence[AnyEdge]) -> Iterator[Issue]:
             yield Issue(path=(*path, i), message=message)
 
 
+def _out_of_range(path: KeyPath, loop: Sequence[AnyEdge], size: float) -> Iterator[Issue]:
+    """Issues of a body too small to compute with, and of coordinates and radii that leave no digits for its shape."""
+    if size < 1 / LARGEST_NUMBER:
+        message = f"the body has the size {size:.3g}, which is too small to compute with; choose another unit of length"
+        yield Issue(path=path, message=message)
+        return
+    for i, joined in enumerate(_joined(loop)):
+        curve = joined.curve
+        round_parts = (curve.center, curve.radii) if isinstance(curve, CircularArc | EllipticArc) else ()
+        if issue := far_issue((*path, i), (joined.start, joined.end, *round_parts), size):
+            yield issue
+
+
+def far_issue(path: KeyPath, lengths: object, size: float) -> Issue | None:
+    """Issue of coordinates or radii that are too large beside the size of the body; None if they are not."""
+    largest = float(np.abs(np.asarray(lengths, float)).max())
+    if largest <= FARTHEST * size:
+        return None
+    what = f"coordinates or radii of {largest:.3g} beside a body of the size {size:.3g} leave too few digits"
+    return Issue(path=path, message=f"{what}; move the origin to the body, or take a line or plane for a wide arc")
+
+
 def _ill_joined(path: KeyPath, loop: Sequence[AnyEdge], size: float) -> Iterator[Issue]:
     """Issues of gaps between edges, edges without length, and arcs whose ends are not on one circle."""
+    if gaps := [*gap_issues(path, loop, size)]:
+        yield from gaps
+        return
     for i, (edge, joined) in enumerate(zip(loop, _joined(loop), strict=True)):
-        before, start = loop[i - 1], edge.own_ends()[0]
-        end = before.own_ends()[1]
-        if start and end and dist(start, end) > JOINT_TOLERANCE * size:
-            yield Issue(path=(*path, i, *_start_key(edge)), message=_gap(edge, before, start, end))
-        elif joined.length <= JOINT_TOLERANCE * size:
+        if joined.length <= JOINT_TOLERANCE * size:
             yield Issue(path=(*path, i), message=f"'{edge.name}' has no length; {_remedy_for_no_length(edge)}")
         elif isinstance(joined.curve, CircularArc):
             first, last = joined.curve.radii
@@ -150,28 +195,6 @@ def _ill_joined(path: KeyPath, loop: Sequence[AnyEdge], size: float) -> Iterator
                 distances = f"its start has the distance {first:.9g} from the center, its end {last:.9g}"
                 message = f"'{edge.name}' is not a circular arc: {distances}; correct one point or the center"
                 yield Issue(path=(*path, i), message=message)
-
-
-def _gap(edge: AnyEdge, before: AnyEdge, start: Point, end: Point) -> str:
-    """Describe the gap between an edge and the previous one."""
-    where = f"'{edge.name}' starts at {_coordinates(start)}, but '{before.name}' before it ends at {_coordinates(end)}"
-    remedy = "leave the start out to join them" if edge.has_coordinates() else "correct one of them"
-    if not edge.has_coordinates() and before.has_coordinates():
-        remedy = f"leave the end of '{before.name}' out to join them"
-    suspects = dict.fromkeys(f"'{item.name}'" for item in (before, edge) if _maybe_in_radians(item))
-    hint = f"; angles are in degrees, but those of {' and '.join(suspects)} may be in radians" if suspects else ""
-    return f"the loop is open: {where}, {dist(start, end):.6g} away; {remedy}{hint}"
-
-
-def _maybe_in_radians(edge: AnyEdge) -> bool:
-    """Whether the angles differ by at most a full turn (rounded) in radians."""
-    angles = None if isinstance(edge, Line) else edge.angles
-    return angles is not None and abs(angles[1] - angles[0]) <= 2.01 * pi
-
-
-def _start_key(edge: AnyEdge) -> KeyPath:
-    """Key that gives the start of an edge."""
-    return ("start",) if edge.has_coordinates() else ("angles",)
 
 
 def _remedy_for_no_length(edge: AnyEdge) -> str:
@@ -278,13 +301,15 @@ def _crossings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Ite
     lines = [edge.polyline() for edge, _ in placed]
     tolerance = TOUCHING * float(np.hypot(*np.ptp(np.vstack(lines), axis=0)))
     reported: set[int] = set()
-    for i, j in _pairs_close_by(lines, tolerance):
+    for i, j in _pairs_close_by(lines, tolerance + 2 * max(sagitta(edge) for edge, _ in placed)):
         (one, _), (other, path) = placed[i], placed[j]
         if j in reported:
             continue
         point = first_meeting(lines[i], lines[j], tolerance, itself=i == j)
         if point is None and i != j and dist(one.start, other.start) <= tolerance:
             point = one.start
+        if point is None and i != j:
+            point = near_miss(one, other)
         if point is not None:
             reported.add(j)
             what = "itself" if i == j else f"'{one.name}'"

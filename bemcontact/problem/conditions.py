@@ -1,15 +1,15 @@
 """Conditions on the edges of the body (displacement, traction, pressure) and loads on its volume."""
 
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import GetJsonSchemaHandler, model_validator
+from pydantic import AfterValidator, GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from bemcontact.arrays import Array
-from bemcontact.problem.validation import Number, Point, Positive, SpecModel, described, invalid
+from bemcontact.problem.validation import Number, Point, Positive, SpecModel, described, invalid, not_tiny
 
 
 class Field(SpecModel):
@@ -91,12 +91,18 @@ class Condition(SpecModel):
         return self
 
 
+def _not_tiny(vector: Point) -> Point:
+    """Refuse vectors other than 0 that are too short to compute with."""
+    not_tiny(max(map(abs, vector)))
+    return vector
+
+
 class Gravity(SpecModel):
     """Weight: the body force density · acceleration."""
 
     density: Positive
     """The mass per volume."""
-    acceleration: Point
+    acceleration: Annotated[Point, AfterValidator(_not_tiny)]
     """The acceleration of gravity [gx, gy], such as [0, -9.81]."""
 
 

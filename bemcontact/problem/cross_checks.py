@@ -7,7 +7,7 @@ from math import degrees, radians
 import numpy as np
 
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problem.boundary import Boundary
+from bemcontact.problem.boundary import Boundary, far_issue
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.contact_zone import TOOL_COMPONENTS, ContactZone, RigidTool, ToolAction
 from bemcontact.problem.curves import Edge
@@ -15,7 +15,8 @@ from bemcontact.problem.geometry import MOST_ELEMENTS, Line
 from bemcontact.problem.key_path import RawValue
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.reference import Hertz, Table, Values
-from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, Polyline, RigidSurface, Shape, Spline
+from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, RigidSurface, Shape
+from bemcontact.problem.surface_lines import Polyline, Spline
 from bemcontact.problem.validation import KeyIssue, unknown_word
 
 LARGEST_TURNING = radians(60)
@@ -25,6 +26,8 @@ SAMPLES = 128
 """Number of steps along an edge at which the direction of a surface is looked at."""
 ALONG = 0.5
 """Cosine of the angle between two normals above which they point the same way."""
+PIECE = 200
+"""Number of points of an edge that are compared with a surface at the same time."""
 
 
 def edge_name_issues(boundary: RawValue, conditions: Iterable[RawValue], zones: RawValue) -> list[Issue]:
@@ -86,7 +89,10 @@ def _conditions_of_contours(zones: RawValue) -> Iterator[RawValue]:
 def _repeated_edge(edge: str, first: str, second: str) -> str:
     if first == second:
         return f"edge '{edge}' occurs twice in the zone; list it once"
-    return f"edge '{edge}' is already in the contact zone '{first}'; an edge can touch only one surface"
+    return (
+        f"edge '{edge}' is already in the contact zone '{first}', and an edge can touch only one surface; divide it "
+        "into two edges, one for each surface, or state both surfaces as one polyline, the surface of one zone"
+    )
 
 
 def tool_issues(tools: RawValue, zones: RawValue) -> Iterator[Issue]:
@@ -218,7 +224,7 @@ def _too_few_elements(edge: Edge, refine: int) -> str:
 
 
 def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> list[Issue]:
-    """Issues of rigid surfaces whose normal points out of the body where they are closest to it.
+    """Issues of rigid surfaces that are too far away or too wide, or whose normal points out of the body there.
 
     The direction of a deflected contour must not point out of the body at any point of the zone.
     """
@@ -226,6 +232,9 @@ def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> l
     issues = []
     for path, zone in zones.items():
         members = [edges[name] for name in zone.edges]
+        if far := far_issue((*path, "surface"), [*_lengths(zone.surface)], boundary.size):
+            issues.append(far)
+            continue
         if isinstance(zone.surface, DeflectedContour):
             cosine, name = max((_outward(edge, zone.surface), edge.name) for edge in members)
         else:
@@ -235,10 +244,25 @@ def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> l
     return issues
 
 
+def _lengths(surface: RigidSurface) -> Iterator[float]:
+    """Coordinates and radii of a surface."""
+    match surface:
+        case Plane():
+            yield from surface.point
+        case Circle():
+            yield from (*surface.center, surface.radius)
+        case Polyline() | Spline():
+            for point in surface.points:
+                yield from point
+        case DeflectedContour():
+            yield 0.0
+
+
 def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:
     """Least distance between edge and surface, and there the cosine between outward normal and surface normal."""
     fractions = np.linspace(0, 1, SAMPLES + 1)
-    gap, normals = surface.closest(edge.points(fractions))
+    pieces = [surface.closest(piece) for piece in np.array_split(edge.points(fractions), 1 + len(fractions) // PIECE)]
+    gap, normals = (np.concatenate(parts) for parts in zip(*pieces, strict=True))
     cosine = np.einsum("ki,ki->k", normals, edge.normals(fractions))
     closest = np.argmin(np.abs(gap))
     return float(np.abs(gap[closest])), float(cosine[closest])

@@ -119,6 +119,11 @@ class EllipticArc:
     sweep: float
 
     @property
+    def radii(self) -> Pair:
+        """Both semi-axes [L]."""
+        return self.semi_axes
+
+    @property
     def length(self) -> float:
         """Arc length [L], by the incomplete elliptic integral of the second kind."""
         first, last = self._arc_length(self.start_angle + np.array([0.0, self.sweep]))

@@ -1,6 +1,6 @@
 """Edges as the user gives them: lines, circular arcs and elliptic arcs, each with its number of elements."""
 
-from math import atan2, hypot, isfinite, pi, radians
+from math import atan2, hypot, pi, radians
 from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_validator
@@ -8,6 +8,7 @@ from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_valida
 from bemcontact.errors import KeyPath
 from bemcontact.problem.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
 from bemcontact.problem.validation import (
+    LARGEST_NUMBER,
     Count,
     Flag,
     Name,
@@ -34,11 +35,11 @@ def _place(value: Any) -> float | Point:
     if not all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers):
         raise invalid(f"expected a fraction of the length such as 0.4, or a point [x, y]; found {described(value)}")
     if isinstance(value, list | tuple):
-        if len(value) != 2 or not all(map(isfinite, value)):
+        if len(value) != 2 or not all(abs(number) <= LARGEST_NUMBER for number in value):
             raise invalid(f"expected two coordinates such as [0.0, 1.5]; found {described(value)}")
         return float(value[0]), float(value[1])
     if not 0 < value < 1:
-        raise invalid(f"a fraction of the length must be between 0 and 1, found {value:g}")
+        raise invalid(f"a fraction of the length must be between 0 and 1, found {described(value)}")
     return float(value)
 
 

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, Self, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from bemcontact.arguments import text_of_argument
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.validation import SpecModel, described, misspelled, unknown_word
 
@@ -15,6 +16,7 @@ Part = TypeVar("Part", bound=SpecModel)
 
 def parsed_path(text: str) -> KeyPath:
     """Parse a path such as ``boundary.outer[2].elements``; `ProblemError` if it is none."""
+    text_of_argument(text, "a key path")
     path: list[str | int] = []
     position = 0
     rest = f".{text}"
@@ -27,14 +29,26 @@ def parsed_path(text: str) -> KeyPath:
     return tuple(path)
 
 
-def existing_path(data: Any, path: KeyPath) -> KeyPath:
-    """Follow a path through nested data, and replace names of list entries by their positions.
+NAMED: Mapping[str | int, str] = {
+    "contact_zones": "contact zone",
+    "tools": "tool",
+    "load_cases": "load case",
+    "combinations": "combination",
+    "reference": "reference",
+    "variants": "variant",
+}
+"""Keys of a problem whose entries have names of the user's choice, and what an entry is called."""
 
-    Keys of mappings that do not exist yet are kept. `ProblemError` if the path leads into a value without entries, or
-    to an entry that a list does not have.
+
+def existing_path(data: Any, path: KeyPath) -> KeyPath:
+    """Follow a path through the data of a problem, and replace names of list entries by their positions.
+
+    Keys that are not stated are kept, for they may have defaults. `ProblemError` if the path leads into a value without
+    entries, or to an entry that a list or one of the `NAMED` mappings does not have.
     """
     followed: KeyPath = ()
     for step in path:
+        _ensure_named(data, step, followed)
         if isinstance(data, list | tuple):
             step = _position(data, step, followed)
             data = data[step]
@@ -45,6 +59,14 @@ def existing_path(data: Any, path: KeyPath) -> KeyPath:
             raise ProblemError(Issue(path=followed, message=message))
         followed = (*followed, step)
     return followed
+
+
+def _ensure_named(data: Any, step: str | int, path: KeyPath) -> None:
+    """Refuse a name that one of the `NAMED` mappings does not have: a misspelled name would add an entry."""
+    if len(path) == 1 and path[0] in NAMED and (data is None or isinstance(data, Mapping)) and step not in (data or {}):
+        what = NAMED[path[0]]
+        message = f"a change adds no {what}: {unknown_word(what, str(step), data or {})}"
+        raise ProblemError(Issue(path=path, message=message))
 
 
 def _position(data: list[Any] | tuple[Any, ...], step: str | int, path: KeyPath) -> int:

@@ -15,6 +15,8 @@ from pydantic import (
     model_validator,
 )
 
+from bemcontact.arguments import real_number, shown, text_of_argument, whole_number
+from bemcontact.arrays import real_array
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition, Loads
@@ -31,15 +33,17 @@ from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, with_entry
 from bemcontact.problem.load_case import Combination, LoadCase
-from bemcontact.problem.reference import NonEmptyText, ReferenceSpec
+from bemcontact.problem.reference import ReferenceSpec
 from bemcontact.problem.validation import (
     Count,
+    Finite,
     Flag,
+    Label,
     Name,
-    Number,
     Positive,
     SpecModel,
     Text,
+    Title,
     invalid,
     issues_of,
     unknown_word,
@@ -53,7 +57,7 @@ class Material(SpecModel):
     """The modulus of elasticity E (Young's modulus), in the unit of stress."""
     state: Literal["plane_strain", "plane_stress"] = "plane_strain"
     """The plane state: plane_strain (thick body, the default) or plane_stress (thin sheet)."""
-    poisson_ratio: Annotated[Number, Field(json_schema_extra={"exclusiveMinimum": -1, "maximum": 0.5})]
+    poisson_ratio: Annotated[Finite, Field(json_schema_extra={"exclusiveMinimum": -1, "maximum": 0.5})]
     """The Poisson ratio ν, for most materials between 0 and 0.5."""
 
     @field_validator("poisson_ratio")
@@ -81,9 +85,9 @@ class Material(SpecModel):
 class Units(SpecModel):
     """Labels of the units of all numbers. Numbers are not converted."""
 
-    length: Text = ""
+    length: Label = ""
     """The label of the unit of length, such as mm."""
-    force: Text = ""
+    force: Label = ""
     """The label of the unit of force, such as kN."""
 
     @property
@@ -126,12 +130,12 @@ class Variant(SpecModel):
         paths, issues = {}, []
         for key in self.set:
             try:
-                paths[key] = existing_path(data, parsed_path(key))
+                path = parsed_path(key)
+                if path[0] == "variants":
+                    raise ProblemError("a variant cannot change variants; remove this value")
+                paths[key] = existing_path(data, path)
             except ProblemError as error:
                 issues += [Issue(path=("set", key), message=str(item)) for item in error.issues]
-                continue
-            if paths[key][0] == "variants":
-                issues.append(Issue(path=("set", key), message="a variant cannot change variants; remove this value"))
         if issues:
             raise ProblemError(issues)
         return paths
@@ -163,7 +167,7 @@ class Problem(SpecModel):
         With an issue and its key path for each mistake. `bemcontact.condense` checks whether the body is held.
     """
 
-    name: Name
+    name: Title
     """A short name of the problem."""
     description: Text = ""
     """A description of the problem: its source, and what is known about its solution."""
@@ -194,7 +198,7 @@ class Problem(SpecModel):
     are not estimated."""
     mesh: MeshDensity = MeshDensity()
     """The refinement of the mesh."""
-    reference: dict[NonEmptyText, ReferenceSpec] = Field(default_factory=dict)
+    reference: dict[Title, ReferenceSpec] = Field(default_factory=dict)
     """The references by name: closed forms and published values, with which the result is compared."""
     variants: dict[Name, Variant] = Field(default_factory=dict)
     """The variants by name: values that replace others, such as another mesh."""
@@ -288,7 +292,7 @@ class Problem(SpecModel):
 
     def factors(self, case: str | None = None) -> dict[str, float]:
         """Factors of the load cases in a case or combination; in the one that acts if None; empty if none acts."""
-        name = self.case if case is None else case
+        name = self.case if case is None else text_of_argument(case, "the name of a load case")
         if name is None or name in self.load_cases:
             return {} if name is None else {name: 1.0}
         if name in self.combinations:
@@ -297,6 +301,8 @@ class Problem(SpecModel):
 
     def tool_action(self, tool: str) -> ToolAction:
         """Displacement of a tool and force on it, including the load cases that act."""
+        if text_of_argument(tool, "the name of a tool") not in self.tools:
+            raise ProblemError(Issue(path=("tools",), message=unknown_word("tool", tool, self.tools)))
         action: ToolAction = self.tools[tool]
         for case, factor in self.factors().items():
             if tool in self.load_cases[case].tools:
@@ -315,7 +321,7 @@ class Problem(SpecModel):
         ProblemError
             If there is no load case or combination of this name.
         """
-        self.factors(name)
+        self.factors(text_of_argument(name, "the name of a load case"))
         return self.model_copy(update={"case": name})
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
@@ -330,12 +336,19 @@ class Problem(SpecModel):
         ProblemError
             If a load case does not exist, or a factor is not a number.
         """
-        name = " + ".join(f"{factor:.6g} {case}" for case, factor in factors.items()).replace(".", ",")
+        if not isinstance(factors, Mapping):
+            raise ProblemError(f"factors by load case are needed, such as {{'wind': 1.5}}; found {shown(factors)}")
+        numbers = {
+            text_of_argument(case, "the name of a load case"): real_number(factor, f"the factor of '{case}'")
+            for case, factor in factors.items()
+        }
+        name = " + ".join(f"{factor:.6g} {case}" for case, factor in numbers.items()).replace(".", ",")
         data = self.model_dump(exclude={"variants"})
-        return type(self)(**{**data, "combinations": {**self.combinations, name: dict(factors)}, "case": name})
+        return type(self)(**{**data, "combinations": {**self.combinations, name: numbers}, "case": name})
 
     def edge(self, name: str) -> Edge:
         """Edge with a name; `ProblemError` if there is none."""
+        text_of_argument(name, "the name of an edge")
         for edge in self.boundary.edges:
             if edge.name == name:
                 return edge
@@ -349,6 +362,7 @@ class Problem(SpecModel):
         ----------
         parts : number of equal parts into which each element is cut
         """
+        parts = whole_number(parts, "number of parts", 1)
         return self if parts == 1 else self.with_value("mesh.refine", self.mesh.refine * parts)
 
     def variant(self, name: str) -> Self:
@@ -363,7 +377,7 @@ class Problem(SpecModel):
         ProblemError
             If there is no variant of this name.
         """
-        if name not in self.variants:
+        if text_of_argument(name, "the name of a variant") not in self.variants:
             raise ProblemError(Issue(path=("variants",), message=unknown_word("variant", name, self.variants)))
         variant, data = self.variants[name], self.model_dump(exclude={"variants"})
         paths = variant.paths(data)
@@ -394,7 +408,13 @@ class Problem(SpecModel):
         ProblemError
             If an edge does not exist, its elements cannot end there, turn too much, or are too many.
         """
-        boundary = self.boundary.with_element_ends(ends)
+        if not isinstance(ends, Mapping):
+            raise ProblemError(f"ends by edge name are needed, such as {{'top': [0.5]}}; found {shown(ends)}")
+        numbers = {
+            text_of_argument(name, "the name of an edge"): real_array(given, f"the ends on '{name}'", (None,)).tolist()
+            for name, given in ends.items()
+        }
+        boundary = self.boundary.with_element_ends(numbers)
         if issues := mesh_issues(boundary, ("boundary",), self.mesh.refine):
             raise ProblemError(issues)
         mesh = self.mesh.model_copy(update={"adapt": False})
@@ -406,7 +426,7 @@ class Problem(SpecModel):
         Parameters
         ----------
         path : key path such as ``material.young_modulus`` or ``boundary.outer[2].elements``; an edge may be given by
-            its name, ``boundary.outer.top.elements``
+            its name, ``boundary.outer.top.elements``. Zones, tools and load cases are changed, none is added.
         value : the new value, of the form that a spec has there
 
         Raises

@@ -11,6 +11,7 @@ from pydantic import AfterValidator, Field, Strict, ValidationInfo, field_valida
 
 from bemcontact.errors import Issue
 from bemcontact.problem.validation import (
+    LARGEST_NUMBER,
     Flag,
     Name,
     Number,
@@ -27,12 +28,12 @@ from bemcontact.problem.validation import (
 def _not_blank(value: str) -> str:
     """Refuse an empty text."""
     if not value.strip():
-        raise invalid("the text is empty; write a name or a source")
+        raise invalid("the text is empty; write a source")
     return value
 
 
 NonEmptyText = Annotated[Text, AfterValidator(_not_blank)]
-"""A text that is not empty; unlike a `Name`, it may contain dots and brackets."""
+"""A text that is not empty."""
 
 
 Tolerance = Annotated[float, Strict(), Field(gt=0, lt=1)]
@@ -137,7 +138,7 @@ class ShrinkFit(ReferenceBase):
     """The closed form: shrink_fit."""
     rigid: Literal["pin", "bore"] = "pin"
     """The rigid part: pin (inside the ring) or bore (around it)."""
-    inner_radius: Annotated[float, Strict(), Field(ge=0, le=1e100)]
+    inner_radius: Annotated[float, Strict(), Field(ge=0, le=LARGEST_NUMBER)]
     """The inner radius of the undeformed ring; 0 for a disk in a bore."""
     outer_radius: Positive
     """The outer radius of the undeformed ring."""
@@ -202,7 +203,7 @@ class ProppedBeam(ReferenceBase):
     """The distance between the end supports."""
     height: Positive
     """The height of the beam."""
-    gap: Annotated[float, Strict(), Field(ge=0, le=1e100)]
+    gap: Annotated[float, Strict(), Field(ge=0, le=LARGEST_NUMBER)]
     """The gap between the undeformed beam and the prop."""
     half: Flag = False
     """Whether only half of the beam is modeled, up to a line of symmetry through its middle."""

@@ -24,9 +24,14 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, ErrorDetails, InitErrorDetails, PydanticCustomError, core_schema
 
 from bemcontact.errors import Issue, ProblemError
+from bemcontact.plain_text import LINE_BREAKS, hidden_character
 
-LARGEST_NUMBER = 1e100
-"""The square of this number is still finite, so that lengths and areas can be computed."""
+LARGEST_NUMBER = 1e30
+"""The eighth power of this number is still finite, so that products of any four numbers can be squared."""
+LONGEST_NAME = 1000
+"""Largest number of characters in a name."""
+MANY_WORDS = 100
+"""Number of known or unknown words from which they are not compared with each other, which would take long."""
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
 _NUMBER_AND_UNIT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)? *[^\W\d_][^ ]*")
 
@@ -54,6 +59,8 @@ def issues_of(error: ValidationError) -> list[Issue]:
 def near_by(word: str, known: Iterable[str]) -> str | None:
     """Return the known word that is closest to a misspelled one, or None."""
     lower = {candidate.lower(): candidate for candidate in known}
+    if len(lower) > MANY_WORDS or len(word) > LONGEST_NAME:
+        return None
     matches = get_close_matches(word.lower(), lower, n=1)
     return lower[matches[0]] if matches else None
 
@@ -71,7 +78,10 @@ def described(value: object) -> str:
             return f"a list of {len(value)}" if value else "an empty list"
         case Mapping():
             return "a mapping" if value else "an empty mapping"
-    return _shortened(str(value))
+    try:
+        return _shortened(str(value))
+    except Exception:  # an object of the user may refuse to be written
+        return f"an object of type {type(value).__name__}"
 
 
 class SpecModel(BaseModel):
@@ -99,10 +109,17 @@ class SpecModel(BaseModel):
             raise validation_error(cls.__name__, issues) from None
 
 
-def _finite(value: float) -> float:
-    """Refuse numbers whose square overflows."""
+def _not_huge(value: float) -> float:
+    """Refuse numbers whose powers overflow."""
     if abs(value) > LARGEST_NUMBER:
         raise invalid(f"{value:.3g} is too large to compute with; choose other units")
+    return value
+
+
+def not_tiny(value: float) -> float:
+    """Refuse numbers other than 0 whose powers underflow."""
+    if 0 < abs(value) < 1 / LARGEST_NUMBER:
+        raise invalid(f"{value:.3g} is too small to compute with; choose other units, or write 0 if it may be 0")
     return value
 
 
@@ -113,29 +130,56 @@ def _pair(value: Any) -> Any:
     return value
 
 
-def _usable_name(value: str) -> str:
-    """Refuse names that a key path cannot contain."""
+def _readable(value: str) -> str:
+    """Refuse texts with hidden characters, except ends of lines."""
+    if hidden := hidden_character(value, LINE_BREAKS):
+        raise invalid(f"a text must not contain the hidden character {hidden}; remove it")
+    return value
+
+
+def _one_line(value: str) -> str:
+    """Refuse labels of several lines."""
+    if hidden := hidden_character(value):
+        raise invalid(f"a name or label is one line of text, but contains the character {hidden}; remove it")
+    if len(value) > LONGEST_NAME:
+        raise invalid(f"a name or label has at most {LONGEST_NAME} characters, found {len(value)}")
+    return value
+
+
+def _not_blank(value: str) -> str:
+    """Refuse empty names."""
     if not value.strip():
         raise invalid("a name must not be empty")
+    return value
+
+
+def _usable_in_paths(value: str) -> str:
+    """Refuse names that a key path cannot contain."""
     if bad := sorted(set(value) & set(".[]=")):
         raise invalid(f"a name must not contain {' '.join(bad)}, which key paths use; found {value!r}")
     return value
 
 
-Number = Annotated[float, Strict(), AfterValidator(_finite)]
+Finite = Annotated[float, Strict(), AfterValidator(_not_huge)]
+"""A finite number, which may be as close to 0 as the round-off of another program leaves it."""
+Number = Annotated[Finite, AfterValidator(not_tiny)]
 """A finite number; a text such as '1.5' is refused."""
 # Limits come before the function: after it, pydantic would not write them into the JSON Schema as keywords.
-Positive = Annotated[float, Strict(), Field(gt=0), AfterValidator(_finite)]
+Positive = Annotated[float, Strict(), Field(gt=0), AfterValidator(_not_huge), AfterValidator(not_tiny)]
 """A finite number greater than 0."""
 Count = Annotated[int, Strict()]
 """A whole number."""
 Flag = Annotated[bool, Strict()]
 """True or false."""
-Text = Annotated[str, Strict()]
-"""A text; a number is refused."""
-Name = Annotated[Text, AfterValidator(_usable_name)]
+Text = Annotated[str, Strict(), AfterValidator(_readable)]
+"""A text, of several lines or not; a number is refused."""
+Label = Annotated[str, Strict(), AfterValidator(_one_line)]
+"""A text of one line, which may be empty."""
+Title = Annotated[Label, AfterValidator(_not_blank)]
+"""A name that key paths do not contain, such as that of a problem or a reference."""
+Name = Annotated[Title, AfterValidator(_usable_in_paths)]
 """A name of an edge, a contact zone, a tool or a load case."""
-Point = Annotated[tuple[Number, Number], BeforeValidator(_pair)]
+Point = Annotated[tuple[Finite, Finite], BeforeValidator(_pair)]
 """Coordinates or components (x, y)."""
 PositivePair = Annotated[tuple[Positive, Positive], BeforeValidator(_pair)]
 """Two numbers greater than 0."""
@@ -145,7 +189,7 @@ def _translated_errors(cls: type[BaseModel], error: ValidationError) -> list[Iss
     """Translate the errors of one class; a missing key is not reported together with its misspelling."""
     details = error.errors(include_url=False)
     unknown = {str(item["loc"][-1]) for item in details if item["type"] == "extra_forbidden" and len(item["loc"]) == 1}
-    meant = {near_by(key, cls.model_fields) for key in unknown}
+    meant = {near_by(key, cls.model_fields) for key in unknown} if len(unknown) <= MANY_WORDS else set[str | None]()
     return [
         _issue(item) if _is_translated(item) else _translated(cls, item)
         for item in details
@@ -156,7 +200,7 @@ def _translated_errors(cls: type[BaseModel], error: ValidationError) -> list[Iss
 def misspelled(cls: type[BaseModel], data: Mapping[str, Any]) -> dict[str, str]:
     """Find unknown keys that are probably misspelled: key in the data -> known key that is not given."""
     unknown = [key for key in data if isinstance(key, str) and key not in cls.model_fields]
-    meant = {key: near_by(key, cls.model_fields) for key in unknown}
+    meant = {key: near_by(key, cls.model_fields) for key in unknown} if len(unknown) <= MANY_WORDS else {}
     return {key: word for key, word in meant.items() if word is not None and word not in data}
 
 
@@ -226,12 +270,13 @@ def _available(words: tuple[str, ...]) -> str:
             return "there are none"
         case (word,):
             return f"there is only '{word}'"
-    return f"there are: {', '.join(words)}"
+    return f"there are: {_shortened(', '.join(words), LONGEST_NAME)}"
 
 
 def _missing(cls: type[BaseModel], key: str) -> str:
     """Say that a key is missing, and what to give for it: its description in the class."""
     text = cls.model_fields[key].description if key in cls.model_fields else None
+    text = " ".join((text or "").split())
     return f"missing; give {text[0].lower()}{text[1:].rstrip('.')}" if text else "missing"
 
 
@@ -265,6 +310,8 @@ def _wrong_value(details: ErrorDetails) -> str:
             return f"expected a list, {found}"
         case "too_short":
             return f"expected at least {context['min_length']} in the list, {found}"
+        case "too_long":
+            return f"expected at most {context['max_length']} in the list, {found}"
         case "dict_type":
             return f"expected a mapping of names, {found}"
     return f"{details['msg'][0].lower()}{details['msg'][1:]}, {found}"

@@ -62,8 +62,12 @@ def in_short(verdicts: Sequence[Verdict]) -> str:
     return "; ".join(item.word if item.good else f"{item.of.lower()} {item.word}" for item in verdicts)
 
 
-def equations_verdict(certificate: Record, words: str) -> Verdict:
-    """Verdict on the solution of the equations on the mesh, with its sentences."""
+def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:
+    """Verdict on the solution of the equations on the mesh, with its sentences, and on what penetrates a surface."""
+    if penetration is not None:
+        return Verdict(
+            "Equations", "bad", "penetrates a surface", f"{penetration['words']} At the contact points: {words}"
+        )
     kind: str = certificate["kind"]
     word = {"unique": "unique solution proved", "not a solution": "not solved"}.get(kind, kind)
     return Verdict("Equations", "good" if kind == "unique" else "bad", word, words)
@@ -76,14 +80,20 @@ def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
     """
     finest = report["levels"][-1]
     compared = finest["comparison"]
-    proved = [level["comparison"]["certified"] for level in report["levels"]]
-    quality = "good" if all(proved) else "fair" if compared["reference"]["certified"] else "bad"
+    short = [level["refine"] for level in report["levels"][:-1] if not _proved(level)]
+    direct = compared["reference"]["certified"] and finest["penetration"] is None
+    quality = "bad" if not direct else "good" if _proved(finest) and not short else "fair"
     sentences = [sentence_case(words or report["verdict"])]
-    if coarser := [str(level["refine"]) for level in report["levels"][:-1] if not level["comparison"]["certified"]]:
-        meshes = "coarser mesh" if len(coarser) == 1 else "coarser meshes"
-        sentences.append(f"On the {meshes} (refine {', '.join(coarser)}) not each answer is proved to be the solution.")
-    equations = Verdict("Equations", quality, compared["heading"], " ".join(sentences))
+    if short:
+        meshes = f"coarser mesh{'es' * (len(short) > 1)} (refine {', '.join(map(str, short))})"
+        sentences.append(f"On the {meshes} not each answer is proved to be the solution.")
+    equations = Verdict("Equations", quality, report["heading"], " ".join(sentences))
     return equations, mesh_verdict(finest["accuracy"])
+
+
+def _proved(level: Record) -> bool:
+    """Whether all solutions on a mesh are proved, and the body penetrates no surface."""
+    return level["comparison"]["certified"] and level["penetration"] is None
 
 
 def mesh_verdict(accuracy: Record) -> Verdict:
@@ -314,7 +324,9 @@ def size_of(record: Record) -> float:
 
 
 def pressed_by(record: Record) -> float:
-    """Sum of the magnitudes of all contact forces [p L], the scale of round-off in forces."""
+    """Sum of the magnitudes of all contact forces [p L], the scale of round-off in forces; infinity if none is more."""
+    if not record["peak"]:
+        return np.inf
     return sum(w * abs(p) for w, p in zip(record["tributary_lengths"], record["pressure"], strict=True))
 
 

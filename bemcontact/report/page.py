@@ -10,6 +10,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from bemcontact.assessment.contender import OUTCOMES, Outcome
+from bemcontact.plain_text import escaped_lines
 from bemcontact.problem import Units
 from bemcontact.report.facts import (
     BARS_ARE,
@@ -66,6 +67,7 @@ def template(name: str, **more: Callable[..., Any]) -> Template:
     environment = Environment(
         loader=PackageLoader("bemcontact.report"),
         autoescape=True,
+        finalize=lambda value: escaped_lines(value) if type(value) is str else value,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -177,7 +179,9 @@ def _headline(report: Record, compared: Record) -> str:
     outcomes = Counter(item["verdict"]["outcome"] for item in compared["contenders"])
     counted = (f"{count} {OUTCOMES[Outcome(name)].predicate[count > 1]}" for name, count in outcomes.items())
     direct = OUTCOMES[Outcome(compared["reference"]["verdict"]["outcome"])].of_direct
-    return f"Of {len(compared['contenders'])} settings {', '.join(counted)}. {sentence_case(direct)}."
+    deepest = report["levels"][-1]["penetration"]
+    first = "" if deepest is None else f"{deepest['words']} "
+    return f"{first}Of {len(compared['contenders'])} settings {', '.join(counted)}. {sentence_case(direct)}."
 
 
 def _facts(level: Record, units: Units) -> list[tuple[str, str]]:
@@ -212,12 +216,7 @@ def _certificate(answer: Record | None, units: Units) -> str:
             f"{holds} A second contact state cannot be ruled out, because the smallest eigenvalue of the compliance "
             f"({small(eigenvalue)}) is not positive. This is proved to be a solution, but not the only one."
         )
-    why = (
-        "Equilibrium alone determines the pressure, so there is no other solution."
-        if eigenvalue is None
-        else f"The compliance is positive definite (its smallest eigenvalue is {small(eigenvalue)}), so there is no "
-        "other solution."
-    )
+    why = f"There is no other solution: {proved['why_unique']}."
     return f"{holds} {why}{_bound(proved['error_bound'], answer['peak'], units)}"
 
 

@@ -87,11 +87,8 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
         add(shown, "Tool", f"{name}, the surface of {' and '.join(tool.zones)}: {action}")
     total = vector(checked.total_load, per_thickness(units), scale=checked.load_magnitude)
     add(shown, "Total load", f"{total}, without reactions")
-    add(
-        shown,
-        "Held by conditions",
-        "all rigid motions except those below" if checked.free_motions else "all rigid motions",
-    )
+    held = {0: "all rigid motions", 3: "no rigid motion"}
+    add(shown, "Held by conditions", held.get(checked.free_motions, "all rigid motions except those below"))
     for motion in checked.held_by_contact:
         add(shown, "Held by contact", motion)
     for name, case in problem.load_cases.items():
@@ -174,8 +171,9 @@ def cases_summary(cases: CaseResults) -> RenderableType:
 
 def verdicts(result: Result) -> tuple[Verdict, Verdict]:
     """Verdicts on the equations and on the mesh."""
-    words = certificate_sentence(result.solution, result.certificate)
-    return equations_verdict(result.certificate.to_dict(), words), mesh_verdict(result.accuracy.to_dict())
+    words, deepest = certificate_sentence(result.solution, result.certificate), result.penetration
+    proved = equations_verdict(result.certificate.to_dict(), words, deepest.to_dict() if deepest else None)
+    return proved, mesh_verdict(result.accuracy.to_dict())
 
 
 def case_verdicts(cases: CaseResults) -> tuple[Verdict, Verdict]:
@@ -283,7 +281,9 @@ def path_sentence(path: ParameterPath) -> str:
     exact = f"The largest natural residual at a breakpoint is {path.residual:.0e}."
     if path.certified:
         return f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
-    return " ".join((*(f"{sentence_case(note)}." for note in path.notes), exact))
+    deepest = () if path.penetration is None else (path.penetration.words,)
+    where = () if path.penetrates_at is None else (f"This is at {path.key} = {number(path.penetrates_at)}.",)
+    return " ".join((*deepest, *where, *(f"{sentence_case(note)}." for note in path.notes), exact))
 
 
 def _cells(contact: CondensedContact, state: PathState) -> list[str]:

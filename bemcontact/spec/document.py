@@ -8,6 +8,9 @@ from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.key_path import with_entry
 from bemcontact.problem.validation import KeyIssue
 
+MOST_LINES = 100
+"""Largest number of mistakes that are shown."""
+
 
 @dataclass(frozen=True, order=True)
 class Mark:
@@ -82,5 +85,8 @@ class Document:
 
 
 def error_text(messages: Iterable[LocatedMessage]) -> str:
-    """One line for each message, in the order of the text."""
-    return "\n".join(f"{mark.text}: {message}" for mark, message in sorted(messages))
+    """One line for each message, in the order of the text; the last line counts those that are left out."""
+    lines = [f"{mark.text}: {message}" for mark, message in sorted(messages)]
+    if len(lines) > MOST_LINES:
+        lines[MOST_LINES:] = [f"{len(lines) - MOST_LINES} more mistakes; correct those above first"]
+    return "\n".join(lines)

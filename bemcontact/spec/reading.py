@@ -2,18 +2,22 @@
 
 import os
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
 import yaml
 
+from bemcontact.arguments import shown, text_of_argument, texts
 from bemcontact.errors import Issue, KeyPath, ProblemError, SpecError
 from bemcontact.files.text import place_after, text_of
+from bemcontact.plain_text import escaped
 from bemcontact.problem import Problem, Variant
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path
+from bemcontact.problem.readable import readable_part
 from bemcontact.problem.validation import described, number_hint, unknown_word
 from bemcontact.spec.document import Document, LocatedMessage, Mark, Place, error_text
-from bemcontact.spec.yaml_1_2 import READERS, TAG, Loader, to_yaml
+from bemcontact.spec.yaml_1_2 import MOST_CHARACTERS, MOST_KEYS, READERS, TAG, Budget, Loader, Refused, to_yaml
 
 _REQUIRED = ", ".join(key for key, item in Problem.model_fields.items() if item.is_required())
 _HINTS = {
@@ -48,6 +52,9 @@ def load(path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: s
         If there is no such file or variant, or it contains mistakes: a line ``file:line:column: key.path: message``
         for each mistake.
     """
+    if not isinstance(path, str | os.PathLike) or not isinstance(os.fspath(path), str):
+        hint = "bemcontact.loads reads a text, and bemcontact.Problem(**parts) takes a mapping"
+        raise SpecError(f"load needs the path of a file; found {shown(path)}; {hint}")
     return loads(text_of(path), os.fspath(path), overrides, variant)
 
 
@@ -72,40 +79,54 @@ def loads(text: str, name: str = "<string>", overrides: Sequence[str] = (), vari
     return _problem(_stages(text, name, overrides, variant))
 
 
-def as_run(path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: str | None = None) -> str:
-    """Text of a spec after its changes, from which `loads` reads the same problem as `load`.
+def as_run(text: str, name: str, overrides: Sequence[str] = (), variant: str | None = None) -> str:
+    """Text of a spec after its changes, from which `loads` reads the same problem as from this text with the changes.
 
-    Without changes it is the text of the file, else YAML without comments. `SpecError` if a change cannot be made.
+    Without changes it is the text itself, else YAML without comments. `SpecError` if a change cannot be made.
     """
-    text = text_of(path)
     if not overrides and variant is None:
         return text
-    return to_yaml(_stages(text, os.fspath(path), overrides, variant)[-1].data)
+    return to_yaml(_stages(text, name, overrides, variant)[-1].data)
 
 
 def located(
-    error: ProblemError, path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: str | None = None
+    error: ProblemError, text: str, name: str, overrides: Sequence[str] = (), variant: str | None = None
 ) -> SpecError:
-    """Error with the place in the file of each issue of a problem that had been read with these arguments.
+    """Error with the place in the text of each issue of a problem that had been read with these arguments.
 
     Each line is ``file:line:column: key.path: message``, or ``file: message`` if the issue has no key path.
     """
-    name = os.fspath(path)
-    document = _stages(text_of(path), name, overrides, variant)[-1]
+    document = _stages(text, name, overrides, variant)[-1]
     whole = [(Mark(0, 0, name), issue.message) for issue in error.issues if not issue.path]
     return SpecError(error_text([*whole, *(document.located(item) for item in error.issues if item.path)]))
+
+
+def readable(text: str, name: str, overrides: Sequence[str] = (), variant: str | None = None) -> Problem | None:
+    """What can be read of a spec that may have mistakes, unchecked, for a picture; None without a sound boundary."""
+    try:
+        return readable_part(_stages(text, name, overrides, variant)[-1].data)
+    except SpecError:
+        return None
 
 
 def schema() -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of a spec, for completion and checks in editors."""
     properties = Problem.model_json_schema()
     for definition in (properties, *properties["$defs"].values()):
-        definition["description"] = definition["description"].partition("\n\n")[0]
+        if "description" in definition:  # python -OO has no docstrings
+            definition["description"] = definition["description"].partition("\n\n")[0]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **properties}
 
 
 def _stages(text: str, name: str, overrides: Sequence[str], variant: str | None) -> list[Document]:
     """Documents of a text: without changes, then after each change."""
+    name = escaped(name if isinstance(name, str) else shown(name))
+    try:
+        text_of_argument(text, "what loads reads")
+        overrides = texts(overrides, "overrides, such as ['material.young_modulus=2e6'],")
+        text_of_argument("" if variant is None else variant, "the name of a variant")
+    except ProblemError as error:
+        raise SpecError(f"{name}: {error}") from None
     stages = [_parsed(text, name)]
     _check_mapping(stages[0], name)
     if variant is not None:
@@ -116,7 +137,9 @@ def _stages(text: str, name: str, overrides: Sequence[str], variant: str | None)
 
 
 def _parsed(text: str, name: str) -> Document:
-    """Parse YAML; `SpecError` if the text is not YAML."""
+    """Parse YAML; `SpecError` if the text is not YAML, or too large."""
+    if len(text) > MOST_CHARACTERS:
+        raise SpecError(f"{name}:1:1: the text has {len(text)} characters; a problem has at most {MOST_CHARACTERS}")
     try:
         loader = Loader(text)
     except yaml.reader.ReaderError as error:
@@ -124,23 +147,32 @@ def _parsed(text: str, name: str) -> Document:
         raise SpecError(f"{place}: the character {chr(error.character)!r} is not allowed in YAML") from None
     try:
         node = loader.get_single_node()
+    except Refused as error:
+        raise _refused(error, name) from None
     except yaml.MarkedYAMLError as error:
         raise SpecError(_not_yaml(error, name)) from None
-    except RecursionError:
-        raise SpecError(f"{name}:1:1: too many nested brackets; close them or remove some") from None
     except (ValueError, OverflowError) as error:
         mark = _marked(loader.get_mark(), name)
         raise SpecError(f"{mark.text}: not YAML: an escape sequence is no character ({error})") from None
     if node is None:
         return Document(data=None, places={})
     tree = _Tree(name)
-    data = tree.value(node, (), None)
+    try:
+        data = tree.value(node, (), None)
+    except Refused as error:
+        raise _refused(error, name) from None
     return Document(data=data, places=tree.places, messages=tuple(tree.messages))
 
 
 def _marked(mark: yaml.Mark, name: str) -> Mark:
     """Place of a mark, with lines and columns from 1."""
     return Mark(mark.line + 1, mark.column + 1, f"{name}:{mark.line + 1}:{mark.column + 1}")
+
+
+def _refused(error: Refused, name: str) -> SpecError:
+    """Error of YAML that is not read, with its place."""
+    assert error.problem_mark is not None  # as the class has it
+    return SpecError(f"{_marked(error.problem_mark, name).text}: {error.problem}")
 
 
 def _not_yaml(error: yaml.MarkedYAMLError, name: str) -> str:
@@ -173,6 +205,7 @@ class _Tree:
         self.places: dict[KeyPath, Place] = {}
         self.messages: list[LocatedMessage] = []
         self._above: list[yaml.Node] = []
+        self._budget = Budget()
 
     def value(self, node: yaml.Node, path: KeyPath, key: yaml.Node | None) -> Any:
         """Data of a node."""
@@ -181,14 +214,8 @@ class _Tree:
         scalar = isinstance(node, yaml.ScalarNode)
         inline = scalar or (isinstance(node, yaml.CollectionNode) and node.flow_style)
         self.places[path] = Place(value=mark if inline else key_mark, key=key_mark, scalar=scalar)
-        if any(node is above for above in self._above):
-            self._find(mark, path, "the alias is inside its own anchor; write the value instead of the alias")
-            return None
-        self._above.append(node)
-        try:
-            return self._content(node, path)
-        finally:
-            self._above.pop()
+        with self._inside(node, path) as new:
+            return self._content(node, path) if new else None
 
     def _content(self, node: yaml.Node, path: KeyPath) -> Any:
         """Data of the content of a node."""
@@ -210,33 +237,54 @@ class _Tree:
     def _mapping(self, node: yaml.MappingNode, path: KeyPath) -> dict[str, Any]:
         """Data of a mapping; repeated keys are an error, merged keys come last."""
         data: dict[str, Any] = {}
+        self._add_entries(node, data, path)
+        return data
+
+    def _add_entries(self, node: yaml.MappingNode, data: dict[str, Any], path: KeyPath) -> None:
+        """Add the entries of a mapping that the data do not have, then those of the mappings merged by ``<<``."""
         lines: dict[str, int] = {}
         merged: list[yaml.Node] = []
         for (_, before), (key, value) in zip([(None, None), *node.value], node.value, strict=False):
             mark = self._mark(key)
+            self._budget.spend(len(self._above), key.start_mark)
+            if len(data) >= MOST_KEYS:
+                raise Refused(f"the mapping has more than {MOST_KEYS} keys; leave some out", key.start_mark)
             if key.tag == f"{TAG}merge":
                 merged += value.value if isinstance(value, yaml.SequenceNode) else [value]
             elif key.tag != f"{TAG}str":
                 self._find(mark, path, _no_key(key, before))
-            elif key.value in data:
+            elif key.value in lines:
                 message = f"the key occurs twice, first in line {lines[key.value]}; keep one"
                 self._find(mark, (*path, key.value), message)
             else:
-                data[key.value] = self.value(value, (*path, key.value), key)
                 lines[key.value] = mark.line
-        return self._with_merged(data, merged, path)
+                if key.value not in data:
+                    data[key.value] = self.value(value, (*path, key.value), key)
+        for other in merged:
+            self._merge(other, data, path)
 
-    def _with_merged(self, data: dict[str, Any], merged: list[yaml.Node], path: KeyPath) -> dict[str, Any]:
-        """Add the keys of mappings merged by ``<<`` that are not given."""
-        for node in merged:
-            if not isinstance(node, yaml.MappingNode):
-                self._find(self._mark(node), path, "<< needs an alias of a mapping, or a list of such aliases")
-                continue
-            kept = self.places.copy()
-            more = self.value(node, path, None)
-            self.places |= kept
-            data = {**(more or {}), **data}
-        return data
+    def _merge(self, node: yaml.Node, data: dict[str, Any], path: KeyPath) -> None:
+        """Add the entries of a merged mapping that the data do not have."""
+        if not isinstance(node, yaml.MappingNode):
+            self._find(self._mark(node), path, "<< needs an alias of a mapping, or a list of such aliases")
+            return
+        with self._inside(node, path) as new:
+            if new:
+                self._add_entries(node, data, path)
+
+    @contextmanager
+    def _inside(self, node: yaml.Node, path: KeyPath) -> Iterator[bool]:
+        """Go into a node; False if it is inside itself, which is an error."""
+        new = not any(node is above for above in self._above)
+        if not new:
+            message = "the alias is inside its own anchor; write the value instead of the alias"
+            self._find(self._mark(node), path, message)
+        self._above.append(node)
+        try:
+            self._budget.spend(len(self._above), node.start_mark)
+            yield new
+        finally:
+            self._above.pop()
 
     def _mark(self, node: yaml.Node) -> Mark:
         return _marked(node.start_mark, self.name)
@@ -247,7 +295,7 @@ class _Tree:
 
 def _overridden(document: Document, override: str) -> Document:
     """Document after an override ``key.path=value``."""
-    start = f"--set {override}"
+    start = f"--set {escaped(override)}"
     keys, equals, text = override.partition("=")
     if not equals:
         raise SpecError(f"{start}: there is no '='; write key.path=value")
@@ -259,7 +307,7 @@ def _overridden(document: Document, override: str) -> Document:
         entry = _parsed(text, start)
     except SpecError as error:
         raise SpecError(f"{start}: {str(error).removeprefix(start).partition(': ')[2]}") from None
-    return document.changed(path, entry, Mark(0, 0, f"--case {entry.data}" if path == ("case",) else start))
+    return document.changed(path, entry, Mark(0, 0, escaped(f"--case {entry.data}") if path == ("case",) else start))
 
 
 def _varied(document: Document, name: str) -> Iterator[Document]:

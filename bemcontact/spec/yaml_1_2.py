@@ -6,6 +6,14 @@ from typing import Any
 
 import yaml
 
+MOST_CHARACTERS = 1_000_000
+"""Largest length of a text: it is read within a few seconds."""
+MOST_VALUES = 30_000
+"""Largest number of keys and values in a text."""
+MOST_KEYS = 1000
+"""Largest number of keys in one mapping."""
+DEEPEST = 64
+"""Largest depth of lists and mappings in each other; a problem needs about ten."""
 TAG = "tag:yaml.org,2002:"
 PLAIN_SCALARS = {
     f"{TAG}null": re.compile(r"~|null|Null|NULL|"),
@@ -16,11 +24,21 @@ PLAIN_SCALARS = {
     ),
     f"{TAG}merge": re.compile("<<"),
 }
+
+
+def _whole(text: str) -> int:
+    """Read a whole number; `ValueError` for one that is beyond all numbers."""
+    number = int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
+    if abs(number) > 10**300:
+        raise ValueError
+    return number
+
+
 READERS: dict[str, Callable[[str], Any]] = {
     f"{TAG}str": str,
     f"{TAG}null": lambda _: None,
     f"{TAG}bool": lambda text: {"true": True, "false": False}[text.lower()],
-    f"{TAG}int": lambda text: int(text, {"0o": 8, "0x": 16}.get(text[:2], 10)),
+    f"{TAG}int": _whole,
     f"{TAG}float": lambda text: float(re.sub(r"\.(?=inf|nan)", "", text.lower())),
 }
 
@@ -32,8 +50,54 @@ def _tag(kind: type[yaml.Node], value: Any, implicit: Any, otherwise: Callable[.
     return otherwise(kind, value, implicit)
 
 
+class Refused(yaml.MarkedYAMLError):
+    """YAML that is not read although it is valid, with its place."""
+
+    def __init__(self, problem: str, mark: yaml.Mark) -> None:
+        super().__init__(problem=problem, problem_mark=mark)
+
+
+class Budget:
+    """How much of a text may still be read; aliases count as often as they are used."""
+
+    def __init__(self) -> None:
+        self._values = 0
+
+    def spend(self, depth: int, mark: yaml.Mark) -> None:
+        """Count a value at a depth; `Refused` if it is one too many, or too deep."""
+        self._values += 1
+        if self._values > MOST_VALUES:
+            raise Refused(f"the text has more than {MOST_VALUES} keys and values, with those of aliases", mark)
+        if depth > DEEPEST:
+            raise Refused(f"lists and mappings are nested more than {DEEPEST} deep; close or remove brackets", mark)
+
+
 class Loader(yaml.SafeLoader):
-    """The parser of PyYAML with the plain scalars of YAML 1.2."""
+    """The parser of PyYAML with the plain scalars of YAML 1.2, for texts of limited size and depth."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self._budget, self._depth = Budget(), 0
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        """Read a value, and the values in it."""
+        self._depth += 1
+        self._budget.spend(self._depth, self.peek_event().start_mark)
+        try:
+            return super().compose_node(parent, index)
+        finally:
+            self._depth -= 1
+
+    def compose_scalar_node(self, anchor: Any) -> yaml.ScalarNode:
+        """Read a text; two halves of a character, as JSON escapes it, become the character."""
+        node = super().compose_scalar_node(anchor)
+        if not node.value.isascii():
+            try:
+                node.value = node.value.encode("utf-16", "surrogatepass").decode("utf-16")
+            except UnicodeDecodeError:
+                message = "an escape sequence is half of a character; write the character itself"
+                raise Refused(message, node.start_mark) from None
+        return node
 
     def resolve(self, kind: type[yaml.Node], value: Any, implicit: Any) -> str:
         """Tag of a node without a tag."""

@@ -185,3 +185,14 @@ def test_oblique_resultant():
     (x, y), (fx, fy) = result.line_point, result.force
     assert x * fy - y * fx == pytest.approx(result.moment, rel=1e-12)
     assert x * fx + y * fy == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("count", [2, 3, 7, 40, 1000])
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_forces_that_balance_each_other_have_no_line_of_action(count: int, unit: float):
+    """Equal pressures all round a circle: their sum is zero, and round-off in floating point."""
+    angle = 2 * np.pi * np.arange(count) / count + 0.1
+    normals = np.column_stack([np.cos(angle), np.sin(angle)])
+    result = footprint(*state(normals, angle, np.full(count, unit), np.zeros(count), normals=normals)).resultant
+    assert np.hypot(*result.force) <= 1e-12 * count * unit
+    assert result.line_point is None

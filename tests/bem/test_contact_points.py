@@ -1,9 +1,136 @@
-"""Points of contact: element lengths along the boundary."""
+"""Points of contact: one for each face of the surface that holds a node; element lengths along the boundary."""
 
 import numpy as np
+import pytest
 from bodies import arc, even, mesh_of
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
+from bemcontact import solve
+from bemcontact.bem.body import body_of
 from bemcontact.bem.contact_points import element_lengths
+from bemcontact.problem import Polyline, Problem
+
+PRESSURE = 3.0
+FILLED = {"temperature": {"expansion": 1e-5, "change": (1 - 2 * 0.3) * PRESSURE / 1000.0 / 1e-5}}
+"""The heat that gives a body back the size that the pressure takes: E α ΔT = (1 - 2 ν) p in plane strain."""
+
+
+def outline(angles, radii, elements=2):
+    """Corners of a star-shaped body, counterclockwise, and its edges by number."""
+    angles = np.cumsum(angles) / np.sum(angles) * 2 * np.pi
+    corners = np.column_stack([np.cos(angles), np.sin(angles)]) * np.array(radii)[:, None]
+    return [{"name": f"e{i}", "start": tuple(at), "elements": elements} for i, at in enumerate(corners.tolist())]
+
+
+def problem_of(edges, zones, loaded=PRESSURE, **more):
+    """Press a body on all edges that are in no zone; `zones` has edge names and points of a polyline by name."""
+    held = {name for names, _ in zones.values() for name in names}
+    return Problem(
+        name="corners",
+        material={"young_modulus": 1000.0, "poisson_ratio": 0.3},  # pyright: ignore[reportArgumentType]
+        boundary={"outer": edges},  # pyright: ignore[reportArgumentType]
+        conditions={edge["name"]: {"pressure": loaded} for edge in edges if edge["name"] not in held},  # pyright: ignore
+        contact_zones={
+            name: {"edges": names, "surface": {"kind": "polyline", "points": points}}
+            for name, (names, points) in zones.items()
+        },  # pyright: ignore[reportArgumentType]
+        **more,
+    )
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    angles=st.lists(st.floats(0.6, 1.4), min_size=6, max_size=6),
+    radii=st.lists(st.floats(0.5, 1.5), min_size=6, max_size=6),
+    faces=st.integers(1, 3),
+    shift=st.tuples(st.floats(-1e-3, 1e-3), st.floats(-1e-3, 1e-3)),
+    apart=st.booleans(),
+)
+@example(angles=[1.0] * 6, radii=[1.0, 0.6, 1.0, 1.0, 1.0, 1.0], faces=2, shift=(0.0, 0.0), apart=False)
+@example(angles=[1.0] * 6, radii=[1.0, 0.4, 1.0, 1.0, 1.0, 1.0], faces=3, shift=(1e-3, 2e-3), apart=True)
+def test_pressure_of_a_fluid_on_faces_that_fit_the_body(angles, radii, faces, shift, apart):
+    """Equal pressure from all sides of a heated body moves nothing: an exact state, at any angle between the faces.
+
+    Faces that the shift moves off the body, or into it, do not change it: the body follows.
+    """
+    edges = outline(angles, radii)
+    names = [f"e{i}" for i in range(faces)]
+    points = [tuple(np.add(edges[i]["start"], shift)) for i in range(faces + 1)]
+    zones = {name: ((name,), points) for name in names} if apart else {"all": (names, points)}
+    problem = problem_of(edges, zones, loads=FILLED)
+    assert len(body_of(problem).points) == sum(2 * 2 + 1 for _ in names)
+    result = solve(problem, "complementarity")
+    assert result.solution.pressure == pytest.approx(PRESSURE, rel=1e-8)
+    assert len(result.footprint.intervals) == faces
+    for interval, name in zip(result.footprint.intervals, names, strict=True):
+        edge = int(name[1:])
+        assert interval.start == pytest.approx(edges[edge]["start"], abs=1e-12)
+        assert interval.end == pytest.approx(edges[edge + 1]["start"], abs=1e-12)
+
+
+@given(st.floats(0.02, 1.4), st.floats(0.02, 1.4), st.floats(-3, 3))
+def test_a_ridge_presses_on_a_smooth_edge_along_the_normal_of_the_body(left, right, turn):
+    """Whatever its flanks, if they fall away from the body; the gap is the height of the body above the ridge."""
+    flanks = np.array([(-np.cos(left), -np.sin(left)), (0.0, 0.0), (np.cos(right), -np.sin(right))])
+    c, s = np.cos(turn), np.sin(turn)
+    line = Polyline(points=tuple(map(tuple, (flanks @ [[c, s], [-s, c]]).tolist())))
+    inward = np.array([-s, c])
+    gap, normals = line.faces(np.zeros((1, 2)), np.tile(inward, (1, 2, 1)), np.zeros(1))
+    np.testing.assert_allclose(normals, np.tile(inward, (1, 3, 1)), atol=1e-12)
+    assert abs(gap).max() <= 1e-15
+
+
+@given(st.floats(0.3, 2.8), st.floats(0.0, 0.05), st.floats(0.0, 0.05), st.floats(-3, 3))
+def test_a_corner_in_a_groove_has_the_gaps_to_both_faces(angle, first, last, turn):
+    """Whichever face is the nearer one, and however acute or blunt the groove is, the body fits it with clearance."""
+    c, s = np.cos(turn), np.sin(turn)
+    rotate = np.array([[c, s], [-s, c]])
+    down, along = np.array([-np.cos(angle), -np.sin(angle)]), np.array([1.0, 0.0])
+    line = Polyline(points=tuple(map(tuple, (np.array([-down, [0, 0], along]) @ rotate).tolist())))
+    faces = np.array([[np.sin(angle), -np.cos(angle)], [0.0, 1.0]])  # into the body, before and after the corner
+    place = np.linalg.solve(faces, [first, last])
+    gap, normals = line.faces((place @ rotate)[None], (faces @ rotate)[None], np.zeros(1))
+    np.testing.assert_allclose(gap[0, [0, 2]], [first, last], atol=1e-12)
+    np.testing.assert_allclose(normals[0, [0, 2]], faces @ rotate, atol=1e-12)
+
+
+def test_a_corner_that_stands_on_a_third_face_has_three_points():
+    """A square in a groove with a beveled corner: its corner is on the bevel, its sides are off the walls.
+
+    Three normals at one node are dependent, so that the compliance is not definite.
+    """
+    corners = {"bottom": (0, 0), "right": (1, 0), "top": (1, 1), "left": (0, 1)}
+    edges = [{"name": name, "start": at, "elements": 2} for name, at in corners.items()]
+    bevel = [(-0.02, 5.0), (-0.02, 0.02), (0.02, -0.02), (5.0, -0.02)]
+    problem = problem_of(edges, {"groove": (("left", "bottom"), bevel)})
+    body = body_of(problem)
+    at_corner = np.flatnonzero(body.points.node == 0)
+    np.testing.assert_allclose(body.points.gap[at_corner], [0.02, 0.02, 0.0], atol=1e-12)
+    result = solve(problem)
+    assert not result.certificate.violation
+    assert result.footprint.resultant.force == pytest.approx((PRESSURE, PRESSURE), rel=1e-9)
+    gaps = result.solution.displacement + result.contact.initial_gap
+    assert gaps[at_corner].min() >= -1e-12
+    np.testing.assert_allclose(body.points.tributary[at_corner[2]], 2 * 0.5 / 6, rtol=1e-12)
+
+
+@pytest.mark.parametrize("corner", [0.4, 1.4])
+def test_a_tool_and_the_surface_itself_may_be_displaced(corner):
+    """The tool's displacement changes the gaps of both faces of a corner as a shift of the surface does."""
+    edges = outline([1.0] * 6, [1.0, corner, 1.0, 1.0, 1.0, 1.0])
+    points, shift = [edges[i]["start"] for i in range(3)], (2e-3, -1e-3)
+    held = {"e4": {"displacement": {"x": 0, "y": 0}}}
+
+    def solved(points, **more):
+        data = problem_of(edges, {"faces": (("e0", "e1"), points)}).model_dump(exclude={"variants"})
+        return solve(Problem(**{**data, "conditions": held, **more}), "complementarity")
+
+    moved = solved(points, tools={"die": {"zones": "faces", "displacement": dict(zip("xy", shift, strict=True))}})
+    shifted = solved([tuple(np.add(point, shift)) for point in points])
+    scale = shifted.contact.scales
+    np.testing.assert_allclose(moved.contact.initial_gap, shifted.contact.initial_gap, atol=1e-12)
+    np.testing.assert_allclose(moved.solution.pressure, shifted.solution.pressure, atol=1e-8 * scale.pressure)
 
 
 def test_element_lengths_are_arc_lengths():

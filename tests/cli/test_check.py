@@ -74,3 +74,43 @@ def test_condensed_problem_keeps_its_cases(tmp_path: Path):
     assert contact.cases.names == ("off the middle", "raised")
     found = bemcontact.solve(contact.with_factors({"off the middle": 2}))
     assert found.solution.pressure.max() == pytest.approx(200, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("top: {pressure: 3}", "top: {pressure: -3}"),
+        ("top: {pressure: 3}", "top: {displacement: {x: 1}}"),
+        ("{displacement: {x: 0}}", "{traction: {x: 1}}"),
+        ("top: {pressure: 3}", "topp: {pressure: 3}"),
+        ("top: {pressure: 3}", "top: {pressure: true}"),
+        ("210e3", "-1"),
+        ("poisson_ratio: 0.3", "poisson_ratio: 0.3\n  density: 3"),
+        ("name: block on a table", "name: []"),
+        ("units: {length: mm, force: N}", "units: 3"),
+        ("edges: bottom", "edges: buttom"),
+        ("edges: bottom", "edges: top"),
+        ("normal: [0, 1]", "normal: [0, -1]"),
+        ("kind: plane, point: [0, 0], normal: [0, 1]", "kind: deflected_contour, direction: [0, 1]"),
+        ("contact_zones:", "tools: {press: {zones: fot, force: {y: 1}}}\ncontact_zones:"),
+        ("contact_zones:", "tools: {press: {zones: foot, force: {y: -1}}}\ncontact_zones:"),
+        ("contact_zones:", "load_cases: {up: {conditions: {top: {pressure: -9}}}}\ncontact_zones:"),
+        ("contact_zones:", "load_cases: {up: {tools: {it: {force: {y: 1}}}}}\ncase: dwn\ncontact_zones:"),
+        ("contact_zones:", "loads: {gravity: 3}\nmesh: {refine: 0}\ncontact_zones:"),
+    ],
+)
+def test_check_draws_what_can_be_read_of_a_refused_problem(block: Path, tmp_path: Path, old: str, new: str):
+    picture = tmp_path / "picture.svg"
+    block.write_text(BLOCK.replace(old, new), encoding="utf-8")
+    answer = run("check", block, "--figure", picture)
+    assert answer.exit_code == 2
+    assert "error: " in answer.stderr
+    assert "shows the parts of the problem that could be read" in answer.stderr
+    assert "<svg" in picture.read_text(encoding="utf-8")
+
+
+def test_check_draws_nothing_without_a_sound_boundary(block: Path, tmp_path: Path):
+    for old, new in (("start: [40, 0]", "start: [40, 99]"), ("elements: 4", "elements: 4000000"), ("boundary:", "a:")):
+        block.write_text(BLOCK.replace(old, new), encoding="utf-8")
+        assert run("check", block, "--figure", tmp_path / "picture.svg").exit_code == 2
+        assert not (tmp_path / "picture.svg").exists()

@@ -213,3 +213,39 @@ def test_progress_shows_the_start_and_reaches_the_terminal(block: Path, monkeypa
     monkeypatch.setattr("bemcontact.cli.command.stages", listening)
     run("solve", block, "--formulation", "qp1", "--starts", 3)
     assert said == [("solving", ""), *(("solving", f"start {number} of 3") for number in (2, 3, 3))]
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "expected"),
+    [
+        ("solve", "--formulation", "one of qp1, qp2, qp3, complementarity"),
+        ("solve", "--weights", "one of tributary, consistent, element_length"),
+        ("solve", "--rows", "one of stiffness, compliance"),
+        ("solve", "--equilibrium", "one of constraint, penalty"),
+        ("path", "--to", "a number"),
+        ("path", "--from", "a number"),
+        *((command, "--refine", "a whole number of at least 1") for command in ("solve", "check", "condense", "path")),
+        ("solve", "--max-iterations", "a whole number of at least 1"),
+        ("solve", "--starts", "a whole number of at least 1"),
+        ("solve", "--seed", "a whole number of at least 0"),
+        ("compare", "--starts", "a whole number of at least 1"),
+        ("compare", "--seed", "a whole number of at least 0"),
+    ],
+)
+@pytest.mark.parametrize("value", ["foo", "", "-7.5e", "1/2", "½", "nan", "inf", "1e999", "1,5", "[bold]"])
+def test_a_wrong_value_of_an_option_is_told_what_is_expected(command: str, option: str, expected: str, value: str):
+    answer = run(command, "no file", option, value)
+    words = re.sub(r"[\s│]+", " ", answer.stderr)
+    assert answer.exit_code == 2
+    assert f"Invalid value for '{option}': expected {expected}, found '{value}'" in words
+    assert "Value error" not in words
+
+
+@pytest.mark.parametrize("value", ["foo", "", "1/2", "1,5"])
+def test_a_penalty_that_is_no_number_is_told_what_is_expected(value: str):
+    assert f"expected a number, found '{value}'" in run("solve", "no file", "--penalty", value).stderr
+
+
+def test_a_mesh_that_is_too_fine_is_told_by_its_option(block: Path):
+    for parts in ("10000", "1000000000000"):
+        assert_refused(run("solve", block, "--refine", parts), f"--refine {parts}: ")

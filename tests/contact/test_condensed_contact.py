@@ -43,7 +43,7 @@ def test_failed_save_leaves_no_file(tmp_path, monkeypatch):
     def full_disk(*_, **__):
         raise OSError("no space left")
 
-    monkeypatch.setattr(np, "savez_compressed", full_disk)
+    monkeypatch.setattr(np, "savez", full_disk)
     with pytest.raises(OSError, match="no space left"):
         random_contact(0, 12, 2).save(tmp_path / "problem.npz")
     assert not list(tmp_path.iterdir())

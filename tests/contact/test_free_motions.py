@@ -43,15 +43,16 @@ def test_amplitudes_of_a_motion_are_its_own(motions: MotionAlgebra):
 def test_forces_and_order_of_points():
     """Four points in two zones and three runs; Σ w p n of each zone by hand."""
     contact = replace(
-        CondensedContact.from_compliance(np.eye(4), np.zeros(4), [1.0, 2.0, 1.0, 1.0]),
+        CondensedContact.from_compliance(np.eye(4), np.zeros(4), [1.0, 1.0, 1.0, 2.0]),
         zone_names=("floor", "wall"),
-        zone=np.array([0, 1, 0, 0]),
-        run=np.array([2, 1, 0, 2]),
-        arc_position=np.array([3.0, 0.0, 5.0, 1.0]),
-        normals=np.array([[0.0, 1.0], [1.0, 0.0], [0.0, 1.0], [0.0, 1.0]]),
+        zone=np.array([0, 0, 0, 1]),
+        run=np.array([2, 2, 0, 1]),
+        run_length=np.full(3, np.inf),
+        arc_position=np.array([1.0, 3.0, 5.0, 0.0]),
+        normals=np.array([[0.0, 1.0], [0.0, 1.0], [0.0, 1.0], [1.0, 0.0]]),
     )
-    pressure = np.array([1.0, 2.0, 3.0, 4.0])
+    pressure = np.array([4.0, 1.0, 3.0, 2.0])
     np.testing.assert_array_equal(contact.resultants(pressure), [[0.0, 8.0], [4.0, 0.0]])
     np.testing.assert_array_equal(contact.resultants(np.stack([pressure, 2 * pressure]))[1], [[0.0, 16.0], [8.0, 0.0]])
-    assert contact.in_order(np.arange(4)).tolist() == [2, 1, 3, 0]
-    assert contact.points_of_run(2).tolist() == [3, 0]
+    assert contact.in_order(np.array([3, 1, 0, 2])).tolist() == [2, 3, 0, 1]
+    assert contact.points_of_run(2).tolist() == [0, 1]

@@ -130,20 +130,23 @@ def test_keys_are_those_of_the_spec():
         ),
         (
             lambda contact: contact.with_factors({"wind": np.inf}),
-            "factor of 'wind' must be a finite number, found inf",
+            "factor of 'wind' must be a finite number; found inf",
         ),
-        (lambda contact: contact.with_factors({"wind": "1"}), "factor of 'wind' must be a finite number, found '1'"),
+        (lambda contact: contact.with_factors({"wind": "1"}), "factor of 'wind' must be a finite number; found '1'"),
         (lambda contact: contact.with_factors([1.0]), r"factors by load case are needed, such as .*; found \[1.0\]"),
         (
             lambda contact: contact.with_tools({"punch": 1}),
-            r"have x, y and rotation or moment each, in an array \(2, 3\)",
+            "displacements x, y, rotation of 2 tools must contain real numbers; found .*punch",
         ),
         (lambda contact: contact.with_tools(position=[[0, 0, 0]]), r"tools have 2 x 3 components.* of shape \(1, 3\)"),
         (
             lambda contact: contact.with_tools(position=np.zeros((3, 2))),
             r"tools have 2 x 3 components.* of shape \(3, 2\)",
         ),
-        (lambda contact: contact.with_tools(force=[[0, np.nan, 0]] * 2), "forces on them, must be finite numbers"),
+        (
+            lambda contact: contact.with_tools(force=[[0, np.nan, 0]] * 2),
+            "forces x, y, moment on 2 tools has entries that are not",
+        ),
     ],
 )
 def test_changes_that_do_not_fit_are_refused(change, words: str):

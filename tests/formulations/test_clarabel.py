@@ -3,9 +3,12 @@
 import cvxpy as cp
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from bemcontact.errors import SolverError
-from bemcontact.formulations.clarabel import minimize
+from bemcontact.formulations import clarabel
+from bemcontact.formulations.clarabel import ATTEMPTS, Attempt, minimize
 
 UNITS = [1.0, 1e-9, 1e6]
 
@@ -78,3 +81,76 @@ def test_iteration_limit_is_a_status():
 def test_integers_are_refused():
     with pytest.raises(SolverError, match=r"Clarabel cannot solve this model: .* state it without integers"):
         minimize(cp.Problem(cp.Minimize(cp.Variable(integer=True))))
+
+
+def degenerate_program(seed: int, n: int, rank: int, decades: int) -> tuple[cp.Problem, cp.Variable, float]:
+    """A program with a known minimum: a point, slacks and multipliers are drawn, and make costs and limits (KKT).
+
+    The Hessian is semidefinite to round-off, some constraints are weak, and units span decades. Its least value is
+    ½xᵀHx + cᵀx at the point.
+    """
+    rng = np.random.default_rng(seed)
+    factor = rng.standard_normal((rank, n))
+    H = factor.T @ factor + 1e-17 * np.diag(rng.standard_normal(n))
+    A, x = rng.standard_normal((n, n)), rng.standard_normal(n)
+    kind = rng.integers(0, 3, n)  # touched with a multiplier, touched without, not touched
+    multipliers, slacks = np.where(kind == 0, rng.random(n), 0.0), np.where(kind == 2, rng.random(n), 0.0)
+    unit = 10.0 ** rng.uniform(-decades, decades, n)
+    variable = cp.Variable(n)
+    given, cost = cp.multiply(unit, variable), -H @ x - A.T @ multipliers
+    limits = [A @ given <= A @ x + slacks, cp.abs(given) <= 100.0]
+    goal = cp.quad_form(given, cp.psd_wrap(H)) / 2 + cost @ given
+    return cp.Problem(cp.Minimize(goal), limits), given, float(x @ H @ x / 2 + cost @ x)
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 10**6), n=st.integers(2, 25), rank=st.integers(0, 25), decades=st.integers(0, 3))
+def test_degenerate_programs_have_the_minimum_they_were_made_with(seed, n, rank, decades):
+    problem, given, least = degenerate_program(seed, n, min(rank, n), decades)
+    minimize(problem)
+    size = 1.0 + abs(least) + 100.0 * np.abs(given.value).max()
+    assert problem.status == "optimal"
+    assert problem.value == pytest.approx(least, abs=1e-8 * size)
+
+
+HOPELESS = Attempt("", {"max_iter": 1})
+
+
+def test_another_attempt_answers_and_is_named(monkeypatch):
+    """The first attempt gives up at once; the next one has the minimum, and says that it was not the first."""
+    monkeypatch.setattr(clarabel, "ATTEMPTS", (HOPELESS, *ATTEMPTS[1:]))
+    problem, _, least = degenerate_program(1, 6, 3, 0)
+    answer = minimize(problem)
+    assert problem.value == pytest.approx(least, abs=1e-7)
+    assert ATTEMPTS[1].words in answer.note
+    assert not answer.failed
+
+
+def test_no_attempt_is_an_error_unless_the_point_is_wanted(monkeypatch):
+    monkeypatch.setattr(clarabel, "ATTEMPTS", (HOPELESS,))
+    problem, given, _ = degenerate_program(1, 6, 3, 0)
+    with pytest.raises(SolverError, match="Clarabel found no solution"):
+        minimize(problem)
+    answer = minimize(problem, leave_point=True)
+    assert answer.failed
+    assert "not reached: residual" in answer.note
+    assert given.value is not None
+
+
+@pytest.mark.parametrize("attempt", ATTEMPTS, ids=lambda attempt: attempt.words or "first")
+def test_each_attempt_by_itself_solves_plain_programs(attempt, monkeypatch):
+    monkeypatch.setattr(clarabel, "ATTEMPTS", (attempt,))
+    for seed in range(3):
+        problem, _, least = degenerate_program(seed, 6, 3, 0)
+        answer = minimize(problem)
+        assert not answer.failed
+        assert problem.value == pytest.approx(least, abs=1e-6)
+
+
+@pytest.mark.parametrize("gap", 10.0 ** np.arange(2, 13))
+def test_what_is_hardly_feasible_is_not_called_infeasible_or_unbounded(gap):
+    """X >= -1 costs `gap` apiece, and y saves 1 up to 1: the least is -gap - 1; a ray of round-off would cross it."""
+    x, y = cp.Variable(), cp.Variable()
+    minimize(problem := cp.Problem(cp.Minimize(gap * x - y), [x >= -1, y <= 1]), equilibrate=False)
+    assert problem.status.startswith("optimal")
+    assert problem.value == pytest.approx(-gap - 1, rel=1e-7)

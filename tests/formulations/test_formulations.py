@@ -134,14 +134,14 @@ def test_objective_of_qp3_is_that_of_the_point(k):
         terms = max(1.0, sum(map(np.linalg.norm, (p, a, gap, small.offset, small.motion_load))))
         assert max(-p.min(), -gap.min(), balance.max(initial=0.0)) <= (record[-1] + 1e-15) * terms
     assert of(whole, "objective")[-1] == pytest.approx(0, abs=1e-10)
-    assert of(whole, "infeasibility")[-1] <= clarabel.TOLERANCES[-1]
+    assert of(whole, "infeasibility")[-1] <= clarabel.GOOD
 
 
 @pytest.mark.parametrize("k", [0, 2])
 def test_units_of_wide_gaps_are_taken_back(k):
-    """One gap of 1e7 drowns the pressures, so that QP3 is solved in units of that gap; the objective then is far off.
+    """One gap of 1e7 drowns the pressures in one scaling; whichever attempt answers, the objective is the point's.
 
-    The reported residual is that of the point in the usual units, 1e12 times that in the units of the gap.
+    Up to the negative pressures that cvxpy cuts off, 1e-9 of the widest gap at most.
     """
     problem = random_contact(5, N, k)
     problem = replace(problem, initial_gap=problem.initial_gap + 1e7 * np.eye(N)[0])
@@ -150,8 +150,8 @@ def test_units_of_wide_gaps_are_taken_back(k):
     result = qp3.solve(problem, SolveOptions.of("qp3", polish=False))
     assert counted(result) == 2 * [*range(result.iterations + 1)]
     p, a = scaled_point(problem, result.pressure, result.rigid_amplitudes)
-    assert work.value(p, a) > 1.0
-    assert of(result, "objective")[-1] == pytest.approx(work.value(p, a), rel=1e-6)
+    assert of(result, "objective")[-1] == pytest.approx(work.value(p, a), rel=1e-6, abs=1e-9 * small.offset.max())
+    assert result.status is Status.SOLVED
 
 
 @pytest.mark.parametrize("k", [0, 1, 3])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from contact_problems import random_contact
 
+import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import NotConvexError, ProblemError, SolverError
@@ -173,8 +174,53 @@ def test_iteration_limit_is_named():
 
 
 def test_failure_of_the_solver_is_ours(monkeypatch):
-    """No end of Clarabel counts as an answer: both tolerances are tried, and the error says what to do."""
-    monkeypatch.setattr(clarabel, "FAILED", ("Solved",))
+    """No end of Clarabel leaves a point: all attempts are made, and the error says what to do."""
+    monkeypatch.setattr(clarabel, "_judged", lambda *_: ("Unsolved", np.inf))
     with pytest.raises(SolverError, match="Clarabel found no solution of QP3") as e:
         qp3.solve(random_contact(1, 5, 0))
     assert isinstance(e.value.__cause__, SolverError)
+
+
+def strip(points: int, width: float, least: float) -> CondensedContact:
+    """Like a slender strip that two motions leave free: a smooth kernel, whose small eigenvalues are all `least`."""
+    x = np.linspace(0, 1, points)
+    return CondensedContact.from_compliance(
+        np.exp(-(((x[:, None] - x) / width) ** 2)) + least * np.eye(points),
+        0.01 * x**2,
+        np.full(points, 1 / points),
+        rigid_motions=np.column_stack([np.ones(points), x - 0.5]),
+        motion_load=[-1.0, 0.05],
+    )
+
+
+@pytest.mark.parametrize("least", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize(("points", "width"), [(30, 0.1), (60, 0.2), (80, 0.2)])
+def test_strips_with_small_eigenvalues(points, width, least):
+    """The direct solver and QP3 agree where the smallest eigenvalue is as small as that of strips of L/H = 40."""
+    problem = strip(points, width, least)
+    solution, direct = qp3.solve(problem), complementarity.solve(problem)
+    assert solution.status is Status.SOLVED
+    assert solution.pressure == pytest.approx(direct.pressure, abs=1e-9 * direct.pressure.max())
+
+
+@pytest.mark.parametrize("refine", [1, 5])
+def test_closed_rings(refine):
+    """sym(JM) of a ring with two free motions is semidefinite to round-off; certified on any mesh."""
+    ring = bemcontact.condense(bemcontact.load("models/gallery/shrink_fit.yaml").refined(refine))
+    assert ring.free_motions == 2
+    assert bemcontact.solve(ring, "qp3").certified
+
+
+def test_the_point_of_a_failed_solver_is_polished_and_the_outcome_says_so(monkeypatch):
+    """Clarabel stops after five steps: the active-set steps lead to the contact state from there."""
+    monkeypatch.setattr(clarabel, "ATTEMPTS", (clarabel.Attempt("", {"max_iter": 5}),))
+    problem = random_contact(1, 12, 1)
+    solution, direct = qp3.solve(problem), complementarity.solve(problem)
+    assert solution.status is Status.SOLVED
+    assert solution.polished
+    assert solution.pressure == pytest.approx(direct.pressure, abs=1e-9 * direct.pressure.max())
+    assert "not reached: residual" in solution.notes[0]
+    assert "the active-set steps from the point that Clarabel left" in solution.notes[1]
+    left = qp3.solve(problem, UNPOLISHED)
+    assert left.status is Status.NUMERICAL_FAILURE
+    assert np.abs(left.pressure - direct.pressure).max() > 1e-9 * direct.pressure.max()

@@ -7,13 +7,17 @@ import cvxpy as cp
 import numpy as np
 import pytest
 from contact_problems import random_contact, resting
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from modelling.tool_contact import tool_contact
+from scipy.sparse import csr_array
 
 import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import NotConvexError, ProblemError
 from bemcontact.formulations import complementarity
+from bemcontact.formulations.clarabel import minimize
 
 GALLERY = Path(__file__).parents[2] / "models" / "gallery"
 CONTACTS = {f"{n} points, {k} motions": random_contact(n + k, n, k) for n, k in ((9, 0), (14, 1), (14, 3))}
@@ -312,3 +316,136 @@ def test_loads_of_two_cases_that_balance_each_other_may_act_together():
         model.solve()
     with pytest.raises(ProblemError, match="nothing holds the body"):
         contact.with_factors({"one": 1})
+
+
+def stationarity(contact: CondensedContact, model, p: np.ndarray, cap: cp.Constraint) -> tuple[float, float]:
+    """Largest residual of the gradient of F3 with its multipliers over p and over a, relative to the largest term."""
+    w, M, duals = contact.weights, contact.compliance, model.duals
+    wanted, lift = w * duals["no_penetration"], w * duals["no_tension"]
+    terms = [w * contact.offset, w * (M @ p), M.T @ (w * p), -M.T @ wanted, -lift, cap.dual_value]
+    terms += [contact.equilibrium @ duals["equilibrium"]] if contact.free_motions else []
+    over_a = contact.motion_load + contact.rigid_motions.T @ wanted
+    size = np.abs(contact.rigid_motions.T) @ np.abs(wanted)
+    return np.abs(sum(terms)).max() / np.abs(terms).max(), (np.abs(over_a) / size).max(initial=0.0)
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    seed=st.integers(0, 1000),
+    which=st.sampled_from([0, 1, 3, "tools"]),
+    length=st.sampled_from([1.0, 1e-6, 1e3]),
+    stress=st.sampled_from([1.0, 1e9]),
+)
+def test_multipliers_are_pressure_gap_and_motions_in_any_unit(seed, which, length, stress):
+    """Lagrange's conditions of F3 at a contact state, by hand: w gap >= 0 has the multiplier p, w p >= 0 the gap."""
+    contact = tool_contact(seed, 10, (length, stress)) if which == "tools" else random_contact(seed, 8, which)
+    model = bemcontact.model(contact)
+    with pytest.raises(ProblemError, match="no multipliers yet"):
+        _ = model.duals
+    result = model.solve()
+    for _ in range(2):  # the second solve starts from the first, without Clarabel
+        duals, (U, T) = model.duals, model.scales
+        size = 1.0 + np.abs(result.pressure).max() / T
+        np.testing.assert_allclose(duals["no_penetration"], result.pressure, rtol=0, atol=1e-5 * T * size)
+        np.testing.assert_allclose(duals["no_tension"], result.gap, rtol=0, atol=1e-5 * U * size)
+        if contact.free_motions:
+            R = contact.rigid_motions
+            np.testing.assert_allclose(R @ duals["equilibrium"], R @ result.motions, rtol=0, atol=1e-5 * U * size)
+        result = model.solve()
+
+
+@pytest.mark.parametrize("contact", [*(random_contact(4, 12, k) for k in (0, 1, 3)), tool_contact()])
+def test_multipliers_with_a_constraint_of_the_user(contact):
+    """With the pressure capped, Lagrange's conditions of F3 hold with the four multipliers, computed anew."""
+    model = bemcontact.model(contact)
+    cap = model.pressure <= 0.9 * float(model.solve().pressure.max())
+    result = model.solve(extra_constraints=[cap])
+    over_p, over_a = stationarity(contact, model, result.pressure, cap)
+    assert over_p < 1e-7
+    assert over_a < 1e-7
+
+
+def test_a_multiplier_is_the_price_of_its_constraint():
+    """The least objective by central differences of the zero in w gap >= 0 and in w p >= 0."""
+    contact = random_contact(4, 12, 1)
+    model = bemcontact.model(contact)
+    cap = model.pressure <= 0.9 * float(model.solve().pressure.max())
+    model.solve(extra_constraints=[cap])
+    (U, T), duals, w = model.scales, model.duals, contact.weights
+    for name, value, unit in (("no_penetration", model.gap, U), ("no_tension", model.pressure, T)):
+        i = int(np.argmax(duals[name]))
+        least, step = [], 1e-4 * unit * w[i]
+        for s in (step, -step):
+            others = [constraint for key, constraint in model.constraints.items() if key != name]
+            shifted = cp.multiply(w, value) >= s * np.eye(contact.size)[i]
+            minimize(problem := cp.Problem(cp.Minimize(model.objective), [shifted, *others, cap]))
+            least.append(problem.value)
+        assert (least[0] - least[1]) / (2 * step) == pytest.approx(duals[name][i], rel=1e-3)
+
+
+PUNCH = """
+name: punch on a block
+material: {young_modulus: 210e3, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: bottom, start: [-40, -40], elements: 6}
+    - {name: right, start: [40, -40], elements: 5}
+    - {name: beside right, start: [40, 0], elements: 8, grading: {ratio: 50, towards: end}}
+    - {name: face, start: [5, 0], elements: 80, grading: {ratio: 10, towards: both}}
+    - {name: beside left, start: [-5, 0], elements: 8, grading: {ratio: 50, towards: start}}
+    - {name: left, start: [-40, 0], elements: 5}
+conditions: {bottom: {displacement: {x: 0, y: 0}}}
+contact_zones: {face: {edges: face, surface: {kind: plane, point: [0, 0], normal: [0, -1]}}}
+tools: {punch: {zones: face, point: [0, 0], force: {y: -2000, moment: 1000}}}
+"""
+
+
+def test_a_capped_pressure_on_a_fine_mesh():
+    """Of 161 points that nearly all depend on each other: the optimum by its conditions, computed anew."""
+    contact = bemcontact.condense(bemcontact.loads(PUNCH))
+    model = bemcontact.model(contact)
+    for cap in (300, 600, 1000):
+        limit = model.pressure <= cap
+        result = model.solve(extra_constraints=[limit])
+        assert result.pressure.max() <= cap * (1 + 1e-8)
+        over_p, over_a = stationarity(contact, model, result.pressure, limit)
+        assert over_p < 1e-6
+        assert over_a < 1e-6
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    rows=st.lists(st.lists(st.floats(-1, 1), min_size=3, max_size=3), min_size=2, max_size=2),
+    kind=st.sampled_from([list, np.array, tuple, np.asfortranarray, lambda rows: [np.array(row) for row in rows]]),
+)
+def test_values_of_parameters_are_read_by_rows(rows, kind):
+    """As NumPy reads them, whatever they are; cvxpy reads nested lists by columns."""
+    model = bemcontact.model(tool_contact(0, 6))
+    model.tool_force.value = kind(rows)
+    model.tool_position.value = kind(rows)
+    np.testing.assert_array_equal(model.tool_force.value, rows)
+    np.testing.assert_array_equal(model.tool_position.value, rows)
+
+
+@pytest.mark.parametrize("name", ["initial_gap", "case_factors", "tool_position", "tool_force"])
+@pytest.mark.parametrize(
+    "spoiled",
+    [
+        lambda value: np.ma.masked_array(value, np.arange(value.size).reshape(value.shape) == 1),
+        lambda value: [*value, value[0]],
+        lambda value: csr_array(np.atleast_2d(value)),
+        lambda value: value.astype(str),
+        lambda value: value + 1j,
+        lambda value: value > 0,
+        lambda value: value * np.nan,
+        lambda value: [[1.0], [1.0, 2.0]],
+        lambda value: 3.0,
+    ],
+)
+def test_values_that_are_no_numbers_of_the_shape_are_refused(name, spoiled):
+    """And the value stays as it was."""
+    parameter = getattr(bemcontact.model(tool_contact(0, 6)), name)
+    before = parameter.value
+    with pytest.raises(ProblemError, match=f"the value of {name} "):
+        parameter.value = spoiled(before)
+    np.testing.assert_array_equal(parameter.value, before)

@@ -1,12 +1,14 @@
 """Key paths: parsing, following and replacing; raw values with misspelled keys."""
 
+from typing import get_origin
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bemcontact.errors import ProblemError, dotted
 from bemcontact.problem import Line, Material, Problem
-from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, with_entry
+from bemcontact.problem.key_path import NAMED, RawValue, existing_path, parsed_path, with_entry
 
 KEY = st.text(st.characters(codec="ascii", categories=["L", "N"], include_characters="_- "), min_size=1).filter(
     lambda key: key == key.strip()
@@ -80,3 +82,19 @@ def test_missing_value_is_none_and_has_no_entries():
 def test_entries_have_their_key_paths():
     assert [*RawValue(("a",), [1, 2]).each()] == [RawValue(("a", 0), 1), RawValue(("a", 1), 2)]
     assert [*RawValue(("a",), {"b": 1}).each()] == [RawValue(("a", "b"), 1)]
+
+
+@pytest.mark.parametrize("key", NAMED)
+def test_a_change_reaches_each_named_entry_and_adds_none(key):
+    data = {key: {"presser": {"a": 1}}}
+    assert existing_path(data, (key, "presser", "b")) == (key, "presser", "b")
+    with pytest.raises(ProblemError, match=f"{key}: a change adds no .*; did you mean 'presser'?"):
+        existing_path(data, (key, "preser", "a"))
+    with pytest.raises(ProblemError, match="there are none"):
+        existing_path({}, (key, "presser"))
+
+
+def test_each_mapping_of_a_problem_with_free_names_is_known():
+    """Conditions are named by edges, which the problem checks; all other mappings have names of the user's choice."""
+    mappings = {key for key, item in Problem.model_fields.items() if get_origin(item.annotation) is dict}
+    assert mappings == {*NAMED, "conditions"}

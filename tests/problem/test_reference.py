@@ -254,7 +254,7 @@ def test_reference_without_a_zone_is_for_all_zones():
 
 
 def test_name_is_not_empty():
-    with pytest.raises(bemcontact.SpecError, match="the text is empty"):
+    with pytest.raises(bemcontact.SpecError, match="must not be empty"):
         bemcontact.loads(spec("{kind: uniform, pressure: 5}", name="' '"))
 
 

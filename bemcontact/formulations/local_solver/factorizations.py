@@ -1,4 +1,4 @@
-"""The few dense factorizations that everything here is made of, straight from LAPACK and BLAS."""
+"""Dense factorizations of the local solver, called directly from LAPACK and BLAS."""
 
 from typing import Any
 
@@ -6,14 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 
 Inertia = tuple[int, int, int]
 
-geqp3, orgqr, trtri, pstrf, potrf = get_lapack_funcs(("geqp3", "orgqr", "trtri", "pstrf", "potrf"), dtype=np.float64)
+geqp3, orgqr, trtri, pstrf, potrf, posv = get_lapack_funcs(
+    ("geqp3", "orgqr", "trtri", "pstrf", "potrf", "posv"), dtype=np.float64
+)
 SWEEPS = 4
 BLOCK = 32
-"""Columns that LAPACK takes at a time."""
+"""Block size of LAPACK, in columns."""
 ger: Any = get_blas_funcs("ger", dtype=np.float64)
 
 
@@ -24,12 +26,12 @@ def add_rank_one(matrix: Array, factor: float, column: Array, row: Array) -> Non
 
 
 def inverse_triangle(R: Array) -> Array:
-    """Inverse of an upper triangle of full rank; what is below the diagonal stays."""
+    """Inverse of an upper triangle of full rank; entries below the diagonal are unchanged."""
     return trtri(R)[0] if R.shape[0] else R
 
 
 def pivoted_cholesky(matrix: Array, zero: float) -> tuple[Array, NDArray[np.intp], int]:
-    """R, the order of rows and columns, and the rank: RᵀR is the leading part of that order."""
+    """Pivoted Cholesky factor R, the order of rows and columns, and the rank; RᵀR is the leading part in this order."""
     factor, pivots, rank, _ = pstrf(matrix, tol=zero)
     # LAPACK does not hold the first pivot against the tolerance
     rank = int(rank) if matrix.diagonal().max() > zero else 0
@@ -49,13 +51,13 @@ def row_lengths(rows: Array) -> Array:
 
 
 def unit_rows(rows: Array) -> tuple[Array, Array]:
-    """Rows of length one, zero rows as they are, and the lengths."""
+    """Rows divided by their lengths, and the lengths; rows of zeros are unchanged."""
     length = row_lengths(rows)
     return rows / length[:, None], length
 
 
 def unit_sizes(size: Array) -> Array:
-    """Factors of rows and columns by which the rows of a symmetric matrix of sizes come to one, nearly."""
+    """Factors of rows and columns by which the largest entry of each row of a symmetric matrix is about one."""
     units = np.ones(size.shape[0])
     for _ in range(SWEEPS if units.size else 0):
         rows = units * np.maximum.reduce(size * units, axis=1)
@@ -64,9 +66,9 @@ def unit_sizes(size: Array) -> Array:
 
 
 def inertia(matrix: Array, noise: Array | float = 0.0) -> Inertia:
-    """Numbers of positive, zero and negative eigenvalues; entries up to `noise` are zero.
+    """Numbers of positive, zero and negative eigenvalues; entries up to `noise` count as zero.
 
-    They are those of the matrix in units in which its rows have size one (Sylvester), where zero is rounding.
+    The matrix is first scaled to rows of size one. This changes no inertia (Sylvester), and makes rounding measurable.
     """
     matrix = np.where(np.abs(matrix) <= noise, 0.0, matrix)
     units = unit_sizes(np.abs(matrix))
@@ -87,3 +89,11 @@ def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDAr
     full[:, : min(m, n)] = reflectors[:, : min(m, n)]
     Q = orgqr(full, tau, lwork=BLOCK * n)[0]
     return Q[:, :rank], Q[:, rank:], np.triu(reflectors[:rank, :rank]), pivots[:rank].astype(np.intp) - 1
+
+
+def independent_rows(rows: Array, first: BoolArray, tolerance: float) -> NDArray[np.intp]:
+    """Indices of independent rows, of rows of length one; those marked in `first` (m,) are preferred."""
+    preferred, others = first.nonzero()[0], (~first).nonzero()[0]
+    span, _, _, kept = orthogonal(rows[preferred], tolerance)
+    outside = rows[others] - (rows[others] @ span) @ span.T
+    return np.concatenate([preferred[kept], others[orthogonal(outside, tolerance)[3]]])

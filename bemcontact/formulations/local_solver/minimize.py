@@ -1,4 +1,4 @@
-"""`minimize_qp`: the data are scaled, both phases are run until a claim survives its check, and units are put back."""
+"""`minimize_qp`: scale the data, run both phases until a claim passes its check, and return to the given units."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arguments import shown
+from bemcontact.arrays import Array, BoolArray, whole_array
 from bemcontact.errors import ProblemError
+from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unscaled
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, examine, first_order
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
@@ -16,26 +18,25 @@ from bemcontact.formulations.local_solver.progress import Progress
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 from bemcontact.formulations.local_solver.statement import (
     EPS,
-    Scales,
     Sides,
     Statement,
-    equilibrate,
     largest,
     numbers,
     read,
-    unscaled,
 )
-from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest
+from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest, supporting
 
 FAILURES = 6
-"""Restarts with fresh factors after claims that fail when they are recomputed."""
+"""Largest number of restarts with new factors after a claim failed its check."""
+NEAR = 1e-6
+"""Relative distance to the point within which a constraint may count as active."""
 FINER = 1e-2
-"""Part of the tolerance of phase one that counts after each failure."""
+"""Factor of the tolerance of phase one after each failure."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """The end of a run in scaled units.
+    """Result of a run in scaled units.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ class Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class Restart:
-    """The working set to go on from, and whether a claim failed."""
+    """The working set to continue from, and whether a claim failed."""
 
     sides: Sides
     failed: bool
@@ -66,7 +67,7 @@ class Restart:
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # ratio tests divide by what does not move
 def run_phases(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
-    """Run rounds of both phases until a claim survives its check, or the iterations or attempts are used up.
+    """Repeat both phases until a claim passes its check, or until iterations or attempts are exhausted.
 
     The second result is the inertia of the reduced Hessian at the start of phase two; zeros if it was not reached.
     """
@@ -96,7 +97,7 @@ def run_phases(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
 
 
 def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
-    """Descend, then check what the end of the descent suggests."""
+    """Run phase two, then check the claim that its end suggests."""
     outcome = descent.run()
     if outcome.ending is Ending.LIMIT:
         return _finding(progress, QPStatus.ITERATION_LIMIT, descent.working.sides)
@@ -108,7 +109,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
     if outcome.ending is Ending.INACCURATE:
         return Restart(sides=descent.working.sides, failed=True)
     multipliers = descent.working.of_all(descent.multipliers)
-    conditions = first_order(progress, multipliers, descent.zero)
+    conditions = first_order(progress, multipliers, descent.working.of_all(descent.zeros))
     if not conditions.holds:
         return Restart(sides=descent.working.sides, failed=True)
     return _second_order(progress, descent, conditions, multipliers)
@@ -117,12 +118,13 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
 def _second_order(
     progress: Progress, descent: Descent, conditions: FirstOrder, multipliers: Array
 ) -> Finding | Restart:
-    """A minimizer if H is copositive on the critical cone; else leave along the direction that shows it is not."""
+    """Claim a minimizer if H is copositive on the critical cone; else move along a direction of negative curvature."""
     if _strict(descent, conditions):
         return _minimizer(descent, conditions, multipliers, QPStatus.LOCAL_MINIMIZER)
     curvature = examine(progress.statement.H, conditions.cone(progress.statement), faces=progress.options.search)
     if curvature.direction is None:
-        status = QPStatus.LOCAL_MINIMIZER if curvature.copositive else QPStatus.UNDECIDED
+        proved = curvature.copositive and not conditions.doubtful
+        status = QPStatus.LOCAL_MINIMIZER if proved else QPStatus.UNDECIDED
         return _minimizer(descent, conditions, multipliers, status)
     direction = curvature.direction
     along = progress.statement.values(direction)
@@ -135,7 +137,8 @@ def _second_order(
     slope, curved = float(progress.gradient @ direction), float(direction @ progress.statement.H @ direction)
     rounding = 100.0 * EPS * abs(progress.objective)
     if block.step * (slope + 0.5 * block.step * curved) >= -rounding:
-        return _second_order(progress, descent, conditions.stricter(along, block.constraint), multipliers)
+        near = block.step <= NEAR * max(1.0, largest(progress.x))
+        return _second_order(progress, descent, conditions.stricter(along, block.constraint, near=near), multipliers)
     progress.move(along, block.step, 1.0)
     progress.look()
     held = int(np.count_nonzero(conditions.strong)) + 1
@@ -144,9 +147,9 @@ def _second_order(
 
 
 def _strict(descent: Descent, conditions: FirstOrder) -> bool:
-    """Whether all that is held has a multiplier, nothing else is active, and H is definite on what is left free.
+    """Whether the held constraints are the active ones, all have multipliers, and the reduced Hessian is definite.
 
-    Recomputed: with W N = I and W Z = 0 the columns of Z span the null space, and Zᵀ H Z = I.
+    This is computed from the data: W N = I, W Z = 0, Zᵀ H Z = I, and the columns of Z span the null space.
     """
     working, hessian = descent.working, descent.hessian
     if working.temporary or np.count_nonzero(conditions.weak) or np.count_nonzero(working.held != conditions.strong):
@@ -162,7 +165,7 @@ def _strict(descent: Descent, conditions: FirstOrder) -> bool:
 
 
 def _minimizer(descent: Descent, conditions: FirstOrder, multipliers: Array, status: QPStatus) -> Finding:
-    """The end at a first-order point."""
+    """Finding at a first-order point."""
     return Finding(
         status=status,
         sides=descent.working.sides,
@@ -175,7 +178,7 @@ def _minimizer(descent: Descent, conditions: FirstOrder, multipliers: Array, sta
 def _finding(
     progress: Progress, status: QPStatus, sides: Sides, *, ray: Array | None = None, certificate: Array | None = None
 ) -> Finding:
-    """An end other than at a first-order point."""
+    """Finding at a point that is not claimed to be of first order."""
     return Finding(
         status=status,
         sides=sides,
@@ -190,7 +193,7 @@ def _finding(
 def reduced_inertia(descent: Descent) -> Inertia:
     """Inertia of the reduced Hessian on the null space of the constraints that are not temporary.
 
-    H is definite on the columns of Z and conjugate between them and the directions left over (Sylvester).
+    H is definite on the columns of Z. The other directions are made conjugate to them (Sylvester).
     """
     working, hessian = descent.working, descent.hessian
     if hessian.pending is None and not working.temporary:
@@ -262,12 +265,14 @@ def minimize_qp(
     sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
+    elif x0 is not None:
+        sides = supporting(progress, sides)
     finding, reduced_start = run_phases(progress, sides)
     return _result(stated, scales, progress, finding, reduced_start)
 
 
 def _check(options: QPOptions) -> None:
-    """Refuse options out of range."""
+    """Raise `ProblemError` if an option is out of range."""
     if not isinstance(options, QPOptions):
         raise ProblemError(
             f"options is a {type(options).__name__}: give a QPOptions, as in QPOptions(max_iterations=50)"
@@ -275,13 +280,15 @@ def _check(options: QPOptions) -> None:
     for name in ("feasibility_tolerance", "optimality_tolerance"):
         value = getattr(options, name)
         if not _is_number(value) or not 0.0 < value < 1e-2:
-            raise ProblemError(f"{name} is {value!r}: give a number between 0 and 0.01, such as 1e-9")
+            raise ProblemError(f"{name} is {shown(value)}: give a number between 0 and 0.01, such as 1e-9")
     if options.max_iterations is not None and not _counts(options.max_iterations):
-        raise ProblemError(f"max_iterations is {options.max_iterations!r}: give a whole number >= 0, or None")
+        raise ProblemError(f"max_iterations is {shown(options.max_iterations)}: give a whole number >= 0, or None")
+    if not isinstance(options.scale, bool | np.bool_):
+        raise ProblemError(f"scale is {shown(options.scale)}: give True or False")
     if not _counts(options.search):
-        raise ProblemError(f"search is {options.search!r}: give the number of faces to examine, >= 0")
+        raise ProblemError(f"search is {shown(options.search)}: give the number of faces to examine, >= 0")
     if options.log is not None and not callable(options.log):
-        raise ProblemError(f"log is {options.log!r}: give a function of a LogLine, such as print")
+        raise ProblemError(f"log is {shown(options.log)}: give a function of a LogLine, such as print")
 
 
 def _is_number(value: object) -> bool:
@@ -295,8 +302,8 @@ def _counts(value: object) -> bool:
 
 
 def _wanted(working_set: ArrayLike, size: int) -> BoolArray:
-    """Whether a warm start names each constraint (n + m,)."""
-    wanted = np.asarray(working_set)
+    """Whether the given working set contains each constraint (n + m,)."""
+    wanted = whole_array(working_set, "working_set")
     if wanted.shape != (size,) or not np.isin(wanted, (-1, 0, 1, 2)).all():
         raise ProblemError(f"working_set must be ({size},) integers of -1, 0, 1, 2, as in QPResult.working_set")
     return wanted != 0

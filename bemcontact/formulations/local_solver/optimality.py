@@ -1,4 +1,4 @@
-"""Optimality checked from the data: first and second order, rays, certificates; nothing is taken from the factors.
+"""Checks of claims from the data: first and second order, rays, certificates. No factorization of a run is used.
 
 A first-order point of a quadratic program is a local minimizer exactly if H is copositive on its critical cone
 {d : E d = 0, W d >= 0}, E the equalities and the constraints with a nonzero multiplier, W the other active ones
@@ -19,7 +19,9 @@ from bemcontact.formulations.local_solver.statement import EPS, Statement, large
 from bemcontact.formulations.local_solver.working_set import DEPENDENT
 
 ZERO = 1e-11
-"""A curvature below this counts as none, in units in which the rows of |H| have size one."""
+"""A curvature below -ZERO is negative, in units in which the rows of |H| have size one."""
+ROUNDING = 1e-14
+"""A curvature above -ROUNDING max(10, n) is not negative. Between the two limits it stays undecided."""
 FEW = 100
 PROBES = 8
 DESCENTS = 30
@@ -45,7 +47,7 @@ class CriticalCone:
 class Curvature:
     """Whether H is copositive on the cone, and if not, a unit direction (n,) of the cone with negative curvature.
 
-    `copositive` is None if the bound of the search came first.
+    `copositive` is None if the search reached its limit, or if rounding could decide.
     """
 
     copositive: bool | None
@@ -55,9 +57,9 @@ class Curvature:
 def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     """Decide copositivity of H on the cone, within `faces` faces.
 
-    First by a Cholesky factorization on the null space of E; then by faces, as a lowest direction of the cone lies
-    inside one face and is an eigenvector there. If there are many of them, descents from the negative eigenvectors,
-    projected onto the cone, come before the rest.
+    A Cholesky factorization on the null space of E decides most cases. Otherwise faces are examined: a direction of
+    least curvature lies inside a face and is an eigenvector there. After the first faces, projected descents from
+    negative eigenvectors are tried before the other faces.
     """
     form = H[cone.free][:, cone.free]
     units = unit_sizes(np.abs(form))
@@ -86,12 +88,17 @@ def null_space(rows: Array, n: int) -> Array:
 
 
 def _positive_semidefinite(matrix: Array) -> bool:
-    """Whether no eigenvalue is below -ZERO, by Cholesky of the shifted matrix."""
+    """Whether no eigenvalue is negative by more than rounding, by Cholesky of the shifted matrix."""
     return (
         matrix.size == 0
-        or is_definite(matrix + ZERO * np.eye(matrix.shape[0]))
-        or float(np.linalg.eigvalsh(matrix)[0]) >= -ZERO
+        or is_definite(matrix + _rounding(matrix) * np.eye(matrix.shape[0]))
+        or float(np.linalg.eigvalsh(matrix)[0]) >= -_rounding(matrix)
     )
+
+
+def _rounding(matrix: Array) -> float:
+    """Bound of the rounding in an eigenvalue of a matrix with rows of size one."""
+    return ROUNDING * max(10, matrix.shape[0])
 
 
 def _projected(weak: Array, d: Array) -> Array:
@@ -106,7 +113,7 @@ def _projected(weak: Array, d: Array) -> Array:
 
 
 def _probe(reduced: Array, weak: Array) -> Array | None:
-    """Projected descent from a few negative eigenvectors and their mixtures."""
+    """Find a falling direction by projected descents from negative eigenvectors and random sums of them."""
     eigenvalues, vectors = np.linalg.eigh(reduced)
     size = float(np.abs(eigenvalues).max())
     negative = vectors[:, eigenvalues < -ZERO]
@@ -132,9 +139,9 @@ def _falls(reduced: Array, weak: Array, d: Array) -> bool:
 
 
 def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None, Array | None]:
-    """All faces on whose span the form is not positive semidefinite, until one holds a falling direction."""
+    """Examine faces on whose span the form is not positive semidefinite, until one contains a falling direction."""
     stack: list[tuple[int, ...]] = [()]
-    seen = 0
+    seen, settled = 0, True
     while stack:
         if seen >= faces:
             return None, None
@@ -144,20 +151,20 @@ def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None,
         if basis.shape[1] == 0:
             continue
         form = basis.T @ reduced @ basis
-        if is_definite(form + ZERO * np.eye(form.shape[0])):
+        if _positive_semidefinite(form):
             continue
         eigenvalues, vectors = np.linalg.eigh(form)
         for column in np.flatnonzero(eigenvalues < -ZERO):
             for d in (basis @ vectors[:, column], -(basis @ vectors[:, column])):
                 if _falls(reduced, weak, d):
                     return False, d
-        if eigenvalues[0] < -ZERO:
-            stack += [(*face, i) for i in range(face[-1] + 1 if face else 0, weak.shape[0])]
-    return True, None
+        settled = settled and eigenvalues[0] < -ZERO
+        stack += [(*face, i) for i in range(face[-1] + 1 if face else 0, weak.shape[0])]
+    return True if settled else None, None
 
 
 WEAK = 10.0
-"""Multipliers below this many optimality tolerances are treated as zero in the critical cone."""
+"""A multiplier is strong if it exceeds its zero by this factor."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,10 +173,11 @@ class FirstOrder:
 
     Parameters
     ----------
-    holds : feasible, stationary, multipliers of the right sign and only on active constraints, all within tolerance
+    holds : whether the point is feasible and stationary, with multipliers of the right sign on active constraints
     strong, weak : (n + m,) active constraints: equalities and those with a multiplier, and the others
     sides : (n + m,) bound that each active constraint is at (2: equality)
     size : (n + m,) absolute multipliers
+    doubtful : whether the cone was reduced by a decision that rounding could change
     """
 
     holds: bool
@@ -177,9 +185,10 @@ class FirstOrder:
     weak: BoolArray
     sides: NDArray[np.int8]
     size: Array
+    doubtful: bool = False
 
     def cone(self, statement: Statement) -> CriticalCone:
-        """The critical cone, its normals turned inwards."""
+        """The critical cone, with inward normals."""
         n = statement.c.size
         free, weak = (~self.strong[:n]).nonzero()[0], self.weak.nonzero()[0]
         inwards = np.where(self.sides[weak] == 1, -1.0, 1.0)
@@ -189,29 +198,29 @@ class FirstOrder:
         normals[fixed.size :] = statement.A[rows][:, free]
         return CriticalCone(free=free, equal=statement.A[self.strong[n:]][:, free], weak=inwards[:, None] * normals)
 
-    def stricter(self, along: Array, blocking: int) -> "FirstOrder":
-        """The conditions without a direction on which the objective does not fall as far as it leads.
+    def stricter(self, along: Array, blocking: int, *, near: bool) -> "FirstOrder":
+        """Conditions of a smaller cone, without a direction on which the objective does not fall.
 
-        Small multipliers that make it rise count. If none does, the constraint that blocks it at once is active too.
+        Small multipliers that make the objective rise are taken as strong. If there are none, the constraint that
+        blocks the step is taken as active. The result is doubtful, except if an inactive constraint is `near`.
         """
         leaving = self.weak & (self.sides * along < 0.0) & (self.size > 0.0)
-        sides, weak = self.sides.copy(), self.weak & ~leaving
+        sides, weak, doubtful = self.sides.copy(), self.weak & ~leaving, True
         if not leaving.any():
+            doubtful = not near or bool(weak[blocking])
             leaving[blocking], weak[blocking] = weak[blocking], not weak[blocking]
             sides[blocking] = -1 if along[blocking] < 0.0 else 1
-        return replace(self, strong=self.strong | leaving, weak=weak, sides=sides)
+        doubtful = self.doubtful or doubtful
+        return replace(self, strong=self.strong | leaving, weak=weak, sides=sides, doubtful=doubtful)
 
 
-def first_order(progress: Progress, multipliers: Array, zero: Array) -> FirstOrder:
-    """Recompute the first-order conditions at the point from the data, each component against its own `zero` (n,)."""
-    statement, x = progress.statement, progress.x
-    n = x.size
-    values = statement.values(x)
+def first_order(progress: Progress, multipliers: Array, zeros: Array) -> FirstOrder:
+    """Recompute the first-order conditions at the point; a multiplier below its entry of `zeros` (n + m,) is zero."""
+    statement, n = progress.statement, progress.x.size
+    values = statement.values(progress.x)
     slack = 2.0 * progress.slack
     feasible = np.count_nonzero(statement.violation(values) <= slack) == slack.size
     stationary = largest(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero
-    zeros = np.full(values.size, progress.zero)
-    zeros[:n] = zero
     size = np.abs(multipliers)
     sides = statement.sides_reached(values, slack)
     held = sides != 0
@@ -219,8 +228,10 @@ def first_order(progress: Progress, multipliers: Array, zero: Array) -> FirstOrd
     wrong[statement.equality] = 0.0
     held[n:] &= np.logical_or.reduce(statement.A, axis=1)  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
+    tolerated = 2.0 * zeros
+    tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
     return FirstOrder(
-        holds=feasible and stationary and np.count_nonzero(wrong <= 2.0 * zeros) == zeros.size,
+        holds=feasible and stationary and np.count_nonzero(wrong <= tolerated) == zeros.size,
         strong=strong,
         weak=held & ~strong,
         sides=sides,
@@ -229,7 +240,7 @@ def first_order(progress: Progress, multipliers: Array, zero: Array) -> FirstOrd
 
 
 def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
-    """The ray, with rounding removed, if it is one: recession direction along which the objective falls without end."""
+    """The ray without rounding, if it is a recession direction on which the objective is unbounded; else None."""
     statement, values = progress.statement, progress.values
     if (values < progress.lowest).any() or (values > progress.highest).any():
         return None
@@ -245,12 +256,12 @@ def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
     slope = float(progress.gradient @ d)
     zero = statement.rounding(d)
     no_rows = statement.A[:0]
-    level = progress.level(d, progress.fine_zero(d[:0], no_rows, no_rows.T))
+    level = progress.level(d, progress.fine_zero(d[:0], no_rows, no_rows.T, 0.0 * d))
     return d if curvature < -zero or (curvature <= zero and slope < -level) else None
 
 
 def separates(statement: Statement, certificate: Array) -> bool:
-    """Whether [I; A]ᵀy = 0 while y lower (y > 0) and y upper (y < 0) sum to more than zero: no x is feasible."""
+    """Whether y proves infeasibility: [I; A]ᵀy = 0, and y lower (y > 0) plus y upper (y < 0) is positive."""
     y = certificate
     used = y != 0.0
     bounds = np.where(y > 0.0, statement.lower, statement.upper)[used]
@@ -262,7 +273,7 @@ def separates(statement: Statement, certificate: Array) -> bool:
 
 
 def _noise(statement: Statement, y: Array) -> Array:
-    """What each component of [I; A]ᵀy could be by rounding: of its own terms, and of its column's entries (n,)."""
+    """Bound of the rounding in each component of [I; A]ᵀy, from its terms and the entries of its column (n,)."""
     n, A = statement.c.size, statement.absolute[2]
     size = np.abs(y)
     of_terms = 1e-11 * max(10, n) * (size[:n] + size[n:] @ A)
@@ -270,7 +281,7 @@ def _noise(statement: Statement, y: Array) -> Array:
 
 
 def certified(statement: Statement, certificate: Array) -> Array | None:
-    """The certificate if it separates, its bound multipliers recomputed so that [I; A]ᵀy = 0 to the last digits."""
+    """The certificate with recomputed multipliers of the bounds, if it proves infeasibility; else None."""
     n = statement.c.size
     y = np.where(np.abs(certificate) > 1e-11 * largest(certificate), certificate, 0.0)
     y[:n] = 0.0

@@ -1,4 +1,4 @@
-"""Phase one: reduce the sum of infeasibilities until there is none, or none can be removed.
+"""Phase one: reduce the sum of infeasibilities to zero, or to a minimum that proves infeasibility.
 
 A steepest descent in the null space of the working set; constraints that are satisfied stay so, violated ones may pass
 through their bounds as long as the sum still falls (breakpoints of a piecewise linear function).
@@ -22,7 +22,7 @@ from bemcontact.formulations.local_solver.working_set import (
 
 
 def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tuple[WorkingSet, Array | None]:
-    """Walk to a feasible point from a working set (n + m,).
+    """Find a feasible point, from a working set (n + m,).
 
     `fineness` is the part of the optimality tolerance that counts; it is less where a certificate was refused before.
     The result is the working set at the end, with all equalities and the null space where the point is feasible, and
@@ -59,27 +59,28 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
 
 
 def _with_equalities(statement: Statement, sides: Sides) -> WorkingSet:
-    """A working set with all equalities, which are met as exactly as the arithmetic allows."""
+    """Working set of these sides and all equalities."""
+    wanted = sides != 0
     sides = sides.copy()
     sides[statement.equality] = 2
-    return WorkingSet(statement, sides)
+    return WorkingSet(statement, sides, wanted)
 
 
 def violated_signs(progress: Progress) -> Array:
-    """+1 above the upper, -1 below the lower bound, 0 within tolerance (n + m,)."""
+    """Sign of the violation of each constraint: +1 above its bounds, -1 below them, 0 if feasible (n + m,)."""
     values = progress.values
     return np.subtract(values > progress.highest, values < progress.lowest, dtype=float)
 
 
 def _signs_of_others(progress: Progress, working: WorkingSet) -> Array:
-    """`violated_signs` of all that is not held; what is held is on its bound, up to rounding."""
+    """`violated_signs`, with zeros for constraints that are held, which satisfy their bounds up to rounding."""
     signs = violated_signs(progress)
     signs[working.held] = 0.0
     return signs
 
 
 def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array:
-    """Farkas multipliers of a stationary sum: those of the working set, and one of each violated constraint."""
+    """Farkas multipliers at a stationary sum: those of the working set, and one for each violated constraint."""
     n = working.free.size
     certificate = -signs
     certificate[working.ids] += multipliers[n:]

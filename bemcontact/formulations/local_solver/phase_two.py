@@ -60,22 +60,22 @@ class ReducedHessian:
             self.Z[:] = ordered[:, :rank] @ inverse_triangle(factor)
 
     def _resize(self, size: int) -> None:
-        """Look at the leading columns."""
+        """Set the view on the leading columns."""
         self.size, self.Z = size, self._columns[:, :size]
 
     def newton(self, gradient: Array) -> Array:
-        """-Z Zᵀg: to the minimizer on the working set."""
+        """Newton step -Z Zᵀg to the minimizer on the working set."""
         return -self.Z.dot(gradient.dot(self.Z))
 
     def is_stationary(self, gradient: Array, zero: float) -> bool:
-        """Whether the reduced gradient is below `zero`, by |gᵀZ|² |ZᵀHZ|: quick, and never true of one that is not."""
+        """Whether the reduced gradient is surely below `zero`, by the bound |gᵀZ|² |H|."""
         if self.size == 0:
             return True
         slopes = gradient.dot(self.Z)
         return float(slopes.dot(slopes)) * self._top * gradient.size <= zero**2
 
     def enter(self, direction: Array) -> None:
-        """A direction of length one joins the null space: Z gains it, or it is pending: O(n²)."""
+        """Add a unit direction to the null space, to Z or as the pending one: O(n²)."""
         d, H, Z = direction, self.statement.H, self.Z
         product = H.dot(d)
         curvature = float(d.dot(product))
@@ -98,7 +98,7 @@ class ReducedHessian:
             self.curvature = curvature / length if curvature < -rounding else 0.0
 
     def leave(self, normal: Array) -> None:
-        """A constraint joins the working set: the part of the null space along its normal goes: O(n²)."""
+        """Remove the part of the null space along the normal of a constraint that enters the working set: O(n²)."""
         pending, self.pending = self.pending, None
         if self.size == 0:
             return
@@ -115,7 +115,7 @@ class ReducedHessian:
             self.enter(rest / sqrt(rest.dot(rest)))
 
     def _reflect(self, along: Array, length: float) -> Array:
-        """Turn Z so that the normal meets its last column alone, and take that out; normalᵀ column = length."""
+        """Reflect Z so that the normal is orthogonal to all columns but the last; remove and return that column."""
         sign = -1.0 if along[-1] > 0.0 else 1.0
         along[-1] -= sign * length
         add_rank_one(self.Z, -2.0 / float(along.dot(along)), self.Z.dot(along), along)
@@ -123,7 +123,7 @@ class ReducedHessian:
         return sign * self._columns[:, self.size]
 
     def clear(self, variable: int) -> None:
-        """A fixed variable has no part in any direction, not even by rounding."""
+        """Set the component of a fixed variable to zero in all directions."""
         self.Z[variable] = 0.0
         if self.pending is not None:
             self.pending[variable] = 0.0
@@ -140,7 +140,7 @@ class Ending(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class PhaseTwoEnd:
-    """How phase two stopped; the ray (n,) if the objective seems to fall without end."""
+    """How phase two stopped, and a ray (n,) if the objective seems to be unbounded."""
 
     ending: Ending
     ray: Array | None = None
@@ -156,9 +156,9 @@ class Descent:
     dropped : the constraint released for the next step, or None
     changed : whether the working set has changed since the last whole Newton step
     broken : whether a constraint ended a step that by its normal cannot: the factors have lost too many digits
-    whole, idle : whole Newton steps in a row; releases since the last step
-    multipliers, zero : (n + r,) and (n,), at a stationary end: multipliers of the working set, and the size of each
-        component of the gradient that counts as zero
+    whole, idle : number of consecutive full Newton steps; number of releases since the last step
+    multipliers, zeros : (n + r,) at a stationary end: multipliers of the working set, and the size of each that counts
+        as zero; those of the variables are components of the gradient
     """
 
     def __init__(self, progress: Progress, working: WorkingSet) -> None:
@@ -167,7 +167,7 @@ class Descent:
         self.changed = self.broken = False
         self.whole = self.idle = 0
         self._refused: set[int] = set()
-        self.multipliers = self.zero = progress.x[:0]
+        self.multipliers = self.zeros = progress.x[:0]
         self.working = working
         self.hessian = ReducedHessian(progress.statement, working.null_space)
         for direction in self.hessian.left_over.T:
@@ -177,7 +177,7 @@ class Descent:
         self.value = progress.objective
 
     def run(self) -> PhaseTwoEnd:
-        """Walk until no constraint can be dropped with profit, or without end."""
+        """Iterate until no release of a constraint reduces the objective, or until another ending."""
         progress, working, hessian = self.progress, self.working, self.hessian
         while not self.broken:
             if hessian.pending is None and self._settled():
@@ -197,21 +197,21 @@ class Descent:
         return PhaseTwoEnd(ending=Ending.INACCURATE)
 
     def _settled(self) -> bool:
-        """Whether there is no Newton step to take, as far as this shows without multipliers."""
+        """Whether no Newton step is needed, by a test without multipliers."""
         return not self.changed or self.hessian.is_stationary(self.progress.gradient, 0.1 * self.progress.zero)
 
     def _release(self, place: int) -> None:
-        """Drop a constraint; its direction joins the null space."""
+        """Drop a constraint and add its direction to the null space."""
         self.dropped, direction = self.working.drop(place)
         self.hessian.enter(direction)
         self.progress.changes += self.dropped < 0
         self.changed, self.whole, self.idle = True, 0, self.idle + 1
 
     def _next(self, multipliers: Array) -> tuple[bool, int | None]:
-        """Whether to take a Newton step; else the place of a constraint to drop, if there is one.
+        """Whether to take a Newton step, and if not, the place of a constraint to drop, if there is one.
 
-        First by one tolerance for all, which is quick; where that finds nothing, each component by its own, at the
-        refined point. A whole Newton step ends at a stationary point: what a third one leaves over is rounding.
+        A quick test uses one tolerance for all components. If it finds nothing, the point is refined and each component
+        has its own tolerance. After three full Newton steps the remaining reduced gradient is rounding.
         """
         progress, working = self.progress, self.working
         n, least = working.free.size, progress.least_index
@@ -224,14 +224,13 @@ class Descent:
         if place is not None:
             return False, place
         self._refine()
-        multipliers, zero = self.multipliers, self.zero
-        if loose and (np.abs(multipliers[:n] * working.free) > zero).any():
+        multipliers, zeros = self.multipliers, self.zeros
+        if loose and (np.abs(multipliers[:n] * working.free) > zeros[:n]).any():
             return True, None
-        zeros = np.concatenate([zero, zero.dot(np.abs(working.N))])
         return False, wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
 
     def _refine(self) -> None:
-        """Solve the equations of the working set from the data, twice."""
+        """Solve the equations of the working set again from the data, by two steps of refinement."""
         progress, working, hessian, x = self.progress, self.working, self.hessian, self.progress.x
         for _ in range(2 if hessian.size else 1):
             x = working.onto(x)
@@ -239,10 +238,11 @@ class Descent:
                 x = x + hessian.newton(progress.statement.H.dot(x) + progress.statement.c)
         progress.correct(x)
         self.multipliers = working.multipliers(progress.gradient, refined=True)
-        self.zero = progress.fine_zero(self.multipliers[x.size :], working.W, working.N)
+        zero = self._fine_zero(self.multipliers)
+        self.zeros = np.concatenate([zero, zero.dot(np.abs(working.N))])
 
     def _allowed(self, multipliers: Array) -> Array:
-        """Multipliers (n + r,), zero for refused constraints."""
+        """Multipliers (n + r,) with zeros for refused constraints."""
         if not self._refused:
             return multipliers
         return np.where(np.isin(self.working.numbers, list(self._refused)), 0.0, multipliers)
@@ -284,7 +284,7 @@ class Descent:
         return None
 
     def _refuse(self, block: BlockingConstraint | None, step: float) -> None:
-        """Refuse a constraint that stops the step of its own release: its multiplier is noise until the point moves."""
+        """Refuse a constraint that blocks the step of its own release, until the point moves."""
         if step > 0.0:
             self._refused.clear()
         elif block is not None and block.constraint == self.dropped:
@@ -292,14 +292,31 @@ class Descent:
 
     def _fine_slope(self, direction: Array) -> float:
         """The slope along a direction that counts as zero."""
-        working = self.working
-        of_rows = working.multipliers(self.progress.gradient)[direction.size :]
-        return self.progress.level(direction, self.progress.fine_zero(of_rows, working.W, working.N))
+        multipliers = self.working.multipliers(self.progress.gradient)
+        return self.progress.level(direction, self._fine_zero(multipliers))
+
+    def _fine_zero(self, multipliers: Array) -> Array:
+        """Size of each component of the gradient that counts as zero (n,), with multipliers (n + r,)."""
+        working, n = self.working, self.progress.x.size
+        return self.progress.fine_zero(multipliers[n:], working.W, working.N, self._reach())
+
+    def _reach(self) -> Array:
+        """Size of the numbers whose rounding each component of the point has (n,), estimated by one sample.
+
+        Each row is satisfied up to the rounding of its terms. A change of the rows moves the point by N and by a Newton
+        step.
+        """
+        working, hessian, x = self.working, self.hessian, self.progress.x
+        if working.size == 0:
+            return np.abs(x)
+        signs = np.where(np.arange(working.size) % 2, -1.0, 1.0)
+        moved = working.N.dot(signs * np.abs(working.W).dot(np.abs(x)))
+        return np.abs(moved + hessian.newton(self.progress.statement.H.dot(moved)))
 
     def _advance(
         self, along: Array, length: float, step: float, change: float, block: BlockingConstraint | None
     ) -> None:
-        """Take the step, by which the objective changes, and the constraint that ended it."""
+        """Take a step that changes the objective by `change`, and add the constraint that blocks it."""
         progress, working, hessian = self.progress, self.working, self.hessian
         nonpositive, added = int(hessian.pending is not None), None
         progress.move(along, step, length)

@@ -1,4 +1,4 @@
-"""The point of a run: its place, the iterations that are left, and its log."""
+"""The current point of a run, with its tolerances, the number of iterations, and the log."""
 
 from dataclasses import dataclass, field
 from math import sqrt
@@ -10,21 +10,21 @@ from bemcontact.formulations.local_solver.result import LogLine, QPOptions
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 
 FINE = 1e-3
-"""Part of the optimality tolerance that counts where each component is held against its own terms."""
+"""Factor of the optimality tolerance where each component is compared with its own terms."""
 
 PARALLEL = 1e-10
-"""A normal whose product with the unit direction is below this is parallel to the constraint, save on a long step."""
+"""A unit direction whose product with a normal is below this does not meet the constraint, except on a long step."""
 
 MANY = 100
-"""Points that wait at most to be looked at together."""
+"""Largest number of points that are stored before `travelled` is updated."""
 
 STALLED = 100
-"""Steps of length zero in a row after which least-index rules take over, which cannot cycle (Bland 1977)."""
+"""Number of steps of length zero in sequence after which least-index rules are used, which never cycle (Bland 1977)."""
 
 
 @dataclass(kw_only=True)
 class Progress:
-    """The point of one run, with its counters; both phases move it.
+    """The current point of a run and its counters; both phases change it.
 
     Parameters
     ----------
@@ -67,18 +67,18 @@ class Progress:
 
     @property
     def travelled(self) -> Array:
-        """The largest size of each component so far (n,), which limits its digits."""
+        """Largest absolute value of each component so far (n,); it bounds the rounding of the component."""
         if self._passed:
             self._take_in()
         return self._travelled
 
     def _take_in(self) -> None:
-        """Take in the points passed since the last time."""
+        """Update `travelled` with the stored points."""
         self._travelled = np.maximum.reduce(np.abs([self._travelled, *self._passed]))
         self._passed.clear()
 
     def forget(self) -> None:
-        """Forget far points: the point is exact but for the rounding of its own size, or of one."""
+        """Reset `travelled` and `far` after the point was computed anew from the data."""
         size = np.maximum(np.abs(self.x), 1.0)
         self._travelled = np.minimum(self.travelled, size)
         self.far = min(self.far, sqrt(size.dot(size)))
@@ -89,24 +89,24 @@ class Progress:
         """cᵀx + xᵀHx/2."""
         return 0.5 * float(self.x.dot(self.gradient + self.statement.c))
 
-    def fine_zero(self, of_rows: Array, rows: Array, inverse: Array) -> Array:
+    def fine_zero(self, of_rows: Array, rows: Array, inverse: Array, reach: Array) -> Array:
         """Size of each component of the gradient that counts as zero, relative to its own terms (n,).
 
-        Where variables differ in size by many orders, small ones must not be assessed by the terms of large ones.
-        Rounding in one component reaches others through the multipliers of the rows (r,), the rows (r, n) and their
-        right inverse (n, r).
+        The variables may differ in size by many orders, so each component has its own tolerance. Rounding in one
+        component changes others through the multipliers of the rows (r,), the rows (r, n) and their right inverse
+        (n, r). The components of the point have the rounding of numbers of the size `reach` (n,).
         """
         H, c, _ = self.statement.absolute
         W, terms = np.abs(rows), H.dot(np.abs(self.x)) + c
         if of_rows.size:
             terms += np.abs(of_rows).dot(W)
-        lost = EPS * np.maximum(terms, H.dot(self.travelled))
+        lost = EPS * np.maximum(terms, H.dot(np.maximum(self.travelled, reach)))
         if of_rows.size:
             lost += lost.dot(np.abs(inverse)).dot(W)
         return np.maximum(FINE * self.options.optimality_tolerance * terms, 100.0 * lost)
 
     def level(self, direction: Array, zero: Array) -> float:
-        """The slope along a direction that counts as zero: of zero gradients, and of the rounding in its components."""
+        """Size of a slope along a direction that counts as zero, from that of each component of the gradient (n,)."""
         size = np.abs(direction)
         rounding = 10.0 * EPS * largest(direction) * float(np.abs(self.gradient).dot(size > 0.0))
         return float(size.dot(zero)) + rounding
@@ -122,14 +122,14 @@ class Progress:
         return self.stalled > STALLED
 
     def correct(self, x: Array) -> None:
-        """Move without a step, and compute the gradient there."""
+        """Replace the point by a corrected one, and compute the gradient there."""
         if np.count_nonzero(x != self.x):
             self.place(x)
         else:
             self.look()
 
     def place(self, x: Array) -> None:
-        """Move to a point, and compute everything anew."""
+        """Move to a point, and compute values, slacks and gradient there."""
         self.x, self.values = x, self.statement.values(x)
         size = np.abs(x)
         self.far = max(self.far, sqrt(size.dot(size)))

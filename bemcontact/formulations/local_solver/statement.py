@@ -1,25 +1,21 @@
-"""The quadratic program as given, checked on entry, and its equilibration."""
+"""The quadratic program, and the check of the data on entry."""
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import frexp, ldexp, sqrt
+from math import sqrt
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, real_array
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.local_solver.factorizations import row_lengths
 
 Sides = NDArray[np.int8]
 
-RUIZ_SWEEPS = 4
-LEAST = 2.0**-200
-"""The smallest factor."""
 INFINITE = 1e20
-"""A bound of this size or more is none, as in most solvers and their files."""
+"""A bound of this size or more counts as infinite, as in most solvers."""
 EPS = float(np.finfo(float).eps)
 
 
@@ -54,7 +50,7 @@ class Statement:
 
     @cached_property
     def absolute(self) -> tuple[Array, Array, Array]:
-        """|H|, |c|, |A|, which rounding is measured by."""
+        """|H|, |c|, |A|, from which bounds of the rounding are computed."""
         return np.abs(self.H), np.abs(self.c), np.abs(self.A)
 
     @property
@@ -64,14 +60,14 @@ class Statement:
 
     @cached_property
     def bound_size(self) -> Array:
-        """Size of the smaller bound of each constraint, 0 where it has none (n + m,)."""
+        """Absolute value of the smaller bound of each constraint; 0 if there is no bound (n + m,)."""
         size = np.minimum(np.abs(self.lower), np.abs(self.upper))
         size[size == np.inf] = 0.0
         return size
 
     @cached_property
     def equality(self) -> BoolArray:
-        """Which constraints have one bound for both sides, or two that rounding does not tell apart (n + m,)."""
+        """Whether the two bounds of each constraint are equal up to rounding (n + m,)."""
         return self.upper - self.lower <= 4.0 * EPS * self.bound_size
 
     def objective(self, x: Array) -> float:
@@ -103,7 +99,7 @@ class Statement:
         return unit
 
     def sides_reached(self, values: Array, slack: Array) -> Sides:
-        """Which bound each constraint is at, within its slack; the nearer of two; 2 for an equality."""
+        """Nearer bound of each active constraint (-1, +1, or 2 for an equality); 0 if it is farther than its slack."""
         lower, upper = np.abs(values - self.lower), np.abs(values - self.upper)
         sides = np.ones(values.size, dtype=np.int8)
         sides[lower <= upper] = -1
@@ -112,94 +108,14 @@ class Statement:
         return sides
 
     def rounding(self, d: Array) -> float:
-        """The rounding in dᵀHd, from its terms and from the components of d."""
+        """Bound of the rounding in dᵀHd."""
         size = np.abs(d)
         product = self.absolute[0].dot(size)
-        return 10.0 * sqrt(d.size) * EPS * float(size.dot(product) + largest(size) * largest(product * (size > 0.0)))
+        return 100.0 * sqrt(d.size) * EPS * float(size.dot(product) + largest(size) * largest(product * (size > 0.0)))
 
     def violation(self, values: Array) -> Array:
-        """How far each constraint is outside its bounds; 0 inside."""
+        """Distance of each value from its bounds; 0 if it is between them (n + m,)."""
         return np.maximum(np.maximum(self.lower - values, values - self.upper), 0.0)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Scales:
-    """x = variables * scaled x; scaled rows = rows * A * variables; scaled objective = objective * objective."""
-
-    variables: Array
-    rows: Array
-    objective: float
-
-    def multipliers(self, scaled: Array) -> Array:
-        """Multipliers of the constraints in the units of the data (objective not rescaled)."""
-        return scaled * np.concatenate([1.0 / self.variables, self.rows])
-
-
-def unscaled(statement: Statement) -> tuple[Statement, Scales]:
-    """The statement as it is, all factors one."""
-    m, n = statement.A.shape
-    return statement, Scales(variables=np.ones(n), rows=np.ones(m), objective=1.0)
-
-
-def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
-    """The statement with rows and columns of A of size one, columns outside A by H, and the largest of H and c one.
-
-    All factors are powers of two, so that no digit of the data changes.
-    """
-    n = statement.c.size
-    factors = _power_of_two(_ruiz(np.abs(statement.H), np.abs(statement.A)))
-    D, E = factors[:n], factors[n:]
-    D *= _smaller_unit(statement, D, E)
-    H, c, A = D[:, None] * statement.H * D, D * statement.c, E[:, None] * statement.A * D
-    last = _power_of_two(1.0 / row_lengths(A))
-    E *= last
-    A *= last[:, None]
-    unit = _near_power(1.0 / (max(largest(H), largest(c)) or 1.0))
-    H *= unit
-    c *= unit
-    factors = np.concatenate([1.0 / D, E])
-    scaled = Statement(H=H, c=c, A=A, lower=factors * statement.lower, upper=factors * statement.upper)
-    return scaled, Scales(variables=D, rows=E, objective=unit)
-
-
-def _ruiz(H: Array, A: Array) -> Array:
-    """Factors of columns and rows by which the largest entry of each comes to one, nearly (Ruiz, RAL-TR-2001-034)."""
-    m, n = A.shape
-    factors, linear = np.ones(n + m), A
-    D, E = factors[:n], factors[n:]
-    columns = np.maximum.reduce(A, axis=0, initial=0.0)
-    outside = columns == 0.0
-    mixed = np.count_nonzero(outside) > 0
-    for _ in range(RUIZ_SWEEPS):
-        if mixed:
-            sizes = D * np.maximum.reduce(H * D, axis=1)
-            columns = np.where(outside, sizes / (largest(sizes) or 1.0), columns)
-        sizes = np.concatenate([columns, np.maximum.reduce(linear, axis=1)])
-        sizes[sizes == 0.0] = 1.0
-        factors /= np.sqrt(sizes)
-        if sizes[sizes.argmax()] < 2.0 and sizes[sizes.argmin()] > 0.5:  # another sweep would change little
-            break
-        linear = E[:, None] * A * D
-        columns = np.maximum.reduce(linear, axis=0, initial=0.0)
-    return factors
-
-
-def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
-    """A unit of length that makes the largest bound about one, if all are smaller: tolerances are relative to one."""
-    factors = np.concatenate([1.0 / D, E])
-    sizes = np.abs(np.concatenate([factors * statement.lower, factors * statement.upper]))
-    size = largest(sizes[sizes < np.inf])
-    return _near_power(size) if 0.0 < size < 1.0 else 1.0
-
-
-def _near_power(factor: float) -> float:
-    """The nearest power of two; within the limits of double precision."""
-    return ldexp(1.0, min(max(frexp(factor * sqrt(0.5))[1], -1000), 1000))
-
-
-def _power_of_two(factors: Array) -> Array:
-    """The nearest power of two of each factor."""
-    return np.ldexp(1.0, np.frexp(factors.clip(LEAST, 1.0 / LEAST) * sqrt(0.5))[1])
 
 
 def read(
@@ -243,13 +159,9 @@ def numbers(name: str, given: ArrayLike, size: int | None) -> Array:
 
 def _floats(name: str, given: Any) -> Array:
     """A new array of numbers."""
-    try:
-        if getattr(given, "dtype", None) != np.float64 and np.iscomplexobj(given):
-            raise TypeError("it is complex")
-        dense = given if isinstance(given, np.ndarray) or not sparse.issparse(given) else given.toarray()
-        return np.array(dense, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise ProblemError(f"{name} is no array of real numbers ({error}): give rows of equal length") from None
+    if type(given) is np.ndarray and given.dtype == np.float64:
+        return given.copy()
+    return real_array(given.toarray() if sparse.issparse(given) else given, name, finite=False).copy()
 
 
 def _matrix(name: str, given: Any, columns: int) -> Array:
@@ -273,7 +185,7 @@ def _bound(name: str, given: ArrayLike | None, size: int, absent: float) -> Arra
 
 
 def _complain(lower: Array, upper: Array, n: int) -> None:
-    """Refuse a bound that is not a number, an infinite one in the wrong direction, and crossed bounds."""
+    """Raise `ProblemError` for a bound that is NaN or infinite in the wrong direction, and for crossed bounds."""
     for low, high, part in (("bl", "bu", slice(n)), ("cl", "cu", slice(n, None))):
         for name, bound, absent in ((low, lower[part], -np.inf), (high, upper[part], np.inf)):
             wrong = np.isnan(bound) | (bound == -absent)

@@ -15,33 +15,41 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import nnls
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, orthogonal, unit_rows
+from bemcontact.formulations.local_solver.factorizations import (
+    add_rank_one,
+    independent_rows,
+    inverse_triangle,
+    orthogonal,
+    unit_rows,
+)
 from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, Progress
 from bemcontact.formulations.local_solver.statement import Sides, Statement
 
 EQUALITY = 2
 TEMPORARY, FLAT = -1, -2
-"""Numbers of rows that only fix a direction; FLAT if both its slope and its curvature are zero."""
+"""Numbers of rows that are no constraints and only fix a direction; FLAT if its slope and curvature are zero."""
 
 DEPENDENT = 1e-9
-"""A normal whose part outside the span of the others is a smaller part of it counts as dependent."""
+"""A normal counts as dependent if its relative distance from the span of the others is smaller."""
 
 ALIKE = 1e-12
-"""`DEPENDENT` for a constraint that enters later, after a step that it has ended."""
+"""Limit, in place of `DEPENDENT`, for a constraint that enters after it blocked a step."""
 
 SHARP, WEAR = 1e-12, 1e-8
-"""Relative size of a refinement above which refinements are needed, and above which N is made anew."""
+"""Relative size of a refinement above which refinements are needed, and above which N is computed again."""
 INFINITY = float("inf")
 FAINT = 1e-14
-"""`PARALLEL` on a long step: only rounding is below."""
+"""Limit, in place of `PARALLEL`, on a long step."""
 
 
 class WorkingSet:
     """The constraints that are held, changed in place by `add` and `drop`.
 
-    It starts from the wanted `sides` (n + m,): 0 free, -1 lower, +1 upper, 2 equality. Dependent rows are left out.
+    It starts from the wanted `sides` (n + m,): 0 free, -1 lower, +1 upper, 2 equality. Dependent rows are left out;
+    those marked in `first` (n + m,) are kept before others.
 
     Attributes
     ----------
@@ -57,7 +65,7 @@ class WorkingSet:
     sharp : whether N still has all its digits
     """
 
-    def __init__(self, statement: Statement, sides: Sides) -> None:
+    def __init__(self, statement: Statement, sides: Sides, first: BoolArray | None = None) -> None:
         n, A = statement.c.size, statement.A
         self.statement = statement
         self.sides = sides.copy()
@@ -70,6 +78,10 @@ class WorkingSet:
         if rows.size and free.size:
             normals, length = unit_rows(A[rows][:, free])
             Y, null_space, T, independent = orthogonal(normals, DEPENDENT)
+            if first is not None and independent.size < rows.size:
+                chosen = independent_rows(normals, first[n + rows], DEPENDENT)
+                Y, null_space, T, independent = orthogonal(normals[chosen], 0.0)
+                independent = chosen[independent]
             kept, self.null_space = rows[independent], np.zeros((n, null_space.shape[1]))
             self.null_space[free] = null_space
             self._N[free, : kept.size] = Y @ inverse_triangle(T).T / length[independent]
@@ -137,7 +149,7 @@ class WorkingSet:
         return of_rows + correction
 
     def _renew(self) -> None:
-        """Compute N from the rows anew, which removes accumulated rounding: O(n³)."""
+        """Compute N again from the rows, without accumulated rounding: O(n³)."""
         free = np.flatnonzero(self.free)
         Y, _, T, order = orthogonal(self.W[:, free], 0.0)
         if order.size == self.size:
@@ -180,7 +192,7 @@ class WorkingSet:
             self.temporary += 1
 
     def _hold(self, normal: Array, along: Array) -> Array | None:
-        """Remove from N its part along the normal; the new column, or None if the normal is in the span."""
+        """Remove from N its part along the normal; return the new column, or None if the normal is dependent."""
         outside = (normal - along.dot(self.W)) * self.free
         again, size = outside.dot(self.N), float(outside.dot(normal))
         if again.dot(again) > SHARP**2 * size:
@@ -221,7 +233,7 @@ class WorkingSet:
         return constraint, direction
 
     def within(self, direction: Array) -> Array:
-        """A direction without the rounding in it along the rows."""
+        """The direction, made orthogonal to the rows again."""
         return direction - self.N.dot(self.W.dot(direction)) if self.size else direction
 
     def _along_variable(self, variable: int) -> Array:
@@ -231,7 +243,7 @@ class WorkingSet:
         return direction
 
     def _forget(self, row: int) -> int:
-        """Put the last row in the place of this one."""
+        """Replace a row by the last one, and return its constraint."""
         constraint, n, last = int(self._ids[row]), self.free.size, self.size - 1
         self._N[:, row], self._W[row], self._ids[row] = self._N[:, last], self._W[last], self._ids[last]
         self._signs[n + row] = self._signs[n + last]
@@ -250,6 +262,39 @@ class WorkingSet:
         return x + N.dot(targets[ids] - W.dot(x))
 
 
+def supporting(progress: Progress, sides: Sides) -> Sides:
+    """Sides of independent active constraints with multipliers of the right sign, if the point is stationary.
+
+    Other choices among dependent active constraints have multipliers of the wrong sign. Without such a set the sides
+    are returned unchanged.
+    """
+    statement, n = progress.statement, progress.x.size
+    free, rows = (sides[:n] == 0).nonzero()[0], sides[n:].nonzero()[0]
+    if rows.size == 0 or (statement.violation(progress.values) > progress.slack).any():
+        return sides
+    if orthogonal(unit_rows(statement.A[rows][:, free])[0], DEPENDENT)[3].size == rows.size:
+        return sides
+    active = sides.nonzero()[0]
+    normals, _ = unit_rows(np.array([statement.normal(int(constraint)) for constraint in active]))
+    equal, upper = sides[active] == EQUALITY, sides[active] == 1
+    inwards = np.where(upper, -1.0, 1.0)[:, None] * normals
+    try:
+        multipliers, residual = nnls(np.vstack([inwards, -normals[equal]]).T, progress.gradient)
+    except RuntimeError:  # SciPy's iteration limit
+        return sides
+    if residual > progress.zero:
+        return sides
+    strong = multipliers[: active.size] > progress.zero
+    strong[equal] |= multipliers[active.size :] > progress.zero
+    needed = (strong | equal).nonzero()[0]  # an equality is held anyway, so it comes before what has no multiplier
+    first = np.zeros(active.size, dtype=bool)
+    first[needed[independent_rows(normals[needed], strong[needed], DEPENDENT)]] = True
+    kept = active[independent_rows(normals, first, DEPENDENT)]
+    supporting = np.zeros_like(sides)
+    supporting[kept] = sides[kept]
+    return supporting
+
+
 class BlockingConstraint(NamedTuple):
     """The constraint that ends a step: its number, the side reached (-1 lower, +1 upper, 2 equality), and the step."""
 
@@ -261,7 +306,7 @@ class BlockingConstraint(NamedTuple):
 def nearest(
     progress: Progress, along: Array, length: float, held: BoolArray, working: WorkingSet | None = None
 ) -> BlockingConstraint | None:
-    """The first constraint met, those held aside, by Harris' two passes; None if the direction meets none.
+    """The first constraint met by the direction and not held, by Harris' two passes; None if there is none.
 
     The first pass finds the longest step at which nothing is violated beyond its tolerance; the second takes, among the
     constraints met until then, the one that is met most steeply (Harris, Math. Programming 5 (1973) 1-28). A run that
@@ -281,7 +326,7 @@ def nearest(
 
 
 def _first(progress: Progress, along: Array, speed: Array, away: BoolArray) -> BlockingConstraint | None:
-    """The first constraint met, apart from those marked in `away` (n + m,)."""
+    """The first constraint met by the direction and not marked in `away` (n + m,)."""
     statement, values = progress.statement, progress.values
     # the bound ahead has the quotient that is not negative
     steps = np.maximum((statement.upper - values) / along, (statement.lower - values) / along)
@@ -300,7 +345,7 @@ def _first(progress: Progress, along: Array, speed: Array, away: BoolArray) -> B
 
 
 def side_reached(progress: Progress, constraint: int, along: Array) -> int:
-    """Which bound the movement reaches; 2 for an equality."""
+    """Bound that the movement reaches: -1, +1, or 2 for an equality."""
     if progress.statement.equality[constraint]:
         return 2
     return -1 if along.item(constraint) < 0.0 else 1

@@ -28,6 +28,8 @@ WEAK = 1e-6
 """Scaled pressure or gap that is zero to the tolerance of the solver."""
 ROOM = 3e-10
 """Fraction of the goal that the gentlest profile may lose."""
+DIGITS = 5
+"""Decimal places to which promises are compared, so that round-off does not choose between equal ones."""
 MARGIN = 1e-6
 """Relative increase of a known value of the goal, so that the relaxation surely admits it."""
 
@@ -158,7 +160,7 @@ class SharedProfile:
     def _piece(self, program: "_Program", touching: BoolArray, promise: Array) -> BestProfile:
         """Take the numbers out of a program that has been solved."""
         pressures = np.array([value_of(p) for p in program.pressures]) * self.scales.pressure
-        edge = [int(i) for i in np.argsort(-promise, axis=None) if promise.flat[i] > -np.inf]
+        edge = [int(i) for i in _descending(promise) if promise.flat[i] > -np.inf]
         return BestProfile(
             value=self.measure(pressures) / self.scales.pressure,
             coefficients=value_of(program.coefficients) * self.scales.displacement,
@@ -208,6 +210,12 @@ class SharedProfile:
             root = (vectors * np.sqrt(np.maximum(values, 0.0) / 2)).T
             linear = work.pressure @ p + work.constant + (0.0 if a is None else work.amplitudes @ a)
             yield cp.sum_squares(root @ p) + linear + state.weights @ product <= 0
+
+
+def _descending(promise: Array) -> IntArray:
+    """Flat indices from the largest down; those that differ by round-off only stay in their order."""
+    largest = np.abs(promise[np.isfinite(promise)]).max(initial=0.0) or 1.0
+    return np.argsort(-np.round(promise / largest, DIGITS), axis=None, kind="stable")
 
 
 class _Side(NamedTuple):

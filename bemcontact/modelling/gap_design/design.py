@@ -6,10 +6,10 @@ problem.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from operator import attrgetter
 
 import numpy as np
 
+from bemcontact.arguments import instance_of, shown
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
@@ -18,6 +18,8 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import complementarity
+from bemcontact.formulations.active_set import solve_active_set
+from bemcontact.formulations.scaling import scaled
 from bemcontact.modelling.gap_design.contact_sets import BestProfile, SharedProfile
 from bemcontact.modelling.gap_design.designed_gap import GapDesign, Goal, LoadState, relieved
 from bemcontact.modelling.gap_design.relief import Profiles, Relief
@@ -68,6 +70,7 @@ def design_gap(
         Clarabel breaks down.
     """
     states, goal = _states(contact, cases), _goal(goal)
+    instance_of(relief, Relief, "relief", "it holds the bounds on the profile: Relief(lower=0.0, upper=0.1)")
     profiles = Profiles.of(states[0], relief, zone, arc)
     shared = SharedProfile.of(states, profiles, goal)
     before = tuple(_solved(state, np.zeros(state.size)) for state in states)
@@ -75,7 +78,7 @@ def design_gap(
     bound, coefficients, sets = shared.relaxed(best.value * shared.scales.pressure)
     if best.value * shared.scales.pressure > bound * (1 + MET):
         others = (_descended(shared, some) for some in (sets, _state(states, profiles.shapes @ coefficients)[1]))
-        best = min((piece for piece in (best, *others) if piece is not None), key=attrgetter("value"))
+        best = _least([piece for piece in (best, *others) if piece is not None])
     best, gentlest = _gently_descended(shared, best)
     gentle = _carried_out(shared, states, before, gentlest, bound)
     return gentle if gentle.verified else _carried_out(shared, states, before, best, bound)
@@ -102,7 +105,7 @@ def _carried_out(
         coefficients=coefficients / profiles.sizes if profiles.shaped else None,
         before=before,
         after=after,
-        designed=piece.pressures,
+        designed=np.array([_on_sets(*pair) for pair in zip(after, piece.touching, strict=True)]),
         value_before=shared.measure(state.pressure for state in before),
         value=reached,
         lower_bound=bound,
@@ -114,10 +117,13 @@ def _states(
     contact: CondensedContact | Sequence[CondensedContact], cases: Sequence[Mapping[str, float]] | None
 ) -> tuple[CondensedContact, ...]:
     """Check that the load states are those of one body."""
-    states = (contact,) if isinstance(contact, CondensedContact) else tuple(contact)
+    several = contact if isinstance(contact, Sequence) else ()
+    states = (contact,) if isinstance(contact, CondensedContact) else tuple(several)
     if not states or not all(isinstance(state, CondensedContact) for state in states):
         raise ProblemError("a design needs a CondensedContact, or several of one body; bemcontact.condense makes them")
     if cases is not None:
+        if not isinstance(cases, Sequence) or not all(isinstance(factors, Mapping) for factors in cases):
+            raise ProblemError(f"cases is a list of factors by load case, [{{'wind': 1.5}}]; found {shown(cases)}")
         if len(states) != 1 or not len(cases):
             raise ProblemError("factors of load cases go with one condensed contact, and at least one state is needed")
         return tuple(states[0].with_factors(factors) for factors in cases)
@@ -136,10 +142,10 @@ def _states(
 def _goal(goal: Goal | str) -> Goal:
     """Read the name of a goal."""
     try:
-        return Goal(goal)
+        return Goal(goal if isinstance(goal, str) else "")
     except ValueError:
         raise ProblemError(
-            f"there is no goal {goal!r}; there are: {', '.join(known.value for known in Goal)}"
+            f"there is no goal {shown(goal)}; there are: {', '.join(known.value for known in Goal)}"
         ) from None
 
 
@@ -159,6 +165,12 @@ def _solved(contact: CondensedContact, profile: Array) -> LoadState:
     )
 
 
+def _on_sets(state: LoadState, touching: BoolArray) -> Array:
+    """Pressure (n,) [p] on a designed contact set, of either sign; the program has it to its tolerance over λ only."""
+    pressure, _ = solve_active_set(scaled(state.contact), touching)
+    return pressure * state.contact.scales.pressure
+
+
 def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> BestProfile:
     """The best end of all starts."""
     known = set[bytes]()
@@ -170,7 +182,13 @@ def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> BestProf
             ends.append(end)
     if not ends:
         raise SolverError("no convex program of the design had an optimum; look in the mesh for very short elements")
-    return min(ends, key=attrgetter("value"))
+    return _least(ends)
+
+
+def _least(pieces: Sequence[BestProfile]) -> BestProfile:
+    """The first of those with the least value, so that round-off does not choose between equal ones."""
+    least = min(piece.value for piece in pieces)
+    return next(piece for piece in pieces if piece.value <= least + GAIN * abs(least))
 
 
 def _starts(shared: SharedProfile, states: Sequence[CondensedContact]) -> Iterator[BoolArray]:

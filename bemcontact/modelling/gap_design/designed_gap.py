@@ -5,6 +5,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from bemcontact.arguments import shown
 from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
@@ -12,7 +13,7 @@ from bemcontact.assessment.residual import Residuals
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
-from bemcontact.problem.rigid_surface import Polyline, Spline
+from bemcontact.problem.surface_lines import Polyline, Spline
 from bemcontact.serialization import Pairs, Record, Recorded, Vector
 
 AGREED = 1e-6
@@ -118,7 +119,7 @@ class GapDesign(Recorded):
     profile : (n,) g [L], zero off the interval
     coefficients : (s,) of the shapes, if the profile is made of some
     before, after : the load states without and with the profile, by the direct solver
-    designed : (loads, n) pressure [p] by the convex program, which is to agree with that of `after`
+    designed : (loads, n) pressure [p] on the designed contact sets, which is to agree with that of `after`
     value_before, value : of the goal [p], of the contact states
     lower_bound : of the goal within the bounds on the profile [p], by convex relaxation
     proved_optimal : whether the value is at the bound, to a millionth
@@ -214,8 +215,8 @@ class GapDesign(Recorded):
         ProblemError
             The kind is unknown, the zone has several pieces or goes round, or the surface would fold.
         """
-        if kind not in SURFACES:
-            raise ProblemError(f"there is no surface of kind {kind!r} to write; there are: {', '.join(SURFACES)}")
+        if not isinstance(kind, str) or kind not in SURFACES:
+            raise ProblemError(f"there is no surface of kind {shown(kind)} to write; there are: {', '.join(SURFACES)}")
         contact = self.before[0].contact.at_rest()
         inside = np.flatnonzero(contact.zone == contact.zone[self.points[0]])
         runs = np.unique(contact.run[inside])

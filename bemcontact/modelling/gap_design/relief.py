@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import linprog
 
-from bemcontact.arrays import Array, IntArray, freeze_arrays
+from bemcontact.arguments import real_number, shown
+from bemcontact.arrays import Array, IntArray, freeze_arrays, real_array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 
@@ -207,12 +208,15 @@ class Profiles:
 def _interval(contact: CondensedContact, zone: str | None, arc: tuple[float, float] | None) -> IntArray:
     """Indices of the contact points on an interval, by run and arc position."""
     names = contact.zone_names
+    if not isinstance(zone, str | None):
+        raise ProblemError(f"zone must be the name of a contact zone; found {shown(zone)}")
     if zone is None and len(names) > 1:
         raise ProblemError(f"say which zone is to be relieved: {', '.join(names)}")
     if zone is not None and zone not in names:
         raise ProblemError(f"there is no contact zone '{zone}'; there are: {', '.join(names)}")
     inside = contact.zone == (0 if zone is None else names.index(zone))
     if arc is not None:
+        arc = _pair(arc, "arc, the least and largest arc position,")
         inside &= (contact.arc_position >= arc[0]) & (contact.arc_position <= arc[1])
     points = np.flatnonzero(inside)
     if not len(points):
@@ -231,11 +235,16 @@ def _shapes(relief: Relief, position: Array) -> Array:
             raise ProblemError("coefficients belong to shapes; give shapes, or lower and upper values")
         return np.eye(m)
     if isinstance(relief.shapes, np.ndarray):
-        shapes = np.array(relief.shapes, float, ndmin=2)
-    else:
-        columns = [np.broadcast_to(np.asarray(shape(position), float), m) for shape in relief.shapes]
+        shapes = np.atleast_2d(real_array(relief.shapes, "shapes"))
+    elif isinstance(relief.shapes, Sequence) and all(map(callable, relief.shapes)):
+        columns = [_on_points(shape(position), number, m) for number, shape in enumerate(relief.shapes)]
         shapes = np.column_stack(columns) if columns else np.zeros((m, 0))
-    if shapes.shape[0] != m or not shapes.shape[1] or not np.isfinite(shapes).all():
+    else:
+        raise ProblemError(
+            f"shapes must be a list of functions of the arc position, or an array ({m}, s) of their values; found "
+            f"{shown(relief.shapes)}"
+        )
+    if shapes.ndim != 2 or shapes.shape[0] != m or not shapes.shape[1]:
         raise ProblemError(
             f"shapes need finite values at the {m} points of the interval; found an array {shapes.shape}"
         )
@@ -258,7 +267,7 @@ def _families(relief: Relief, shapes: Array, sizes: Array, position: Array, run:
         families["values"] = Bounds(shapes, *limits)
     for name, rows, given in (("slope", slopes, relief.slope), ("curvature", curvatures, relief.curvature)):
         if given is not None and len(rows):
-            pair = given if isinstance(given, tuple) else (-given, given)
+            pair = given if isinstance(given, tuple) else _both_signs(given, name)
             families[name] = Bounds(rows @ shapes, *_limits(pair, len(rows), name))
     if relief.coefficients is not None:
         low, high = _limits(relief.coefficients, len(sizes), "coefficients")
@@ -269,14 +278,34 @@ def _families(relief: Relief, shapes: Array, sizes: Array, position: Array, run:
     return families
 
 
+def _on_points(values: ArrayLike, number: int, count: int) -> Array:
+    """Values (count,) of a shape, which may be the same everywhere."""
+    array = real_array(values, f"shape {number}")
+    if array.shape not in ((), (1,), (count,)):
+        raise ProblemError(f"shape {number} has {array.shape} values where ({count},) are needed, one for each point")
+    return np.broadcast_to(array, count)
+
+
+def _both_signs(given: object, what: str) -> tuple[float, float]:
+    """The bounds ± a number."""
+    number = real_number(given, f"the bound on {what}, or each of a pair (least, largest),")
+    return -number, number
+
+
+def _pair(given: object, what: str) -> tuple[float, float]:
+    """Read two finite numbers."""
+    array = real_array(given, what, (2,))
+    return float(array[0]), float(array[1])
+
+
 def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int, what: str) -> tuple[Array, Array]:
     """Least and largest (count,), infinite where not given."""
     limits = []
+    if not isinstance(pair, tuple | list) or len(pair) != 2:
+        raise ProblemError(f"bounds on {what} are a least and a largest one, (least, largest); found {shown(pair)}")
     for given, otherwise in zip(pair, (-np.inf, np.inf), strict=True):
-        stated = np.asarray(otherwise if given is None else given)
-        if stated.dtype.kind not in "iuf":
-            raise ProblemError(f"bounds on {what} are numbers; found {given!r}")
-        numbers = stated.astype(float)
+        numbers = real_array(otherwise if given is None else given, f"bounds on {what}", finite=False)
+        real_array(numbers[np.isfinite(numbers)], f"bounds on {what}")  # none is too large; infinite ones are allowed
         if numbers.ndim and numbers.shape != (count,):
             raise ProblemError(f"bounds on {what} are a number or {count} of them; found an array {numbers.shape}")
         limits.append(np.broadcast_to(numbers, count).astype(float))

@@ -124,7 +124,7 @@ def draw_gaps(axes: Axes, level: MeshLevel) -> None:
 def draw_differences(axes: Axes, level: MeshLevel) -> None:
     """Draw |p - p'| over the largest pressure for each contender, with p' the direct solution; zero is not drawn."""
     along, direct = _Along(contact=level.answer.contact), level.answer.solution.pressure
-    peak = float(direct.max(initial=0.0)) or level.answer.contact.scales.pressure
+    peak = along.contact.peak(direct) or along.contact.scales.pressure
     for curve in _curves(level, merged=False):
         difference = np.abs(curve.solution.pressure - direct) / peak
         if difference.any():
@@ -227,7 +227,8 @@ def _alike(one: Contender, other: Contender, level: MeshLevel) -> bool:
     if one.assessment is None or other.assessment is None:
         return False
     apart = float(np.abs(one.assessment.solution.pressure - other.assessment.solution.pressure).max())
-    peak = float(level.answer.solution.pressure.max(initial=0.0)) or level.answer.contact.scales.pressure
+    contact = level.answer.contact
+    peak = contact.peak(level.answer.solution.pressure) or contact.scales.pressure
     return one.attempt.options.formulation is other.attempt.options.formulation and apart <= SAME * peak
 
 

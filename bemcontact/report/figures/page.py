@@ -8,18 +8,21 @@ from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from textwrap import wrap
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.files import output
 from bemcontact.options import FormulationName
+from bemcontact.plain_text import escaped_lines
 
 FORMATS = (".png", ".svg", ".pdf")
 """Endings of the files that can be written."""
@@ -53,8 +56,19 @@ def save(figure: Figure, path: Path) -> None:
     ensure_known_format(path)
     ending = path.suffix.lower()[1:]
     undated = {DATES[ending]: None} if ending in DATES else {}
-    with output.whole_file(path) as temporary, rc_context({"svg.hashsalt": "bemcontact"}), without_glyph_warnings():
-        figure.savefig(temporary, format=ending, dpi=160, bbox_inches="tight", pad_inches=0.15, metadata=undated)
+    picture = _picture(figure, {}, format=ending, dpi=160, pad_inches=0.15, metadata=undated)
+    with output.whole_file(path) as temporary:
+        temporary.write_bytes(picture)
+
+
+def _picture(figure: Figure, settings: Any, **form: Any) -> bytes:
+    """Draw a figure as the content of a file, without hidden characters in its texts."""
+    for text in figure.findobj(Text):
+        text.set_text(escaped_lines(text.get_text()))
+    stream = BytesIO()
+    with rc_context({"svg.hashsalt": "bemcontact"}), rc_context(settings), without_glyph_warnings():
+        figure.savefig(stream, bbox_inches="tight", **form)
+    return stream.getvalue()
 
 
 @contextmanager
@@ -187,17 +201,11 @@ def vector_graphic(figure: Figure) -> bytes:
     Matplotlib writes colours as style attributes, which a style sheet can overrule. The style sheet added here does so
     on dark pages.
     """
-    stream = BytesIO()
-    with rc_context({"svg.hashsalt": "bemcontact", "svg.fonttype": "path"}), without_glyph_warnings():
-        figure.savefig(
-            stream,
-            format="svg",
-            transparent=True,
-            bbox_inches="tight",
-            pad_inches=0.08,
-            metadata={DATES["svg"]: None, "Creator": None, "Format": None, "Type": None},
-        )
-    written = re.sub(r' d="[^"]*"', _rounded, stream.getvalue().decode())
+    metadata = {DATES["svg"]: None, "Creator": None, "Format": None, "Type": None}
+    picture = _picture(
+        figure, {"svg.fonttype": "path"}, format="svg", transparent=True, pad_inches=0.08, metadata=metadata
+    )
+    written = re.sub(r' d="[^"]*"', _rounded, picture.decode())
     return written.replace("</style>", f"{_style_sheet()}</style>", 1).encode()
 
 

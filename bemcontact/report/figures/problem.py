@@ -41,7 +41,7 @@ from bemcontact.report.figures.page import (
     wrapped,
 )
 from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
-from bemcontact.report.formatting import prescribed, tool_in_words, volume_loads
+from bemcontact.report.formatting import NEGLIGIBLE, prescribed, tool_in_words, volume_loads
 
 Displacement = Callable[[Array], Array]
 """Points (k, 2) of the undeformed boundary -> how far (k, 2) they are displaced."""
@@ -58,14 +58,15 @@ SHORT = 0.2
 """Length over the body's size of an edge that has too little room for its name; it may stand beyond the ends."""
 
 
-def figure_of_problem(problem: Problem, mesh: Mesh) -> Figure:
-    """Compose a page with geometry, mesh, conditions and rigid surfaces."""
+def figure_of_problem(problem: Problem, mesh: Mesh, note: str = "") -> Figure:
+    """Compose a page with geometry, mesh, conditions and rigid surfaces, and a note below the title if given."""
     low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
     width, height = (high - low) / (high - low).max()
     inches = 3.6 + 7.0 * max(width, 0.5)
     figure = new_page(inches, 1.8 + 7.0 * max(height, 0.3))
     axes = figure.add_subplot()
-    axes.set_title(wrapped(problem.title, int(7 * inches)), loc="left", fontweight="bold")
+    title = "\n".join(wrapped(line, int(7 * inches)) for line in (problem.title, note) if line)
+    axes.set_title(title, loc="left", fontweight="bold")
     draw_problem(axes, problem, mesh)
     return figure
 
@@ -116,7 +117,13 @@ def _weight(problem: Problem) -> Array:
         for factor, loads in ((1.0, problem.loads), *cases)
         if loads.gravity
     ]
-    return np.sum(pulls, axis=0) if pulls else np.zeros(2)
+    return _total(pulls, np.zeros(2))
+
+
+def _total(parts: list[Array], none: Array) -> Array:
+    """The sum of what load cases add; zero where they cancel up to round-off, of which no arrow is drawn."""
+    total, size = np.sum([none, *parts], axis=0), np.sum([none, *map(np.abs, parts)], axis=0)
+    return np.where(np.abs(total) > NEGLIGIBLE * size.max(initial=0.0), total, 0.0)
 
 
 def _fill_body(axes: Axes, problem: Problem) -> None:
@@ -283,7 +290,7 @@ def surface_line(problem: Problem, zone: ContactZone, overhang: float) -> tuple[
 def _traction(problem: Problem, edge: str, points: Array, normals: Array) -> Array:
     """Prescribed traction (k, 2) at points of an edge with these outward normals."""
     acting = [factor * applied_traction(condition, points, normals) for factor, condition in _acting(problem, edge)]
-    return np.sum(acting, axis=0) if acting else np.zeros_like(points)
+    return _total(acting, np.zeros_like(points))
 
 
 def _name(problem: Problem, edge: Edge) -> Name:

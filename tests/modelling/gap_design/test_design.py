@@ -309,3 +309,31 @@ def test_uniform_design_goes_on_from_all_optimal_profiles_of_a_contact_set():
     assert smallest_gap(contact, relief, touching, last + 1) > 1e-3
     assert smallest_gap(contact, relief, before, last) < 1e-6
     assert design.value < least_deviation(contact, relief, before)
+
+
+def symmetric_punch(n: int = 7) -> CondensedContact:
+    """A row of points that is its own mirror image, pressed in: each turn of a point has an equal one."""
+    x = np.linspace(-1, 1, n)
+    compliance = np.exp(-np.abs(x[:, None] - x)) + 0.1 * np.eye(n)
+    contact = CondensedContact.from_compliance(
+        compliance, np.zeros(n), np.full(n, 1 / n), rigid_motions=np.ones(n), motion_load=[-1.0]
+    )
+    return replace(contact, points=np.column_stack([x, 0 * x]), arc_position=x + 1)
+
+
+@pytest.mark.parametrize(
+    ("states", "relief"),
+    [
+        ((symmetric_punch(),), Relief(lower=0, upper=0.05, curvature=0.1)),
+        ((random_contact(7, 6, 1), loaded(random_contact(7, 6, 1), 1.5)), Relief(lower=-0.2, upper=0.2, slope=2.0)),
+    ],
+    ids=["symmetric", "two loads"],
+)
+def test_round_off_changes_neither_the_design_nor_its_verdict(states, relief):
+    """Compliances that differ in their last digits, as with other numbers of threads: one answer, one verdict."""
+    plain = design_gap(states, relief)
+    noise = 1 + 1e-15 * np.random.default_rng(0).standard_normal(states[0].compliance.shape)
+    other = design_gap([replace(state, compliance=state.compliance * noise) for state in states], relief)
+    assert other.value == pytest.approx(plain.value, rel=1e-7)
+    assert (other.verified, other.proved_optimal) == (plain.verified, plain.proved_optimal)
+    assert other.difference < 1e-8

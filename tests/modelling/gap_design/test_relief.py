@@ -75,7 +75,7 @@ def test_the_profile_that_is_next_to_none():
         (Relief(lower=0), "toe", None, "the profile has no bound; give lower and upper values"),
         (Relief(slope=1.0), "toe", None, "the profile has no bound"),
         (Relief(lower=1, upper=0), "toe", None, "the lower bound on values is above the upper one"),
-        (Relief(lower="0", upper=1), "toe", None, "bounds on values are numbers; found '0'"),
+        (Relief(lower="0", upper=1), "toe", None, "bounds on values must contain real numbers; found texts"),
         (Relief(lower=0, upper=np.nan), "toe", None, "above the upper one, or no number"),
         (Relief(lower=(0, 0, 0), upper=1), "toe", None, r"bounds on values are a number or 2 of them; .* \(3,\)"),
         (Relief(lower=(0, 5), upper=(1, 6), slope=1), "toe", None, "no profile keeps the bounds on values and slope"),

@@ -1,0 +1,110 @@
+"""Whether the deformed body penetrates a rigid surface at any place of its boundary.
+
+Contact conditions hold at contact points. Nothing keeps the body out of a surface between them, or with edges that are
+in no zone of it.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from bemcontact.analysis.variation import Variation
+from bemcontact.arrays import BoolArray
+from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
+from bemcontact.bem.condense import boundary_state
+from bemcontact.bem.mesh import BoundaryState
+from bemcontact.bem.outline import Outline
+from bemcontact.bem.surface_gaps import SurfaceGaps
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
+from bemcontact.parametric.path import LoadPath
+from bemcontact.problem.problem import Problem
+
+
+def surface_gaps(
+    problem: Problem,
+    state: BoundaryState,
+    contact: CondensedContact,
+    solution: ContactSolution,
+    outline: Outline | None = None,
+) -> SurfaceGaps:
+    """Compare the deformed boundary of a solution with the surfaces, where its tools have moved them."""
+    moved = contact.tools.displacement(solution.rigid_amplitudes)
+    return SurfaceGaps(
+        problem=problem,
+        outline=outline or Outline(problem=problem),
+        state=state,
+        tools=dict(zip(contact.tools.names, moved, strict=True)),
+    )
+
+
+def penetration(gaps: SurfaceGaps, contact: CondensedContact) -> tuple[Penetration | None, tuple[str, ...]]:
+    """Find the deepest penetration that is not tolerated, and note what was not compared."""
+    state, worst, notes = gaps.state, None, list[str]()
+    largest = float(np.hypot(*np.moveaxis(state.displacement, 2, 0)).max())
+    allowed = tolerated(contact, largest, gaps.problem.boundary.size)
+    for zone in gaps.surfaces:
+        found, paired = gaps.intrusion(zone), gaps.paired(zone)
+        depth = float(found.depth.max())
+        if depth > max(allowed, worst.depth if worst else 0.0):
+            deepest = np.flatnonzero(found.depth >= (1 - ROUND_OFF) * depth)
+            element = int(deepest[np.argmin(paired[deepest])])  # of equal depths that which is easier to understand
+            worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
+        notes += _behind(gaps, zone, found.behind)
+    return worst, tuple(notes)
+
+
+def penetration_on_path(
+    varied: Variation, path: LoadPath, start: float, end: float
+) -> tuple[Penetration | None, float | None]:
+    """Find the deepest penetration at the breakpoints of a path between two values, and the value there."""
+    outline, worst, at = Outline(problem=varied.problem), None, None
+    for i, t in enumerate(path.parameter.tolist()):
+        value, contact, solution = (1 - t) * start + t * end, path.contact(t), path.breakpoint(i)
+        problem = varied.at(value) if varied.path[0] == "contact_zones" else varied.problem
+        state = _state_at(varied, value, contact, solution)
+        found, _ = penetration(surface_gaps(problem, state, contact, solution, outline), contact)
+        if found is not None and (worst is None or found.depth > worst.depth):
+            worst, at = found, value
+    return worst, at
+
+
+def _state_at(varied: Variation, value: float, contact: CondensedContact, solution: ContactSolution) -> BoundaryState:
+    """The boundary at a value: between two condensations loads, and so displacements, change linearly."""
+    p, a = solution.pressure, solution.rigid_amplitudes
+    if varied.acts_on_contact:
+        ((_, condensation),) = varied.condensed.items()
+        body = replace(condensation.body, problem=varied.at(value))
+        return boundary_state(replace(condensation, body=body, contact=contact), p, a)
+    first, last = min(varied.condensed), max(varied.condensed)
+    one, other = (boundary_state(varied.condensed[end], p, a) for end in (first, last))
+    share = (value - first) / (last - first)
+    return replace(one, displacement=(1 - share) * one.displacement + share * other.displacement)
+
+
+def _penetration(gaps: SurfaceGaps, zone: str, element: int, xi: float, depth: float, allowed: float) -> Penetration:
+    """Describe a penetration."""
+    x, y = gaps.outline.places(np.array([element]), np.array([[xi]])).points[0, 0].tolist()
+    edge, paired = gaps.state.edge_names[gaps.state.edge[element]], bool(gaps.paired(zone)[element])
+    how_deep = f"{depth:.3g} {gaps.problem.units.length}".strip()
+    return Penetration(
+        depth=depth,
+        allowed=allowed,
+        at=(x, y),
+        edge=edge,
+        zone=zone,
+        paired=paired,
+        words=penetration_in_words(how_deep, f"({x:.5g}, {y:.5g}) on '{edge}'", zone, paired=paired),
+    )
+
+
+def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:
+    """Note edges that are behind a surface before anything moves."""
+    edges = sorted({gaps.state.edge_names[i] for i in gaps.state.edge[behind]})
+    if edges:
+        names = ", ".join(f"'{name}'" for name in edges)
+        yield (
+            f"part of {names} lies behind the rigid surface of '{zone}' as stated: the surface is taken to end before "
+            "it, and contact there was not looked at"
+        )

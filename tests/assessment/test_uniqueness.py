@@ -1,0 +1,125 @@
+"""Uniqueness without definiteness, against all contact states by exhaustive search."""
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+
+from bemcontact.analysis.solve import solve
+from bemcontact.assessment.certificate import CertificateKind, certify
+from bemcontact.assessment.residual import residuals
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
+from bemcontact.formulations import complementarity
+from bemcontact.problem import Problem
+
+N = 5
+"""Contact points of a random problem."""
+
+
+def slightly_indefinite(rng: np.random.Generator) -> CondensedContact:
+    """Five points and one free motion; sym(JM) has a negative eigenvalue with a wide eigenvector; gaps are wide."""
+    n, J = N, rng.uniform(0.5, 1.5, N)
+    ell = J / np.linalg.norm(J)
+    Q = np.linalg.qr(np.column_stack([ell, rng.standard_normal((n, n - 1))]))[0][:, 1:]
+    values = np.append(-(10 ** rng.uniform(-3, -0.3)), rng.uniform(0.1, 2, n - 2))
+    skew = rng.standard_normal((n, n)) * 10 ** rng.uniform(-3, 0)
+    M = (Q @ np.diag(values) @ Q.T + skew - skew.T) / J[:, None]
+    q = np.abs(rng.standard_normal(n)) * 10 ** rng.uniform(-1, 1.5) * (rng.uniform(size=n) > 0.3)
+    return CondensedContact.from_compliance(M, q, J, rigid_motions=np.ones(n), motion_load=[-1.0])
+
+
+def all_states(contact: CondensedContact) -> list[np.ndarray]:
+    """Pressures of all contact states with nonsingular contact sets."""
+    M, R, ell, q = contact.compliance, contact.rigid_motions, contact.equilibrium, contact.offset
+    n, k = R.shape
+    found: list[np.ndarray] = []
+    for choice in product([False, True], repeat=n):
+        A = np.array(choice)
+        matrix = np.block([[M[np.ix_(A, A)], R[A]], [ell[A].T, np.zeros((k, k))]])
+        if A.sum() < k or abs(np.linalg.det(matrix)) < 1e-12:
+            continue
+        x = np.linalg.solve(matrix, -np.append(q[A], contact.motion_load))
+        p = np.zeros(n)
+        p[A] = x[: A.sum()]
+        gap = q + M @ p + R @ x[A.sum() :]
+        if p.min() >= -1e-9 and gap.min() >= -1e-9 and all(abs(p - other).max() > 1e-7 for other in found):
+            found.append(p)
+    return found
+
+
+def certificate_of(contact: CondensedContact, solution: ContactSolution):
+    return certify(contact, solution, residuals(contact, solution))
+
+
+def test_only_lonely_states_are_certified_and_the_bound_holds():
+    """Of random indefinite problems some are certified: each has one state, and none that has two is certified.
+
+    The bound holds for a pressure that is off by a known amount.
+    """
+    rng = np.random.default_rng(5)
+    certified = several = 0
+    for _ in range(60):
+        contact = slightly_indefinite(rng)
+        solution = complementarity.solve(contact)
+        certificate = certificate_of(contact, solution)
+        states = all_states(contact)
+        assert certificate.smallest_eigenvalue is not None
+        assert certificate.smallest_eigenvalue < 0
+        several += len(states) > 1
+        if not certificate.certified:
+            continue
+        certified += 1
+        assert len(states) == 1
+        assert "although the compliance is not positive definite" in certificate.words
+        assert certificate.error_bound is not None
+        assert abs(solution.pressure - states[0]).max() <= certificate.error_bound + 1e-12
+        wrong = solution.pressure * (1 + 1e-6 * rng.standard_normal(N))
+        moved = contact.gap(wrong, solution.rigid_amplitudes) - contact.initial_gap
+        bound = certificate_of(contact, replace(solution, pressure=wrong, displacement=moved)).error_bound
+        assert bound is None or np.linalg.norm(wrong - states[0]) <= bound
+    assert certified > 5
+    assert several > 0
+
+
+def beam(ratio: int, push: float, parts: int = 1) -> Problem:
+    """A beam on a floor, pressed in its middle; its length is `ratio` times its height."""
+    L, half = float(ratio), push / 2
+    edges = [
+        ("bottom", (0, 0), ratio), ("right", (L, 0), 2), ("t1", (L, 1), 0.5 * ratio - half),
+        ("push", (L / 2 + half, 1), push), ("t2", (L / 2 - half, 1), 0.5 * ratio - half), ("left", (0, 1), 2),
+    ]  # fmt: skip
+    return Problem(
+        name="beam",
+        material={"young_modulus": 1e4, "poisson_ratio": 0.3},
+        boundary={
+            "outer": [{"name": n, "start": start, "elements": max(1, round(m)) * parts} for n, start, m in edges]
+        },
+        conditions={"push": {"pressure": 1}},
+        contact_zones={"floor": {"edges": ["bottom"], "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
+    )
+
+
+@pytest.mark.parametrize("ratio", [20, 50, 100])
+def test_slender_beam_is_certified_although_its_compliance_is_not_definite(ratio: int):
+    """The ends rise, and contact is as long as under an endless strip, which does not depend on the length."""
+    result = solve(beam(ratio, 8), "complementarity")
+    (interval,) = result.footprint.intervals
+    short = solve(beam(20, 8), "complementarity").footprint
+    assert result.certified
+    assert (result.certificate.smallest_eigenvalue > 0) is (ratio < 100)
+    assert interval.end_arc - interval.start_arc == pytest.approx(
+        short.intervals[0].end_arc - short.intervals[0].start_arc, abs=0.05
+    )
+    assert result.footprint.peak.pressure == pytest.approx(short.peak.pressure, rel=1e-3)
+
+
+def test_contact_recedes_point_by_point_on_a_very_slender_beam():
+    """175 steps of the active set: no fragments of contact are left where the ends rise."""
+    result = solve(beam(200, 20), "complementarity")
+    (interval,) = result.footprint.intervals
+    assert interval.start_arc == pytest.approx(200 - interval.end_arc, abs=1e-6)
+    assert 20 < interval.end_arc - interval.start_arc < 22.4  # a strip recedes 1.008 heights beyond the load at most
+    assert result.certificate.kind in (CertificateKind.LOCAL, CertificateKind.UNIQUE)
+    assert not result.certificate.violation

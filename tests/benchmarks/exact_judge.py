@@ -1,0 +1,292 @@
+"""Answers to programs of whole numbers, judged with fractions wherever rounding could decide."""
+
+from enum import StrEnum
+from fractions import Fraction
+from itertools import combinations
+
+import numpy as np
+from integer_program import Array, IntegerProgram, Units
+from scipy.optimize import linprog, nnls
+
+from bemcontact.formulations.local_solver import QPResult, QPStatus
+
+CLEAR = 1e-6
+"""A residual above this is no rounding: the numbers of the programs are whole and small."""
+CLOSE = 1e-9
+"""A product of unit vectors below this may be zero."""
+DENOMINATOR = 10**6
+FAR = 1e6
+"""No minimizer of such data is isolated beyond this."""
+
+Row = list[Fraction]
+
+
+class Verdict(StrEnum):
+    """What is true of an answer."""
+
+    RIGHT = "right"
+    FALSE_MINIMIZER = "false minimizer"
+    FALSE_UNBOUNDED = "false unbounded"
+    FALSE_INFEASIBLE = "false infeasible"
+    WEAK_RAY = "unbounded, with a ray that hardly falls"
+    UNSETTLED = "not settled by the judge"
+    NO_CLAIM = "no claim"
+
+
+def judge(program: IntegerProgram, units: Units, result: QPResult) -> Verdict:
+    """Whether the claim holds for the whole numbers."""
+    x = units.columns * result.x
+    if result.status is QPStatus.LOCAL_MINIMIZER:
+        return _of_minimizer(program, x)
+    if result.status is QPStatus.UNBOUNDED and result.ray is not None:
+        return _of_ray(program, x, units.columns * result.ray)
+    if result.status is QPStatus.INFEASIBLE and result.certificate is not None:
+        return _of_certificate(program, units.rows * result.certificate[x.size :])
+    return Verdict.NO_CLAIM
+
+
+def violation(program: IntegerProgram, x: Array) -> float:
+    """The largest, relative to the bound or to 1e-4 of the terms."""
+    G = program.normals
+    values, outside = G @ x, 0.0
+    terms = np.maximum(1.0, 1e-4 * (np.abs(G) @ np.abs(x)))
+    for bound, sign in ((program.lower, 1.0), (program.upper, -1.0)):
+        there = np.isfinite(bound)
+        excess = sign * (bound - values)[there] / np.maximum(terms, np.abs(bound))[there]
+        outside = max(outside, float(excess.max(initial=0.0)))
+    return outside
+
+
+def _of_minimizer(program: IntegerProgram, x: Array) -> Verdict:
+    """A local minimizer: quickly where strict multipliers and curvatures are clear, else exactly."""
+    if violation(program, x) > CLEAR:
+        return Verdict.FALSE_MINIMIZER
+    if np.abs(x).max() > FAR:
+        return Verdict.UNSETTLED
+    equal, inwards, _ = _active(program, x)
+    gradient = program.H @ x + program.c
+    multipliers, residual = _multipliers(gradient, equal, inwards)
+    size = max(1.0, float((np.abs(program.H) @ np.abs(x) + np.abs(program.c)).max()))
+    if residual > CLEAR * size:
+        return Verdict.FALSE_MINIMIZER
+    strong = inwards[multipliers > 1e-7 * size]
+    N = _null_space(np.vstack([equal, strong]))
+    if N.shape[1] == 0 or np.linalg.eigvalsh(N.T @ program.H @ N)[0] > -CLOSE:
+        return Verdict.RIGHT
+    return _exactly(program, x)
+
+
+def _active(program: IntegerProgram, x: Array, close: float = CLEAR) -> tuple[Array, Array, list[tuple[int, float]]]:
+    """Normals of equalities, of other active constraints (inwards), and the number and bound of each."""
+    G, lower, upper = program.normals, program.lower, program.upper
+    values = G @ x
+    equality = lower == upper
+    low, high = (
+        np.isfinite(bound) & ~equality & (np.abs(values - bound) <= close * np.maximum(1.0, np.abs(bound)))
+        for bound in (lower, upper)
+    )
+    named = [(int(i), float(lower[i])) for i in np.flatnonzero(equality | low)]
+    named += [(int(i), float(upper[i])) for i in np.flatnonzero(high)]
+    return G[equality], np.vstack([G[low], -G[high]]), named
+
+
+def _multipliers(gradient: Array, equal: Array, inwards: Array) -> tuple[Array, float]:
+    """Multipliers >= 0 of the inequalities, and the largest component of the gradient that is left over."""
+    normals = np.vstack([equal, -equal, inwards])
+    if len(normals) == 0:
+        return np.zeros(0), float(np.abs(gradient).max())
+    try:
+        y, _ = nnls(normals.T, gradient)
+    except RuntimeError:
+        y = linprog(np.ones(len(normals)), A_eq=normals.T, b_eq=gradient).x
+        y = np.zeros(len(normals)) if y is None else y
+    return y[2 * len(equal) :], float(np.abs(gradient - normals.T @ y).max())
+
+
+def _null_space(rows: Array) -> Array:
+    """Orthonormal columns, of small whole numbers: singular values below 1e-9 are none."""
+    if len(rows) == 0:
+        return np.eye(rows.shape[1])
+    _, sizes, V = np.linalg.svd(rows)
+    return V[int(np.sum(sizes > CLOSE)) :].T
+
+
+def _exactly(program: IntegerProgram, x: Array) -> Verdict:
+    """Whether an exact first-order point next to x has a direction of its critical cone that falls."""
+    point = _exact_point(program, x)
+    if point is None:
+        return Verdict.UNSETTLED
+    near = np.array([float(value) for value in point])
+    if np.abs(near - x).max() > 1e-4 * max(1.0, float(np.abs(x).max())) or violation(program, near) > 1e-12:
+        return Verdict.UNSETTLED
+    equal, inwards, _ = _active(program, near, 1e-12)
+    gradient = program.H @ near + program.c
+    if _multipliers(gradient, equal, inwards)[1] > 1e-8 * max(1.0, float(np.abs(gradient).max())):
+        return Verdict.FALSE_MINIMIZER
+    exact_gradient = [
+        sum((Fraction(int(h)) * v for h, v in zip(row, point, strict=True)), Fraction(int(b)))
+        for row, b in zip(program.H, program.c, strict=True)
+    ]
+    rows = [*_exact(equal), exact_gradient]
+    return _of_cone(program.H, rows, inwards)
+
+
+def _of_cone(H: Array, rows: list[Row], inwards: Array) -> Verdict:
+    """Whether {d : rows d = 0, inwards d >= 0} has a direction of negative curvature, sought on all its faces."""
+    floats = np.array([[float(v) for v in row] for row in rows]).reshape(len(rows), H.shape[0])
+    sizes = np.abs(floats).max(axis=1, initial=0.0)
+    floats = floats / np.where(sizes > 0.0, sizes, 1.0)[:, None]
+    doubtful = False
+    for count in range(min(len(inwards), H.shape[0]) + 1):
+        for face in combinations(range(len(inwards)), count):
+            N = _null_space(np.vstack([floats, inwards[list(face)]]))
+            if N.shape[1] == 0:
+                continue
+            values, vectors = np.linalg.eigh(N.T @ H @ N)
+            for column in np.flatnonzero(values < -CLOSE):
+                for d in (N @ vectors[:, column], -(N @ vectors[:, column])):
+                    if np.all(inwards @ d >= -CLOSE):
+                        exact = _snapped([*rows, *_exact(inwards[list(face)])], d)
+                        if _falls_exactly(H, inwards, exact):
+                            return Verdict.FALSE_MINIMIZER
+                        doubtful = True
+    return Verdict.UNSETTLED if doubtful else Verdict.RIGHT
+
+
+def _falls_exactly(H: Array, inwards: Array, d: Row) -> bool:
+    """Whether the direction is in the cone and has negative curvature, in fractions."""
+    if any(_product(row, d) < 0 for row in _exact(inwards)):
+        return False
+    return _product([_product(row, d) for row in _exact(H)], d) < 0
+
+
+def _exact_point(program: IntegerProgram, x: Array) -> Row | None:
+    """Where the active constraints hold and the gradient is a combination of their normals, next to x."""
+    n, G = x.size, program.normals
+    _, _, named = _active(program, x)
+    numbers = [number for number, _ in named]
+    k = len(numbers)
+    rows = [[*[Fraction(0)] * k, *row, Fraction(int(b))] for row, (_, b) in zip(_exact(G[numbers]), named, strict=True)]
+    for i, row in enumerate(_exact(program.H)):
+        of_rows = [-Fraction(int(G[number, i])) for number in numbers]
+        rows.append([*of_rows, *row, -Fraction(int(program.c[i]))])
+    solution = solved_exactly(rows, k + n, [Fraction(0)] * k + [_rational(v) for v in x])
+    return None if solution is None else solution[k:]
+
+
+def _snapped(rows: list[Row], d: Array) -> Row:
+    """The direction with the components that the rows leave free made rational, the others computed from them."""
+    scaled = d / np.abs(d).max()
+    homogeneous = [[*row, Fraction(0)] for row in rows]
+    solution = solved_exactly(homogeneous, d.size, [_rational(v) for v in scaled])
+    return solution if solution is not None else [Fraction(0)] * d.size
+
+
+def _rational(value: float) -> Fraction:
+    """A fraction of a small denominator if there is one near."""
+    for limit in (1000, DENOMINATOR):
+        near = Fraction(value).limit_denominator(limit)
+        if abs(float(near) - value) <= 1e-8 * max(1.0, abs(value)):
+            return near
+    return Fraction(value).limit_denominator(DENOMINATOR)
+
+
+def solved_exactly(rows: list[Row], unknowns: int, guess: Row) -> Row | None:
+    """A solution of rows [a | b] a x = b, free unknowns as guessed, by elimination in fractions; None if none."""
+    rows, pivots = [list(row) for row in rows], []
+    at = 0
+    for column in range(unknowns):
+        pivot = next((i for i in range(at, len(rows)) if rows[i][column]), None)
+        if pivot is None:
+            continue
+        rows[at], rows[pivot] = rows[pivot], rows[at]
+        head = rows[at][column]
+        rows[at] = [v / head for v in rows[at]]
+        for i, row in enumerate(rows):
+            if i != at and (factor := row[column]):
+                rows[i] = [v - factor * w for v, w in zip(row, rows[at], strict=True)]
+        pivots.append(column)
+        at += 1
+    if any(row[-1] for row in rows[at:]):
+        return None
+    x = list(guess)
+    fixed = set(pivots)
+    for row, column in zip(rows, pivots, strict=False):
+        x[column] = row[-1] - sum(
+            (row[j] * guess[j] for j in range(unknowns) if j not in fixed and row[j]), Fraction(0)
+        )
+    return x
+
+
+def _exact(rows: Array) -> list[Row]:
+    """Whole numbers as fractions."""
+    return [[Fraction(int(v)) for v in row] for row in rows]
+
+
+def _product(a: Row, b: Row) -> Fraction:
+    return sum((v * w for v, w in zip(a, b, strict=True) if v and w), Fraction(0))
+
+
+def _of_ray(program: IntegerProgram, x: Array, ray: Array) -> Verdict:
+    """A ray: recession direction on which the objective falls without end."""
+    G, H, d = program.normals, program.H, ray / np.abs(ray).max()
+    along, rounding = G @ d, 1e-8 * (np.abs(G) @ np.abs(d))
+    falls, rises = np.isfinite(program.lower), np.isfinite(program.upper)
+    leaves = (falls & (along < -rounding)) | (rises & (along > rounding))
+    if violation(program, x) > CLEAR or leaves.any():
+        return Verdict.FALSE_UNBOUNDED
+    curvature, product = float(d @ H @ d), float(np.abs(d) @ np.abs(H) @ np.abs(d))
+    if curvature < -CLEAR * product:  # the nearest direction that meets the rows exactly has it too
+        return Verdict.RIGHT
+    held = (falls | rises) & (np.abs(along) <= rounding)
+    exact = np.array([float(v) for v in _snapped(_exact(G[held]), d)])
+    if np.abs(exact - d).max() > 1e-6:
+        return Verdict.UNSETTLED
+    gradient = H @ x + program.c
+    terms = float((np.abs(H) @ np.abs(x) + np.abs(program.c)) @ np.abs(d))
+    if abs(curvature) <= CLOSE * product and gradient @ d < -CLEAR * terms:
+        return Verdict.RIGHT
+    return _unbounded_at_all(program)
+
+
+def _unbounded_at_all(program: IntegerProgram) -> Verdict:
+    """Whether some recession direction has negative curvature, or none and an objective that falls along it."""
+    falls, rises = np.isfinite(program.lower), np.isfinite(program.upper)
+    inwards = np.vstack([program.normals[falls], -program.normals[rises]])
+    if _of_cone(program.H, [], inwards) is Verdict.FALSE_MINIMIZER:
+        return Verdict.WEAK_RAY
+    n = program.c.size
+    flat = [*_exact(program.H)]
+    A = np.vstack([np.array([[float(v) for v in row] for row in flat])])
+    bounds = [(-1.0, 1.0)] * n
+    least = linprog(program.c, A_ub=-inwards, b_ub=np.zeros(len(inwards)), A_eq=A, b_eq=np.zeros(n), bounds=bounds)
+    return Verdict.WEAK_RAY if least.status == 0 and least.fun < -CLEAR else Verdict.FALSE_UNBOUNDED
+
+
+def _of_certificate(program: IntegerProgram, of_rows: Array) -> Verdict:
+    """Farkas multipliers made rational; where this proves nothing, a linear program decides."""
+    n, lower, upper = program.c.size, program.lower, program.upper
+    largest = float(np.abs(of_rows).max(initial=0.0))
+    rows = [_rational(v / largest) for v in of_rows] if largest else []
+    columns = [-_product(row, rows) for row in _exact(program.A.T)] if largest else [Fraction(0)] * n
+    total = Fraction(0)
+    for y, low, high in zip([*columns, *rows], lower, upper, strict=False):
+        bound = low if y > 0 else high
+        if y and np.isinf(bound):
+            break
+        total += y * Fraction(int(bound)) if y else 0
+    else:
+        if total > 0:
+            return Verdict.RIGHT
+    return _infeasible_at_all(program)
+
+
+def _infeasible_at_all(program: IntegerProgram) -> Verdict:
+    """By linear programming: data are whole and small, and its tolerance is 1e-7."""
+    n, lower, upper = program.c.size, program.lower, program.upper
+    high, low = np.isfinite(upper[n:]), np.isfinite(lower[n:])
+    A = np.vstack([program.A[high], -program.A[low]])
+    b = np.concatenate([upper[n:][high], -lower[n:][low]])
+    bounds = list(zip(lower[:n], upper[:n], strict=True))
+    status = linprog(np.zeros(n), A if len(A) else None, b if len(A) else None, bounds=bounds).status
+    return Verdict.RIGHT if status == 2 else Verdict.FALSE_INFEASIBLE

@@ -1,0 +1,99 @@
+"""Small quadratic programs of whole numbers, and the same in units that are powers of ten."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+INF = np.inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class IntegerProgram:
+    """Minimize cᵀx + ½xᵀHx subject to lower <= [x; A x] <= upper, all numbers whole, bounds infinite where absent."""
+
+    H: Array
+    c: Array
+    A: Array
+    lower: Array
+    upper: Array
+
+    @property
+    def normals(self) -> Array:
+        """[I; A], (n + m, n)."""
+        return np.vstack([np.eye(self.c.size), self.A])
+
+    def stated(self, units: "Units") -> tuple[Array, ...]:
+        """H, c, A, cl, cu, bl, bu in these units, as `minimize_qp` takes them."""
+        n, D, E, unit = self.c.size, units.columns, units.rows, units.objective
+        bl, cl = self.lower[:n] / D, E * self.lower[n:]
+        bu, cu = self.upper[:n] / D, E * self.upper[n:]
+        return unit * (D[:, None] * self.H * D), unit * (D * self.c), E[:, None] * self.A * D, cl, cu, bl, bu
+
+
+@dataclass(frozen=True, kw_only=True)
+class Units:
+    """Powers of ten: x = columns times the x of these units; factors of the rows and of the objective."""
+
+    columns: Array
+    rows: Array
+    objective: float
+
+
+def plain_units(program: IntegerProgram) -> Units:
+    """No change of units."""
+    return Units(columns=np.ones(program.c.size), rows=np.ones(len(program.A)), objective=1.0)
+
+
+def random_units(program: IntegerProgram, rng: np.random.Generator) -> Units:
+    """Powers of ten of random range: of the columns, of the rows, of both, and of the objective."""
+    widths = rng.choice([0, 3, 8], size=3, p=[0.3, 0.3, 0.4])
+    n, m = program.c.size, len(program.A)
+    columns, rows, objective = (
+        np.power(10.0, rng.integers(-width, width + 1, size)).astype(float)
+        for width, size in zip(widths, (n, m, 1), strict=True)
+    )
+    return Units(columns=columns, rows=rows, objective=float(objective[0]))
+
+
+def random_program(rng: np.random.Generator) -> IntegerProgram:
+    """Whole numbers from -2 to 2 in H of low or full rank and in A; many zeros, ties and degenerate points."""
+    n, m = int(rng.integers(2, 7)), int(rng.integers(0, 8))
+    A = rng.integers(-2, 3, (m, n)) * (rng.random((m, n)) < rng.choice([0.4, 0.8, 1.0]))
+    if m > 1 and rng.random() < 0.2:
+        A[-1] = A[0] * rng.choice([-2, -1, 1, 2])
+    base = rng.integers(-3, 4, n) if rng.random() < 0.7 else np.zeros(n, dtype=int)
+    lower, upper = _bounds(np.concatenate([base, A @ base]), n, rng)
+    return IntegerProgram(
+        H=_hessian(n, rng).astype(float),
+        c=(rng.integers(-2, 3, n) * (rng.random() < 0.7)).astype(float),
+        A=A.astype(float),
+        lower=lower,
+        upper=upper,
+    )
+
+
+def _hessian(n: int, rng: np.random.Generator) -> NDArray[np.int64]:
+    """A symmetric matrix: zero, of rank one or two, semidefinite, bilinear, or any."""
+    kind = int(rng.integers(7))
+    B = rng.integers(-2, 3, (n, n))
+    b, e = B[:, :1], B[:, 1:2]
+    bilinear = np.triu(B * (rng.random((n, n)) < 0.4), 1)
+    few = -np.diag((rng.random(n) < 0.3).astype(int))
+    forms = (np.zeros((n, n), dtype=int), b @ b.T - e @ e.T, -b @ b.T, B @ B.T, bilinear + bilinear.T, B + B.T, few)
+    return forms[kind]
+
+
+def _bounds(values: NDArray[np.int64], n: int, rng: np.random.Generator) -> tuple[Array, Array]:
+    """Bounds of which most let the given values pass, many of them at the bound itself; few equalities."""
+    size = values.size
+    room = rng.integers(0, 5, (2, size)) * (rng.random((2, size)) < 0.6)
+    lower, upper = (values - room[0]).astype(float), (values + room[1]).astype(float)
+    free = rng.random((2, size)) < rng.choice([0.3, 0.5, 0.7])
+    lower[free[0]], upper[free[1]] = -INF, INF
+    moved = rng.random(size) < 0.05
+    lower[moved], upper[moved] = lower[moved] + 2, upper[moved] + 2
+    equal = (rng.random(size) < np.where(np.arange(size) < n, 0.03, 0.12)) & np.isfinite(lower)
+    upper[equal] = lower[equal]
+    return lower, upper

@@ -1,0 +1,103 @@
+"""The judge of whole-number programs refuses wrong answers; the local solver gives right ones in any units."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from exact_judge import Verdict, judge, solved_exactly
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from integer_program import IntegerProgram, Units, plain_units
+from local_solver_fuzz import case, outcomes, solved
+
+from bemcontact.formulations.local_solver import QPResult, QPStatus
+
+INF = np.inf
+BAD = ("judge", "numerical", "with working set")
+
+
+def saddle_in_a_box() -> IntegerProgram:
+    """-x1 x2 over [-1, 1]²: a saddle at 0, minimizers -1 at (1, 1) and (-1, -1)."""
+    H = np.array([[0.0, -1.0], [-1.0, 0.0]])
+    return IntegerProgram(H=H, c=np.zeros(2), A=np.zeros((0, 2)), lower=-np.ones(2), upper=np.ones(2))
+
+
+def quadrant(sign: float) -> IntegerProgram:
+    """Sign x1 x2 over the quadrant x >= 0: the form is copositive for sign 1, and falls along (1, 1) for sign -1."""
+    program = saddle_in_a_box()
+    return replace(program, H=-sign * program.H, lower=np.zeros(2), upper=np.full(2, INF))
+
+
+def claimed(program: IntegerProgram, x: list[float], status: QPStatus, **evidence: np.ndarray) -> QPResult:
+    """A result that claims this of x."""
+    result = solved(program, plain_units(program), None, None)
+    return replace(result, x=np.array(x), status=status, **evidence)
+
+
+@pytest.mark.parametrize(
+    ("program", "x", "verdict"),
+    [
+        (saddle_in_a_box(), [0.0, 0.0], Verdict.FALSE_MINIMIZER),
+        (saddle_in_a_box(), [1.0, 1.0], Verdict.RIGHT),
+        (saddle_in_a_box(), [1.0, -1.0], Verdict.FALSE_MINIMIZER),
+        (saddle_in_a_box(), [2.0, 2.0], Verdict.FALSE_MINIMIZER),
+        (quadrant(1.0), [0.0, 0.0], Verdict.RIGHT),
+        (quadrant(-1.0), [0.0, 0.0], Verdict.FALSE_MINIMIZER),
+        (quadrant(-1.0), [1e-12, 1e-12], Verdict.FALSE_MINIMIZER),
+    ],
+)
+def test_the_judge_distinguishes_minimizers_from_other_points(program, x, verdict):
+    assert judge(program, plain_units(program), claimed(program, x, QPStatus.LOCAL_MINIMIZER)) is verdict
+
+
+def test_the_judge_refuses_rays_that_leave_or_rise():
+    units = Units(columns=np.ones(2), rows=np.ones(0), objective=1.0)
+    for program, ray, verdict in (
+        (quadrant(-1.0), [1.0, 1.0], Verdict.RIGHT),
+        (quadrant(-1.0), [1.0, -1.0], Verdict.FALSE_UNBOUNDED),
+        (quadrant(1.0), [1.0, 1.0], Verdict.FALSE_UNBOUNDED),
+        (saddle_in_a_box(), [1.0, 1.0], Verdict.FALSE_UNBOUNDED),
+    ):
+        result = claimed(program, [0.0, 0.0], QPStatus.UNBOUNDED, ray=np.array(ray))
+        assert judge(program, units, result) is verdict
+
+
+def test_the_judge_refuses_a_certificate_that_proves_nothing():
+    """x1 + x2 >= 3 contradicts the box [-1, 1]², x1 + x2 >= 2 does not."""
+    for bound, verdict in ((3.0, Verdict.RIGHT), (2.0, Verdict.FALSE_INFEASIBLE)):
+        rows = {"lower": np.array([-1.0, -1.0, bound]), "upper": np.array([1.0, 1.0, INF])}
+        program = replace(saddle_in_a_box(), A=np.ones((1, 2)), **rows)
+        result = claimed(program, [1.0, 1.0], QPStatus.INFEASIBLE, certificate=np.array([-1.0, -1.0, 1.0]))
+        assert judge(program, plain_units(program), result) is verdict
+
+
+def test_equations_are_solved_in_fractions():
+    rows = [[Fraction(2), Fraction(4), Fraction(6)], [Fraction(1), Fraction(2), Fraction(3)]]
+    assert solved_exactly(rows, 2, [Fraction(0), Fraction(1, 2)]) == [Fraction(2), Fraction(1, 2)]
+    assert solved_exactly([*rows, [Fraction(1), Fraction(2), Fraction(4)]], 2, [Fraction(0)] * 2) is None
+
+
+@settings(max_examples=400)
+@given(st.integers(0, 10**9))
+@example(361)
+@example(1282)
+@example(2000161)
+@example(20004158)
+@example(20001064)
+def test_no_claim_is_false_in_any_units_and_a_restart_at_an_answer_moves_nothing(seed):
+    """Powers of ten from 1e-8 to 1e8 on rows, columns and the objective; random starts and working sets."""
+    assert not [name for name in outcomes(seed) if any(bad in name for bad in BAD)]
+
+
+@settings(max_examples=200)
+@given(st.integers(0, 10**9))
+def test_units_change_no_verdict_of_convex_programs(seed):
+    """A convex program is infeasible, unbounded or has one least value, whatever the units."""
+    program, units, start, working_set = case(seed)
+    program = replace(program, H=program.H @ program.H)
+    plain = solved(program, plain_units(program), start, working_set)
+    scaled = solved(program, units, start, working_set)
+    assert scaled.status is plain.status
+    if plain.status is QPStatus.LOCAL_MINIMIZER:
+        np.testing.assert_allclose(scaled.objective / units.objective, plain.objective, rtol=1e-8, atol=1e-8)
