@@ -59,7 +59,7 @@ def overall(verdicts: Sequence[Verdict]) -> str:
 
 def in_short(verdicts: Sequence[Verdict]) -> str:
     """Verdicts in few words, for a title: ``unique solution proved; error at most 0.4 % (asked 1 %)``."""
-    return "; ".join(item.word if item.good else f"{item.of.lower()} {item.word}" for item in verdicts)
+    return "; ".join(item.word if item.good else f"{item.of.lower()}: {item.word}" for item in verdicts)
 
 
 def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:

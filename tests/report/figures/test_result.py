@@ -43,7 +43,7 @@ def test_each_case_has_its_curves_and_its_bar():
 
 def test_title_states_both_verdicts():
     title = " ".join(figures.figure_of(found()).get_suptitle().split())
-    assert title.startswith("free block: all load cases; unique solution proved; mesh not met, error about ")
+    assert title.startswith("free block: all load cases; equations: penetrates a surface; mesh: not met, error about ")
 
 
 @pytest.mark.parametrize(("ending", "magic"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")])
