@@ -53,11 +53,12 @@ def real_number(value: object, what: str) -> float:
 def whole_number(value: object, what: str, least: int, most: int = LARGEST_COUNT) -> int:
     """Read a whole number of at least `least`, and of at most `most`; errors call it `what`."""
     single = _single(value)
-    if not isinstance(single, Integral) or isinstance(single, bool) or single < least:
+    count = int(single) if isinstance(single, Integral) and not isinstance(single, bool) else None
+    if count is None or count < least:
         raise ProblemError(f"the {what} must be a whole number of at least {least}; found {shown(value)}")
-    if single > most:
+    if count > most:
         raise ProblemError(f"the {what} must be a whole number of at most {most}; found {shown(value)}")
-    return int(single)
+    return count
 
 
 def instance_of(value: object, kind: type[Kind], what: str, hint: str) -> Kind:

@@ -3,7 +3,10 @@
 Beyond it the libraries of linear algebra end the program with a message of their own, so it is checked before.
 """
 
-import sys
+try:
+    import resource
+except ImportError:  # Windows has no such limit
+    resource = None
 
 LEAST_MEMORY = 1_000_000_000
 """Address space in bytes that the program takes without matrices: mostly libraries, and buffers of threads."""
@@ -11,12 +14,10 @@ LEAST_MEMORY = 1_000_000_000
 
 def ensure_memory(matrices: int = 0) -> None:
     """Raise `MemoryError` if the limit of the address space is too small for the program with matrices, in bytes."""
-    if sys.platform == "win32":
+    if resource is None:
         return
-    from resource import RLIM_INFINITY, RLIMIT_AS, getrlimit
-
-    limit, _ = getrlimit(RLIMIT_AS)
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
     needed = LEAST_MEMORY + matrices
-    if limit != RLIM_INFINITY and limit < needed:
+    if limit != resource.RLIM_INFINITY and limit < needed:
         found = f"the limit of the address space (ulimit -v) is {limit // 10**6} MB"
         raise MemoryError(f"{found}, and about {needed // 10**6} MB are needed")

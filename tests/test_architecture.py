@@ -321,6 +321,10 @@ BESIDE = {
 WITHOUT_MODULE = {
     "test_architecture.py": "the package as a whole",
     "test_packaging.py": "the wheel",
+    "cli/test_hostile_input.py": "hidden characters, full disks and little memory, through all rooms",
+    "problem/test_range.py": "numbers of any size at any place of a problem",
+    "spec/test_limits.py": "the limits of a spec, through reading, document and parser",
+    "spec/test_refused_inputs.py": "the page of refused inputs",
     "formulations/local_solver/test_contact_programs.py": "QP1 and QP2 by the local solver alone and by formulations",
     "report/test_browser.py": "the pages of a study and of the reproduction in a browser",
 }

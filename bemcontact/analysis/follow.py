@@ -124,7 +124,8 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Prob
     one = meshed(Variation(problem, key).at(start))
     boundary, refine = one.problem.boundary, one.problem.mesh.refine
     mesh = problem.mesh.model_copy(update={"adapt": True, "refine": refine})
-    two = meshed(Variation(problem.model_copy(update={"boundary": boundary, "mesh": mesh}), key).at(end))
+    finer = problem.model_copy(update={"boundary": boundary, "mesh": mesh})
+    two = meshed(Variation(finer, key).at(end))
     on_mesh = problem.model_copy(update={"boundary": two.problem.boundary, "mesh": two.problem.mesh})
     return on_mesh, {start: one, end: two}
 

@@ -219,8 +219,7 @@ def assessed(
     with watch.stage("assessment"):
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
-        where = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite))
-        deepest, unseen = None, ()
+        where, deepest, unseen = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
         if boundary is not None and condensation is not None:
             deepest, unseen = penetration(surface_gaps(condensation.body.problem, boundary, contact, solution), contact)
         notes = (

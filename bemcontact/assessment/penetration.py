@@ -43,7 +43,10 @@ def penetration_in_words(depth: str, place: str, zone: str, *, paired: bool) -> 
     """What is wrong, and what to do, from a depth and a place in words."""
     fact = f"The body penetrates the rigid surface of '{zone}' by {depth} at {place}"
     if paired:
-        return f"{fact}, between contact points or on another face of it. Shorten the elements there (--refine 2)."
+        return (
+            f"{fact}, between contact points, on another face of it, or where a condition holds the body. Shorten the "
+            "elements there (--refine 2), or correct the condition."
+        )
     return (
         f"{fact}, an edge that is not in that zone. Add the edge to the zone; if it is in another one, divide it, or "
         "state both surfaces as one polyline. If the surface ends before that place, state it as a polyline that turns "

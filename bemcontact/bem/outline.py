@@ -49,6 +49,8 @@ class Outline:
 
     def sampled(self, elements: IntArray) -> Places:
         """Places at `SAMPLES` of elements (k,)."""
+        if not len(elements):
+            return Places(*np.zeros((2, 0, len(SAMPLES), 2)))
         missing = np.array([i for i in elements.tolist() if i not in self.samples], int)
         if len(missing):
             new = self.places(missing, np.tile(SAMPLES, (len(missing), 1)))

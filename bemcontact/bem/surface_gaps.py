@@ -4,11 +4,12 @@ An edge need not belong to the zone of a surface. Places are on the curves of th
 that of the elements.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
@@ -89,7 +90,7 @@ class SurfaceGaps:
     def undeformed(self, zone: str, points: Array) -> Closest:
         """Distance (...) [L] of points (..., 2) from the undisplaced surface, and the normals there."""
         surface, flat = self.surfaces[zone], points.reshape(-1, 2)
-        parts = [surface.closest(flat[i : i + CHUNK]) for i in range(0, len(flat), CHUNK)]
+        parts = [surface.closest(flat[i : i + CHUNK]) for i in range(0, max(len(flat), 1), CHUNK)]
         gap, normals = (np.concatenate(part) for part in zip(*parts, strict=True))
         return Closest(gap.reshape(points.shape[:-1]), normals.reshape(points.shape))
 
@@ -107,10 +108,11 @@ class SurfaceGaps:
 
         In elements of the zone this is the gap as contact sees it; where another face of the surface is nearer to the
         displaced place than the face that holds it, it is the distance, as for all other elements. A place of these
-        that is in the surface or behind it before anything moves does not count: the surface is taken to end there.
+        that is in the surface or behind it before anything moves does not count: the surface is taken to end there,
+        also opposite to places beyond.
         """
         paired, near = self.paired(zone), self._near(zone)
-        m = len(paired)
+        m, ended = len(paired), self._ends(zone, paired, near)
         depth, xi, behind = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool)
         for elements, own in ((np.flatnonzero(paired), True), (np.flatnonzero(~paired & near), False)):
             if not len(elements):
@@ -119,7 +121,7 @@ class SurfaceGaps:
             if own:
                 depths = self._depth_in_own(zone, at, displacement)
             else:
-                depths, behind[elements] = self._depth_in_other(zone, at, displacement)
+                depths, behind[elements] = self._depth_in_other(zone, at, displacement, ended)
             deepest = depths.argmax(axis=1)
             depth[elements], xi[elements] = depths[np.arange(len(elements)), deepest], SAMPLES[deepest]
         return Intrusion(depth, xi, behind)
@@ -132,22 +134,35 @@ class SurfaceGaps:
         beyond = other & (-there.gap > self._second_order(zone, at, displacement))
         return np.maximum(-here.gap - dip[:, None], np.where(beyond, -there.gap, -np.inf))
 
-    def _depth_in_other(self, zone: str, at: Places, displacement: Array) -> tuple[Array, BoolArray]:
+    def _depth_in_other(
+        self, zone: str, at: Places, displacement: Array, ended: Callable[[Array], BoolArray]
+    ) -> tuple[Array, BoolArray]:
         """Depth (k, q) [L] of elements that are not of the zone, and which of them (k,) are behind the surface."""
         flush = FLUSH * self.problem.boundary.size
-        before, after = self.undeformed(zone, at.points).gap, self.exact(zone, at.points + displacement).gap
+        (before, normals), after = self.undeformed(zone, at.points), self.exact(zone, at.points + displacement).gap
         beyond = (before > flush) & (-after > self._second_order(zone, at, displacement))
+        beyond &= ~ended(at.points - before[..., None] * normals)
         behind: BoolArray = np.any(before < -flush, axis=1)
         return np.where(beyond, -after, -np.inf), behind
+
+    def _ends(self, zone: str, paired: BoolArray, near: BoolArray) -> Callable[[Array], BoolArray]:
+        """Whether places (..., 2) of a surface are nearer to an edge that lies in it than to the edges of its zone."""
+        others = self.outline.sampled(np.flatnonzero(~paired & near)).points.reshape(-1, 2)
+        lying = others[np.abs(self.undeformed(zone, others).gap) <= FLUSH * self.problem.boundary.size]
+        own = self.outline.sampled(np.flatnonzero(paired)).points.reshape(-1, 2)
+        lying = lying[KDTree(own).query(lying)[0] > FLUSH * self.problem.boundary.size]
+        if not len(lying):
+            return lambda feet: np.zeros(feet.shape[:-1], bool)
+        return lambda feet: KDTree(lying).query(feet)[0] < KDTree(own).query(feet)[0]
 
     def _displacement(self, elements: IntArray) -> Array:
         """Displacement (k, q, 2) [L] at `SAMPLES` of elements (k,)."""
         return reference_element.values(SAMPLES) @ self.state.displacement[elements]
 
     def _second_order(self, zone: str, at: Places, displacement: Array) -> Array:
-        """Depth (k, q) [L] by which linear theory may be off: the square of the way over the size of the body."""
-        moved = displacement - self.tool_motion(zone, at.points)
-        return np.sum(moved**2, axis=-1) / self.problem.boundary.size
+        """Depth (k, q) [L] by which linear theory may be off: squares of displacements over the size of the body."""
+        squares = displacement**2 + self.tool_motion(zone, at.points) ** 2
+        return np.sum(squares, axis=-1) / self.problem.boundary.size
 
     def _near(self, zone: str) -> BoolArray:
         """Whether each element (m,) may touch a surface: a distance changes by no more than the way."""

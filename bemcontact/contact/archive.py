@@ -34,7 +34,7 @@ AGAIN = "condense the problem again"
 def write(path: Path, stored: Any) -> None:
     """Write a dataclass, whole or not at all; `OSError` if it cannot be written."""
     arrays = dict(_arrays(stored, ""))
-    heads = {"format": np.array(FILE_FORMAT), "checksum": np.array(_checksum(arrays))}
+    heads: dict[str, Any] = {"format": np.array(FILE_FORMAT), "checksum": np.array(_checksum(arrays))}
     with output.whole_file(path) as temporary, open(temporary, "xb") as stream:
         np.savez(stream, **{**heads, **arrays})
 

@@ -289,6 +289,9 @@ class CondensedContact(MotionAlgebra):
         What round-off leaves where terms cancel is zero.
         """
         cases, tools = self.cases, self.tools
+        factors = real_array(factors, "factors", (len(cases),))
+        position = real_array(position, "position", (3 * len(tools),))
+        force = real_array(force, "force", (3 * len(tools),))
         loads = np.column_stack([cases.motion_load * factors, tools.amplitudes.T * force])
         acting = np.append(1.0, cases.factors + factors), tools.force + force
         return replace(

@@ -67,8 +67,10 @@ class Segment:
 
     def fraction_at(self, point: Pair) -> float:
         """Fraction in [0, 1] of the arc length at the nearest point of the line."""
-        along, off = np.subtract(self.end, self.start), np.subtract(point, self.start)
-        return float(np.clip(along @ off / self.length**2, 0, 1))
+        if not self.length > 0:
+            return 0.0
+        along, off = np.subtract(self.end, self.start) / self.length, np.subtract(point, self.start)
+        return min(max(float(along @ off) / self.length, 0.0), 1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,7 +153,7 @@ class EllipticArc:
         c, s = cos(self.rotation), sin(self.rotation)
         part = _part_of_sweep(atan2((c * y - s * x) / b, (c * x + s * y) / a), self.start_angle, self.sweep)
         first, here, last = self._arc_length(self.start_angle + np.array([0.0, part, 1.0]) * self.sweep)
-        return float((here - first) / (last - first))
+        return float(here - first) / float(last - first) if last != first else 0.0
 
     def _at_eccentric_angle(self, t: Array) -> Array:
         """Points (k, 2) at eccentric angles t (k,)."""

@@ -178,6 +178,7 @@ def test_oblique_resultant():
     """The moment of the force through the point of the line nearest to the origin is the moment."""
     rng = np.random.default_rng(0)
     normals = rng.standard_normal((5, 2))
+    normals /= np.hypot(*normals.T)[:, None]
     result = footprint(
         *state(rng.standard_normal((5, 2)), np.arange(5.0), rng.uniform(0, 1, 5), np.zeros(5), normals=normals)
     ).resultant

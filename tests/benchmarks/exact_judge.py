@@ -16,7 +16,7 @@ CLOSE = 1e-9
 """A product of unit vectors below this may be zero."""
 DENOMINATOR = 10**6
 FAR = 1e6
-"""No minimizer of such data is isolated beyond this."""
+"""Terms of H x and A x beyond this have lost too many digits to be judged."""
 
 Row = list[Fraction]
 
@@ -61,7 +61,7 @@ def _of_minimizer(program: IntegerProgram, x: Array) -> Verdict:
     """A local minimizer: quickly where strict multipliers and curvatures are clear, else exactly."""
     if violation(program, x) > CLEAR:
         return Verdict.FALSE_MINIMIZER
-    if np.abs(x).max() > FAR:
+    if max(float((np.abs(rows) @ np.abs(x)).max(initial=0.0)) for rows in (program.H, program.A)) > FAR:
         return Verdict.UNSETTLED
     equal, inwards, _ = _active(program, x)
     gradient = program.H @ x + program.c

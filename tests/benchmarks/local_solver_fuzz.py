@@ -16,25 +16,27 @@ from pathlib import Path
 import numpy as np
 from exact_judge import Verdict, judge
 from integer_program import IntegerProgram, Units, plain_units, random_program, random_units
+from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver import QPResult, QPStatus, minimize_qp
 
+Sides = NDArray[np.int64]
 MISSING = (QPStatus.NUMERICAL_FAILURE, QPStatus.UNDECIDED, QPStatus.ITERATION_LIMIT)
 ENDS = (QPStatus.LOCAL_MINIMIZER, QPStatus.UNDECIDED)
 
 
-def case(seed: int) -> tuple[IntegerProgram, Units, Array | None, Array | None]:
+def case(seed: int) -> tuple[IntegerProgram, Units, Array | None, Sides | None]:
     """A program, its units, a start in the units of the whole numbers or None, and a working set or None."""
     rng = np.random.default_rng(seed)
     program = random_program(rng)
     units = random_units(program, rng)
     start = rng.integers(-4, 5, program.c.size).astype(float) if rng.random() < 0.5 else None
-    working_set = rng.integers(-1, 2, program.lower.size).astype(float) if rng.random() < 0.2 else None
+    working_set = rng.integers(-1, 2, program.lower.size) if rng.random() < 0.2 else None
     return program, units, start, working_set
 
 
-def solved(program: IntegerProgram, units: Units, start: Array | None, working_set: Array | None) -> QPResult:
+def solved(program: IntegerProgram, units: Units, start: Array | None, working_set: Sides | None) -> QPResult:
     """The answer in these units; the start is in those of the whole numbers."""
     x0 = None if start is None else start / units.columns
     return minimize_qp(*program.stated(units), x0=x0, working_set=working_set)

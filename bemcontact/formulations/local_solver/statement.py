@@ -161,7 +161,8 @@ def _floats(name: str, given: Any) -> Array:
     """A new array of numbers."""
     if type(given) is np.ndarray and given.dtype == np.float64:
         return given.copy()
-    return real_array(given.toarray() if sparse.issparse(given) else given, name, finite=False).copy()
+    dense: Any = given
+    return real_array(dense.toarray() if sparse.issparse(given) else dense, name, finite=False).copy()
 
 
 def _matrix(name: str, given: Any, columns: int) -> Array:

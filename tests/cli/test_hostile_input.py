@@ -1,0 +1,129 @@
+"""Input and surroundings that could break a terminal, a file or a run: hidden characters, full disks, little memory."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from rich.text import Text
+from typer.testing import CliRunner
+
+import bemcontact
+from bemcontact import cli
+from bemcontact.cli import terminal
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.plain_text import LINE_BREAKS, hidden_character
+from bemcontact.report import text
+from bemcontact.report.figures import figure_of, vector_graphic
+
+MODEL = Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml"
+
+HOSTILE = "a\x1b[31m\x9b\u202e\u2028\nb"
+
+
+def in_a_process(*arguments: object, before: str = "", flags: tuple[str, ...] = (), **environment: str):
+    """Run the program as a user's shell would, after a command of the shell."""
+    program = f'{before} exec "$0" "$@"'
+    return subprocess.run(
+        ["/bin/bash", "-c", program, sys.executable, *flags, "-m", "bemcontact", *map(str, arguments)],
+        capture_output=True, text=True, timeout=120, check=False,
+        env={**os.environ, "PYTHONPATH": str(Path(bemcontact.__file__).parents[1]), **environment},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("shown", [HOSTILE, "\x00", "\x85", "\ufeff"])
+def test_nothing_hidden_reaches_a_stream(shown, capsys):
+    terminal.show(Text(shown))
+    terminal.tell("error: ", shown)
+    streams = capsys.readouterr()
+    assert hidden_character(streams.out + streams.err, LINE_BREAKS) is None
+
+
+def test_names_that_no_spec_could_have_are_escaped_in_every_output(capsys):
+    """A condensed problem may be made, or read from a file, without a spec."""
+    zone, name = f"foot {HOSTILE}", f"contact {HOSTILE}"
+    contact = CondensedContact.from_compliance([[2.0, 1.0], [1.0, 2.0]], [-1.0, -1.0], [1.0, 1.0])
+    object.__setattr__(contact, "zone_names", (zone,))
+    object.__setattr__(contact, "name", name)
+    result = bemcontact.solve(contact)
+    terminal.show(text.result_summary(result))
+    written = [capsys.readouterr().out, result.to_json(), vector_graphic(figure_of(result)).decode()]
+    assert [hidden_character(item, LINE_BREAKS) for item in written] == [None, None, None]
+
+
+def test_a_wrong_command_line_is_repeated_without_hidden_characters():
+    for arguments in (["\x1b[31m"], ["check", "--\x1b[31m"], ["check", "a\x1b[31m.yaml"]):
+        ended = in_a_process(*arguments)
+        assert ended.returncode == 2
+        assert hidden_character(ended.stdout + ended.stderr, LINE_BREAKS) is None
+
+
+def test_a_spec_is_read_from_standard_input():
+    spec = MODEL.read_text(encoding="utf-8")
+    good = CliRunner().invoke(cli.app, ["check", "-"], input=spec)
+    assert good.exit_code == 0, good.output
+    bad = CliRunner().invoke(cli.app, ["check", "-", "--set", "material.poisson_ratio=3"], input=spec)
+    assert bad.exit_code == 2
+    broken = CliRunner().invoke(cli.app, ["check", "-"], input="a: [")
+    assert broken.stderr.startswith("error: standard input:1:5: ")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+@pytest.mark.parametrize("arguments", [["schema"], ["--help"], ["check", MODEL]])
+def test_a_full_standard_output_is_said(arguments):
+    ended = in_a_process(*arguments, before="exec > /dev/full;")
+    assert ended.stderr == "error: standard output: No space left on device\n"
+    assert ended.returncode == 2
+
+
+@pytest.mark.parametrize("name", ["a.pdf", "a.png", "a.svg"])
+def test_a_file_that_cannot_grow_is_named(tmp_path: Path, name):
+    ended = in_a_process("check", MODEL, "--figure", tmp_path / name, before="ulimit -f 2;")
+    assert ended.stderr == f"error: {tmp_path / name}: File too large\n"
+    assert [*tmp_path.iterdir()] == []
+
+
+def test_schema_without_docstrings():
+    assert in_a_process("schema", flags=("-OO",)).returncode == 0
+
+
+def test_little_memory_is_said_before_any_work():
+    ended = in_a_process("check", MODEL, before="ulimit -v 700000;")
+    assert ended.returncode == 1
+    assert ended.stderr.startswith("failed: there is not enough memory (the limit of the address space")
+
+
+def test_no_warning_of_a_home_that_cannot_be_written(tmp_path: Path):
+    figure = tmp_path / "a.png"
+    ended = in_a_process("check", MODEL, "--figure", figure, HOME="/proc/x", MPLCONFIGDIR="/proc/x")
+    assert ended.returncode == 0
+    assert ended.stderr == ""
+
+
+def test_an_interrupt_after_the_work_ends_with_its_status():
+    code = (
+        "import sys, time\nfrom bemcontact import cli\ncli.app = lambda: None\ncli.main()\nprint('done', flush=True)\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", f"{code}time.sleep(60)"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        env={**os.environ, "PYTHONPATH": str(Path(bemcontact.__file__).parents[1])},
+    ) as process:  # fmt: skip
+        assert process.stdout is not None
+        process.stdout.readline()
+        time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=30) == cli.INTERRUPTED
+        assert process.stderr is not None
+        assert process.stderr.read() == ""
+
+
+def test_a_case_with_any_name_is_found(tmp_path: Path):
+    path = tmp_path / "a.yaml"
+    spec = MODEL.read_text(encoding="utf-8")
+    path.write_text(
+        f'{spec}\nload_cases: {{"\N{GRINNING FACE}": {{loads: {{gravity: {{density: 1, acceleration: [0, 0]}}}}}}}}\n'
+    )
+    assert CliRunner().invoke(cli.app, ["check", str(path), "--case", "\N{GRINNING FACE}"]).exit_code == 0

@@ -1,0 +1,234 @@
+"""The page ``refused_inputs.md``: inputs that are refused, and the sentence that each gets.
+
+``python tests/spec/test_refused_inputs.py`` writes the page again.
+"""
+
+import os
+import re
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import chdir
+from pathlib import Path
+
+from typer.testing import CliRunner
+
+from bemcontact import cli
+
+PAGE = Path(__file__).with_name("refused_inputs.md")
+GOOD = """\
+name: block on a table
+units: {length: mm, force: N}
+material:
+  young_modulus: 210e3
+  poisson_ratio: 0.3
+boundary:
+  outer:
+    - {name: bottom, start: [0, 0], elements: 4}
+    - {name: right, start: [40, 0], elements: 2}
+    - {name: top, start: [40, 20], elements: 4}
+    - {name: left, start: [0, 20], elements: 2}
+conditions:
+  left: {displacement: {x: 0}}
+  top: {pressure: 3}
+contact_zones:
+  foot:
+    edges: bottom
+    surface: {kind: plane, point: [0, 0], normal: [0, 1]}
+load_cases:
+  more: {conditions: {top: {pressure: 1}}}
+"""
+TOP, PLANE = "start: [40, 20], elements: 4", "{kind: plane, point: [0, 0], normal: [0, 1]}"
+HOLE = "  holes: [[{{name: h, kind: arc, center: [20, 10], {}, elements: 16}}]]\nconditions:\n"
+
+CHANGES: dict[str, list[tuple[str, str]]] = {
+    "YAML": [
+        ("units:", "\tunits:"),
+        ("name: block on a table", "name: block: on a table"),
+        ("conditions:", "conditions: ["),
+        ("name: block on a table", "name: *other"),
+        ("name: block on a table", "name: !!python/name:os.system x"),
+        ("name: block on a table", "name: a\nname: b"),
+        ("name: block on a table", 'name: "\\ud83d"'),
+        ("name: block on a table", "name: \0"),
+        ("name: block on a table", "1: a"),
+        ("units:", "a: &a [*a]\nunits:"),
+    ],
+    "Names and texts": [
+        ("name: block on a table", "name: ''"),
+        ("name: block on a table", "name: 12"),
+        ("name: block on a table", 'name: "\\e[31mred"'),
+        ("name: block on a table", 'name: "two\\nlines"'),
+        ("name: block on a table", 'name: a\ndescription: "\\u202e"'),
+        ("length: mm", 'length: "m\\u2028m"'),
+        ("name: top", "name: top.edge"),
+        ("name: right", "name: top"),
+        ("edges: bottom", "edges: bottm"),
+        ("  top: {pressure: 3}", "  tip: {pressure: 3}"),
+        ("material:", "materiel:"),
+    ],
+    "Numbers": [
+        ("210e3", "'210e3'"),
+        ("210e3", "210 GPa"),
+        ("210e3", "210,000"),
+        ("210e3", "-1"),
+        ("210e3", ".inf"),
+        ("210e3", "1e-320"),
+        ("210e3", "1e200"),
+        ("ratio: 0.3", "ratio: 0.5"),
+        ("{pressure: 3}", "{pressure: 1e-300}"),
+        ("elements: 4}\n    - {name: right", "elements: 4.5}\n    - {name: right"),
+        ("elements: 4}\n    - {name: right", "elements: 100000}\n    - {name: right"),
+        (PLANE, "{kind: plane, point: [0, -1e20], normal: [0, 1]}"),
+        (PLANE, "{kind: plane, point: [0, 0], normal: [0, 0]}"),
+        (PLANE, "{kind: plane, point: [0, 0]}"),
+        (PLANE, "{kind: wall}"),
+    ],
+    "Geometry": [
+        ("start: [40, 20]", "start: [40, 0]"),
+        (PLANE, "{kind: plane, point: [0, 0], normal: [0, -1]}"),
+        (TOP, f"{TOP}, grading: 3"),
+        (TOP, f"{TOP}, grading: {{ratio: 3}}"),
+        (TOP, f"{TOP}, grading: {{ratio: 3, towards: [5, 5]}}"),
+        (TOP, f"{TOP}, ends_at: [2]"),
+        ("conditions:\n", HOLE.format("radius: 10, angles: [360, 0]")),
+        ("conditions:\n", HOLE.format("radius: 5, angles: [0, 360]")),
+    ],
+    "Conditions and loads": [
+        ("{pressure: 3}", "{}"),
+        ("{pressure: 3}", "{pressure: 3, traction: {y: 1}}"),
+        ("{pressure: 3}", "{pressure: -3}"),
+        ("  top: {pressure: 3}", "  top: {pressure: 3}\n  bottom: {pressure: 3}"),
+        ("more: {conditions: {top: {pressure: 1}}}", "more: {}"),
+    ],
+}
+"""Kind of a mistake -> what is replaced in the good spec, and by what."""
+TEXTS: list[tuple[str, Callable[[], str | bytes]]] = [
+    ("an empty file", lambda: ""),
+    ("`- a list`", lambda: "- a list"),
+    ("600 opening brackets", lambda: "[" * 600),
+    ("nine aliases of nine aliases of nine …", lambda: "a0: &a0 [x]\n" + "".join(
+        f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 10))),
+    ("100,000 keys", lambda: "".join(f"k{i}: 1\n" for i in range(100_000))),
+    ("1001 keys", lambda: "".join(f"k{i}: 1\n" for i in range(1001))),
+    ("a comment of two million characters", lambda: "# " + "x" * 2_000_000),
+    ("a file of 50 MB", lambda: "#" * 50_000_000),
+    ("a file in Latin-1", lambda: GOOD.replace("table", "Bänk").encode("latin-1")),
+    ("a picture", lambda: b"\x89PNG\r\n\x1a\n\0\0"),
+]  # fmt: skip
+COMMANDS = [
+    "check blok.yaml",
+    "check dangling.yaml",
+    "check loop.yaml",
+    "check .",
+    "check /dev/zero",
+    "check pipe",
+    "check good.yaml --set material.young_modulus",
+    "check good.yaml --set material..x=1",
+    "check good.yaml --set boundary.outer.tip.elements=3",
+    "check good.yaml --set material.young_modulus=-1",
+    "check good.yaml --variant fine",
+    "solve good.yaml --case less",
+    "solve good.yaml --json loop.yaml",
+    "solve good.yaml --json good.yaml",
+    "solve good.yaml --json nowhere/a.json",
+    "solve good.yaml --json /dev/null",
+    "solve good.yaml --figure a.jpg",
+    "solve good.yaml --vtk a.stl",
+    "solve good.yaml --case more --vtk a.vtu --figure a.vtu",
+    "solve good.yaml --formulation qp2 --penalty -1",
+    "solve good.yaml --formulation qp1 --start good.yaml --case more",
+    "solve good.yaml --formulation qp1 --start deep.json --case more",
+    "solve good.yaml --formulation qp1 --start huge.json --case more",
+    "solve good.yaml --formulation qp1 --start short.json --case more",
+    "condense good.yaml --out a.txt",
+    "compare good.yaml --out loop.yaml",
+    "compare good.yaml --out .",
+    "compare good.yaml --refine 1,x",
+    "compare good.yaml --formulations qp9",
+    "path good.yaml --vary nothing.here --to 1",
+    "path good.yaml --vary material.young_modulus --to 1 --case more",
+    "schema --path --cases",
+]
+
+
+def prepare(folder: Path) -> None:
+    """Write the files that the commands name."""
+    (folder / "good.yaml").write_text(GOOD, encoding="utf-8")
+    (folder / "dangling.yaml").symlink_to("gone.yaml")
+    (folder / "loop.yaml").symlink_to("pool.yaml")
+    (folder / "pool.yaml").symlink_to("loop.yaml")
+    os.mkfifo(folder / "pipe")
+    (folder / "deep.json").write_text("[" * 100_000, encoding="utf-8")
+    (folder / "huge.json").write_text(f'{{"pressure": [1{"0" * 5000}], "normal_displacement": [1]}}', encoding="utf-8")
+    (folder / "short.json").write_text('{"pressure": [1, 2], "normal_displacement": [1]}', encoding="utf-8")
+
+
+def refusal(arguments: str) -> str:
+    """What a command prints on standard error, which is an error of the input."""
+    result = CliRunner(env={"COLUMNS": "400"}).invoke(cli.app, arguments.split())
+    assert result.exit_code == 2, (arguments, result.output, result.exception)
+    assert result.stderr.startswith("error: "), result.stderr
+    assert result.stdout == ""
+    return result.stderr.removeprefix("error: ").strip()
+
+
+def cell(text: str) -> str:
+    """A text in a cell of a table of Markdown."""
+    return text.replace("|", r"\|").replace("\n", "<br>")
+
+
+def code(text: str) -> str:
+    """A snippet in a cell; each of its lines is code."""
+    visible = text.replace("\0", "␀").replace("\t", "→")
+    return "<br>".join(f"`` {line} ``" for line in visible.rstrip("\n").split("\n"))
+
+
+def rows_of(changes: list[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    """Rows of the changes to the good spec, each with the sentence that it gets."""
+    for old, new in changes:
+        assert old in GOOD
+        Path("a.yaml").write_text(GOOD.replace(old, new, 1), encoding="utf-8")
+        yield code(new), refusal("check a.yaml --case more")
+
+
+def rows_of_texts() -> Iterator[tuple[str, str]]:
+    """Rows of whole files."""
+    for title, made in TEXTS:
+        content = made()
+        Path("a.yaml").write_bytes(content if isinstance(content, bytes) else content.encode())
+        yield title, refusal("check a.yaml")
+
+
+def table(head: str, rows: Iterator[tuple[str, str]]) -> str:
+    """A table of two columns."""
+    lines = [f"| {left} | {cell(right)} |" for left, right in rows]
+    return "\n".join([f"| {head} | Sentence |", "|---|---|", *lines])
+
+
+def page(folder: Path) -> str:
+    """The page, made in a folder."""
+    prepare(folder)
+    with chdir(folder):
+        parts = [
+            "# Refused inputs",
+            "This page lists inputs that are refused, and the sentence that each gets. "
+            "`python tests/spec/test_refused_inputs.py` writes it, and a test compares it. "
+            "The first tables replace one part of this problem file, `a.yaml`:",
+            f"```yaml\n{GOOD}```",
+            *(f"## {kind}\n\n{table('Instead', rows_of(changes))}" for kind, changes in CHANGES.items()),
+            f"## Whole files\n\n{table('Content of `a.yaml`', rows_of_texts())}",
+            "## Commands\n\nThe file `good.yaml` is the problem above.\n\n"
+            + table("Command", ((code(item), refusal(item)) for item in COMMANDS)),
+        ]
+    return re.sub(re.escape(str(folder.resolve())), "/folder", "\n\n".join(parts)) + "\n"
+
+
+def test_the_page_is_true(tmp_path: Path):
+    assert page(tmp_path) == PAGE.read_text(encoding="utf-8")
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as place:
+        PAGE.write_text(page(Path(place)), encoding="utf-8")
+    sys.stdout.write(f"{PAGE}\n")
