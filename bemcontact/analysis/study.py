@@ -80,7 +80,7 @@ class StudyRecord(Record):
     certified: bool
     """Whether all solutions on all meshes are proved to be the contact state, and the body penetrates no surface."""
     heading: str
-    """What is certified, in a few words."""
+    """What is proved of the solution of the equations, in a few words."""
     verdict: str
     """Result of the comparison on the finest mesh, in sentences."""
     units: UnitsRecord
@@ -182,10 +182,8 @@ class Study(Recorded):
 
     @property
     def heading(self) -> str:
-        """What is certified, in a few words."""
-        if self.certified:
-            return "certified"
-        return "NOT certified" if self.finest.answer.penetration else self.finest.comparison.heading
+        """What is proved of the solution of the equations, in a few words."""
+        return "penetrates a surface" if self.finest.answer.penetration else self.finest.comparison.heading
 
     @property
     def verdict(self) -> str:

@@ -59,7 +59,7 @@ def overall(verdicts: Sequence[Verdict]) -> str:
 
 def in_short(verdicts: Sequence[Verdict]) -> str:
     """Verdicts in few words, for a title: ``unique solution proved; error at most 0.4 % (asked 1 %)``."""
-    return "; ".join(item.word if item.good else f"{item.of.lower()} {item.word}" for item in verdicts)
+    return "; ".join(item.word if item.good else f"{item.of.lower()}: {item.word}" for item in verdicts)
 
 
 def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:
@@ -80,17 +80,20 @@ def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
     """
     finest = report["levels"][-1]
     compared = finest["comparison"]
-    deepest = finest["penetration"]
-    proved = [level["comparison"]["certified"] and not level["penetration"] for level in report["levels"]]
-    quality = "good" if all(proved) else "fair" if compared["reference"]["certified"] and not deepest else "bad"
+    short = [level["refine"] for level in report["levels"][:-1] if not _proved(level)]
+    direct = compared["reference"]["certified"] and finest["penetration"] is None
+    quality = "bad" if not direct else "good" if _proved(finest) and not short else "fair"
     sentences = [sentence_case(words or report["verdict"])]
-    levels = zip(report["levels"][:-1], proved, strict=False)
-    if coarser := [str(level["refine"]) for level, good in levels if not good]:
-        meshes = "coarser mesh" if len(coarser) == 1 else "coarser meshes"
-        sentences.append(f"On the {meshes} (refine {', '.join(coarser)}) not each answer is proved to be the solution.")
-    heading = "penetrates a surface" if deepest else compared["heading"]
-    equations = Verdict("Equations", quality, heading, " ".join(sentences))
+    if short:
+        meshes = f"coarser mesh{'es' * (len(short) > 1)} (refine {', '.join(map(str, short))})"
+        sentences.append(f"On the {meshes} not each answer is proved to be the solution.")
+    equations = Verdict("Equations", quality, report["heading"], " ".join(sentences))
     return equations, mesh_verdict(finest["accuracy"])
+
+
+def _proved(level: Record) -> bool:
+    """Whether all solutions on a mesh are proved, and the body penetrates no surface."""
+    return level["comparison"]["certified"] and level["penetration"] is None
 
 
 def mesh_verdict(accuracy: Record) -> Verdict:

@@ -105,7 +105,7 @@ def test_an_answer_is_good_only_if_both_verdicts_are():
     )
     qualities = [overall(pair) for pair in ((good, good), (good, fair), (fair, fair), (bad, good), (bad, fair))]
     assert qualities == ["good", "fair", "fair", "bad", "bad"]
-    assert in_short((bad, fair)) == "equations not solved; mesh not met"
+    assert in_short((bad, fair)) == "equations: not solved; mesh: not met"
 
 
 def test_rows_have_units_and_errors_of_ends_relative_to_their_interval():

@@ -193,7 +193,7 @@ def with_state(report: dict[str, Any], *, met: bool | None, kind: str) -> dict[s
     compared = level["comparison"]
     if kind != "unique":
         compared["reference"]["certified"] = compared["certified"] = report["certified"] = False
-        compared["heading"] = "local only" if kind == "local only" else "not solved"
+        report["heading"] = "local only" if kind == "local only" else "not solved"
         compared["reference"]["answer"]["certificate"]["kind"] = kind
     return report
 

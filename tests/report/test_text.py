@@ -228,12 +228,14 @@ def test_each_case_has_a_row_with_its_own_numbers():
         assert peak is not None
         value, bar = lines[name].split(" N/mm²")[0].rsplit("  ", 1)[-1].split(" ± ")
         assert abs(float(value) - peak.pressure) <= float(bar)
-        assert "unique solution proved  not met: " in lines[name]
+        assert "  not met: " in lines[name]
 
 
 def test_the_worst_case_is_named():
     told = shown(text.cases_summary(all_cases()))
     assert_states(told, f"in {all_cases().worst}; … UNDEFORMED length")
+    whole = {name: dataclasses.replace(it, penetration=None) for name, it in all_cases().results.items()}
+    told = shown(text.cases_summary(dataclasses.replace(all_cases(), results=whole)))
     assert "unique solution proved. In every load case." in told
 
 
@@ -248,10 +250,10 @@ def test_a_note_of_all_cases_is_reported_once_and_one_of_some_with_their_names()
 def test_a_case_that_is_not_certified_is_reported_with_the_reason():
     one = all_cases().results["heat"]
     doubtful = dataclasses.replace(one.certificate, kind=CertificateKind.NOT_A_SOLUTION, words="Pressures pull.")
-    results = {**all_cases().results, "heat": dataclasses.replace(one, certificate=doubtful)}
+    results = {**all_cases().results, "heat": dataclasses.replace(one, certificate=doubtful, penetration=None)}
     told = shown(text.cases_summary(dataclasses.replace(all_cases(), results=results)))
     assert " not solved " in rows_of(told)["heat"]
-    assert "not solved. heat: Pressures pull." in told
+    assert "heat: Pressures pull." in " ".join(told.split())
 
 
 def test_of_several_zones_the_force_of_each_is_reported():

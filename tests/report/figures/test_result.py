@@ -17,6 +17,7 @@ from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.problem import Problem
 from bemcontact.report import figures
+from bemcontact.report.text import case_verdicts
 
 
 @cache
@@ -43,7 +44,9 @@ def test_each_case_has_its_curves_and_its_bar():
 
 def test_title_states_both_verdicts():
     title = " ".join(figures.figure_of(found()).get_suptitle().split())
-    assert title.startswith("free block: all load cases; unique solution proved; mesh not met, error about ")
+    equations, mesh = (verdict.word for verdict in case_verdicts(found()))
+    assert title == f"free block: all load cases; {equations}; mesh: {mesh}"
+    assert mesh.startswith("not met, error about ")
 
 
 @pytest.mark.parametrize(("ending", "magic"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")])
