@@ -121,15 +121,6 @@ def _snapped(exponent: float) -> float:
     return nearest if abs(nearest - exponent) <= SNAP else exponent
 
 
-def _grows(history: Sequence[tuple[float, float]]) -> bool:
-    """Whether the pressure at a place grew twice running, and no slower, on smaller elements."""
-    if len(history) < 3:
-        return False
-    (_, first), (before, _), (now, last) = history[-3:]
-    low, high = GROWING
-    return low < before < high and low < now < high and now - 1 > LASTING * (before - 1) and last < FINER * first
-
-
 def _places(difference: Difference) -> Iterator[Place]:
     """Ends of contact that are not free, and corners of the boundary and of the surface."""
     coarse = difference.coarse

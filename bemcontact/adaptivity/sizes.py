@@ -24,6 +24,8 @@ ROUNDING = 0.05
 """Part of an element that is not worth an element."""
 RESOLUTION = 0.5
 """Largest step of the samples of the size, over the size."""
+SAME = 1e-9
+"""Relative difference of two lengths below which round-off decides which one is longer."""
 
 
 class Limit(NamedTuple):
@@ -36,7 +38,7 @@ class Limit(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Layers:
-    """Elements that end at w (i/n)³ from an end of contact: n in contact, fewer outside.
+    """Elements that grow like w (i/n)³ from an end of contact: n in contact, fewer outside.
 
     Parameters
     ----------
@@ -51,15 +53,11 @@ class Layers:
     count: float
     after: bool
 
-    @property
-    def shortest(self) -> float:
-        """Length of the first element in contact [L]."""
-        return self.width * max(self.count**-3, SHORTEST)
-
     def at(self, beyond: Array) -> Array:
-        """Size at distances (k,) from the end of contact; negative ones are before it."""
+        """Size at distances (k,) from the end of contact, negative before it; at the end itself that in contact."""
         d, w = np.abs(beyond), self.width
-        n = np.where((beyond > 0) == self.after, self.count, self.count / OUTSIDE)
+        touching = ((beyond > 0) == self.after) | (d <= SAME * w)
+        n = np.where(touching, self.count, self.count / OUTSIDE)
         inside = np.maximum.reduce(
             [w / n**3, np.full_like(d, SHORTEST * w), 3 / n * np.cbrt(w * np.minimum(d, w) ** 2)]
         )
@@ -124,7 +122,7 @@ class Loop:
         inside = np.mod([*marks], self.length)
         ends: dict[str, tuple[float, ...]] = {}
         for edge, start, stop in zip(self.edges, self.joints[:-1], self.joints[1:], strict=True):
-            same = 1e-9 * (stop - start)
+            same = SAME * (stop - start)
             own = np.unique(inside[(inside > start + same) & (inside < stop - same)])
             own = own[np.diff(own, prepend=start) > same]
             ends[edge.name] = tuple(
@@ -140,7 +138,7 @@ class Loop:
         size = self.size_at(samples, limits, layers)
         for _ in range(60):
             step = np.diff(samples)
-            coarse = step > RESOLUTION * np.minimum(size[:-1], size[1:])
+            coarse = step > (1 + SAME) * RESOLUTION * np.minimum(size[:-1], size[1:])
             if not coarse.any():
                 break
             middle = (samples[:-1] + samples[1:])[coarse] / 2

@@ -2,7 +2,7 @@
 
 Truth is what statics and closed forms give, else a run at 2e-4, allowed its own bar. Run by hand, half an hour:
 
-    python -m tests.benchmarks.error_bars [PATTERN ...]
+    python tests/benchmarks/error_bars.py [PATTERN ...]
 """
 
 import sys
@@ -16,7 +16,7 @@ from bemcontact import Problem
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.fields import solved
 from bemcontact.assessment.accuracy import ErrorBar
-from tests.benchmarks.adaptive_problems import Case, problems
+from adaptive_problems import Case, problems
 
 ACCURACIES = 1e-2, 3e-3, 1e-3
 TRUTH = 2e-4

@@ -1,0 +1,65 @@
+"""Infinite pressures are told from finite ones by how they grow from mesh to mesh."""
+
+import pytest
+
+from bemcontact.adaptivity.singularities import Place, Singularity, Watch, _History, _snapped
+
+PLACE = Place(run=0, zone="z", position=0.0)
+
+
+def history(growth: list[float], element: list[float]) -> _History:
+    return _History(place=PLACE, case=0, growth=growth, element=element)
+
+
+@pytest.mark.parametrize("exponent", [0.25, 1 / 3, 1 / 2, 2 / 3])
+def test_a_power_is_found_at_the_third_pass(exponent: float):
+    """p ~ s^-α grows by 2^α each time that its element is cut in two."""
+    growth = [2**exponent] * 4
+    elements = [1 / 2, 1 / 4, 1 / 8, 1 / 16]
+    assert not history(growth[:2], elements[:2]).grows()
+    assert history(growth[:3], elements[:3]).grows()
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
+def test_a_smooth_peak_is_not(order: float):
+    """p = p0 (1 - c h^q): what is left to grow falls by 2^q each time, so by more than `LASTING` allows."""
+    sizes = [2.0**-k for k in range(9)]
+    values = [1 - 0.3 * h**order for h in sizes]
+    growth = [after / before for before, after in zip(values, values[1:], strict=False)]
+    for k in range(3, len(growth) + 1):
+        grows = history(growth[:k], sizes[1 : k + 1]).grows()
+        assert not grows or order < 1  # s^(1/2) is as slow as 0.707 > 0.6 each time, until it grows by less than 4 %
+    assert not history(growth, sizes[1:]).grows()
+
+
+def test_the_same_element_tells_nothing():
+    """Growth from a mesh to its halves on elements that no pass made smaller is measured three times, not thrice."""
+    assert not history([2**0.5] * 3, [0.1, 0.1, 0.1]).grows()
+
+
+@pytest.mark.parametrize("growth", [1.0, 1.03, 1.95, 3.0])
+def test_growth_out_of_range_is_no_power(growth: float):
+    """Below 4 % a pass it is finite for the accuracies asked; twice as much is a peak that no node was near."""
+    assert not history([growth] * 3, [0.4, 0.2, 0.1]).grows()
+
+
+@pytest.mark.parametrize(
+    ("measured", "taken"), [(0.49, 1 / 2), (0.525, 1 / 2), (0.68, 2 / 3), (0.4, 0.4), (0.6, 0.6), (0.05, 0.05)]
+)
+def test_a_known_exponent_is_taken_if_it_is_near(measured: float, taken: float):
+    assert _snapped(measured) == pytest.approx(taken)
+
+
+def test_a_logarithm_is_like_a_kink():
+    assert Singularity(place=PLACE, exponent=0.1).like_a_kink
+    assert not Singularity(place=PLACE, exponent=0.5).like_a_kink
+
+
+def test_histories_are_kept_by_place_and_case():
+    watch = Watch()
+    first = watch._history(PLACE, 0, 1e-6)
+    near = Place(run=0, zone="z", position=5e-7)
+    assert watch._history(near, 0, 1e-6) is first
+    assert watch._history(near, 1, 1e-6) is not first
+    assert watch._history(Place(run=1, zone="z", position=0.0), 0, 1e-6) is not first
+    assert watch._history(Place(run=0, zone="z", position=1e-3), 0, 1e-6) is not first
