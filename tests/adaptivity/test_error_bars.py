@@ -1,0 +1,85 @@
+"""Error bars are no smaller than the change by bisection, and have no unit."""
+
+import pytest
+from adaptive_problems import half_disk, partial_load_lifts_off
+
+from bemcontact.adaptivity.adapt import first_mesh
+from bemcontact.adaptivity.error_bars import END, FORCE, PEAK, SAFETY, error_bars, pressure_change
+from bemcontact.adaptivity.fields import Difference, solved
+from bemcontact.assessment.accuracy import ErrorBar
+from bemcontact.problem import Problem
+
+
+def difference(problem: Problem) -> Difference:
+    """The first mesh and its halves."""
+    coarse = first_mesh(problem)
+    fine = coarse.model_copy(update={"mesh": coarse.mesh.model_copy(update={"refine": 2})})
+    return Difference(coarse=solved(coarse), fine=solved(fine), number=0)
+
+
+def by_quantity(bars: tuple[ErrorBar, ...]) -> dict[str, ErrorBar]:
+    return {item.quantity: item for item in bars}
+
+
+@pytest.fixture(scope="module", params=[lambda: half_disk(2000.0), lambda: partial_load_lifts_off()[0]])
+def changed(request: pytest.FixtureRequest) -> Difference:
+    return difference(request.param())
+
+
+def test_bars_are_no_smaller_than_the_change(changed: Difference):
+    """Times 1.5 on the finer mesh; on the coarser one the change itself comes on top."""
+    one, two = changed.pair
+    fine, coarse = (by_quantity(error_bars(changed, (), of_fine=of_fine)) for of_fine in (True, False))
+    peaks = float(one.pressure.max()), float(two.pressure.max())
+    change = abs(peaks[1] - peaks[0]) / peaks[1]
+    assert fine["peak"].value == peaks[1]
+    assert coarse["peak"].value == peaks[0]
+    assert (fine["peak"].bar or 0) >= SAFETY * change
+    assert (coarse["peak"].bar or 0) >= (SAFETY + 1) * change
+
+
+def test_the_change_of_the_pressure_as_a_whole_is_a_floor_of_all(changed: Difference):
+    bars = by_quantity(error_bars(changed, ()))
+    m = pressure_change(changed, 0, ())
+    assert m is not None
+    assert bars["pressure"].bar == pytest.approx(SAFETY * m)
+    for quantity, share in (("peak", PEAK), ("force", FORCE), ("end", END), ("displacement", 1.0)):
+        assert (bars[quantity].bar or 0) >= SAFETY * share * m * (1 - 1e-12)
+
+
+def test_a_free_end_is_no_better_known_than_its_nodes(changed: Difference):
+    """Two meshes graded to the same place give the same end, whatever its error is: a spacing of nodes is the least."""
+    bars = by_quantity(error_bars(changed, ()))
+    run = changed.fine.runs[0]
+    end, length = bars["end"].value or 0.0, (bars["end"].value or 0.0) - (bars["start"].value or 0.0)
+    beside = [high - low for low, high in zip(run.ends, run.ends[1:], strict=False) if low <= end <= high]
+    assert (bars["end"].bar or 0) >= SAFETY * min(beside) / 2 / length * (1 - 1e-9)
+    assert bars["start"].bar == 0.0  # contact reaches the axis
+    assert bars["start"].note
+
+
+@pytest.mark.parametrize("factor", [1e-3, 1e4])
+def test_the_unit_of_stress_does_not_matter(factor: float):
+    """On the same mesh: modulus and pressure times a factor."""
+    problem = half_disk(2000.0)
+    other = problem.with_value("material.young_modulus", 210e3 * factor).with_value(
+        "conditions.cut.pressure", 2000.0 / 50 * factor
+    )
+    one, two = (error_bars(difference(p), ()) for p in (problem, other))
+    stresses = {"peak", "force", "pressure"}
+    for a, b in zip(one, two, strict=True):
+        assert a.quantity == b.quantity
+        assert b.bar == pytest.approx(a.bar, rel=1e-6, abs=1e-12)
+        assert b.value == pytest.approx((a.value or 0) * (factor if a.quantity in stresses else 1), rel=1e-6)
+
+
+def test_a_zone_without_contact_promises_nothing():
+    problem = half_disk(2000.0)
+    away = {"kind": "plane", "point": [0, -1], "normal": [0, 1]}
+    data = problem.model_dump()
+    data["contact_zones"]["foot"]["surface"] = away
+    data["conditions"]["axis"]["displacement"]["y"] = 0.0
+    force, displacement = error_bars(difference(Problem.model_validate(data)), ())
+    assert (force.quantity, force.value, force.bar, force.promised) == ("force", 0.0, None, False)
+    assert force.note
+    assert displacement.promised

@@ -1,0 +1,65 @@
+"""Whether error bars are as small as was asked, and where nothing can be promised."""
+
+from math import inf, nextafter
+
+import pytest
+
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar, Quantity
+
+
+def bar(quantity: Quantity = "peak", value: float | None = 1.0, error: float | None = 1e-3, zone: str = "z") -> ErrorBar:
+    return ErrorBar(quantity=quantity, zone=zone, value=value, bar=error)
+
+
+def test_met_is_all_bars_at_most_the_accuracy():
+    assert Accuracy.of(1e-2, 1, [bar(error=1e-2), bar("force", error=1e-5)]).met
+    assert not Accuracy.of(1e-2, 1, [bar(error=nextafter(1e-2, 1)), bar("force", error=1e-5)]).met
+
+
+def test_one_unknown_error_is_not_met():
+    judged = Accuracy.of(0.5, 1, [bar(), bar("end", error=None)])
+    assert judged.worst == inf
+    assert judged.met is False
+
+
+def test_intensities_are_no_part_of_it():
+    judged = Accuracy.of(1e-2, 1, [bar(), bar("intensity", error=0.3)])
+    assert judged.met
+    assert judged.worst == 1e-3
+
+
+@pytest.mark.parametrize("empty", [bar(value=None, error=None), bar("force", value=0.0, error=None)])
+def test_where_there_is_nothing_to_estimate_nothing_is_promised(empty: ErrorBar):
+    """An infinite peak, and the force of a zone without contact."""
+    assert not empty.promised
+    assert Accuracy.of(1e-2, 1, [empty, bar("displacement")]).met
+
+
+def test_a_pressure_away_from_infinite_ones_is_promised_without_a_value():
+    assert bar("pressure", value=None, error=0.1).promised
+    assert not Accuracy.of(1e-2, 1, [bar("pressure", value=None, error=0.1)]).met
+
+
+def test_nothing_holds_where_errors_are_not_known_but_nothing_was_asked():
+    """Not estimated is neither met nor not met; it fails only the one who asked."""
+    assert Accuracy(asked=None).met is None
+    assert Accuracy(asked=None).holds
+    assert not Accuracy(asked=1e-2, reason="too many unknowns").holds
+
+
+def test_infinite_peaks_that_another_mesh_knows():
+    """A single mesh cannot know them: its finite peak gives way, and the verdict follows."""
+    infinite = bar(value=None, error=None)
+    single = Accuracy.of(1e-2, 1, [bar(error=0.4), bar("force"), bar(error=5e-3, zone="other")])
+    judged = single.knowing(Accuracy.of(1e-2, 3, [infinite]))
+    assert single.infinite == ()
+    assert judged.infinite == ("z",)
+    assert not single.met
+    assert judged.met
+    assert [(item.quantity, item.zone, item.value) for item in judged.bars] == [
+        ("peak", "z", None), ("force", "z", 1.0), ("peak", "other", 1.0),
+    ]  # fmt: skip
+
+
+def test_knowing_does_not_judge_what_was_not_estimated():
+    assert Accuracy(asked=1e-2).knowing(Accuracy.of(1e-2, 3, [bar(value=None, error=None)])).met is None
