@@ -97,7 +97,8 @@ def study(
     ensure_acting(problem)
     finding = Stopwatch(progress=progress)
     found = prepare(problem, finding) if isinstance(problem, Problem) and problem.adapts else None
-    problem = found.condensation.body.problem if found and found.condensation else problem
+    if found and found.condensation:
+        problem = found.condensation.body.problem.model_copy(update={"accuracy": found.accuracy.asked})
     levels = []
     for parts in sorted(map(int, refine)):
         report = progress if len(refine) == 1 or progress is None else _prefixed(progress, f"refine {parts}: ")
