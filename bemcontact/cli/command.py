@@ -314,12 +314,12 @@ def check_folder(source: Source | None, folder: Path | None, json_file: Path | N
 
     try:
         target = output.real(folder)
+        for path in (*_spec_file(source), *([] if json_file is None else [json_file])):
+            if target in (output.real(path), *output.real(path).parents):
+                refuse(escaped(f"--out {folder} would replace {path}; name another folder"))
         ensure_folder_writable(folder, KINDS[kind])
     except OSError as error:
         refuse(escaped(f"--out: {_reason(error)}"))
-    for path in (*_spec_file(source), *([] if json_file is None else [json_file])):
-        if target in (output.real(path), *output.real(path).parents):
-            refuse(escaped(f"--out {folder} would replace {path}; name another folder"))
 
 
 def _ensure_possible(option: str, path: Path) -> None:
