@@ -1,0 +1,234 @@
+"""Meshes that nobody makes: true errors are below their bars, in any unit and from any side."""
+
+from collections.abc import Sequence
+from math import cos, pi, radians, sin, sqrt
+
+import numpy as np
+import pytest
+from adaptive_problems import (
+    block_on_flat_floor, block_on_two_rods, cam_nose, flat_punch_at_corner, half_disk, hertz, no_contact,
+)  # fmt: skip
+
+from bemcontact.adaptivity import adapt
+from bemcontact.adaptivity.adapt import Meshed, first_mesh, meshed, penetrations
+from bemcontact.adaptivity.fields import solved
+from bemcontact.assessment.accuracy import ErrorBar
+from bemcontact.errors import ProblemError
+from bemcontact.problem import Problem
+
+RADIUS = 50.0
+
+
+def found(problem: Problem, accuracy: float = 1e-2) -> Meshed:
+    return meshed(problem.with_value("accuracy", accuracy))
+
+
+def entry(result: Meshed, quantity: str) -> ErrorBar:
+    return next(item for item in result.accuracies[0].bars if item.quantity == quantity)
+
+
+@pytest.mark.parametrize("accuracy", [1e-2, 3e-3])
+@pytest.mark.parametrize("load", [2000.0, 20.0])
+def test_hertz(load: float, accuracy: float):
+    """Half of a cylinder on a plane: peak and half-width of Hertz, which hold up to (a/R)², are within their bars.
+
+    With a hundredth of the load the contact is a tenth as wide: 0.2 on an edge of 79.
+    """
+    result = found(half_disk(load, RADIUS), accuracy)
+    peak, half_width = hertz(2 * load, RADIUS)
+    validity = (half_width / RADIUS) ** 2
+    (judged,) = result.accuracies
+    assert judged.met
+    assert judged.worst <= accuracy
+    for quantity, truth in (("peak", peak), ("end", half_width), ("force", load)):
+        item = entry(result, quantity)
+        assert item.value is not None
+        assert item.bar is not None
+        assert abs(item.value / truth - 1) <= item.bar + validity
+    square = sqrt(2 / 3 * peak**2 * half_width / (pi / 2 * RADIUS))  # of the pressure, over its zone
+    pressure = entry(result, "pressure")
+    assert pressure.value == pytest.approx(square, rel=(pressure.bar or 0) + validity)
+
+
+def wide_punch(part: float) -> Problem:
+    """Half of a flat punch on a block that is 1/part as high and as wide as it."""
+    side = 1 / part
+    corners = [("bottom", 0, 0), ("right", side, 0), ("free", side, side), ("face", 1, side), ("axis", 0, side)]
+    return Problem.model_validate(
+        {
+            "name": "flat punch",
+            "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": name, "start": [x, y]} for name, x, y in corners]},
+            "conditions": {"bottom": {"displacement": {"y": 0}}, "axis": {"displacement": {"x": 0}}},
+            "contact_zones": {
+                "punch": {"edges": "face", "surface": {"kind": "plane", "point": [0, side], "normal": [0, -1]}}
+            },
+            "tools": {"punch": {"zones": "punch", "force": {"y": -300.0}}},
+        }
+    )
+
+
+def test_the_pressure_of_a_flat_punch_is_infinite_with_the_intensity_of_the_half_plane():
+    """p = P / (π sqrt(a² - x²)), so K = P / (π sqrt(2 a)) with α = 1/2; a block 40 times as large changes it by the
+    order of (1/40)²."""
+    result = found(wide_punch(1 / 40))
+    (judged,) = result.accuracies
+    assert judged.met
+    assert judged.infinite == ("punch",)
+    ((singular,),) = result.singular
+    assert singular.exponent == 1 / 2
+    assert singular.place.position == pytest.approx(0.0, abs=1e-12)
+    intensity = entry(result, "intensity")
+    truth = 600 / (pi * sqrt(2))
+    assert intensity.value is not None
+    assert abs(intensity.value / truth - 1) <= (intensity.bar or 0) + 2 / 40**2
+    assert 0 < (intensity.bar or 0) < 0.1
+
+
+def test_no_peak_is_promised_at_a_punch_whose_end_is_a_corner_of_the_body():
+    """At the end on the free face the pressure is infinite with α = 1/2; at the corner of a quarter it is finite."""
+    result = found(flat_punch_at_corner()[0])
+    assert {item.exponent for item in result.singular[0]} == {1 / 2}
+
+
+def test_a_block_on_a_floor_is_exact():
+    """Uniform pressure is in the space of any mesh: met at the first, with bars of round-off alone."""
+    result = found(block_on_flat_floor()[0], 1e-4)
+    (judged,) = result.accuracies
+    assert (judged.met, judged.passes) == (True, 1)
+    assert entry(result, "peak").value == pytest.approx(7.0, rel=1e-10)
+    assert entry(result, "force").value == pytest.approx(280.0, rel=1e-10)
+    assert judged.worst < 1e-9
+
+
+def test_without_contact_displacements_are_still_judged():
+    """A clamped strip that bends above the floor."""
+    (judged,) = found(no_contact()[0]).accuracies
+    assert judged.met
+    assert [(item.quantity, item.promised) for item in judged.bars] == [("force", False), ("displacement", True)]
+
+
+def indented(*, turn: float = 0.0, mirror: bool = False, length: float = 1.0, stress: float = 1.0) -> Problem:
+    """A block that a cylinder presses beside its middle, turned, in a mirror, in other units."""
+    c, s = cos(radians(turn)), sin(radians(turn))
+
+    def placed(x: float, y: float) -> list[float]:
+        x = -x if mirror else x
+        return [length * (c * x - s * y), length * (s * x + c * y)]
+
+    def edges(names: Sequence[str], corners: Sequence[tuple[float, float]]) -> list[dict]:
+        return [{"name": name, "start": placed(*corner)} for name, corner in zip(names, corners, strict=True)]
+
+    names, corners = ["bottom", "right", "top", "left"], [(-37.0, 0.0), (43.0, 0.0), (43.0, 51.0), (-37.0, 51.0)]
+    if mirror:  # edges begin where they ended
+        names, corners = names[::-1], [corners[0], corners[3], corners[2], corners[1]]
+    surface = {"kind": "circle", "center": placed(3, 111 - 0.02), "radius": 60 * length, "body": "outside"}
+    return Problem.model_validate(
+        {
+            "name": "indented block",
+            "material": {"young_modulus": 210e3 * stress, "poisson_ratio": 0.3},
+            "boundary": {"outer": edges(names, corners)},
+            "conditions": {"bottom": {"displacement": {"x": 0, "y": 0}}},
+            "contact_zones": {"ball": {"edges": "top", "surface": surface}},
+        }
+    )
+
+
+@pytest.fixture(scope="module")
+def plain() -> Meshed:
+    return found(indented())
+
+
+def told(result: Meshed) -> dict[tuple[str, float], float]:
+    """Bars by quantity; of starts and ends, the sorted ones."""
+    judged = [(item.quantity, item.bar or 0.0) for item in result.accuracies[0].bars]
+    ends = sorted(bar for quantity, bar in judged if quantity in ("start", "end"))
+    return {(quantity, 0): bar for quantity, bar in judged if quantity not in ("start", "end")} | {
+        ("ends", i): bar for i, bar in enumerate(ends)
+    }
+
+
+@pytest.mark.parametrize(
+    "how",
+    [{"length": 25.4}, {"length": 1e-3, "stress": 1e6}, {"stress": 1e-4}, {"turn": 27.0}, {"turn": 90.0},
+     {"mirror": True}, {"turn": -63.0, "mirror": True, "length": 1e3}],
+)  # fmt: skip
+def test_bars_depend_on_neither_units_nor_direction(how: dict, plain: Meshed):
+    """The same passes and unknowns, and the same bars up to the round-off that bisecting changes amplifies."""
+    result = found(indented(**how))
+    assert result.accuracies[0].passes == plain.accuracies[0].passes
+    assert result.condensation.body.mesh.degrees_of_freedom == plain.condensation.body.mesh.degrees_of_freedom
+    assert told(result) == pytest.approx(told(plain), rel=1e-6, abs=1e-9)
+
+
+def stated(problem: Problem, elements: Sequence[int]) -> Problem:
+    """The problem with a number of elements on each outer edge."""
+    for i, count in enumerate(elements):
+        problem = problem.with_value(f"boundary.outer.{i}.elements", count)
+    return problem
+
+
+def test_a_stated_mesh_is_judged_and_left_alone():
+    """The nose of a cam on 24 elements, of which about one is in contact: a half-width of 0.047 on 1.05 / 24 each."""
+    problem = stated(cam_nose()[0], [24, 24, 24, 24]).with_value("mesh.adapt", False)
+    result = found(problem)
+    (judged,) = result.accuracies
+    assert (judged.met, judged.passes) == (False, 1)
+    assert result.condensation.body.mesh.edge.size == 96
+    peak, _ = hertz(400.0, 1.0)
+    item = entry(result, "peak")
+    assert abs((item.value or 0) / peak - 1) <= (item.bar or 0)
+
+
+def test_a_stated_mesh_without_an_accuracy_is_not_judged():
+    (judged,) = meshed(stated(block_on_flat_floor()[0], [4, 4, 4, 4])).accuracies
+    assert (judged.asked, judged.met, judged.holds, judged.bars) == (None, None, True, ())
+    assert judged.reason
+
+
+def test_stated_elements_are_the_coarsest():
+    """Eighty on the bottom of a block that needs two."""
+    problem = block_on_flat_floor()[0].with_value("boundary.outer.0.elements", 80)
+    mesh = first_mesh(problem).edge("bottom").breakpoints(1)
+    assert np.diff(mesh).max() <= 1 / 80 * (1 + 1e-9)
+
+
+def test_a_cap_of_the_unknowns_is_told(monkeypatch: pytest.MonkeyPatch):
+    """The best mesh so far with its bars and a reason: never met."""
+    monkeypatch.setattr(adapt, "MOST_UNKNOWNS", 300)
+    (judged,) = found(half_disk(2000.0), 1e-4).accuracies
+    assert judged.met is False
+    assert judged.worst > 1e-4
+    assert "300 unknowns" in judged.reason
+
+
+def test_passes_are_told():
+    told: list[str] = []
+    result = meshed(half_disk(2000.0).with_value("accuracy", 1e-2), told.append)
+    assert len(told) == result.accuracies[0].passes
+
+
+def test_a_surface_between_nodes_is_seen():
+    """Two rods under a block, between the nodes of two elements an edge; on the mesh that is found nothing is left."""
+    problem, _ = block_on_two_rods()
+    coarse = solved(stated(indented_by_a_pin(), [2, 2, 2, 2]))
+    assert [*penetrations(coarse, coarse.answers[0])]
+    fine = found(problem, 3e-2)
+    assert fine.accuracies[0].met
+    answer = solved(fine.problem)
+    assert not [*penetrations(answer, answer.answers[0])]
+
+
+def indented_by_a_pin() -> Problem:
+    """A pin of radius 2 at 17.3 in a face of 80, 0.2 deep."""
+    surface = {"kind": "circle", "center": [17.3, 51 + 2 - 0.2], "radius": 2, "body": "outside"}
+    data = indented().model_dump()
+    data["contact_zones"]["ball"]["surface"] = surface
+    return Problem.model_validate(data)
+
+
+def test_a_body_that_flies_off_has_no_answer():
+    """An error, not a mesh that is refined for ever."""
+    problem, _ = block_on_flat_floor()
+    with pytest.raises(ProblemError):
+        found(problem.with_value("conditions.top.pressure", -7.0))
