@@ -6,7 +6,7 @@ from math import frexp, ldexp, sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.factorizations import posv
+from bemcontact.formulations.local_solver.factorizations import posv, row_lengths
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 
 OF_OBJECTIVE, OF_BOUNDS, UNDECIDED = 1e-3, 1e-6, 1e-11
@@ -46,11 +46,11 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     natural = natural_factors(statement, bounds)
     D, E = natural[:n], natural[n:]
     A = E[:, None] * statement.A * D
-    columns = _power_of_two(np.maximum.reduce(np.abs(A), axis=0, initial=0.0), -1)
-    A *= columns
-    rows = _power_of_two(np.sqrt(np.einsum("ij,ij->i", A, A)), -1)
-    A *= rows[:, None]
-    D, E = D * columns, E * rows
+    columns = np.maximum.reduce(np.abs(A), axis=0, initial=0.0)
+    columns[columns == 0.0] = 1.0
+    D = _power_of_two(D / columns)
+    E = _power_of_two(E / row_lengths(A * (D / natural[:n])))
+    A = E[:, None] * statement.A * D
     bounds *= np.concatenate([1.0 / D, E])
     smaller = _smaller_unit(bounds)
     if smaller < 1.0:
@@ -95,7 +95,7 @@ def natural_factors(statement: Statement, bounds: Array) -> Array:
     reduced.reshape(-1)[:: n + 1] += diagonal + UNDECIDED * (1.0 + largest(diagonal))
     d = np.minimum(np.maximum(posv(reduced, right)[1], -OF_VARIABLE), OF_VARIABLE)
     e = np.minimum(np.maximum((e_right + rows.dot(d)) / -e_diagonal, -OF_ROW), OF_ROW)
-    return np.ldexp(1.0, np.rint(np.concatenate([d, e])).astype(np.intc))
+    return np.exp2(np.concatenate([d, e]))
 
 
 def _entries(statement: Statement) -> tuple[Array, Array]:
@@ -143,6 +143,6 @@ def _near_power(factor: float) -> float:
     return ldexp(1.0, min(max(frexp(factor * sqrt(0.5))[1], -1000), 1000))
 
 
-def _power_of_two(sizes: Array, power: int) -> Array:
-    """The nearest power of two of each size, or its inverse for the power -1; one for a size of zero."""
-    return np.ldexp(1.0, power * np.frexp(sizes * sqrt(0.5))[1])
+def _power_of_two(factors: Array) -> Array:
+    """The nearest power of two of each factor."""
+    return np.ldexp(1.0, np.frexp(factors * sqrt(0.5))[1])
