@@ -52,7 +52,7 @@ def penetration(gaps: SurfaceGaps, contact: CondensedContact) -> tuple[Penetrati
             element = int(deepest[np.argmin(paired[deepest])])  # of equal depths that which is easier to understand
             worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
         notes += _behind(gaps, zone, found.behind)
-        notes += _ended(gaps, [end for end, hidden in found.ends if hidden > allowed])
+        notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
     return worst, tuple(notes)
 
 
@@ -111,13 +111,13 @@ def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:
         )
 
 
-def _ended(gaps: SurfaceGaps, ends: Iterable[End]) -> Iterator[str]:
+def _ended(gaps: SurfaceGaps, zone: str, ends: Iterable[End]) -> Iterator[str]:
     """Note where a surface is taken to end beside an edge that is in no zone, and the body moves to beyond it."""
     in_zones = {edge for zone in gaps.problem.contact_zones.values() for edge in zone.edges}
     for end in ends:
         edge, (x, y) = gaps.state.edge_names[gaps.state.edge[end.element]], end.at.tolist()
         if edge not in in_zones:
             yield (
-                f"the surface is taken to end at ({x:.5g}, {y:.5g}), where the zone ends: '{edge}' lies in it and is "
-                "in no zone; add it to the zone if the surface goes on"
+                f"the rigid surface of '{zone}' is taken to end at ({x:.5g}, {y:.5g}), where the zone ends: '{edge}' "
+                "lies in it and is in no zone; add it to the zone if the surface goes on"
             )
