@@ -4,7 +4,7 @@ Contact conditions hold at contact points. Nothing keeps the body out of a surfa
 in no zone of it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +15,7 @@ from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetratio
 from bemcontact.bem.condense import boundary_state
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import Outline
-from bemcontact.bem.surface_gaps import SurfaceGaps
+from bemcontact.bem.surface_gaps import End, SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
@@ -52,6 +52,7 @@ def penetration(gaps: SurfaceGaps, contact: CondensedContact) -> tuple[Penetrati
             element = int(deepest[np.argmin(paired[deepest])])  # of equal depths that which is easier to understand
             worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
         notes += _behind(gaps, zone, found.behind)
+        notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
     return worst, tuple(notes)
 
 
@@ -108,3 +109,15 @@ def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:
             f"part of {names} lies behind the rigid surface of '{zone}' as stated: the surface is taken to end before "
             "it, and contact there was not looked at"
         )
+
+
+def _ended(gaps: SurfaceGaps, zone: str, ends: Iterable[End]) -> Iterator[str]:
+    """Note where a surface is taken to end beside an edge that is in no zone, and the body moves to beyond it."""
+    in_zones = {edge for zone in gaps.problem.contact_zones.values() for edge in zone.edges}
+    for end in ends:
+        edge, (x, y) = gaps.state.edge_names[gaps.state.edge[end.element]], end.at.tolist()
+        if edge not in in_zones:
+            yield (
+                f"the rigid surface of '{zone}' is taken to end at ({x:.5g}, {y:.5g}), where the zone ends: '{edge}' "
+                "lies in it and is in no zone; add it to the zone if the surface goes on"
+            )
