@@ -1,9 +1,9 @@
 """Whether contact is where the body and the surfaces are after they have moved.
 
-Contact sees gaps along the normals of the undeformed body, ε + n·(u - w). This is exact on a plane. Elsewhere the gap of
-the displaced places differs from it by squares of displacements. These are small in linear theory, but not where a body
-moves far before it is held. The contact problem is then solved once more with the gaps of the displaced places; the
-change of the pressure is the error of the first solution, to first order.
+Contact sees gaps along the normals of the undeformed body, ε + n·(u - w). This is exact on a plane. Elsewhere the gap
+of the displaced places differs from it by squares of displacements. These are small in linear theory, but not where a
+body moves far before it is held. The contact problem is then solved once more with the gaps of the displaced places;
+the change of the pressure is the error of the first solution, to first order.
 """
 
 from collections.abc import Iterator
@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.penetration import Misfit, Penetration, tolerated
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps
@@ -22,8 +22,8 @@ from bemcontact.formulations import complementarity
 from bemcontact.problem.surface_lines import Polyline
 
 NOTED = 0.01
-"""Change of a peak over the largest one from which it is noted. A relative curvature that is off by 2 % changes the peak
-of a line contact by half of that (Hertz)."""
+"""Change of a peak over the largest one from which it is noted. A relative curvature that is off by 2 % changes the
+peak of a line contact by half of that (Hertz)."""
 WITHHELD = 0.05
 """Change from which a result is not certified: the curvature is off by a tenth."""
 NO_CHANGE = 1e-7
@@ -33,8 +33,15 @@ ALIKE = 0.1
 
 
 class _Displaced(NamedTuple):
-    """Contact points (n,) after they have moved: motion (n, 2) beside the surface [L], what its gap changes by beside
-    the linear one (n,) [L], the distance (n,) [L], and whether another face of the surface is nearest."""
+    """Contact points after they have moved.
+
+    Parameters
+    ----------
+    motion : (n, 2) displacement against the surface [L]
+    change : (n,) of the gap beside the linear one [L]
+    distance : (n,) from the surface [L]
+    other : (n,) whether another face of the surface is nearest
+    """
 
     motion: Array
     change: Array
@@ -50,8 +57,11 @@ def placement(
     pressed = contact.pressed(solution.pressure, solution.displacement)
     if not pressed.any():
         return None, ()
-    if (off := _off_the_surface(gaps, points, contact, pressed, moved)) is not None:
-        return off, ()
+    off, beside = _slipped(gaps, points, contact, pressed, moved)
+    if len(off):
+        farthest = int(off[np.argmax(moved.distance[off])])
+        return _off_the_surface(gaps, points, contact, farthest, moved), ()
+    moved.change[beside] = 0.0
     if abs(moved.change).max() <= NO_CHANGE * contact.scales.displacement:
         return None, ()
     return _changed(gaps, points, contact, solution, moved)
@@ -85,28 +95,41 @@ def _at_points(gaps: SurfaceGaps, points: ContactPoints) -> Array:
     return displacement[points.node]
 
 
-def _off_the_surface(
+def _slipped(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, pressed: BoolArray, moved: _Displaced
-) -> Penetration | None:
-    """The point under pressure that is farthest off, unless the boundary beside it is on the surface."""
-    state = gaps.state
-    largest = float(np.hypot(*np.moveaxis(state.displacement, 2, 0)).max())
-    allowed = tolerated(contact, largest, gaps.problem.boundary.size)
-    for i in np.argsort(-moved.distance):
-        if moved.distance[i] <= allowed:
-            return None
-        zone = contact.zone_names[contact.zone[i]]
-        beside = np.flatnonzero(np.any(points.mesh.elements == points.node[i], axis=1))
-        if pressed[i] and moved.other[i] and gaps.distance(zone, beside).min() > allowed:
-            unit = gaps.problem.units.length
-            words = (
-                f"Pressure acts at {_vector(contact.points[i])} on '{_edge(gaps, points, i)}', where there is no surface of "
-                f"'{zone}' after the body has moved by {_vector(moved.motion[i], unit)}: it is "
-                f"{_length(moved.distance[i], unit)} off. Contact is looked for where the body is drawn. Draw the body "
-                "where it will touch, or correct the motion."
-            )
-            return _misfit(gaps, points, contact, int(i), Misfit.OFF, float(moved.distance[i]), allowed, words)
-    return None
+) -> tuple[IntArray, IntArray]:
+    """Points under pressure opposite to another face: those that are off the surface, and those beside which it is.
+
+    The latter have moved along a corner of the surface by less than an element, which the mesh does not resolve.
+    """
+    allowed, off, beside = _allowed(gaps, contact), list[int](), list[int]()
+    for i in np.flatnonzero(pressed & moved.other & (moved.change > 0)).tolist():
+        around = np.flatnonzero(np.any(points.mesh.elements == points.node[i], axis=1))
+        gone = moved.distance[i] > allowed
+        gone = gone and gaps.distance(contact.zone_names[contact.zone[i]], around).min() > allowed
+        (off if gone else beside).append(i)
+    return np.array(off, int), np.array(beside, int)
+
+
+def _allowed(gaps: SurfaceGaps, contact: CondensedContact) -> float:
+    """Distance [L] that is tolerated."""
+    largest = float(np.hypot(*np.moveaxis(gaps.state.displacement, 2, 0)).max())
+    return tolerated(contact, largest, gaps.problem.boundary.size)
+
+
+def _off_the_surface(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, i: int, moved: _Displaced
+) -> Penetration:
+    """Pressure at a point that is off the surface."""
+    unit, zone = gaps.problem.units.length, contact.zone_names[contact.zone[i]]
+    words = (
+        f"Pressure acts at {_vector(contact.points[i])} on '{_edge(gaps, points, i)}', where there is no surface of "
+        f"'{zone}' after the body has moved by {_vector(moved.motion[i], unit)}: it is "
+        f"{_length(moved.distance[i], unit)} off. Contact is looked for where the body is drawn. Draw the body where "
+        "it will touch, or correct the motion."
+    )
+    distance, allowed = float(moved.distance[i]), _allowed(gaps, contact)
+    return _misfit(gaps, points, contact, i, Misfit.OFF, distance, allowed, words)
 
 
 def _changed(
@@ -122,8 +145,8 @@ def _changed(
     i = int(own[np.argmax(np.maximum(solution.pressure, again.pressure if solved else 0.0)[own])])
     zone, motion = contact.zone_names[number], moved.motion[i]
     effect = (
-        f"with the gaps after this motion, the peak pressure there is {100 * abs(change):.2g} % of the largest "
-        f"{'higher' if change > 0 else 'lower'}"
+        f"with the gaps after this motion, the peak pressure there {'rises' if change > 0 else 'falls'} by "
+        f"{100 * abs(change):.2g} %{' of the largest' * (len(contact.zone_names) > 1)}"
         if solved
         else "with the gaps after this motion, contact does not hold the body"
     )
