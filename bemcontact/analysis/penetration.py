@@ -9,10 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from bemcontact.analysis.placement import placement
 from bemcontact.analysis.variation import Variation
 from bemcontact.arrays import BoolArray
 from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.condense import boundary_state
+from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.surface_gaps import End, SurfaceGaps
@@ -39,8 +41,10 @@ def surface_gaps(
     )
 
 
-def penetration(gaps: SurfaceGaps, contact: CondensedContact) -> tuple[Penetration | None, tuple[str, ...]]:
-    """Find the deepest penetration that is not tolerated, and note what was not compared."""
+def penetration(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution
+) -> tuple[Penetration | None, tuple[str, ...]]:
+    """Find the deepest penetration that is not tolerated, or else contact that is misplaced; note the rest."""
     state, worst, notes = gaps.state, None, list[str]()
     largest = float(np.hypot(*np.moveaxis(state.displacement, 2, 0)).max())
     allowed = tolerated(contact, largest, gaps.problem.boundary.size)
@@ -53,7 +57,8 @@ def penetration(gaps: SurfaceGaps, contact: CondensedContact) -> tuple[Penetrati
             worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
         notes += _behind(gaps, zone, found.behind)
         notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
-    return worst, tuple(notes)
+    misplaced, said = (None, ()) if worst else placement(gaps, points, contact, solution)
+    return worst or misplaced, (*notes, *said)
 
 
 def penetration_on_path(
@@ -65,7 +70,8 @@ def penetration_on_path(
         value, contact, solution = (1 - t) * start + t * end, path.contact(t), path.breakpoint(i)
         problem = varied.at(value) if varied.path[0] == "contact_zones" else varied.problem
         state = _state_at(varied, value, contact, solution)
-        found, _ = penetration(surface_gaps(problem, state, contact, solution, outline), contact)
+        points = next(iter(varied.condensed.values())).body.points
+        found, _ = penetration(surface_gaps(problem, state, contact, solution, outline), points, contact, solution)
         if found is not None and (worst is None or found.depth > worst.depth):
             worst, at = found, value
     return worst, at

@@ -80,7 +80,7 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     certificate: Certificate
     """Certificate of the solution."""
     penetration: Penetration | None
-    """Deepest penetration of the boundary that is not tolerated; null if there is none, or for a condensed problem."""
+    """Where the deformed boundary does not fit a rigid surface; null if it fits, or for a condensed problem."""
     boundary: BoundaryRecord | None
     """State of the whole boundary; null for a condensed problem."""
     seconds: dict[str, float]
@@ -108,7 +108,7 @@ class Result(Recorded):
     footprint: Footprint
     """Contact intervals, peak pressure and resultant."""
     penetration: Penetration | None
-    """Deepest penetration of the boundary that is not tolerated; None if there is none, or for a condensed problem."""
+    """Where the deformed boundary does not fit a rigid surface; None if it fits, or for a condensed problem."""
     boundary: BoundaryState | None
     """Displacement and traction of the whole boundary; None for a condensed problem."""
     degrees_of_freedom: int | None
@@ -127,7 +127,7 @@ class Result(Recorded):
         peak = "no contact" if self.footprint.peak is None else f"peak pressure {self.footprint.peak.pressure:.6g}"
         verdict = "certified" if self.certified else self.certificate.kind
         if self.penetration is not None:
-            verdict = f"penetrates '{self.penetration.zone}'"
+            verdict = f"{self.penetration.kind}: '{self.penetration.zone}'"
         return f"<Result of {self.contact.name!r} by {self.solution.formulation}: {verdict}, {peak}>"
 
     @property

@@ -198,8 +198,9 @@ def assessed(
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
         where, deepest, unseen = footprint(contact, solution), None, ()
-        if boundary is not None and isinstance(problem, Problem):
-            deepest, unseen = penetration(surface_gaps(problem, boundary, contact, solution), contact)
+        if condensation is not None and boundary is not None and isinstance(problem, Problem):
+            gaps = surface_gaps(problem, boundary, contact, solution)
+            deepest, unseen = penetration(gaps, condensation.body.points, contact, solution)
         notes = (
             *(() if fit is None else fit.notes),
             *contact.notes,

@@ -147,6 +147,10 @@ class SurfaceGaps:
                 return np.stack([x - turn * offset[..., 1], y + turn * offset[..., 0]], axis=-1)
         return np.zeros_like(points)
 
+    def distance(self, zone: str, elements: IntArray) -> Array:
+        """Distance (k, q) [L] of displaced places of elements (k,) from the displaced surface."""
+        return self.exact(zone, self.outline.sampled(elements).points + self._displacement(elements)).gap
+
     def intrusion(self, zone: str) -> Intrusion:
         """How deep each element is in the surface of a zone, beyond what interpolation between its nodes explains.
 
