@@ -4,18 +4,20 @@ Contact conditions hold at contact points. Nothing keeps the body out of a surfa
 in no zone of it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
+from bemcontact.analysis.placement import placement
 from bemcontact.analysis.variation import Variation
 from bemcontact.arrays import BoolArray
 from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.condense import boundary_state
+from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import Outline
-from bemcontact.bem.surface_gaps import SurfaceGaps
+from bemcontact.bem.surface_gaps import End, SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
@@ -39,8 +41,10 @@ def surface_gaps(
     )
 
 
-def penetration(gaps: SurfaceGaps, contact: CondensedContact) -> tuple[Penetration | None, tuple[str, ...]]:
-    """Find the deepest penetration that is not tolerated, and note what was not compared."""
+def penetration(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution
+) -> tuple[Penetration | None, tuple[str, ...]]:
+    """Find the deepest penetration that is not tolerated, or else contact that is misplaced; note the rest."""
     state, worst, notes = gaps.state, None, list[str]()
     largest = float(np.hypot(*np.moveaxis(state.displacement, 2, 0)).max())
     allowed = tolerated(contact, largest, gaps.problem.boundary.size)
@@ -52,7 +56,9 @@ def penetration(gaps: SurfaceGaps, contact: CondensedContact) -> tuple[Penetrati
             element = int(deepest[np.argmin(paired[deepest])])  # of equal depths that which is easier to understand
             worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
         notes += _behind(gaps, zone, found.behind)
-    return worst, tuple(notes)
+        notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
+    misplaced, said = (None, ()) if worst else placement(gaps, points, contact, solution)
+    return worst or misplaced, (*notes, *said)
 
 
 def penetration_on_path(
@@ -64,7 +70,8 @@ def penetration_on_path(
         value, contact, solution = (1 - t) * start + t * end, path.contact(t), path.breakpoint(i)
         problem = varied.at(value) if varied.path[0] == "contact_zones" else varied.problem
         state = _state_at(varied, value, contact, solution)
-        found, _ = penetration(surface_gaps(problem, state, contact, solution, outline), contact)
+        points = next(iter(varied.condensed.values())).body.points
+        found, _ = penetration(surface_gaps(problem, state, contact, solution, outline), points, contact, solution)
         if found is not None and (worst is None or found.depth > worst.depth):
             worst, at = found, value
     return worst, at
@@ -108,3 +115,15 @@ def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:
             f"part of {names} lies behind the rigid surface of '{zone}' as stated: the surface is taken to end before "
             "it, and contact there was not looked at"
         )
+
+
+def _ended(gaps: SurfaceGaps, zone: str, ends: Iterable[End]) -> Iterator[str]:
+    """Note where a surface is taken to end beside an edge that is in no zone, and the body moves to beyond it."""
+    in_zones = {edge for zone in gaps.problem.contact_zones.values() for edge in zone.edges}
+    for end in ends:
+        edge, (x, y) = gaps.state.edge_names[gaps.state.edge[end.element]], end.at.tolist()
+        if edge not in in_zones:
+            yield (
+                f"the rigid surface of '{zone}' is taken to end at ({x:.5g}, {y:.5g}), where the zone ends: '{edge}' "
+                "lies in it and is in no zone; add it to the zone if the surface goes on"
+            )

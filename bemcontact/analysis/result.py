@@ -80,7 +80,7 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     certificate: Certificate
     """Certificate of the solution."""
     penetration: Penetration | None
-    """Deepest penetration of the boundary that is not tolerated; null if there is none, or for a condensed problem."""
+    """Where the deformed boundary does not fit a rigid surface; null if it fits, or for a condensed problem."""
     boundary: BoundaryRecord | None
     """State of the whole boundary; null for a condensed problem."""
     seconds: dict[str, float]
@@ -108,7 +108,7 @@ class Result(Recorded):
     footprint: Footprint
     """Contact intervals, peak pressure and resultant; no peak where it is infinite."""
     penetration: Penetration | None
-    """Deepest penetration of the boundary that is not tolerated; None if there is none, or for a condensed problem."""
+    """Where the deformed boundary does not fit a rigid surface; None if it fits, or for a condensed problem."""
     boundary: BoundaryState | None
     """Displacement and traction of the whole boundary; None for a condensed problem."""
     degrees_of_freedom: int | None
@@ -130,7 +130,7 @@ class Result(Recorded):
             peak = "infinite peak pressure" if self.footprint.intervals else "no contact"
         equations = "unique solution proved" if self.certified else self.certificate.kind
         if self.penetration is not None:
-            equations = f"penetrates '{self.penetration.zone}'"
+            equations = f"{self.penetration.kind}: '{self.penetration.zone}'"
         known, accuracy = bool(self.accuracy.bars), self.accuracy
         mesh = f"error at most {100 * accuracy.worst:.2g} %" if known else "error not estimated"
         return f"<Result of {self.contact.name!r} by {self.solution.formulation}: {equations}, {mesh}, {peak}>"

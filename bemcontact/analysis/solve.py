@@ -221,7 +221,8 @@ def assessed(
         certificate = certify(contact, solution, recomputed)
         where, deepest, unseen = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
         if boundary is not None and condensation is not None:
-            deepest, unseen = penetration(surface_gaps(condensation.body.problem, boundary, contact, solution), contact)
+            gaps = surface_gaps(condensation.body.problem, boundary, contact, solution)
+            deepest, unseen = penetration(gaps, condensation.body.points, contact, solution)
         notes = (
             *contact.notes,
             *solution.notes,

@@ -1,6 +1,7 @@
 """Penetration of a rigid surface by the deformed boundary, anywhere on it: how much is tolerated, and what is said."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.serialization import Leaf, Pair
@@ -11,14 +12,28 @@ ROUND_OFF = 1e-9
 """Depth over the size of the body that is round-off."""
 
 
+class Misfit(StrEnum):
+    """How the deformed boundary does not fit a rigid surface."""
+
+    PENETRATION = "penetration"
+    OFF = "pressure off the surface"
+    MOVED = "large motion"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Penetration(Leaf):
-    """Deepest penetration of the deformed boundary into a rigid surface, beyond that of the discretization."""
+    """Where the deformed boundary does not fit a rigid surface, beyond what the discretization explains.
 
+    It penetrates the surface, or pressure acts where the displacements take the body off the surface, or the
+    displacements change the gap so much that the pressure is wrong.
+    """
+
+    kind: Misfit = Misfit.PENETRATION
+    """What does not fit: penetration, pressure off the surface, or a large motion."""
     depth: float
-    """Depth [L]."""
+    """Depth of the penetration, distance from the surface, or largest change of the gap by the motion [L]."""
     allowed: float
-    """Depth that is tolerated: a hundredth of the displacement [L]."""
+    """Depth or distance that is tolerated: a hundredth of the displacement; of a large motion zero [L]."""
     at: Pair
     """Undeformed place (x, y) [L]."""
     edge: str

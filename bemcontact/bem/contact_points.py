@@ -107,10 +107,10 @@ class ContactPoints:
 
 def element_lengths(mesh: Mesh) -> Array:
     """Arc length (m,) [L] of each element."""
-    return _half_lengths(mesh).sum(axis=1)
+    return half_lengths(mesh).sum(axis=1)
 
 
-def _half_lengths(mesh: Mesh) -> Array:
+def half_lengths(mesh: Mesh) -> Array:
     """Arc length (m, 2) [L] of the first and the second half of each element."""
     xi, weights = reference_element.gauss_legendre(ARC_ORDER)
     halves = []
@@ -132,7 +132,7 @@ def contact_points(
     `deflections` has the displacement (N, 2) [L] of the nodes by zone, for zones on a deflected contour. `cases` has
     what load cases prescribe in addition to `values`.
     """
-    halves = _half_lengths(mesh)
+    halves = half_lengths(mesh)
     tool_of = {zone: tool for tool, stated in problem.tools.items() for zone in stated.zones}
     pieces: list[_Piece] = []
     for number, (name, zone) in enumerate(problem.contact_zones.items()):
@@ -177,14 +177,14 @@ def _faces(problem: Problem, surface: RigidSurface, mesh: Mesh, halves: Array, d
         assert deflection is not None
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.behind(deflection))
     elif isinstance(surface, Polyline):
-        gap, normals = surface.faces(mesh.nodes, *_sides_of_nodes(problem, mesh, halves))
+        gap, normals = surface.faces(mesh.nodes, *sides_of_nodes(problem, mesh, halves))
     else:
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.closest(mesh.nodes))
     other = np.hypot(*np.moveaxis(normals - normals[:, [2, 0, 0]], 2, 0)) > ALIKE
     return _NodeFaces(gap, normals, other | (abs(gap - gap[:, [2, 0, 0]]) > ALIKE * mesh.size))
 
 
-def _sides_of_nodes(problem: Problem, mesh: Mesh, halves: Array) -> tuple[Array, Array]:
+def sides_of_nodes(problem: Problem, mesh: Mesh, halves: Array) -> tuple[Array, Array]:
     """Normals (N, 2, 2) into the body before and after each node, and the distance (N,) [L] that is near to it.
 
     They are those of the edges themselves, and equal where these are smooth up to round-off.

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray
+from bemcontact.bem.mesh import Mesh, build
 from bemcontact.problem.problem import Problem
 
 SAMPLES = np.linspace(-1.0, 1.0, 17)
@@ -26,6 +27,11 @@ class Outline:
 
     problem: Problem
     samples: dict[int, tuple[Array, Array]] = field(default_factory=dict)
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The elements."""
+        return build(self.problem)
 
     @cached_property
     def _elements(self) -> tuple[IntArray, Array]:

@@ -4,31 +4,54 @@ An edge need not belong to the zone of a surface. Places are on the curves of th
 that of the elements.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
+from bemcontact.bem.contact_points import ALIKE, half_lengths, sides_of_nodes
 from bemcontact.bem.mesh import BoundaryState
-from bemcontact.bem.outline import SAMPLES, Outline, Places
+from bemcontact.bem.outline import SAMPLES, Outline
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, Shape
-from bemcontact.problem.surface_lines import Closest
+from bemcontact.problem.surface_lines import Closest, Polyline
 
 NODES = [0, len(SAMPLES) // 2, -1]
 """Which of them are nodes."""
 CHUNK = 8192
 """Number of places whose distance from a surface is computed at a time."""
 FLUSH = 1e-6
-"""Distance of an undeformed place from a surface, over the size of the body, up to which it lies in the surface."""
+"""Distance of an undeformed place from a surface, over the size of the body, up to which it lies in the surface; and
+difference of two unit normals up to which a surface is straight."""
+DIRECTIONS = np.stack([np.cos(angles := np.linspace(0.0, np.pi, 32, endpoint=False)), np.sin(angles)])
+"""Directions (2, 32) in which the spread of displacements is measured."""
 SAME_FACE = 0.98
 """Cosine of the angle between two normals of a surface up to which they belong to the same face."""
 DIP = 1 / 8
 """Largest dip of a quadratic below zero between three nodes, over the largest of its values there, if none is below."""
+
+
+class End(NamedTuple):
+    """Where a straight face of a surface is taken to end: an edge beside the zone goes on in it and is not paired.
+
+    Parameters
+    ----------
+    element : the first element beyond
+    at : (2,) end of the zone [L]
+    along : (2,) unit vector from there to the places beyond
+    normal : (2,) of the face
+    reach : length along which it is taken to have ended [L]: up to the next edge of the zone, or the end of the face
+    """
+
+    element: int
+    at: Array
+    along: Array
+    normal: Array
+    reach: float
 
 
 class Intrusion(NamedTuple):
@@ -39,11 +62,13 @@ class Intrusion(NamedTuple):
     depth : (m,) [L], negative outside, minus infinity for an element that was not compared
     xi : (m,) local coordinate where an element is deepest
     behind : (m,) whether a place of an element that is not of the zone is behind the surface before anything moves
+    ends : where the surface is taken to end, with the depth [L] that places beyond would have in it if it went on
     """
 
     depth: Array
     xi: Array
     behind: BoolArray
+    ends: tuple[tuple[End, float], ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -69,19 +94,38 @@ class SurfaceGaps:
         zones = self.problem.contact_zones.items()
         return {name: zone.surface for name, zone in zones if not isinstance(zone.surface, DeflectedContour)}
 
-    def paired(self, zone: str) -> BoolArray:
-        """Whether each element (m,) belongs to a zone."""
-        names = self.problem.contact_zones[zone].edges
-        return np.isin(self.state.edge, [self.state.edge_names.index(name) for name in names])
+    @cached_property
+    def held(self) -> dict[str, Closest]:
+        """Gap (m, 3) [L] and normals (m, 3, 2) of the faces that hold the nodes of elements, by zone, as in contact."""
+        mesh, side = self.outline.mesh, [2, 0, 0]
+        sides = sides_of_nodes(self.problem, mesh, half_lengths(mesh))
+        faces = {name: surface.faces(mesh.nodes, *sides) for name, surface in self.surfaces.items()}
+        return {name: Closest(*(part[mesh.elements, side] for part in item)) for name, item in faces.items()}
 
-    def linear(self, zone: str, at: Places, displacement: Array) -> Closest:
-        """Gap (k, q) [L] as contact sees it, ε + n·(u - w), with the normals n of the undeformed body."""
-        flat = at.points.reshape(-1, 2)
-        inward = np.repeat(at.inward.reshape(-1, 1, 2), 2, axis=1)
+    def paired(self, zone: str) -> BoolArray:
+        """Whether each element (m,) belongs to a zone, or to another one that pairs it with the same face and tool."""
+        tools = {name: tool for tool, stated in self.problem.tools.items() for name in stated.zones}
+        own, paired = self.held[zone], np.zeros(len(self.state.points), bool)
+        for name, held in self.held.items():
+            apart = np.hypot(*np.moveaxis(held.normals - own.normals, 2, 0)) > ALIKE
+            apart |= abs(held.gap - own.gap) > ALIKE * self.problem.boundary.size
+            if tools.get(name) == tools.get(zone):
+                edges = [self.state.edge_names.index(edge) for edge in self.problem.contact_zones[name].edges]
+                paired |= np.isin(self.state.edge, edges) & ~apart.any(axis=1)
+        return paired
+
+    def linear(self, zone: str, elements: IntArray) -> Closest:
+        """Gap (k, q) [L] of elements (k,) as contact sees it, ε + n·(u - w), with the normals n of the undeformed body.
+
+        At nodes, ε and n are those of contact points. Between them each place has the face to which it is turned.
+        """
+        at, held = self.outline.sampled(elements), self.held[zone]
+        flat, inward = at.points.reshape(-1, 2), np.repeat(at.inward.reshape(-1, 1, 2), 2, axis=1)
         faces = self.surfaces[zone].faces(flat, inward, np.zeros(len(flat)))
-        normals = faces.normals[:, 0].reshape(at.points.shape)
-        moved = np.sum(normals * (displacement - self.tool_motion(zone, at.points)), axis=-1)
-        return Closest(faces.gap[:, 0].reshape(at.points.shape[:-1]) + moved, normals)
+        gap, normals = faces.gap[:, 0].reshape(at.points.shape[:-1]), faces.normals[:, 0].reshape(at.points.shape)
+        gap[:, NODES], normals[:, NODES] = held.gap[elements], held.normals[elements]
+        moved = self._displacement(elements) - self.tool_motion(zone, at.points)
+        return Closest(gap + np.sum(normals * moved, axis=-1), normals)
 
     def exact(self, zone: str, moved: Array) -> Closest:
         """Distance (...) [L] of displaced places (..., 2) from the displaced surface, and the normals there."""
@@ -103,66 +147,106 @@ class SurfaceGaps:
                 return np.stack([x - turn * offset[..., 1], y + turn * offset[..., 0]], axis=-1)
         return np.zeros_like(points)
 
+    def distance(self, zone: str, elements: IntArray) -> Array:
+        """Distance (k, q) [L] of displaced places of elements (k,) from the displaced surface."""
+        return self.exact(zone, self.outline.sampled(elements).points + self._displacement(elements)).gap
+
     def intrusion(self, zone: str) -> Intrusion:
         """How deep each element is in the surface of a zone, beyond what interpolation between its nodes explains.
 
         In elements of the zone this is the gap as contact sees it; where another face of the surface is nearer to the
         displaced place than the face that holds it, it is the distance, as for all other elements. A place of these
-        that is in the surface or behind it before anything moves does not count: the surface is taken to end there,
-        also opposite to places beyond.
+        that is behind the surface before anything moves does not count, nor one opposite to which the surface is taken
+        to have ended.
         """
         paired, near = self.paired(zone), self._near(zone)
-        m, ended = len(paired), self._ends(zone, paired, near)
-        depth, xi, behind = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool)
+        m, ends = len(paired), self._ends(zone, paired)
+        depth, xi, behind, hidden = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool), [-np.inf] * len(ends)
         for elements, own in ((np.flatnonzero(paired), True), (np.flatnonzero(~paired & near), False)):
             if not len(elements):
                 continue
-            at, displacement = self.outline.sampled(elements), self._displacement(elements)
             if own:
-                depths = self._depth_in_own(zone, at, displacement)
+                depths = self._depth_in_own(zone, elements)
             else:
-                depths, behind[elements] = self._depth_in_other(zone, at, displacement, ended)
+                depths, behind[elements], hidden = self._depth_in_other(zone, elements, ends)
             deepest = depths.argmax(axis=1)
             depth[elements], xi[elements] = depths[np.arange(len(elements)), deepest], SAMPLES[deepest]
-        return Intrusion(depth, xi, behind)
+        return Intrusion(depth, xi, behind, tuple(zip(ends, hidden, strict=True)))
 
-    def _depth_in_own(self, zone: str, at: Places, displacement: Array) -> Array:
-        """Depth (k, q) [L] of elements of the zone."""
-        here, there = self.linear(zone, at, displacement), self.exact(zone, at.points + displacement)
+    def _depth_in_own(self, zone: str, elements: IntArray) -> Array:
+        """Depth (k, q) [L] of elements (k,) of the zone."""
+        at, displacement = self.outline.sampled(elements), self._displacement(elements)
+        here, there = self.linear(zone, elements), self.exact(zone, at.points + displacement)
         dip = DIP * np.maximum(here.gap[:, NODES], 0.0).max(axis=1)
         other = np.sum(here.normals * there.normals, axis=-1) < SAME_FACE
-        beyond = other & (-there.gap > self._second_order(zone, at, displacement))
+        beyond = other & (-there.gap > self._second_order(zone))
         return np.maximum(-here.gap - dip[:, None], np.where(beyond, -there.gap, -np.inf))
 
     def _depth_in_other(
-        self, zone: str, at: Places, displacement: Array, ended: Callable[[Array], BoolArray]
-    ) -> tuple[Array, BoolArray]:
-        """Depth (k, q) [L] of elements that are not of the zone, and which of them (k,) are behind the surface."""
-        flush = FLUSH * self.problem.boundary.size
-        (before, normals), after = self.undeformed(zone, at.points), self.exact(zone, at.points + displacement).gap
-        beyond = (before > flush) & (-after > self._second_order(zone, at, displacement))
-        beyond &= ~ended(at.points - before[..., None] * normals)
-        behind: BoolArray = np.any(before < -flush, axis=1)
-        return np.where(beyond, -after, -np.inf), behind
+        self, zone: str, elements: IntArray, ends: Sequence[End]
+    ) -> tuple[Array, BoolArray, list[float]]:
+        """Depth (k, q) [L] of elements (k,) not of the zone, whether each is behind the surface, and depth at ends.
 
-    def _ends(self, zone: str, paired: BoolArray, near: BoolArray) -> Callable[[Array], BoolArray]:
-        """Whether places (..., 2) of a surface are nearer to an edge that lies in it than to the edges of its zone."""
-        others = self.outline.sampled(np.flatnonzero(~paired & near)).points.reshape(-1, 2)
-        lying = others[np.abs(self.undeformed(zone, others).gap) <= FLUSH * self.problem.boundary.size]
-        own = self.outline.sampled(np.flatnonzero(paired)).points.reshape(-1, 2)
-        lying = lying[KDTree(own).query(lying)[0] > FLUSH * self.problem.boundary.size]
-        if not len(lying):
-            return lambda feet: np.zeros(feet.shape[:-1], bool)
-        return lambda feet: KDTree(lying).query(feet)[0] < KDTree(own).query(feet)[0]
+        The last is the largest depth of the places opposite to which the surface has ended, for each end.
+        """
+        flush, at = FLUSH * self.problem.boundary.size, self.outline.sampled(elements)
+        before, normals = self.undeformed(zone, at.points)
+        after = self.exact(zone, at.points + self._displacement(elements)).gap
+        behind = np.zeros(len(self.state.points), bool)
+        behind[elements] = np.any(before < -flush, axis=1)
+        mesh = self.outline.mesh
+        crosses = (behind | behind[mesh.before] | behind[mesh.elements[:, 2]])[elements, None]
+        outside = (before > flush) | (~crosses & (before >= -flush))
+        depth = np.where(outside & (-after > self._second_order(zone)), -after, -np.inf)
+        ended = [_opposite(end, at.points - before[..., None] * normals, normals, flush) for end in ends]
+        hidden = [float(np.max(depth, initial=-np.inf, where=beyond)) for beyond in ended]
+        return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden
+
+    def _ends(self, zone: str, paired: BoolArray) -> list[End]:
+        """Where the surface is taken to end: its straight face goes on along the edge directly beyond the zone."""
+        mesh, ends = self.outline.mesh, list[End]()
+        for last, neighbor in ((2, mesh.elements[:, 2]), (0, mesh.before)):
+            for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
+                beyond, at = int(neighbor[own]), self.state.points[own, last]
+                normal = self.held[zone].normals[own, last]
+                pair = self.outline.sampled(np.array([own, beyond])).points
+                if self._lies_in_face(zone, pair, at, normal):
+                    along = self.state.points[beyond, last] - at
+                    along = along / np.hypot(*along)
+                    ahead = [float(item) for item in self._ahead(zone, paired, at, along, normal)]
+                    ends.append(End(beyond, at, along, normal, min(ahead, default=np.inf)))
+        return ends
+
+    def _lies_in_face(self, zone: str, places: Array, at: Array, normal: Array) -> bool:
+        """Whether places (k, q, 2) of elements are on the straight face with a normal (2,) through a point (2,)."""
+        flush, (gap, normals) = FLUSH * self.problem.boundary.size, self.undeformed(zone, places)
+        straight = np.abs(normals - normal)[:, 1:-1].max() <= FLUSH  # at its ends there may be a corner of the surface
+        return bool(straight and np.abs(gap).max() <= flush and np.abs((places - at) @ normal).max() <= flush)
+
+    def _ahead(self, zone: str, paired: BoolArray, at: Array, along: Array, normal: Array) -> Iterator[float]:
+        """Distances [L] from an end of the zone to its next edges on the same line, and to corners of the surface."""
+        flush, surface = FLUSH * self.problem.boundary.size, self.surfaces[zone]
+        points = self.outline.sampled(np.flatnonzero(paired)).points.reshape(-1, 2)
+        if isinstance(surface, Polyline):
+            bends = np.abs(np.diff(surface.sides.lefts, axis=0)).max(axis=1) > FLUSH
+            points = np.concatenate([points, surface.sides.corners[1:-1][bends]])
+        there = points[np.abs((points - at) @ normal) <= flush]
+        distances = (there - at) @ along
+        yield from distances[distances > flush]
 
     def _displacement(self, elements: IntArray) -> Array:
         """Displacement (k, q, 2) [L] at `SAMPLES` of elements (k,)."""
         return reference_element.values(SAMPLES) @ self.state.displacement[elements]
 
-    def _second_order(self, zone: str, at: Places, displacement: Array) -> Array:
-        """Depth (k, q) [L] by which linear theory may be off: squares of displacements over the size of the body."""
-        squares = displacement**2 + self.tool_motion(zone, at.points) ** 2
-        return np.sum(squares, axis=-1) / self.problem.boundary.size
+    def _second_order(self, zone: str) -> float:
+        """Depth [L] by which linear theory may be off: by rotations and strains; translations are exact in it.
+
+        It is the square of differences of displacements over the size of the body, which rotations and strains cause.
+        """
+        size = self.problem.boundary.size
+        spread = np.ptp(self.state.displacement.reshape(-1, 2) @ DIRECTIONS, axis=0).max()
+        turns = [self.tools[name][2] for name, tool in self.problem.tools.items() if zone in tool.zones]
+        return float(spread**2 / size + sum(turn**2 for turn in turns) * size)
 
     def _near(self, zone: str) -> BoolArray:
         """Whether each element (m,) may touch a surface: a distance changes by no more than the way."""
@@ -174,3 +258,11 @@ class SurfaceGaps:
             length = np.hypot(*np.moveaxis(np.diff(moved, axis=1), 2, 0)).sum(axis=1)
             near |= gap(zone, moved[:, 1]).gap <= length
         return near
+
+
+def _opposite(end: End, feet: Array, normals: Array, flush: float) -> BoolArray:
+    """Whether feet (..., 2) [L] of places on a surface with normals (..., 2) there are where it has ended."""
+    offset = feet - end.at
+    along = offset @ end.along
+    on = (np.abs(offset @ end.normal) <= flush) & (np.abs(normals - end.normal).max(axis=-1) <= FLUSH)
+    return on & (along >= -flush) & (along <= end.reach + flush)

@@ -103,8 +103,10 @@ class CondensedContact(MotionAlgebra):
             object.__setattr__(self, "tools", Tools.none(n, k))
         if not len(self.cases):
             object.__setattr__(self, "cases", LoadCases.none(n, k, len(self.tools)))
-        if not len(self.pinned.motions) and not self.pinned.magnitude.any():
-            object.__setattr__(self, "pinned", Pinned.none(len(self.cases), len(self.tools)))
+        c, t = len(self.cases), len(self.tools)
+        fits = self.pinned.load.shape[1] == 1 + c and len(self.pinned.tools) == 3 * t
+        if not (fits or len(self.pinned.motions) or self.pinned.magnitude.any()):
+            object.__setattr__(self, "pinned", Pinned.none(c, t, self._extent or 1.0))
         ensure_parts_fit(self)
         freeze_arrays(self)
 
@@ -183,6 +185,11 @@ class CondensedContact(MotionAlgebra):
     def size(self) -> int:
         """Number n of contact points."""
         return len(self.initial_gap)
+
+    @property
+    def _extent(self) -> float:
+        """Half the diagonal [L] of the rectangle around the contact points."""
+        return float(np.hypot(*np.ptp(self.points, axis=0))) / 2
 
     @property
     def free_motions(self) -> int:

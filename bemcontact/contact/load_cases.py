@@ -168,11 +168,11 @@ class Pinned:
         freeze_arrays(self)
 
     @classmethod
-    def none(cls, cases: int, tools: int) -> Self:
-        """No pinned motion, for c cases and t tools."""
+    def none(cls, cases: int, tools: int, length: float = 1.0) -> Self:
+        """No pinned motion, for c cases and t tools, whose moments are compared with forces by a length [L]."""
         return cls(
             motions=(), turns=np.zeros(0, bool), load=np.zeros((0, 1 + cases)), tools=np.zeros((3 * tools, 0)),
-            magnitude=np.zeros(1 + cases), length=1.0,
+            magnitude=np.zeros(1 + cases), length=length,
         )  # fmt: skip
 
     def total(self, factors: Array, force: Array) -> float:

@@ -19,6 +19,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual
+from bemcontact.formulations.open_position import settled
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
 from bemcontact.options import FormulationName, SolveOptions, options_of
 
@@ -232,7 +233,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
         empty = _without_contact(contact, note)
         return replace(empty, solver=search.method, iterations=search.iterations, history=search.history)
     p, u_n, a = unscaled(contact, search.end.pressure, search.end.amplitudes)
-    return ContactSolution(
+    solution = ContactSolution(
         formulation=FormulationName.COMPLEMENTARITY,
         solver=search.method,
         status=search.status,
@@ -242,13 +243,14 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
         iterations=search.iterations,
         history=search.history,
     )
+    return settled(contact, solution)
 
 
 def polish(contact: CondensedContact, solution: ContactSolution) -> ContactSolution:
     """Make an approximate solution exact by a few primal-dual steps from its contact set {p/T > δ/U}.
 
     `polished` is set if the natural residual got smaller, or is at round-off where the solver had left traces of
-    pressure off the contact set. Otherwise the solution is returned as it is.
+    pressure off the contact set. Otherwise the solution is returned as it is. A position that is open is `settled`.
     """
     body = scaled(contact)
     p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
@@ -256,9 +258,10 @@ def polish(contact: CondensedContact, solution: ContactSolution) -> ContactSolut
     end = primal_dual(body, touching, POLISH_STEPS)
     cleaner = end.residual <= ACCEPTED and solution.pressure[~touching].any()
     if not (cleaner or end.residual < body.residual(p, a)):
-        return solution
+        return settled(contact, solution)
     p, u_n, a = unscaled(contact, end.pressure, end.amplitudes)
-    return replace(solution, pressure=p, displacement=u_n, rigid_amplitudes=a, unpolished=solution.pressure)
+    better = replace(solution, pressure=p, displacement=u_n, rigid_amplitudes=a, unpolished=solution.pressure)
+    return settled(contact, better)
 
 
 def loose_load(contact: ScaledContact) -> Array:

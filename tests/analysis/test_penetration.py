@@ -7,6 +7,8 @@ from hypothesis import strategies as st
 
 from bemcontact import follow, solve, solve_cases
 from bemcontact.analysis.compare import study
+from bemcontact.analysis.penetration import surface_gaps
+from bemcontact.bem.surface_gaps import NODES
 from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
 
@@ -158,3 +160,125 @@ def test_what_lies_behind_a_surface_is_noted_and_what_is_flush_is_left_out():
     assert result.certified
     (note,) = [note for note in result.notes if "behind the rigid surface of 'floor'" in note]
     assert "'right', 'step', 'under'" in note
+
+
+def block(corners, zones, conditions, *, elements=3, **more):
+    """A polygon with the edges 0, 1, ... and these zones, each as edges and surface."""
+    outer = [{"name": str(i), "start": tuple(at), "elements": elements} for i, at in enumerate(corners)]
+    stated = {name: {"edges": edges, "surface": surface} for name, (edges, surface) in zones.items()}
+    data = {"name": "block", "material": {"young_modulus": E, "poisson_ratio": NU}, "boundary": {"outer": outer}}
+    return Problem(**data, conditions=conditions, contact_zones=stated, **more)  # pyright: ignore[reportArgumentType]
+
+
+def groove(wall):
+    """A floor and a wall."""
+    return {"kind": "polyline", "points": [(-50, 0), (wall, 0), (wall, 20)]}
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.floats(0.01, 5), st.floats(-0.5, 0.5))
+def test_a_tool_carries_a_body_into_a_wall(travel, past):
+    """Translations are exact in linear theory, so the depth is the way less the gap, however long the way is."""
+    gap, plane = travel * (1 - past), {"kind": "plane", "point": (0, 0), "normal": (1, 0)}
+    tool = {"press": {"zones": "press", "point": (0, 5), "displacement": {"x": travel, "y": 0, "rotation": 0}}}
+    corners = [(0, 0), (SIDE, 0), (SIDE, SIDE), (0, SIDE)]
+    zones = {"floor": ("0", groove(SIDE + gap)), "press": ("3", plane)}
+    result = solve(block(corners, zones, {"2": {"pressure": 1.0}, "1": {"pressure": 1.0}}, tools=tool))
+    strain = (NU * (1 + NU) - (1 - NU**2)) * SIDE / E  # plane strain, unit pressure on top and on the free side
+    depth = travel + strain - gap
+    assert result.certificate.certified
+    if depth > 0.001:  # strains of 0.001 of the size 14 and their squares explain less
+        assert result.penetration is not None
+        assert result.penetration.depth == pytest.approx(depth, rel=1e-6)
+        assert result.penetration.edge == "1"
+    elif depth < 0:
+        assert result.certified
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.one_of(st.just(0.0), st.floats(-9, -3).map(lambda power: 10**power)), st.floats(0.3, 1.0), st.floats(0, 6.28))
+@example(0.0, 0.5, 0.0)
+@example(1e-5, 0.5, 0.0)
+def test_a_side_that_fits_another_face_of_the_surface_penetrates_it(gap, cut, turn):
+    """A snug fit is no end of the surface: the depth is that of a side with a gap, less the gap."""
+    c, s = np.cos(turn), np.sin(turn)
+    turned = np.array([(c, s), (-s, c)])
+    corners = np.array([(0, 0), (SIDE - cut, 0), (SIDE, cut), (SIDE, SIDE), (0, SIDE)]) @ turned
+    line = {"kind": "polyline", "points": (np.array(groove(SIDE + gap)["points"]) @ turned).tolist()}
+    held = {"kind": "plane", "point": (0, 0), "normal": turned[0].tolist()}
+    result = solve(block(corners, {"groove": ("0", line), "held": ("4", held)}, {"3": {"pressure": 40.0}}))
+    side = result.boundary.edge == 2
+    moved = (result.boundary.displacement[side] @ turned[0]).max() - gap
+    assert moved > 0.1
+    assert result.penetration is not None
+    assert result.penetration.depth == pytest.approx(moved, rel=0.02)  # a node may be less deep than its neighborhood
+    assert not any("taken to end" in note for note in result.notes)
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.one_of(st.just(0.0), st.floats(-9, -3).map(lambda power: 10**power)), st.integers(0, 3))
+@example(0.0, 0)
+@example(1e-5, 0)
+def test_a_pin_that_fits_its_hole_does_not_end_at_its_zone(gap, quarter):
+    """A plate on a pin that touches one quarter of the bore; the rim beside it comes down on the pin."""
+    corners = [(-4, -4), (4, -4), (4, 4), (-4, 4)]
+    pin = {"kind": "circle", "center": (0, 0), "radius": 1 - gap, "body": "outside"}
+    arcs = [{"name": f"arc {i}", "kind": "arc", "center": (0, 0), "radius": 1, "angles": (-90 * i, -90 * (i + 1)),
+             "elements": 4} for i in range(4)]  # fmt: skip
+    fixed = {"0": {"displacement": {"x": 0, "y": 0}}, "2": {"pressure": 20.0}}
+    plain = block(corners, {"pin": ("0", pin)}, fixed).model_dump()
+    boundary = {"outer": plain["boundary"]["outer"], "holes": [arcs]}
+    zones = {"pin": {"edges": f"arc {quarter}", "surface": pin}}
+    result = solve(Problem(**{**plain, "boundary": boundary, "contact_zones": zones}))
+    assert result.penetration is not None
+    assert result.penetration.depth > 0.05
+    assert not any("taken to end" in note for note in result.notes)
+
+
+@pytest.mark.parametrize(("beyond", "ended"), [(0.0, True), (1e-4, False)])
+def test_a_straight_face_may_end_where_its_zone_ends(beyond, ended):
+    """Half of the sole is on the floor; the other half sinks below the floor, and so does the foot beyond a notch.
+
+    A foot that does not continue the sole directly, and one beyond a notch alone, is in the floor.
+    """
+    corners = [(0, 0), (5, 0), (7, beyond), (7, 1), (8, 1), (8, 0.001), (SIDE, 0.001), (SIDE, SIDE), (0, SIDE)]
+    floor = {"kind": "plane", "point": (0, 0), "normal": (0, 1)}
+    result = solve(block(corners, {"floor": ("0", floor)}, {"7": {"pressure": 5.0}, "8": {"displacement": {"x": 0}}}))
+    notes = [note for note in result.notes if "taken to end at (5, 0)" in note]
+    assert result.certificate.certified
+    assert result.certified is ended
+    assert len(notes) == ended
+    assert all("'1' lies in it" in note and "'floor'" in note for note in notes)
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.floats(0.8, 2.0), st.floats(3, 6), st.floats(1.5, 3), st.floats(-2, 1), st.sampled_from([0.0, 1e-3]))
+@example(1.4523, 5.805, 2.724, -1.0, 0.0)
+def test_zones_on_one_surface_are_as_one_zone(angle, width, height, power, off):
+    """The contact points of one zone and of one zone for each edge are the same, and so are the verdicts."""
+    corners = [(0, 0), (width, 0), (width + height / np.tan(angle), height), (12, height), (12, 9), (0, 9)]
+    surface = {"kind": "polyline", "points": np.add(corners[:4], (off, -off)).tolist()}
+    loads = {edge: {"pressure": share * 10**power} for edge, share in (("4", 1.0), ("3", 0.8), ("5", 0.6))}
+    one = solve(block(corners, {"all": (("0", "1", "2"), surface)}, loads, elements=2))
+    three = solve(block(corners, {f"zone {i}": (str(i), surface) for i in range(3)}, loads, elements=2))
+    assert np.sort(one.solution.pressure) == pytest.approx(np.sort(three.solution.pressure), rel=1e-9)
+    assert one.certified is three.certified
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.lists(st.floats(-1, 1), min_size=8, max_size=8), st.floats(-12, -6))
+@example([0.3, -0.5, 0.6, 0.8, -0.2, -0.7, 0.1, 0.4], -8)
+@example([0.3, -0.5, -0.6, -0.8, -0.2, -0.7, 0.1, 0.4], -8)
+def test_nodes_have_the_faces_of_contact_points(shift, power):
+    """A surface beside the corner of the body by round-off has the verdict of one at the corner, and the same gaps."""
+    corners = [(0, 0), (5, 0), (5, 2), (12, 2), (12, 9), (0, 9)]
+    line = np.array(corners[:4]) + 12 * 10**power * np.reshape(shift, (4, 2))
+    zone = {"step": (("0", "1", "2"), {"kind": "polyline", "points": line.tolist()})}
+    result = solve(block(corners, zone, {"4": {"pressure": 1.0}, "3": {"pressure": 1.0}, "5": {"pressure": 0.9}}))
+    assert result.certified
+    gaps = surface_gaps(result.problem, result.boundary, result.contact, result.solution)
+    seen = gaps.linear("step", np.flatnonzero(gaps.paired("step")))
+    delta = result.contact.initial_gap + result.solution.displacement
+    for normals, gap in zip(seen.normals[:, NODES].reshape(-1, 2), seen.gap[:, NODES].ravel(), strict=True):
+        alike = (np.hypot(*(result.contact.normals - normals).T) < 1e-9) & (abs(delta - gap) < 1e-9)
+        assert alike.any()

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import bemcontact
@@ -56,6 +56,7 @@ def numbers(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
 PATHS = [*numbers(DATA)]
 
 
+@settings(max_examples=30)
 @given(st.lists(st.tuples(st.sampled_from(PATHS), st.sampled_from(EXTREMES)), min_size=1, max_size=3))
 def test_any_number_gives_a_problem_or_a_sentence_with_its_place(changes):
     data = copy.deepcopy(DATA)
@@ -105,6 +106,7 @@ def test_bodies_and_surfaces_far_from_the_origin_or_very_wide_are_refused(far):
             bemcontact.Problem(**data)
 
 
+@settings(max_examples=8)
 @given(st.floats(0, 360), st.integers(1, 7), st.floats(0.1, 1.0))
 def test_a_hole_that_touches_the_outline_is_refused_wherever_its_arcs_begin(angle, parts, size):
     """The circle touches the bottom in one point; its polygon need not have a corner there."""
@@ -119,6 +121,7 @@ def test_a_hole_that_touches_the_outline_is_refused_wherever_its_arcs_begin(angl
         bemcontact.Problem(**data)
 
 
+@settings(max_examples=8)
 @given(st.floats(1e-3, 0.2))
 def test_a_hole_near_the_outline_is_not_refused(ligament):
     data = copy.deepcopy(DATA)

@@ -9,13 +9,12 @@ from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorizations import posv, row_lengths
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 
-RUIZ_SWEEPS = 4
 OF_OBJECTIVE, OF_BOUNDS, UNDECIDED = 1e-3, 1e-6, 1e-11
 """Weights in the least-squares problem: of H and c, of the bounds, and of the factors themselves. A has weight 1."""
-BITS = 1000.0
-"""The largest binary logarithm of a factor."""
-LEAST = 2.0**-200
-"""The smallest factor of a variable."""
+OF_VARIABLE, OF_ROW = 200.0, 1000.0
+"""Largest binary logarithms of the natural factors. A factor of H is a product of two factors of variables."""
+WIDE = 49.0
+"""Range of binary logarithms below which no entry can be rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,118 +37,103 @@ def unscaled(statement: Statement) -> tuple[Statement, Scales]:
 
 
 def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
-    """Scale the rows and columns of A to size one, and the largest entry of H and c to one.
+    """Scale by natural factors, then columns and rows of A to size one, and the largest entry of H and c to one.
 
-    The scale of a column of zeros in A comes from H.
+    If all bounds are smaller than one, the unit of all variables is made smaller, as absolute tolerances assume.
     All factors are powers of two, so that no digit of the data changes.
     """
-    n = statement.c.size
-    factors = _ruiz(statement, natural_factors(statement))
-    factors[:n] = factors[:n].clip(LEAST, 1.0 / LEAST)  # a factor of H is a product of two of them
-    factors = _power_of_two(factors)
-    D, E = factors[:n], factors[n:]
-    D *= _smaller_unit(statement, D, E)
-    H, c, A = D[:, None] * statement.H * D, D * statement.c, E[:, None] * statement.A * D
-    last = _power_of_two(1.0 / row_lengths(A))
-    E *= last
-    A *= last[:, None]
+    n, bounds = statement.c.size, np.array([statement.lower, statement.upper])
+    natural = natural_factors(statement, bounds)
+    D, E = natural[:n], natural[n:]
+    A = E[:, None] * statement.A * D
+    columns = np.maximum.reduce(np.abs(A), axis=0, initial=0.0)
+    columns[columns == 0.0] = 1.0
+    D = _power_of_two(D / columns)
+    E = _power_of_two(E / row_lengths(A * (D / natural[:n])))
+    A = E[:, None] * statement.A * D
+    bounds *= np.concatenate([1.0 / D, E])
+    smaller = _smaller_unit(bounds)
+    if smaller < 1.0:
+        D, E, bounds = smaller * D, E / smaller, bounds / smaller
+    H, c = D[:, None] * statement.H * D, D * statement.c
     unit = _near_power(1.0 / (max(largest(H), largest(c)) or 1.0))
     H *= unit
     c *= unit
-    factors = np.concatenate([1.0 / D, E])
-    scaled = Statement(H=H, c=c, A=A, lower=factors * statement.lower, upper=factors * statement.upper)
-    return scaled, Scales(variables=D, rows=E, objective=unit)
+    return Statement(H=H, c=c, A=A, lower=bounds[0], upper=bounds[1]), Scales(variables=D, rows=E, objective=unit)
 
 
-def natural_factors(statement: Statement) -> Array:
-    """Factors of columns and rows (n + m,) that minimize the sum of squares of the logarithms of all entries.
+def natural_factors(statement: Statement, bounds: Array) -> Array:
+    """Factors of variables and rows (n + m,) that minimize the sum of squares of the logarithms of all scaled entries.
 
     The method is that of Curtis and Reid, J. Inst. Math. Appl. 10 (1972) 118-124. The entries of A have the largest
     weight. Where they do not determine a factor, H and c do, and then the bounds. If the units of a row, a variable or
     the objective change, the factors change with them. So the scaled data do not depend on the units of the data.
 
-    With s² the factor of the objective, z = (s D, E/s, s) multiplies rows and columns of [[H, Aᵀ, c], [A, 0, b],
-    [c, b, 0]] alike, b the bounds of the rows; those of the variables are multiplied by s/(s D).
+    With logarithms d of the factors of variables, e of rows and o of the objective, these are to be small:
+    e_i + d_j + log|A_ij|, o + d_i + d_j + log|H_ij|, o + d_j + log|c_j|, log|b_j| - d_j and e_i + log|b_i|, b the
+    bounds. The normal equations are diagonal in e. So e and o are eliminated, and d is left.
     """
-    n, bound = statement.c.size, _bounds(statement)
-    sizes, weights = _entries(statement, bound[n:])
-    logarithms = np.log2(sizes, out=np.zeros(sizes.shape), where=weights > 0.0)
-    right = -(weights * logarithms).sum(axis=1)
-    squares = weights
-    diagonal = squares.reshape(-1)[:: len(squares) + 1]
-    diagonal += weights.sum(axis=1) + UNDECIDED
-    given = bound[:n].nonzero()[0]
-    if given.size:
-        size = OF_BOUNDS * np.log2(bound[given])
-        diagonal[given] += OF_BOUNDS
-        squares[given, -1] -= OF_BOUNDS
-        squares[-1, given] -= OF_BOUNDS
-        squares[-1, -1] += OF_BOUNDS * given.size
-        right[given] += size
-        right[-1] -= size.sum()
-    z = posv(squares, right)[1]
-    z[:n] -= z[-1]
-    z[n:-1] += z[-1]
-    return np.exp2(z[:-1].clip(-BITS, BITS))
+    n = statement.c.size
+    present, logarithms = _entries(statement)
+    bounds_present, of_bounds = _logarithms(_smaller_bounds(bounds))
+    objective, rows, of_rows = present[: n + 1], present[n + 1 :], logarithms[n + 1 :]
+    column = OF_OBJECTIVE * np.add.reduce(objective, axis=0)
+    of_column = OF_OBJECTIVE * np.add.reduce(logarithms[: n + 1], axis=0)
+    whole = 0.5 * (np.add.reduce(column) + OF_OBJECTIVE * np.add.reduce(objective[n])).item() + UNDECIDED
+    of_whole = 0.5 * (np.add.reduce(of_column) + OF_OBJECTIVE * np.add.reduce(logarithms[n])).item()
+    share, diagonal = column / whole, column + OF_BOUNDS * bounds_present[:n]
+    right = OF_BOUNDS * of_bounds[:n] - of_column + of_whole * share
+    reduced = OF_OBJECTIVE * objective[:n]
+    reduced -= column[:, None] * share
+    e_diagonal = np.add.reduce(rows, axis=1) + (OF_BOUNDS * bounds_present[n:] + UNDECIDED)
+    e_right = np.add.reduce(of_rows, axis=1) + OF_BOUNDS * of_bounds[n:]
+    if rows.size:
+        diagonal += np.add.reduce(rows, axis=0)
+        shares = rows / e_diagonal[:, None]
+        reduced -= rows.T.dot(shares)
+        right += e_right.dot(shares) - np.add.reduce(of_rows, axis=0)
+    reduced.reshape(-1)[:: n + 1] += diagonal + UNDECIDED * (1.0 + largest(diagonal))
+    d = np.minimum(np.maximum(posv(reduced, right)[1], -OF_VARIABLE), OF_VARIABLE)
+    e = np.minimum(np.maximum((e_right + rows.dot(d)) / -e_diagonal, -OF_ROW), OF_ROW)
+    return np.exp2(np.concatenate([d, e]))
 
 
-def _bounds(statement: Statement) -> Array:
+def _entries(statement: Statement) -> tuple[Array, Array]:
+    """Which entries of [H; c; A] are present (n + 1 + m, n), and their binary logarithms; zeros elsewhere.
+
+    An entry of H and A counts as rounding if it is small beside the largest entry of its row and of its column.
+    """
+    n = statement.c.size
+    sizes = np.abs(np.concatenate([statement.H, statement.c[None], statement.A]))
+    present, logarithms = _logarithms(sizes)
+    if logarithms.item(logarithms.argmax()) - logarithms.item(logarithms.argmin()) > WIDE:
+        sizes[n] = 0.0
+        sizes[n] = np.maximum.reduce(sizes, axis=0)
+        counts = sizes > 4.0 * EPS * np.minimum(np.maximum.reduce(sizes, axis=1)[:, None], sizes[n])
+        counts[n] = True
+        present *= counts
+        logarithms *= counts
+    return present, logarithms
+
+
+def _logarithms(sizes: Array) -> tuple[Array, Array]:
+    """One where there is a number, zero where there is none; and binary logarithms of the numbers."""
+    absent = sizes == 0.0
+    return 1.0 - absent, np.log2(sizes + absent)
+
+
+def _smaller_bounds(bounds: Array) -> Array:
     """Size of the smaller nonzero bound of each constraint; 0 where there is none (n + m,)."""
-    bounds = np.abs([statement.lower, statement.upper])
-    bounds[bounds == 0.0] = np.inf
-    smaller = bounds.min(axis=0)
+    sizes = np.abs(bounds)
+    sizes[sizes == 0.0] = np.inf
+    smaller = np.minimum.reduce(sizes, axis=0)
     smaller[smaller == np.inf] = 0.0
     return smaller
 
 
-def _entries(statement: Statement, bound: Array) -> tuple[Array, Array]:
-    """Sizes of the entries of [[H, Aᵀ, c], [A, 0, b], [c, b, 0]], and their weights; zeros and rounding have weight 0.
-
-    An entry counts as rounding if it is small beside the largest entry of its row and of its column.
-    """
-    (m, n), (H, c, A) = statement.A.shape, statement.absolute
-    sizes = np.zeros((n + m + 1, n + m + 1))
-    sizes[:n, :n], sizes[n:-1, :n], sizes[-1, :n], sizes[-1, n:-1] = H, A, c, bound
-    main = sizes[:-1, :n]
-    least = np.minimum(main.max(axis=1, keepdims=True), main.max(axis=0, keepdims=True))
-    weights = np.zeros(sizes.shape)
-    weights[:-1, :n] = main > 4.0 * EPS * least
-    weights[:n] *= OF_OBJECTIVE
-    weights[-1, :n] = OF_OBJECTIVE * (c > 0.0)
-    weights[-1, n:-1] = OF_BOUNDS * (bound > 0.0)
-    for square in (sizes, weights):
-        square[:n, n:] = square[n:, :n].T
-        square[n:-1, -1] = square[-1, n:-1]
-    return sizes, weights
-
-
-def _ruiz(statement: Statement, factors: Array) -> Array:
-    """Improve the factors so that the largest entry of each row and column is about one (Ruiz, RAL-TR-2001-034)."""
-    H, _, A = statement.absolute
-    n = A.shape[1]
-    D, E = factors[:n], factors[n:]
-    linear = E[:, None] * A * D
-    columns = np.maximum.reduce(linear, axis=0, initial=0.0)
-    outside = columns == 0.0
-    mixed = np.count_nonzero(outside) > 0
-    for _ in range(RUIZ_SWEEPS):
-        if mixed:
-            sizes = D * np.maximum.reduce(H * D, axis=1)
-            columns = np.where(outside, sizes / (largest(sizes) or 1.0), columns)
-        sizes = np.concatenate([columns, np.maximum.reduce(linear, axis=1)])
-        sizes[sizes == 0.0] = 1.0
-        factors /= np.sqrt(sizes)
-        if sizes[sizes.argmax()] < 2.0 and sizes[sizes.argmin()] > 0.5:  # another sweep would change little
-            break
-        linear = E[:, None] * A * D
-        columns = np.maximum.reduce(linear, axis=0, initial=0.0)
-    return factors
-
-
-def _smaller_unit(statement: Statement, D: Array, E: Array) -> float:
+def _smaller_unit(bounds: Array) -> float:
     """Factor of all variables by which the largest bound is about one if all are smaller, as tolerances assume."""
-    factors = np.concatenate([1.0 / D, E])
-    sizes = np.abs(np.concatenate([factors * statement.lower, factors * statement.upper]))
+    sizes = np.abs(bounds)
     size = largest(sizes[sizes < np.inf])
     return _near_power(size) if 0.0 < size < 1.0 else 1.0
 

@@ -303,14 +303,14 @@ class Descent:
     def _reach(self) -> Array:
         """Size of the numbers whose rounding each component of the point has (n,), estimated by one sample.
 
-        Each row is satisfied up to the rounding of its terms. A change of the rows moves the point by N and by a Newton
-        step.
+        Each row is satisfied up to the rounding of its terms, on the way to the point too. A change of the rows moves
+        the point by N and by a Newton step.
         """
-        working, hessian, x = self.working, self.hessian, self.progress.x
+        working, hessian, size = self.working, self.hessian, self.progress.travelled
         if working.size == 0:
-            return np.abs(x)
+            return size
         signs = np.where(np.arange(working.size) % 2, -1.0, 1.0)
-        moved = working.N.dot(signs * np.abs(working.W).dot(np.abs(x)))
+        moved = working.N.dot(signs * np.abs(working.W).dot(size))
         return np.abs(moved + hessian.newton(self.progress.statement.H.dot(moved)))
 
     def _advance(

@@ -56,7 +56,7 @@ class Statement:
     @property
     def row_sum(self) -> float:
         """The largest sum of a row of |H|."""
-        return largest(self.absolute[0].dot(np.ones(self.c.size)))
+        return largest(np.add.reduce(self.absolute[0], axis=1))
 
     @cached_property
     def bound_size(self) -> Array:
@@ -97,6 +97,14 @@ class Statement:
         unit = np.zeros(n)
         unit[constraint] = 1.0
         return unit
+
+    def normals(self, constraints: NDArray[np.intp]) -> Array:
+        """Gradients of constraints in ascending order."""
+        n, fixed = self.c.size, int(constraints.searchsorted(self.c.size))
+        normals = np.zeros((constraints.size, n))
+        normals[np.arange(fixed), constraints[:fixed]] = 1.0
+        normals[fixed:] = self.A[constraints[fixed:] - n]
+        return normals
 
     def sides_reached(self, values: Array, slack: Array) -> Sides:
         """Nearer bound of each active constraint (-1, +1, or 2 for an equality); 0 if it is farther than its slack."""
@@ -161,8 +169,8 @@ def _floats(name: str, given: Any) -> Array:
     """A new array of numbers."""
     if type(given) is np.ndarray and given.dtype == np.float64:
         return given.copy()
-    dense: Any = given
-    return real_array(dense.toarray() if sparse.issparse(given) else dense, name, finite=False).copy()
+    dense = given.toarray() if sparse.issparse(given) else given  # pyright: ignore[reportAttributeAccessIssue]
+    return real_array(dense, name, finite=False).copy()
 
 
 def _matrix(name: str, given: Any, columns: int) -> Array:

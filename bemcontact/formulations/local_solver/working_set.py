@@ -275,7 +275,7 @@ def supporting(progress: Progress, sides: Sides) -> Sides:
     if orthogonal(unit_rows(statement.A[rows][:, free])[0], DEPENDENT)[3].size == rows.size:
         return sides
     active = sides.nonzero()[0]
-    normals, _ = unit_rows(np.array([statement.normal(int(constraint)) for constraint in active]))
+    normals, _ = unit_rows(statement.normals(active))
     equal, upper = sides[active] == EQUALITY, sides[active] == 1
     inwards = np.where(upper, -1.0, 1.0)[:, None] * normals
     try:

@@ -1,0 +1,206 @@
+"""Whether contact is where the body and the surfaces are after they have moved.
+
+Contact sees gaps along the normals of the undeformed body, ε + n·(u - w). This is exact on a plane. Elsewhere the gap
+of the displaced places differs from it by squares of displacements. These are small in linear theory, but not where a
+body moves far before it is held. The contact problem is then solved once more with the gaps of the displaced places;
+the change of the pressure is the error of the first solution, to first order.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.assessment.penetration import Misfit, Penetration, tolerated
+from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.formulations import complementarity
+from bemcontact.problem.surface_lines import Polyline
+
+NOTED = 0.01
+"""Change of a peak over the largest one from which it is noted. A relative curvature that is off by 2 % changes the
+peak of a line contact by half of that (Hertz)."""
+WITHHELD = 0.05
+"""Change from which a result is not certified: the curvature is off by a tenth."""
+NO_CHANGE = 1e-7
+"""Difference of the gaps, over the displacement scale of contact, that changes nothing."""
+ALIKE = 0.1
+"""Difference of displacements on the boundary, over one of them, up to which the body moves as a whole."""
+
+
+class _Displaced(NamedTuple):
+    """Contact points after they have moved.
+
+    Parameters
+    ----------
+    motion : (n, 2) displacement against the surface [L]
+    change : (n,) of the gap beside the linear one [L]
+    distance : (n,) from the surface [L]
+    other : (n,) whether another face of the surface is nearest
+    """
+
+    motion: Array
+    change: Array
+    distance: Array
+    other: BoolArray
+
+
+def placement(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution
+) -> tuple[Penetration | None, tuple[str, ...]]:
+    """Find pressure off a surface, or pressure that the motion changes too much; note what it changes by less."""
+    moved = _displaced(gaps, points, contact, solution)
+    pressed = contact.pressed(solution.pressure, solution.displacement)
+    if not pressed.any():
+        return None, ()
+    off, beside = _slipped(gaps, points, contact, pressed, moved)
+    if len(off):
+        farthest = int(off[np.argmax(moved.distance[off])])
+        return _off_the_surface(gaps, points, contact, farthest, moved), ()
+    moved.change[beside] = 0.0
+    if abs(moved.change).max() <= NO_CHANGE * contact.scales.displacement:
+        return None, ()
+    return _changed(gaps, points, contact, solution, moved)
+
+
+def _displaced(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution
+) -> _Displaced:
+    """Compare the gap of contact with the distance after the motion; on another, nearer face the former counts."""
+    at, displacement = contact.points, _at_points(gaps, points)
+    linear = contact.initial_gap + solution.displacement
+    found = _Displaced(displacement.copy(), np.zeros(len(at)), linear.copy(), np.zeros(len(at), bool))
+    for number, zone in enumerate(contact.zone_names):
+        if zone not in gaps.surfaces:
+            continue
+        own = contact.zone == number
+        there = gaps.exact(zone, at[own] + displacement[own])
+        other = np.sum(there.normals * contact.normals[own], axis=-1) < SAME_FACE
+        beyond = there.gap - linear[own]
+        grooved = other & (beyond < 0) & isinstance(gaps.surfaces[zone], Polyline)
+        found.motion[own] -= gaps.tool_motion(zone, at[own])
+        found.change[own] = np.where(grooved, 0.0, beyond)
+        found.distance[own], found.other[own] = there.gap, other
+    return found
+
+
+def _at_points(gaps: SurfaceGaps, points: ContactPoints) -> Array:
+    """Displacement (n, 2) [L] of the contact points."""
+    displacement = np.zeros((len(points.mesh.nodes), 2))
+    displacement[points.mesh.elements] = gaps.state.displacement
+    return displacement[points.node]
+
+
+def _slipped(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, pressed: BoolArray, moved: _Displaced
+) -> tuple[IntArray, IntArray]:
+    """Points under pressure opposite to another face: those that are off the surface, and those beside which it is.
+
+    The latter have moved along a corner of the surface by less than an element, which the mesh does not resolve.
+    """
+    allowed, off, beside = _allowed(gaps, contact), list[int](), list[int]()
+    for i in np.flatnonzero(pressed & moved.other & (moved.change > 0)).tolist():
+        around = np.flatnonzero(np.any(points.mesh.elements == points.node[i], axis=1))
+        gone = moved.distance[i] > allowed
+        gone = gone and gaps.distance(contact.zone_names[contact.zone[i]], around).min() > allowed
+        (off if gone else beside).append(i)
+    return np.array(off, int), np.array(beside, int)
+
+
+def _allowed(gaps: SurfaceGaps, contact: CondensedContact) -> float:
+    """Distance [L] that is tolerated."""
+    largest = float(np.hypot(*np.moveaxis(gaps.state.displacement, 2, 0)).max())
+    return tolerated(contact, largest, gaps.problem.boundary.size)
+
+
+def _off_the_surface(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, i: int, moved: _Displaced
+) -> Penetration:
+    """Pressure at a point that is off the surface."""
+    unit, zone = gaps.problem.units.length, contact.zone_names[contact.zone[i]]
+    words = (
+        f"Pressure acts at {_vector(contact.points[i])} on '{_edge(gaps, points, i)}', where there is no surface of "
+        f"'{zone}' after the body has moved by {_vector(moved.motion[i], unit)}: it is "
+        f"{_length(moved.distance[i], unit)} off. Contact is looked for where the body is drawn. Draw the body where "
+        "it will touch, or correct the motion."
+    )
+    distance, allowed = float(moved.distance[i]), _allowed(gaps, contact)
+    return _misfit(gaps, points, contact, i, Misfit.OFF, distance, allowed, words)
+
+
+def _changed(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution, moved: _Displaced
+) -> tuple[Penetration | None, tuple[str, ...]]:
+    """Solve with the gaps of the displaced places, and judge how the peak of each zone changes."""
+    again = complementarity.solve(replace(contact, initial_gap=contact.initial_gap + moved.change))
+    solved = again.status is Status.SOLVED
+    number, change = max(_peak_changes(contact, solution.pressure, again.pressure), key=lambda item: abs(item[1]))
+    if solved and abs(change) < NOTED:
+        return None, ()
+    own = np.flatnonzero(contact.zone == number)
+    i = int(own[np.argmax(np.maximum(solution.pressure, again.pressure if solved else 0.0)[own])])
+    zone, motion = contact.zone_names[number], moved.motion[i]
+    effect = (
+        f"with the gaps after this motion, the peak pressure there {'rises' if change > 0 else 'falls'} by "
+        f"{100 * abs(change):.2g} %{' of the largest' * (len(contact.zone_names) > 1)}"
+        if solved
+        else "with the gaps after this motion, contact does not hold the body"
+    )
+    words = (
+        f"the body moves by {_vector(motion, gaps.problem.units.length)} against the surface of '{zone}', which is not "
+        f"small beside its shape: {effect}; {_remedy(gaps, motion)}"
+    )
+    if solved and abs(change) < WITHHELD:
+        return None, (words,)
+    words = f"{words[0].upper()}{words[1:]}."
+    off, allowed = float(abs(moved.change[own]).max()), 0.0
+    return _misfit(gaps, points, contact, i, Misfit.MOVED, off, allowed, words), ()
+
+
+def _peak_changes(contact: CondensedContact, before: Array, after: Array) -> Iterator[tuple[int, float]]:
+    """Number of each zone, and the change of its peak over the largest peak."""
+    for number in range(len(contact.zone_names)):
+        own = contact.zone == number
+        yield number, float((after[own].max(initial=0.0) - before[own].max(initial=0.0)) / before.max())
+
+
+def _remedy(gaps: SurfaceGaps, motion: Array) -> str:
+    """What to do about a motion: draw the body there if it moves as a whole."""
+    displacement = gaps.state.displacement.reshape(-1, 2)
+    spread = np.hypot(*np.ptp(displacement, axis=0))
+    if spread <= ALIKE * np.hypot(*motion):
+        return f"draw the body where it touches: move it by {_vector(motion)}, or the surface by {_vector(-motion)}"
+    return "draw the body near to where it will touch, or expect an error of this size: the linear theory does not hold"
+
+
+def _misfit(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, i: int, kind: Misfit,
+    depth: float, allowed: float, words: str,
+) -> Penetration:  # fmt: skip
+    """Describe what does not fit at a contact point."""
+    x, y = contact.points[i].tolist()
+    zone = contact.zone_names[contact.zone[i]]
+    return Penetration(
+        kind=kind, depth=depth, allowed=allowed, at=(x, y), edge=_edge(gaps, points, i), zone=zone, paired=True,
+        words=words,
+    )  # fmt: skip
+
+
+def _edge(gaps: SurfaceGaps, points: ContactPoints, i: int) -> str:
+    """Name of the edge of a contact point."""
+    element = points.element[np.flatnonzero(points.point == i)[0]]
+    return gaps.state.edge_names[gaps.state.edge[element]]
+
+
+def _vector(values: Array, unit: str = "") -> str:
+    """Write two numbers; what is round-off beside the other is zero."""
+    x, y = np.where(abs(values) > 1e-3 * abs(values).max(), values, 0.0) + 0.0
+    return f"({x:.4g}, {y:.4g}) {unit}".strip()
+
+
+def _length(value: float, unit: str) -> str:
+    return f"{value:.3g} {unit}".strip()

@@ -1,0 +1,142 @@
+"""Contact of bodies that move far before they are held: wrong curvature, and pressure where there is no surface."""
+
+import re
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from bemcontact import follow, solve
+from bemcontact.analysis.placement import NOTED, WITHHELD
+from bemcontact.assessment.penetration import Misfit
+from bemcontact.problem import Problem
+
+R = 10.0
+STEEL = {"young_modulus": 210e3, "poisson_ratio": 0.3}
+
+
+def shaft(clearance, *, sinks=0.0, turn=270.0, size=1.0):
+    """A shaft in a bore, pressed in a direction; it is drawn above the bottom, and sinks so far before it is held."""
+    c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    center = (sinks - clearance) * c * size, (sinks - clearance) * s * size
+    names = {"low": (-4, 4, 24), "east": (4, 90, 16), "upper": (90, 270, 8), "west": (270, 356, 16)}
+    graded = {"east": {"ratio": 8, "towards": "start"}, "west": {"ratio": 8, "towards": "end"}}
+    arcs = [
+        {"name": name, "kind": "arc", "center": (0, 0), "radius": R * size, "angles": (turn + a, turn + b),
+         "elements": elements, **({"grading": graded[name]} if name in graded else {})}
+        for name, (a, b, elements) in names.items()
+    ]  # fmt: skip
+    surface = {"kind": "circle", "center": center, "radius": (R + clearance) * size, "body": "inside"}
+    data = {
+        "name": "shaft",
+        "material": STEEL,
+        "boundary": {"outer": arcs},
+        "loads": {"gravity": {"density": 1 / size, "acceleration": (0.3 * c, 0.3 * s)}},
+        "contact_zones": {"bore": {"edges": ["low"], "surface": surface}},
+    }
+    return Problem(**data)  # pyright: ignore[reportArgumentType]
+
+
+def stated_change(result):
+    """The change of the peak that a note or the verdict states, and whether the result is withheld."""
+    texts = [*result.notes, *([result.penetration.words] if result.penetration else [])]
+    found = [re.search(r"(rises|falls) by ([\d.e-]+) %", text) for text in texts]
+    changes = [float(item[2]) / (100 if item[1] == "rises" else -100) for item in found if item]
+    assert len(changes) <= 1
+    return changes[0] if changes else 0.0
+
+
+@settings(max_examples=6, deadline=None)
+@given(st.floats(0.02, 4), st.floats(0, 360), st.sampled_from([1e-3, 1.0, 1e3]))
+@example(2.0, 270.0, 1.0)
+def test_the_change_of_a_peak_is_that_of_hertz(clearance, turn, size):
+    """Drawn concentric, the gap c (1 - cos φ) is that of the relative radius R²/c; it is R (R + c)/c if it touches."""
+    result = solve(shaft(clearance, sinks=clearance, turn=turn, size=size))
+    expected = np.sqrt(R / (R + clearance)) - 1
+    change = stated_change(result)
+    if abs(expected) > 1.2 * NOTED:
+        assert change == pytest.approx(expected, rel=0.05, abs=0.001)
+    elif abs(expected) < 0.8 * NOTED:
+        assert change == 0.0
+    if abs(abs(expected) - WITHHELD) > 0.005:
+        assert result.certified == (abs(expected) < WITHHELD)
+    assert result.certificate.certified
+    if not result.certified:
+        assert result.penetration is not None
+        assert result.penetration.kind is Misfit.MOVED
+
+
+@pytest.mark.parametrize("clearance", [0.02, 2.0])
+def test_the_body_drawn_where_it_touches_has_no_note(clearance):
+    result = solve(shaft(clearance))
+    assert result.certified
+    assert stated_change(result) == 0.0
+
+
+def test_the_remedy_of_the_message_is_one():
+    """Moved as the verdict says, the body is certified, and the peak is what the verdict announced."""
+    drawn, moved = solve(shaft(2.0, sinks=2.0)), solve(shaft(2.0))
+    assert "(0, -2)" in drawn.penetration.words
+    ratio = moved.footprint.peak.pressure / drawn.footprint.peak.pressure
+    assert ratio - 1 == pytest.approx(stated_change(drawn), rel=0.03)
+
+
+def block(slide, *, end=25.0, left=-20.0, turn=0.0):
+    """A block on a table that ends, pushed sideways."""
+    c, s = np.cos(turn), np.sin(turn)
+
+    def at(x, y):
+        return c * x - s * y, s * x + c * y
+
+    corners = {"bottom": (0, 0), "right": (20, 0), "top": (20, 20), "left": (0, 20)}
+    outer = [{"name": name, "start": at(*corner), "elements": 8} for name, corner in corners.items()]
+    line = [at(left, 0), at(end, 0), at(end, -50)]
+    data = {
+        "name": "block",
+        "material": STEEL,
+        "boundary": {"outer": outer},
+        "conditions": {"left": {"displacement": {"normal": -slide}}, "top": {"pressure": 1}},
+        "contact_zones": {"foot": {"edges": "bottom", "surface": {"kind": "polyline", "points": line}}},
+    }
+    return Problem(**data)  # pyright: ignore[reportArgumentType]
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.floats(0, 40), st.floats(0, 6.28))
+@example(30.0, 0.0)
+def test_pressure_where_no_surface_is_left_is_not_certified(slide, turn):
+    """The distance of the leading corner from the end of the table is known; up to an element it is not resolved."""
+    result = solve(block(slide, turn=turn))
+    beyond = 20 + slide - 25
+    if beyond > 20 / 8:
+        assert not result.certified
+        assert result.penetration.kind is Misfit.OFF
+        assert result.penetration.depth == pytest.approx(beyond, rel=1e-3)
+        assert "no surface" in result.penetration.words
+    elif beyond < -0.01:
+        assert result.certified
+
+
+def test_a_path_says_it_too():
+    path = follow(block(0.0), "conditions.left.displacement.normal", -30.0, 0.0)
+    assert not path.certified
+    assert path.penetration is not None
+    assert path.penetration.kind is Misfit.OFF
+    assert path.penetrates_at == -30.0
+
+
+def test_a_corner_of_the_surface_under_a_smooth_edge_is_no_alarm():
+    """A node on a corner moves along it by less than an element; the peak there belongs to the mesh anyway."""
+    corners = {"bottom": (-10, 0), "right": (10, 0), "top": (10, 10), "left": (-10, 10)}
+    outer = [{"name": name, "start": corner, "elements": 16} for name, corner in corners.items()]
+    line = [(-4, -20), (-4, 0), (3.75, 0), (3.75, -20)]
+    data = {
+        "name": "pad",
+        "material": STEEL,
+        "boundary": {"outer": outer},
+        "conditions": {"left": {"displacement": {"x": 0}}, "top": {"pressure": 300}, "right": {"pressure": -500}},
+        "contact_zones": {"pad": {"edges": "bottom", "surface": {"kind": "polyline", "points": line}}},
+    }
+    result = solve(Problem(**data))  # pyright: ignore[reportArgumentType]
+    assert result.penetration is None

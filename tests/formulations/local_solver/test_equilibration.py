@@ -1,0 +1,81 @@
+"""The natural factors solve their least-squares problem, and take out units of rows, variables and objective."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bemcontact.formulations.local_solver.equilibration import OF_BOUNDS, OF_OBJECTIVE, equilibrate, natural_factors
+from bemcontact.formulations.local_solver.statement import Statement
+
+
+def statement(seed, *, density=1.0):
+    """A program with entries of many sizes; all of them are present for a density of one."""
+    rng = np.random.default_rng(seed)
+    n, m = rng.integers(1, 7), rng.integers(0, 9)
+
+    def entries(*shape):
+        return rng.uniform(1.0, 9.0, shape) * 10.0 ** rng.integers(-3, 4, shape) * (rng.random(shape) < density)
+
+    H, upper = entries(n, n), entries(n + m)
+    upper[upper == 0.0] = np.inf
+    return Statement(H=np.triu(H) + np.triu(H, 1).T, c=entries(n), A=entries(m, n), lower=np.zeros(n + m), upper=upper)
+
+
+def least_squares(stated):
+    """Logarithms of the factors of variables and rows, from one equation for each entry of A, H, c and the bounds."""
+    m, n = stated.A.shape
+    unit, rows, right = np.eye(n + m + 1), [], []
+
+    def add(row, entry, weight):
+        rows.append(np.sqrt(weight) * row)
+        right.append(-np.sqrt(weight) * np.log2(entry))
+
+    for (i, j), entry in np.ndenumerate(stated.A):
+        add(unit[n + i] + unit[j], entry, 1.0)
+    for (i, j), entry in np.ndenumerate(stated.H):
+        add(unit[i] + unit[j] + unit[-1], entry, 0.5 * OF_OBJECTIVE)
+    for j, entry in enumerate(stated.c):
+        add(unit[j] + unit[-1], entry, OF_OBJECTIVE)
+    for i, entry in enumerate(stated.upper):
+        add(unit[i] if i >= n else -unit[i], entry, OF_BOUNDS)
+    return np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0][:-1]
+
+
+@settings(max_examples=60)
+@given(st.integers(0, 10**9))
+def test_natural_factors_are_the_least_squares_solution(seed):
+    stated = statement(seed)
+    factors = natural_factors(stated, np.array([stated.lower, stated.upper]))
+    assert np.abs(np.log2(factors) - least_squares(stated)).max() <= 0.01  # the factors have a small weight
+
+
+@settings(max_examples=100)
+@given(st.integers(0, 10**9))
+def test_natural_factors_change_with_the_units(seed):
+    """So scaled data do not depend on units, up to the small weight of the factors. No entry is of rounding size."""
+    stated, rng = statement(seed), np.random.default_rng(seed)
+    m, n = stated.A.shape
+    columns, rows, unit = (10.0 ** rng.integers(-2, 3, size) for size in (n, m, 1))
+    changed = Statement(
+        H=unit * columns[:, None] * stated.H * columns,
+        c=unit * columns * stated.c,
+        A=rows[:, None] * stated.A * columns,
+        lower=np.zeros(n + m),
+        upper=np.concatenate([1.0 / columns, rows]) * stated.upper,
+    )
+    plain = natural_factors(stated, np.array([stated.lower, stated.upper]))
+    other = natural_factors(changed, np.array([changed.lower, changed.upper]))
+    expected = plain / np.concatenate([columns, rows])
+    assert np.abs(np.log2(other / expected)).max() <= 0.02
+
+
+@settings(max_examples=100)
+@given(st.integers(0, 10**9), st.sampled_from([0.3, 0.7]))
+def test_columns_and_rows_of_the_scaled_matrix_have_size_one(seed, density):
+    """Rows to the nearest power of two; no entry is larger than its row; zeros stay zeros."""
+    stated = statement(seed, density=density)
+    A = equilibrate(stated)[0].A
+    lengths = np.linalg.norm(A, axis=1)
+    assert ((A != 0.0) == (stated.A != 0.0)).all()
+    filled = lengths > 0.0
+    assert np.all(np.abs(np.log2(lengths[filled])) <= 0.5 + 1e-9)
