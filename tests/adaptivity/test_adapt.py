@@ -108,35 +108,36 @@ def test_without_contact_displacements_are_still_judged():
     assert [(item.quantity, item.promised) for item in judged.bars] == [("force", False), ("displacement", True)]
 
 
-def indented(*, turn: float = 0.0, mirror: bool = False, length: float = 1.0, stress: float = 1.0) -> Problem:
-    """A block that a cylinder presses beside its middle, turned, in a mirror, in other units."""
+def foot(*, turn: float = 0.0, mirror: bool = False, length: float = 1.0, stress: float = 1.0) -> Problem:
+    """A block on a round foot, loaded beside its middle, on a plane: turned, in a mirror, in other units."""
     c, s = cos(radians(turn)), sin(radians(turn))
 
     def placed(x: float, y: float) -> list[float]:
         x = -x if mirror else x
         return [length * (c * x - s * y), length * (s * x + c * y)]
 
-    def edges(names: Sequence[str], corners: Sequence[tuple[float, float]]) -> list[dict]:
-        return [{"name": name, "start": placed(*corner)} for name, corner in zip(names, corners, strict=True)]
-
-    names, corners = ["bottom", "right", "top", "left"], [(-37.0, 0.0), (43.0, 0.0), (43.0, 51.0), (-37.0, 51.0)]
-    if mirror:  # edges begin where they ended
-        names, corners = names[::-1], [corners[0], corners[3], corners[2], corners[1]]
-    surface = {"kind": "circle", "center": placed(3, 111 - 0.02), "radius": 60 * length, "body": "outside"}
+    low = [200 - sqrt(200**2 - x**2) for x in (-13.0, 15.0)]
+    corners = [(-13.0, low[0]), (15.0, low[1]), (15.0, 25.0), (-13.0, 25.0)]
+    ends = [*zip(["foot", "right", "top", "left"], corners, corners[1:] + corners[:1], strict=True)]
+    if mirror:  # it is run through the other way
+        ends = [(name, end, start) for name, start, end in ends[::-1]]
+    outer = [{"name": name, "start": placed(*start), "end": placed(*end)} for name, start, end in ends]
+    next(edge for edge in outer if edge["name"] == "foot").update(kind="arc", center=placed(0, 200))
+    plane = {"kind": "plane", "point": [0, 0], "normal": [-s, c]}
     return Problem.model_validate(
         {
-            "name": "indented block",
+            "name": "round foot",
             "material": {"young_modulus": 210e3 * stress, "poisson_ratio": 0.3},
-            "boundary": {"outer": edges(names, corners)},
-            "conditions": {"bottom": {"displacement": {"x": 0, "y": 0}}},
-            "contact_zones": {"ball": {"edges": "top", "surface": surface}},
+            "boundary": {"outer": outer},
+            "conditions": {"top": {"pressure": 30.0 * stress}},
+            "contact_zones": {"floor": {"edges": "foot", "surface": plane}},
         }
     )
 
 
 @pytest.fixture(scope="module")
 def plain() -> Meshed:
-    return found(indented())
+    return found(foot())
 
 
 def told(result: Meshed) -> dict[tuple[str, float], float]:
@@ -155,7 +156,7 @@ def told(result: Meshed) -> dict[tuple[str, float], float]:
 )  # fmt: skip
 def test_bars_depend_on_neither_units_nor_direction(how: dict, plain: Meshed):
     """The same passes and unknowns, and the same bars up to the round-off that bisecting changes amplifies."""
-    result = found(indented(**how))
+    result = found(foot(**how))
     assert result.accuracies[0].passes == plain.accuracies[0].passes
     assert result.condensation.body.mesh.degrees_of_freedom == plain.condensation.body.mesh.degrees_of_freedom
     assert told(result) == pytest.approx(told(plain), rel=1e-6, abs=1e-9)
@@ -218,11 +219,18 @@ def test_a_surface_between_nodes_is_seen():
 
 
 def indented_by_a_pin() -> Problem:
-    """A pin of radius 2 at 17.3 in a face of 80, 0.2 deep."""
-    surface = {"kind": "circle", "center": [17.3, 51 + 2 - 0.2], "radius": 2, "body": "outside"}
-    data = indented().model_dump()
-    data["contact_zones"]["ball"]["surface"] = surface
-    return Problem.model_validate(data)
+    """A clamped block with a pin of radius 2 at 17.3 in its face of 80, 0.2 deep."""
+    corners = [("bottom", -40, 0), ("right", 40, 0), ("top", 40, 50), ("left", -40, 50)]
+    pin = {"kind": "circle", "center": [17.3, 50 + 2 - 0.2], "radius": 2, "body": "outside"}
+    return Problem.model_validate(
+        {
+            "name": "pin",
+            "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": name, "start": [x, y]} for name, x, y in corners]},
+            "conditions": {"bottom": {"displacement": {"x": 0, "y": 0}}},
+            "contact_zones": {"pin": {"edges": "top", "surface": pin}},
+        }
+    )
 
 
 def test_a_body_that_flies_off_has_no_answer():

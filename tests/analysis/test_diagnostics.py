@@ -96,7 +96,7 @@ def test_on_a_smooth_boundary_both_readings_are_reported():
 
 def notes(problem: bemcontact.Problem, start: str) -> list[str]:
     """Notes of a result on the mesh as stated that begin with a text."""
-    result = bemcontact.solve(problem.with_value("mesh.fit_contact_edges", False), "complementarity")
+    result = bemcontact.solve(problem, "complementarity")
     return [note for note in result.notes if note.startswith(start)]
 
 
