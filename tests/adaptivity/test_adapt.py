@@ -6,7 +6,13 @@ from math import cos, pi, radians, sin, sqrt
 import numpy as np
 import pytest
 from adaptive_problems import (
-    block_on_flat_floor, block_on_two_rods, cam_nose, flat_punch_at_corner, half_disk, hertz, no_contact,
+    block_on_flat_floor,
+    block_on_two_rods,
+    cam_nose,
+    flat_punch_at_corner,
+    half_disk,
+    hertz,
+    no_contact,
 )  # fmt: skip
 
 from bemcontact.adaptivity import adapt
@@ -69,8 +75,9 @@ def wide_punch(part: float) -> Problem:
 
 
 def test_the_pressure_of_a_flat_punch_is_infinite_with_the_intensity_of_the_half_plane():
-    """p = P / (π sqrt(a² - x²)), so K = P / (π sqrt(2 a)) with α = 1/2; a block 40 times as large changes it by the
-    order of (1/40)²."""
+    """P = P / (π sqrt(a² - x²)), so K = P / (π sqrt(2 a)) with α = 1/2; a block 40 times as large changes it by the
+    order of (1/40)².
+    """
     result = found(wide_punch(1 / 40))
     (judged,) = result.accuracies
     assert judged.met

@@ -350,7 +350,7 @@ def test_polish_makes_pressure_off_contact_exactly_zero():
 
 
 def test_the_default_imports_no_optimization_package():
-    """Each answer but QP3 and models, on a mesh that is found too: cvxpy takes half a second, and nothing here needs it."""
+    """Each answer but QP3 and models, on a mesh that is found too: cvxpy takes half a second, and nothing needs it."""
     code = """
 import sys
 import bemcontact
