@@ -75,9 +75,7 @@ def wide_punch(part: float) -> Problem:
 
 
 def test_the_pressure_of_a_flat_punch_is_infinite_with_the_intensity_of_the_half_plane():
-    """P = P / (π sqrt(a² - x²)), so K = P / (π sqrt(2 a)) with α = 1/2; a block 40 times as large changes it by the
-    order of (1/40)².
-    """
+    """With p = P / (π sqrt(a² - x²)) it is P / (π sqrt(2 a)); a block 40 times as large changes it by some (1/40)²."""
     result = found(wide_punch(1 / 40))
     (judged,) = result.accuracies
     assert judged.met

@@ -39,9 +39,7 @@ def patch() -> Difference:
 
 
 def test_a_patch_test_changes_by_nothing(patch: Difference):
-    """Uniform pressure and linear displacements are in the space of the elements: round-off of a system of some 100
-    unknowns, far below 1e-8; the energy is quadratic in the change.
-    """
+    """Uniform pressure and linear displacements are in the space of the elements: what changes is round-off."""
     coarse = patch.coarse
     one, two = patch.pair
     norm = norm_squared(coarse, one.pressure[0]).sum()
