@@ -1,6 +1,4 @@
-"""Problems whose contact ends inside a zone, for the tests of meshes that find these ends."""
-
-from typing import Any
+"""Problems whose contact ends inside a zone, for the tests of notes and ends of contact."""
 
 import bemcontact
 from bemcontact.problem import Problem
@@ -20,7 +18,6 @@ conditions:
   axis: {{displacement: {{x: 0}}}}
 contact_zones:
   foot: {{edges: foot, surface: {{kind: plane, point: [0, 0], normal: [0, 1]}}}}
-mesh: {{fit_contact_edges: true}}
 """
 TABLE = """
 name: table on two round feet, loaded on one side
@@ -37,39 +34,6 @@ conditions:
   top: {pressure: {constant: 8, x: 1}}
 contact_zones:
   feet: {edges: [left foot, bridge, right foot], surface: {kind: plane, point: [0, 0], normal: [0, 1]}}
-mesh: {fit_contact_edges: true}
-"""
-BLOCK = """
-name: block on a plane
-material: {young_modulus: 1000, poisson_ratio: 0.3}
-boundary:
-  outer:
-    - {name: bottom, start: [0, 0], elements: 8, grading: {ratio: 5, towards: both}}
-    - {name: right, start: [4, 0], elements: 6}
-    - {name: top, start: [4, 2], elements: 6}
-    - {name: left, start: [0, 2], elements: 4}
-conditions:
-  top: {pressure: 3}
-contact_zones:
-  foot: {edges: EDGES, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}
-mesh: {fit_contact_edges: true}
-"""
-CANTILEVER = """
-name: cantilever above a plane
-material: {young_modulus: 2e4, poisson_ratio: 0.29}
-boundary:
-  outer:
-    - {name: lower, start: [0, 0], end: [40, 0], elements: 10}
-    - {name: tip of lower, end: [50, 0], elements: 10}
-    - {name: end, end: [50, 5], elements: 4}
-    - {name: upper, elements: 20}
-    - {name: clamp, start: [0, 5], elements: 4}
-conditions:
-  upper: {pressure: 3.6}
-  clamp: {displacement: {x: 0, y: 0}}
-contact_zones:
-  tip: {edges: tip of lower, surface: {kind: plane, point: [0, -1], normal: [0, 1]}}
-mesh: {fit_contact_edges: true}
 """
 RING = """
 name: ring on a pin
@@ -84,7 +48,6 @@ conditions:
   under: {traction: {y: -25}}
 contact_zones:
   pin: {edges: bore, surface: {kind: circle, center: [0, 0], radius: 9.98, body: outside}}
-mesh: {fit_contact_edges: true}
 """
 
 
@@ -99,36 +62,6 @@ def table() -> Problem:
     return bemcontact.loads(TABLE)
 
 
-def block(edges: str) -> Problem:
-    """A block on a plane, in contact up to its corners."""
-    return bemcontact.loads(BLOCK.replace("EDGES", edges))
-
-
-def cantilever() -> Problem:
-    """The paper's last problem: contact starts at 42.395 and goes on to the free end."""
-    return bemcontact.loads(CANTILEVER)
-
-
 def ring(seam: float = 0.0) -> Problem:
     """Contact on part of a closed zone, which begins at an angle in degrees."""
     return bemcontact.loads(RING.replace("SEAM", f"{seam}, {seam - 360}"))
-
-
-def mirrored(problem: Problem) -> Problem:
-    """The same in a mirror, x for -x, run through the other way; of circles about the origin, lines and planes."""
-    data: dict[str, Any] = problem.model_dump()
-    outer, holes = data["boundary"]["outer"], data["boundary"]["holes"]
-    for edge in [*outer, *(edge for hole in holes for edge in hole)]:
-        if edge["grading"]:
-            edge["grading"]["towards"] = {"start": "end", "end": "start"}[edge["grading"]["towards"]]
-        if "center" in edge:
-            edge["center"] = (-edge["center"][0], edge["center"][1])
-            edge["angles"] = tuple(180 - angle for angle in reversed(edge["angles"]))
-        else:
-            start, end = problem.edge(edge["name"]).end, problem.edge(edge["name"]).start
-            edge["start"], edge["end"] = (-start[0], start[1]), (-end[0], end[1])
-    data["boundary"] = {"outer": outer[::-1], "holes": [hole[::-1] for hole in holes]}
-    for condition in data["conditions"].values():
-        if condition["pressure"]:
-            condition["pressure"]["x"] *= -1
-    return Problem(**data)

@@ -45,6 +45,8 @@ SPOT = 1 / 4
 """Factor of an element under which something penetrates between nodes."""
 NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
 NOT_ESTIMATED = "the errors of this mesh were not estimated"
+ALIKE = 1e-6
+"""Relative difference below which two elements change alike: both are bisected, or none."""
 MOST_PASSES = 14
 MOST_FAILURES = 3
 """Number of first meshes that may have no contact state."""
@@ -303,13 +305,13 @@ def _middles(answer: Solved, outline: Outline) -> tuple[Array, Array]:
 
 
 def _largest(values: Array, share: float) -> BoolArray:
-    """Fewest elements that have a share of the sum."""
-    order = np.argsort(-values)
-    total = np.cumsum(values[order])
-    marked = np.zeros(len(values), bool)
-    if len(values) and total[-1] > 0:
-        marked[order[: int(np.searchsorted(total, share * total[-1])) + 1]] = True
-    return marked & (values > 0)
+    """Fewest elements that have a share of the sum, and those that are like the least of them."""
+    order = np.sort(values)[::-1]
+    total = np.cumsum(order)
+    if not len(values) or not total[-1] > 0:
+        return np.zeros(len(values), bool)
+    last = min(int(np.searchsorted(total, (1 - ALIKE) * share * total[-1])), len(order) - 1)
+    return (values >= (1 - ALIKE) * order[last]) & (values > 0)
 
 
 def penetrations(answer: Solved, case: Answer) -> Iterator[tuple[int, float]]:

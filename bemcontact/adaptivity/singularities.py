@@ -1,6 +1,6 @@
 """Places where the pressure is infinite: ends of contact that are not free, corners and kinks under pressure."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -100,12 +100,13 @@ class Loop:
         return least
 
     def without_idle(self, limits: Array) -> Array:
-        """The limits (l, 3) without those that others make idle, the smallest first."""
-        order = limits[np.argsort(limits[:, 2], kind="stable")]
+        """The limits (l, 3) without those that others make idle, the smallest first, of equal ones the first."""
+        rounded = np.round(np.log(limits[:, 2] / self.length) / SAME)
+        order = limits[np.lexsort((limits[:, 0], rounded))]
         kept = order[:1]
         for limit in order[1:]:
             ends = np.linspace(limit[0], limit[1], 3)
-            if (self.size_at(ends, kept, ()) > limit[2]).any():
+            if (self.size_at(ends, kept, ()) > (1 + SAME) * limit[2]).any():
                 kept = np.vstack([kept, limit])
         return kept
 

@@ -56,8 +56,7 @@ def test_no_element_of_an_arc_turns_by_more_than_thirty_degrees():
 
 
 def test_the_thickness_of_a_strip_is_its_height():
-    """Between the middle of its long sides, straight across: each sample has one opposite to it. Their ends may see the
-    short sides at up to 60 degrees, but are no nearer to the other long side than the height."""
+    """Straight across: each sample of the long sides has one opposite to it; the short sides are farther."""
     shape = outline(block(40, 2))
     long = (shape.positions[0] > 5) & (shape.positions[0] < 35)
     assert shape.thickness[0][long] == pytest.approx(2.0, rel=1e-12)
@@ -65,8 +64,7 @@ def test_the_thickness_of_a_strip_is_its_height():
 
 @pytest.mark.parametrize(("inner", "outer"), [(9.0, 10.0), (5.0, 10.0)])
 def test_the_thickness_of_a_ring_is_the_difference_of_its_radii(inner: float, outer: float):
-    """Up to the samples: the nearest one on the other circle is at most half a step φ away, which adds R r φ²/(2 t) to
-    t. The samples of a circle are 800 times its part of the whole boundary."""
+    """Up to the samples: the nearest one opposite is at most half a step φ away, which adds R r φ²/(2 t) to t."""
     shape = outline(ring(inner, outer))
     t = outer - inner
     for own, other in zip(shape.thickness, shape.thickness[::-1], strict=True):

@@ -1,5 +1,7 @@
 """Infinite pressures are told from finite ones by how they grow from mesh to mesh."""
 
+from itertools import pairwise
+
 import pytest
 
 from bemcontact.adaptivity.singularities import Place, Singularity, Watch, _History, _snapped
@@ -13,7 +15,7 @@ def history(growth: list[float], element: list[float]) -> _History:
 
 @pytest.mark.parametrize("exponent", [0.25, 1 / 3, 1 / 2, 2 / 3])
 def test_a_power_is_found_at_the_third_pass(exponent: float):
-    """p ~ s^-α grows by 2^α each time that its element is cut in two."""
+    """P ~ s^-α grows by 2^α each time that its element is cut in two."""
     growth = [2**exponent] * 4
     elements = [1 / 2, 1 / 4, 1 / 8, 1 / 16]
     assert not history(growth[:2], elements[:2]).grows()
@@ -22,10 +24,10 @@ def test_a_power_is_found_at_the_third_pass(exponent: float):
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
 def test_a_smooth_peak_is_not(order: float):
-    """p = p0 (1 - c h^q): what is left to grow falls by 2^q each time, so by more than `LASTING` allows."""
+    """With p = p0 (1 - c h^q): what is left to grow falls by 2^q each time, so by more than `LASTING` allows."""
     sizes = [2.0**-k for k in range(9)]
     values = [1 - 0.3 * h**order for h in sizes]
-    growth = [after / before for before, after in zip(values, values[1:], strict=False)]
+    growth = [after / before for before, after in pairwise(values)]
     for k in range(3, len(growth) + 1):
         grows = history(growth[:k], sizes[1 : k + 1]).grows()
         assert not grows or order < 1  # s^(1/2) is as slow as 0.707 > 0.6 each time, until it grows by less than 4 %

@@ -73,7 +73,7 @@ def test_a_loop_has_no_first_position(rows: list, at: float):
 @settings(max_examples=40, deadline=None)
 @given(LIMITS)
 def test_no_element_is_much_larger_than_the_size_at_its_ends(rows: list):
-    """Its length is one step of ∫ds/h, and h grows by no more than `GROWTH`: L <= h (e^G - 1) / G in the exact integral.
+    """Its length is one step of ∫ds/h, and h grows by no more than `GROWTH`: L <= h (e^G - 1) / G exactly.
 
     A step of the trapezoidal rule with samples half a size apart adds at most the factor 1 + (G/4)²/(1 - G²/16), and
     a piece is cut into as many elements as it needs but for `ROUNDING` of one: 1.05 if it is one element alone.
@@ -115,10 +115,10 @@ def test_marks_are_ends_of_elements(rows: list, marks: list[float]):
 @pytest.mark.parametrize("after", [True, False])
 @pytest.mark.parametrize("count", [4.0, 6.0])
 def test_layers_grow_with_the_cubes(after: bool, count: float):
-    """With h = max(w/n³, 3/n w^(1/3) s^(2/3)) the integral ∫ds/h is n (s/w)^(1/3) - c, with c = 2/(3 √3) once s > h / 5.
+    """With h = max(w/n³, 3/n w^(1/3) s^(2/3)) the integral ∫ds/h is n (s/w)^(1/3) - c beyond h / 5, c = 2/(3 √3).
 
-    So the cube roots of the distances of element ends are a constant step apart, n of them from c on. This step is up to
-    one: the rest of the edge beyond the layers has a whole number of elements. The trapezoidal rule errs by a tenth.
+    So the cube roots of the distances of element ends are a constant step apart, n of them from c on. This step is up
+    to one: the rest of the edge beyond the layers has a whole number of elements. The trapezoidal rule errs by a tenth.
     """
     loop = rectangle()
     layer = Layers(position=4.0, width=2.0, count=count, after=after)

@@ -96,7 +96,7 @@ def test_on_a_smooth_boundary_both_readings_are_reported():
 
 def notes(problem: bemcontact.Problem, start: str) -> list[str]:
     """Notes of a result on the mesh as stated that begin with a text."""
-    result = bemcontact.solve(problem.with_value("mesh.fit_contact_edges", False), "complementarity")
+    result = bemcontact.solve(problem, "complementarity")
     return [note for note in result.notes if note.startswith(start)]
 
 
@@ -115,7 +115,7 @@ def test_points_across_the_seam_are_of_one_contact():
 
 @pytest.mark.parametrize(("elements", "told"), [(2, True), (24, False)])
 def test_long_elements_beyond_a_pressed_corner_are_reported(elements, told):
-    """On the axis: the peak is off by a third beside the long ones, and the fit cures it by halving them."""
+    """On the axis: the peak is off by a third beside the long ones, and a mesh that is found has none."""
     stated = cylinder(24, load=0.01).with_value("boundary.outer.axis.grading.ratio", 1)
     coarse = stated.with_value("boundary.outer.axis.elements", elements)
     found = notes(coarse, LONG)
@@ -125,9 +125,10 @@ def test_long_elements_beyond_a_pressed_corner_are_reported(elements, told):
             "pressure acts at (0, 0), the end of the zone 'foot', beyond which an element of 'axis'"
         )
         assert found[0].endswith("grade that edge towards the zone")
-    fitted = bemcontact.solve(coarse, "complementarity")
-    assert not [note for note in fitted.notes if note.startswith(LONG)]
-    assert fitted.footprint.peak.pressure == pytest.approx(18.819, rel=3e-3)  # Hertz
+    found_mesh = bemcontact.solve(coarse.with_value("accuracy", 3e-3))
+    assert found_mesh.accuracy.met
+    assert not [note for note in found_mesh.notes if note.startswith(LONG)]
+    assert found_mesh.footprint.peak.pressure == pytest.approx(18.819, rel=3e-3)  # Hertz
 
 
 def test_a_body_that_nothing_presses_floats_and_a_note_states_so():

@@ -129,7 +129,7 @@ def test_results_of_all_cases():
     written = json.loads(found.to_json())
     assert written["worst"] == found.worst
     assert written["cases"]["all"]["peak"]["pressure"] == pytest.approx(peaks["all"])
-    assert "all certified" in repr(found)
+    assert "unique solutions proved, error not estimated" in repr(found)
     assert f"largest peak pressure in '{found.worst}'" in repr(found)
 
 
@@ -438,10 +438,10 @@ def test_cases_are_compared_one_by_one():
     assert not any(item.judged for item in changed.finest.scores)
 
 
-def test_fitted_mesh_is_fitted_to_each_case():
-    """The end of contact under a round punch: on a mesh of its own, each case has Hertz's peak to 1 %."""
+def test_a_mesh_is_found_for_all_cases():
+    """The end of contact under a round punch: each case has Hertz's peak to 1 %."""
     problem = made(
-        HELD, conditions={"foot": {"displacement": {"x": 0, "y": 0}}}, loads={}, mesh={"fit_contact_edges": True},
+        HELD, conditions={"foot": {"displacement": {"x": 0, "y": 0}}}, loads={}, accuracy=3e-3,
         contact_zones={"punch": {"edges": ["head", "top"], "surface": {
             "kind": "circle", "center": [1, 3], "radius": 2, "body": "outside"}}},
         tools={"punch": {"zones": "punch", "force": {"y": 0}}},
@@ -453,7 +453,7 @@ def test_fitted_mesh_is_fitted_to_each_case():
     widths = []
     for name, force in (("light", 1), ("heavy", 4)):
         result = found.results[name]
-        assert result.mesh_fit is not None
+        assert result.accuracy.met
         (interval,) = result.footprint.intervals
         widths.append(interval.end_arc - interval.start_arc)
         assert result.footprint.peak is not None

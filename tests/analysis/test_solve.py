@@ -350,7 +350,7 @@ def test_polish_makes_pressure_off_contact_exactly_zero():
 
 
 def test_the_default_imports_no_optimization_package():
-    """Each answer but QP3 and models, on a fitted mesh too: cvxpy takes half a second, and nothing here needs it."""
+    """Each answer but QP3 and models, on a mesh that is found too: cvxpy takes half a second, and nothing needs it."""
     code = """
 import sys
 import bemcontact
@@ -359,7 +359,7 @@ assert bemcontact.solve(problem).certified
 bemcontact.sensitivities(problem)
 cases = bemcontact.load("models/gallery/roller_in_v_block.yaml")
 assert bemcontact.solve_cases(cases).certified
-fitted = bemcontact.load("models/cylinder_on_plane.yaml").with_value("mesh.fit_contact_edges", True)
+fitted = bemcontact.load("models/cylinder_on_plane.yaml").with_value("accuracy", 1e-2)
 assert bemcontact.solve(fitted).certified
 print([name for name in ("cvxpy", "clarabel", "osqp", "scs", "highspy", "quadprog") if name in sys.modules])
 """

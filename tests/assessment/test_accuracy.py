@@ -7,7 +7,9 @@ import pytest
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar, Quantity
 
 
-def bar(quantity: Quantity = "peak", value: float | None = 1.0, error: float | None = 1e-3, zone: str = "z") -> ErrorBar:
+def bar(
+    quantity: Quantity = "peak", value: float | None = 1.0, error: float | None = 1e-3, zone: str = "z"
+) -> ErrorBar:
     return ErrorBar(quantity=quantity, zone=zone, value=value, bar=error)
 
 

@@ -43,6 +43,11 @@ def floor(y: float = 0.0) -> dict[str, Any]:
     return {"kind": "plane", "point": [0, y], "normal": [0, 1]}
 
 
+def rod(x: float, y: float, radius: float) -> dict[str, Any]:
+    """A rigid circle."""
+    return {"kind": "circle", "center": [x, y], "radius": radius, "body": "outside"}
+
+
 def hertz(force: float, radius: float, modulus: float = 210e3 / (1 - 0.09)) -> tuple[float, float]:
     """Peak and half-width of a cylinder on a rigid plane."""
     a = sqrt(4 * force * radius / (pi * modulus))
@@ -132,8 +137,8 @@ def disk_between_plates() -> Case:
 def block_on_two_rods() -> Case:
     """Rods of radius 0.5 under a block, which no coarse node is near."""
     zones = {
-        "left rod": {"edges": "bottom", "surface": {"kind": "circle", "center": [-18.3, -0.5], "radius": 0.5, "body": "outside"}},
-        "right rod": {"edges": "lower", "surface": {"kind": "circle", "center": [11.7, -0.5], "radius": 0.5, "body": "outside"}},
+        "left rod": {"edges": "bottom", "surface": rod(-18.3, -0.5, 0.5)},
+        "right rod": {"edges": "lower", "surface": rod(11.7, -0.5, 0.5)},
     }  # fmt: skip
     outer = polygon([(-30, 0), (-3, 0), (30, 0), (30, 20), (-30, 20)], ["bottom", "lower", "right", "top", "left"])
     conditions = {"top": {"pressure": 10.0}, "left": {}}
@@ -201,8 +206,9 @@ def beam_50() -> Case:
 @case
 def hole_beside_the_zone() -> Case:
     """A hole of radius 3 whose rim is 0.7 above the contact face of a block with a round foot."""
+    low = 200 - sqrt(200**2 - 225)
     outer = [
-        {"name": "foot", "kind": "arc", "center": [0, 200], "start": [-15, 200 - sqrt(200**2 - 225)], "end": [15, 200 - sqrt(200**2 - 225)]},
+        {"name": "foot", "kind": "arc", "center": [0, 200], "start": [-15, low], "end": [15, low]},
         {"name": "right", "end": [15, 25]},
         {"name": "top", "end": [-15, 25]},
         {"name": "left"},
@@ -356,7 +362,7 @@ def no_contact() -> Case:
 def cases_touch_elsewhere() -> Case:
     """Load cases that press different rods into the face of a block."""
     zones = {
-        name: {"edges": "face" if x > 0 else "other", "surface": {"kind": "circle", "center": [x, 43], "radius": 3, "body": "outside"}}
+        name: {"edges": "face" if x > 0 else "other", "surface": rod(x, 43, 3)}
         for name, x in (("left rod", -9.0), ("right rod", 8.0))
     }  # fmt: skip
     outer = polygon([(-20, 0), (20, 0), (20, 40), (0, 40), (-20, 40)], ["bottom", "right", "face", "other", "left"])
@@ -460,7 +466,7 @@ def seal_in_groove() -> Case:
         {"name": "bottom", "start": [0, 0], "end": [w - r, 0]},
         {"name": "low corner", "kind": "arc", "center": [w - r, r], "start": [w - r, 0], "end": [w, r]},
         {"name": "side", "start": [w, r], "end": [w, 2 * w - r]},
-        {"name": "high corner", "kind": "arc", "center": [w - r, 2 * w - r], "start": [w, 2 * w - r], "end": [w - r, 2 * w]},
+        {"name": "high corner", "kind": "arc", "center": [w - r, 2 * w - r], "radius": r, "angles": [0, 90]},
         {"name": "top", "start": [w - r, 2 * w], "end": [0, 2 * w]},
         {"name": "axis", "start": [0, 2 * w], "end": [0, 0]},
     ]  # fmt: skip
@@ -481,8 +487,8 @@ def seal_in_groove() -> Case:
 def plate_on_convex_rail() -> Case:
     """A plate on an elliptic rail, loaded beside it, held by a second one."""
     zones = {
-        "rail": {"edges": "left half", "surface": {"kind": "circle", "center": [-30, -40], "radius": 40, "body": "outside"}},
-        "pin": {"edges": "right half", "surface": {"kind": "circle", "center": [38, -2], "radius": 2, "body": "outside"}},
+        "rail": {"edges": "left half", "surface": rod(-30, -40, 40)},
+        "pin": {"edges": "right half", "surface": rod(38, -2, 2)},
     }  # fmt: skip
     outer = polygon(
         [(-50, 0), (0, 0), (50, 0), (50, 12), (20, 12), (-10, 12), (-50, 12)],

@@ -11,12 +11,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from statistics import median
 
+from adaptive_problems import Case, problems
+
 import bemcontact
 from bemcontact import Problem
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.fields import solved
 from bemcontact.assessment.accuracy import ErrorBar
-from adaptive_problems import Case, problems
 
 ACCURACIES = 1e-2, 3e-3, 1e-3
 TRUTH = 2e-4

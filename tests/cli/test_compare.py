@@ -55,10 +55,10 @@ def test_a_table_that_fits_and_a_verdict(block: Path):
         "direct",
         "solves it",
         "Equations      unique solution proved.",
-        "Mesh           error at most 0.001 % (asked 1 %).",
+        "Mesh           not assessed.",
         "uniform",
         "within 1 %",
-        "Peak pressure  3.00000 ± 0.00003 N/mm²",
+        "Peak pressure  3",
     ):
         assert words in answer.output, words
 

@@ -162,7 +162,7 @@ def test_cantilever_does_not_touch_with_the_printed_modulus():
     answer = CliRunner().invoke(cli.app, arguments)
     assert answer.exit_code == 0
     assert "Contact    nowhere" in answer.stdout
-    assert "certified" in answer.stdout
+    assert "unique solution proved" in " ".join(answer.stdout.split())
     for formulation in FORMULATIONS:
         untouched = result("cantilever_flat_surface", formulation, "printed modulus")
         assert untouched.certified

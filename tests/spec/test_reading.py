@@ -294,11 +294,11 @@ BROKEN = {
         "boundary.outer[3].elements",
         ("at least 3 elements", "found 2"),
     ),
-    "fit that is no yes or no": Broken(
+    "search for a mesh that is no yes or no": Broken(
         "name: block on a plane",
-        "name: block on a plane\nmesh: {fit_contact_edges: 3}",
-        "2:27",
-        "mesh.fit_contact_edges",
+        "name: block on a plane\nmesh: {adapt: 3}",
+        "2:15",
+        "mesh.adapt",
         ("true or false", "found 3"),
     ),
     "name twice": Broken(
