@@ -106,9 +106,9 @@ class MeshDensity(SpecModel):
     refine: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] = 1
     """The number of equal parts into which each element is cut."""
     adapt: Flag | None = None
-    """Whether a mesh is found for the accuracy; where elements are stated, it is nowhere coarser. With false, the errors
-    of the stated mesh are estimated if an accuracy is stated. If left out, a mesh is found if an accuracy is stated or an
-    edge has no elements."""
+    """Whether a mesh is found for the accuracy; where elements are stated, it is nowhere coarser. With false, the
+    errors of the stated mesh are estimated if an accuracy is stated. If left out, a mesh is found if an accuracy is
+    stated or an edge has no elements."""
 
 
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
@@ -195,9 +195,9 @@ class Problem(SpecModel):
     case: Name | None = None
     """The load case or combination to solve; if left out, all of them are solved one after the other."""
     accuracy: Annotated[float, Strict(), Field(gt=0, lt=1)] | Literal["default"] | None = "default"
-    """The accuracy to reach, relative: 0.003 is 0.3 %. A mesh is found on which no error bar is larger. If left out, it is
-    0.01 where a mesh is found; for a mesh that all edges state, none is asked for and errors are not estimated, as with
-    null."""
+    """The accuracy to reach, relative: 0.003 is 0.3 %. A mesh is found on which no error bar is larger. If left out,
+    it is 0.01 where a mesh is found; for a mesh that all edges state, none is asked for and errors are not estimated,
+    as with null."""
     mesh: MeshDensity = MeshDensity()
     """The mesh: whether it is found, and its refinement."""
     reference: dict[Title, ReferenceSpec] = Field(default_factory=dict)
