@@ -457,4 +457,5 @@ def _search(problem: Problem) -> _Search:
                 own += [Limit(low=low, high=high, size=high - low) for low, high in pairwise(at.tolist())]
         limits.append(_useful(loop, own))
         marks.append(ends)
-    return _Search(problem=problem, outline=shape, sources=limits, marks=marks)
+    kept = problem.model_copy(update={"accuracy": problem.asked_accuracy})  # a mesh that is found asks for it as before
+    return _Search(problem=kept, outline=shape, sources=limits, marks=marks)

@@ -97,8 +97,7 @@ def study(
     ensure_acting(problem)
     finding = Stopwatch(progress=progress)
     found = prepare(problem, finding) if isinstance(problem, Problem) and problem.adapts else None
-    if found and found.condensation:
-        problem = found.condensation.body.problem.model_copy(update={"accuracy": found.accuracy.asked})
+    problem = found.condensation.body.problem if found and found.condensation else problem
     levels = []
     for parts in sorted(map(int, refine)):
         report = progress if len(refine) == 1 or progress is None else _prefixed(progress, f"refine {parts}: ")

@@ -126,7 +126,8 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Prob
     mesh = problem.mesh.model_copy(update={"adapt": True, "refine": refine})
     finer = problem.model_copy(update={"boundary": boundary, "mesh": mesh})
     two = meshed(Variation(finer, key).at(end))
-    on_mesh = problem.model_copy(update={"boundary": two.problem.boundary, "mesh": two.problem.mesh})
+    parts = ("boundary", "mesh", "accuracy")
+    on_mesh = problem.model_copy(update={name: getattr(two.problem, name) for name in parts})
     return on_mesh, {start: one, end: two}
 
 

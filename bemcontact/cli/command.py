@@ -105,7 +105,7 @@ class Source:
         float | None,
         typer.Option(
             metavar="X",
-            help="Find a mesh on which no result is off by more than X, relative: 0.003 is 0.3 %.",
+            help="Find a mesh on which no error bar is larger than X, relative: 0.003 is 0.3 %.",
             show_default="as in the spec",
         ),
     ] = None

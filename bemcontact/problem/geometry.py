@@ -87,7 +87,7 @@ class _EdgeBase(SpecModel):
     name: Name
     """The name of the edge, by which conditions and contact zones refer to it."""
     elements: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] | None = None
-    """The number of boundary elements along the edge, such as elements: 8. Leave it out: the mesh is then found for the
+    """The number of boundary elements along the edge, such as elements: 8. Best left out: a mesh is then found for the
     accuracy asked."""
     grading: Grading | None = None
     """The grading of the stated elements; equal lengths if left out."""

@@ -101,13 +101,14 @@ ACCURACY = 0.01
 
 
 class MeshDensity(SpecModel):
-    """The refinement of the mesh that the edges define."""
+    """The mesh: whether it is found or stated, and its refinement."""
 
     refine: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] = 1
     """The number of equal parts into which each element is cut."""
     adapt: Flag | None = None
-    """Whether a mesh is found for the accuracy, and the stated elements are its coarsest. If left out, the mesh is
-    taken as it is stated if all edges state their elements and no accuracy is stated; else it is found."""
+    """Whether a mesh is found for the accuracy; where elements are stated, it is nowhere coarser. With false, the
+    errors of the stated mesh are estimated if an accuracy is stated. If left out, a mesh is found if an accuracy is
+    stated or an edge has no elements."""
 
 
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
@@ -194,10 +195,11 @@ class Problem(SpecModel):
     case: Name | None = None
     """The load case or combination to solve; if left out, all of them are solved one after the other."""
     accuracy: Annotated[float, Strict(), Field(gt=0, lt=1)] | Literal["default"] | None = "default"
-    """The accuracy to reach, relative: 0.003 is 0.3 %. A mesh is found for it. The default is 1 % if a mesh is to be
-    found; for a mesh that is stated no accuracy is asked for, and its errors are not estimated, as with null."""
+    """The accuracy to reach, relative: 0.003 is 0.3 %. A mesh is found on which no error bar is larger. If left out,
+    it is 0.01 where a mesh is found; for a mesh that all edges state, none is asked for and errors are not estimated,
+    as with null."""
     mesh: MeshDensity = MeshDensity()
-    """The refinement of the mesh."""
+    """The mesh: whether it is found, and its refinement."""
     reference: dict[Title, ReferenceSpec] = Field(default_factory=dict)
     """The references by name: closed forms and published values, with which the result is compared."""
     variants: dict[Name, Variant] = Field(default_factory=dict)

@@ -10,6 +10,7 @@ import pytest
 from tool_problems import BETWEEN, made
 
 import bemcontact
+from bemcontact.analysis.compare import study
 from bemcontact.analysis.follow import between, follow, sensitivities, stated_value
 from bemcontact.analysis.solve import condense
 from bemcontact.analysis.variation import Variation
@@ -19,6 +20,7 @@ from bemcontact.bem.condense import condense as condense_body
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
+from bemcontact.options import ComparisonOptions, FormulationName
 from bemcontact.problem import Problem
 
 MODELS = Path(__file__).parents[2] / "models"
@@ -267,3 +269,21 @@ def test_factors_and_tools_are_followed_with_one_condensation(monkeypatch: pytes
     assert len(calls) == 1
     varied = problem.with_factors({"lift": to}) if key.startswith("load_cases") else problem.with_value(key, to)
     assert apart(path.end, condense(varied), path.at(1.0).pressure) <= 1e-10
+
+
+def test_mesh_that_is_found_is_asked_for_the_same_accuracy_along_a_path_and_when_it_is_cut():
+    outer = [
+        {"name": name, "start": list(at)} for name, at in zip("abcd", [(0, 0), (4, 0), (4, 2), (0, 2)], strict=True)
+    ]
+    problem = Problem(
+        name="block",
+        material={"young_modulus": 1000.0, "poisson_ratio": 0.3},
+        boundary={"outer": outer},
+        conditions={"c": {"pressure": 1.0}, "d": {"displacement": {"x": 0}}},
+        contact_zones={"a": {"edges": "a", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
+    )
+    asked = problem.asked_accuracy
+    path = follow(problem, "conditions.c.pressure", 2.0)
+    cut = study(ComparisonOptions(formulations=(FormulationName.QP1,)), problem, refine=(1, 2))
+    told = [path.start_accuracy, path.end_accuracy, cut.finest.answer.accuracy]
+    assert [(item.asked, item.met) for item in told] == [(asked, True)] * 3

@@ -38,7 +38,7 @@ def test_the_ring_hangs_on_its_pin():
 def test_the_roller_of_the_readme_is_that_of_hertz():
     """Hertz is off by 0.02 % at b/R = 0.015; the rest is for the mesh."""
     block = next(token.content for token in pages.tokens(pages.ROOT / "README.md") if token.info == "yaml")
-    assert len(yaml.safe_load(block)["boundary"]["outer"]) == 4
+    assert not any("elements" in edge for edge in yaml.safe_load(block)["boundary"]["outer"])
     footprint = bemcontact.solve(bemcontact.loads(block)).footprint
     b = math.sqrt(4 * 400 * 10 * (1 - 0.3**2) / (math.pi * 210e3))
     assert footprint.peak is not None
