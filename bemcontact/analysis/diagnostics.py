@@ -180,8 +180,8 @@ def _cause(boundary: BoundaryState) -> str:
     if abs(turn) <= LARGE_TURN:
         return "check units, loads and Young's modulus"
     return (
-        f"the body turns by {turn:.2g} rad ({np.degrees(turn):.0f} degrees): hold it against rotation by a condition or "
-        "by another contact zone, or draw it as it is after most of this rotation"
+        f"the body turns by {turn:.2g} rad ({np.degrees(turn):.0f} degrees): hold it against rotation by a condition "
+        "or by another contact zone, or draw it as it is after most of this rotation"
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from bemcontact.analysis.placement import placement
 from bemcontact.analysis.variation import Variation
-from bemcontact.arrays import BoolArray
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.condense import boundary_state
 from bemcontact.bem.contact_points import ContactPoints
@@ -56,6 +56,10 @@ def penetration(
             element = int(deepest[np.argmin(paired[deepest])])  # of equal depths that which is easier to understand
             worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
         notes += _behind(gaps, zone, found.behind)
+        between, said = _flush(gaps, zone, found.sunk, allowed)
+        notes += said
+        if between is not None and (worst is None or between.depth > worst.depth):
+            worst = between
     misplaced, said = (None, ()) if worst else placement(gaps, points, contact, solution)
     return worst or misplaced, (*notes, *said)
 
@@ -103,6 +107,41 @@ def _penetration(gaps: SurfaceGaps, zone: str, element: int, xi: float, depth: f
         paired=paired,
         words=penetration_in_words(how_deep, f"({x:.5g}, {y:.5g}) on '{edge}'", zone, paired=paired),
     )
+
+
+def _flush(gaps: SurfaceGaps, zone: str, sunk: Array, allowed: float) -> tuple[Penetration | None, tuple[str, ...]]:
+    """Edges that lie in a surface and sink in: a penetration between two edges of its zone, elsewhere a note."""
+    state, notes = gaps.state, list[str]()
+    deepest = {i: float(sunk[state.edge == i].max()) for i in np.unique(state.edge[sunk > allowed]).tolist()}
+    names = {state.edge_names[i] for i in deepest}
+    inner, worst = _between(gaps, zone, names), None
+    for i, depth in deepest.items():
+        name = state.edge_names[i]
+        if name not in inner:
+            how_deep = f"{depth:.3g} {gaps.problem.units.length}".strip()
+            notes.append(
+                f"'{name}' lies in the rigid surface of '{zone}' as stated and sinks up to {how_deep} into it: the "
+                "surface is taken to end with the zone; if it goes on, add the edge to the zone"
+            )
+        elif worst is None or depth > worst.depth:
+            element = int(np.argmax(np.where(state.edge == i, sunk, 0.0)))
+            worst = _penetration(gaps, zone, element, 0.0, depth, allowed)
+    return worst, tuple(notes)
+
+
+def _between(gaps: SurfaceGaps, zone: str, names: set[str]) -> set[str]:
+    """Those of the names of edges that stand, alone or side by side, between two edges of a zone."""
+    own, inner = {*gaps.problem.contact_zones[zone].edges}, set[str]()
+    for loop in gaps.problem.boundary.loops:
+        around = [edge.name for edge in loop]
+        for start in [i for i, name in enumerate(around) if name in own]:
+            passed = list[str]()
+            for name in [*around[start + 1 :], *around[: start + 1]]:
+                if name not in names:
+                    inner |= {*passed} if name in own else set()
+                    break
+                passed.append(name)
+    return inner
 
 
 def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:

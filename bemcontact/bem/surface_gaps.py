@@ -39,11 +39,13 @@ class Intrusion(NamedTuple):
     depth : (m,) [L], negative outside, minus infinity for an element that was not compared
     xi : (m,) local coordinate where an element is deepest
     behind : (m,) whether a place of an element that is not of the zone is behind the surface before anything moves
+    sunk : (m,) how deep an element that is not of the zone sinks in where it lies in the surface [L], zero for others
     """
 
     depth: Array
     xi: Array
     behind: BoolArray
+    sunk: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -117,7 +119,7 @@ class SurfaceGaps:
         """
         paired, near = self.paired(zone), self._near(zone)
         m, ended = len(paired), self._ends(zone, paired, near)
-        depth, xi, behind = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool)
+        depth, xi, behind, sunk = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool), np.zeros(m)
         for elements, own in ((np.flatnonzero(paired), True), (np.flatnonzero(~paired & near), False)):
             if not len(elements):
                 continue
@@ -125,10 +127,10 @@ class SurfaceGaps:
             if own:
                 depths = self._depth_in_own(zone, at, displacement)
             else:
-                depths, behind[elements] = self._depth_in_other(zone, at, displacement, ended)
+                depths, behind[elements], sunk[elements] = self._depth_in_other(zone, at, displacement, ended)
             deepest = depths.argmax(axis=1)
             depth[elements], xi[elements] = depths[np.arange(len(elements)), deepest], SAMPLES[deepest]
-        return Intrusion(depth, xi, behind)
+        return Intrusion(depth, xi, behind, sunk)
 
     def _depth_in_own(self, zone: str, at: Places, displacement: Array) -> Array:
         """Depth (k, q) [L] of elements of the zone."""
@@ -140,14 +142,16 @@ class SurfaceGaps:
 
     def _depth_in_other(
         self, zone: str, at: Places, displacement: Array, ended: Callable[[Array], BoolArray]
-    ) -> tuple[Array, BoolArray]:
-        """Depth (k, q) [L] of elements that are not of the zone, and which of them (k,) are behind the surface."""
+    ) -> tuple[Array, BoolArray, Array]:
+        """Depth (k, q) [L] of elements not of the zone; which (k,) are behind it; how deep (k,) flush ones sink in."""
         flush = FLUSH * self.problem.boundary.size
         (before, normals), after = self.undeformed(zone, at.points), self.exact(zone, at.points + displacement).gap
-        beyond = (before > flush) & (-after > self._second_order(zone, at, displacement))
+        inside = -after > self._second_order(zone, at, displacement)
+        sunk = np.where(inside & (abs(before) <= flush), -after, 0.0).max(axis=1)
+        beyond = (before > flush) & inside
         beyond &= ~ended(at.points - before[..., None] * normals)
         behind: BoolArray = np.any(before < -flush, axis=1)
-        return np.where(beyond, -after, -np.inf), behind
+        return np.where(beyond, -after, -np.inf), behind, sunk
 
     def _ends(self, zone: str, paired: BoolArray, near: BoolArray) -> Callable[[Array], BoolArray]:
         """Whether places (..., 2) of a surface are nearer to an edge that lies in it than to the edges of its zone."""

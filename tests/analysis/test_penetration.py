@@ -158,3 +158,29 @@ def test_what_lies_behind_a_surface_is_noted_and_what_is_flush_is_left_out():
     assert result.certified
     (note,) = [note for note in result.notes if "behind the rigid surface of 'floor'" in note]
     assert "'right', 'step', 'under'" in note
+
+
+@pytest.mark.parametrize("middle", ["mid", "low"])
+def test_a_forgotten_edge_between_two_of_a_zone_is_a_penetration(middle):
+    """A plate on a wall under pressure: the edge between sinks in, and the lowest one, beside the zone, is noted."""
+    corners = {"up": (0, 100), "mid": (0, 80), "low": (0, 20), "bottom": (0, 0), "right": (5, 0), "top": (5, 100)}
+    edges = [name for name in ("up", "mid", "low") if name != middle]
+    data = {
+        "name": "plate",
+        "material": {"young_modulus": E, "poisson_ratio": NU},
+        "boundary": {"outer": [{"name": name, "start": at, "elements": 8} for name, at in corners.items()]},
+        "conditions": {"right": {"pressure": 1}},
+        "contact_zones": {"wall": {"edges": edges, "surface": {"kind": "plane", "point": (0, 0), "normal": (1, 0)}}},
+    }
+    result = solve(Problem(**data))  # pyright: ignore[reportArgumentType]
+    assert result.certificate.certified
+    if middle == "mid":
+        assert not result.certified
+        assert result.penetration.edge == "mid"
+        assert not result.penetration.paired
+    else:
+        assert result.certified
+        assert any("'low' lies in the rigid surface of 'wall'" in note for note in result.notes)
+    whole = solve(Problem(**data).with_value("contact_zones.wall.edges", ["up", "mid", "low"]))  # pyright: ignore[reportArgumentType]
+    assert whole.certified
+    assert not any("lies in" in note for note in whole.notes)
