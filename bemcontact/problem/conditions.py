@@ -36,9 +36,8 @@ class Field(SpecModel):
             return {"constant": data}
         if not isinstance(data, Mapping | Field):
             keys = ", ".join(cls.model_fields)
-            raise invalid(
-                f"expected a number, or a mapping with some of the keys {keys}; found {described(data)}{number_hint(data)}"
-            )
+            found = f"{described(data)}{number_hint(data)}"
+            raise invalid(f"expected a number, or a mapping with some of the keys {keys}; found {found}")
         if isinstance(data, Mapping) and not data:
             raise invalid("the mapping is empty; give a number")
         return data
