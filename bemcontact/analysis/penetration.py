@@ -106,21 +106,6 @@ def _penetration(gaps: SurfaceGaps, zone: str, element: int, xi: float, depth: f
     )
 
 
-def _between(gaps: SurfaceGaps, zone: str, names: set[str]) -> set[str]:
-    """Those of the names of edges that stand, alone or side by side, between two edges of a zone."""
-    own, inner = {*gaps.problem.contact_zones[zone].edges}, set[str]()
-    for loop in gaps.problem.boundary.loops:
-        around = [edge.name for edge in loop]
-        for start in [i for i, name in enumerate(around) if name in own]:
-            passed = list[str]()
-            for name in [*around[start + 1 :], *around[: start + 1]]:
-                if name not in names:
-                    inner |= {*passed} if name in own else set()
-                    break
-                passed.append(name)
-    return inner
-
-
 def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:
     """Note edges that are behind a surface before anything moves."""
     edges = sorted({gaps.state.edge_names[i] for i in gaps.state.edge[behind]})
