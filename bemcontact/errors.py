@@ -32,7 +32,7 @@ class Issue:
 
     def __str__(self) -> str:
         """The key path with dots, then the message, in one line without hidden characters."""
-        return escaped(f"{dotted(self.path)}: {self.message}" if self.path else self.message)
+        return shortened_lines(escaped(f"{dotted(self.path)}: {self.message}" if self.path else self.message))
 
 
 def dotted(path: KeyPath) -> str:
@@ -47,7 +47,7 @@ class BemContactError(Exception):
     """Base class of all errors that the package raises; its text has no hidden characters besides ends of lines."""
 
     def __init__(self, message: str = "") -> None:
-        super().__init__(escaped_lines(message))
+        super().__init__(shortened_lines(escaped_lines(message)))
 
 
 class ProblemError(BemContactError):
@@ -92,9 +92,12 @@ class SolverError(BemContactError):
 
 LINE_BREAKS = "\n\t"
 """Hidden characters that a text of several lines may contain."""
+KEPT = 600
+"""Letters that are kept at both ends of a line of thousands."""
+_LONG = re.compile(r"[^\n]{2400,}")
 _HIDDEN = re.compile(
-    "[\x00-\x1f\x7f-\x9f\xad\u061c\u180e\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ud800-\udfff\ufeff\ufff9-\ufffb"
-    "\ufffe\uffff\U0001bca0-\U0001bca3\U0001d173-\U0001d17a\U000e0000-\U000e007f]"
+    "[\x00-\x1f\x7f-\x9f\xad\u061c\u115f\u1160\u17b4\u17b5\u180e\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\u2800\u3164"
+    "\ud800-\udfff\ufeff\uffa0\ufff9-\ufffb\ufffe\uffff\U0001bca0-\U0001bca3\U0001d173-\U0001d17a\U000e0000-\U000e007f]"
 )
 
 
@@ -115,6 +118,11 @@ def escaped(text: str, kept: str = "") -> str:
 def escaped_lines(text: str) -> str:
     """Replace each hidden character, but keep the lines of the text."""
     return escaped(text, LINE_BREAKS)
+
+
+def shortened_lines(text: str) -> str:
+    """Leave out the middle of each line that is too long to be read, as where a key has thousands of letters."""
+    return _LONG.sub(lambda match: f"{match[0][:KEPT]} ... {match[0][-KEPT:]}", text)
 
 
 def escaped_json(text: str) -> str:

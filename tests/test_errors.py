@@ -73,3 +73,16 @@ def test_a_label_is_one_line_without_hidden_characters(text):
             Units(length=text)
     else:
         assert Units(length=text).length == text
+
+
+@pytest.mark.parametrize("character", "\u115f\u1160\u17b4\u17b5\u2800\u3164\uffa0")
+def test_letters_that_no_font_draws_are_hidden(character: str):
+    assert hidden_character(character)
+
+
+@pytest.mark.parametrize("key", ["k" * 200_000, "k " * 100_000])
+def test_long_lines_are_shortened_and_keep_their_ends(key: str):
+    text = str(ProblemError(Issue(path=(key,), message="is unknown; leave it out")))
+    assert len(text) < 2400
+    assert text.startswith("k")
+    assert text.endswith("leave it out")

@@ -28,6 +28,8 @@ LARGE = 0.25
 """Change of the displacement over the length along which it changes, and peak pressure over Young's modulus, that are
 not small. Linear theory leaves out half the square of this change, here 3 % of the length and an eighth of a strain; a
 cantilever whose end has this slope deflects 3 % less than linear theory says (Bisshopp and Drucker 1945)."""
+LARGE_TURN = 0.1
+"""Rotation of the whole body in radians from which it is named as the cause."""
 LARGE_PART = 0.05
 """Share of the boundary on which displacements may be large: singular corners and tips of slits."""
 
@@ -164,8 +166,23 @@ def large_displacements(boundary: BoundaryState) -> Iterator[str]:
         yield (
             f"displacements are not small: on {100 * share:.0f} % of the boundary they change by more than {LARGE:g} "
             f"of the length along it, by strain or rotation, and up to {gradient.max():.2g}; the linear theory does "
-            "not hold; check units, loads and Young's modulus"
+            f"not hold; {_cause(boundary)}"
         )
+
+
+def _cause(boundary: BoundaryState) -> str:
+    """What to do about large displacements: hold a body that turns as a whole, else check the numbers."""
+    x, u = (
+        values.reshape(-1, 2) - values.reshape(-1, 2).mean(axis=0)
+        for values in (boundary.points, boundary.displacement)
+    )
+    turn = float(np.sum(x[:, 0] * u[:, 1] - x[:, 1] * u[:, 0]) / np.sum(x**2))
+    if abs(turn) <= LARGE_TURN:
+        return "check units, loads and Young's modulus"
+    return (
+        f"the body turns by {turn:.2g} rad ({np.degrees(turn):.0f} degrees): hold it against rotation by a condition "
+        "or by another contact zone, or draw it as it is after most of this rotation"
+    )
 
 
 def _zone(body: Body, point: np.intp) -> str:

@@ -26,7 +26,10 @@ from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour
+from bemcontact.problem.rigid_surface import Circle, DeflectedContour
+
+PRESSED_IN = 0.1
+"""Interference over the size of a body up to which a disk is pressed into a hole, not drawn at a wrong place."""
 
 MATRICES = 3
 """Number of full matrices of all degrees of freedom that are in memory at the same time."""
@@ -136,7 +139,19 @@ class Body:
         left_open = (
             f"the loads do no work in the {idle}, which only opens gaps: contact does not determine its amplitude"
         )
-        return pinned if idle is None else (*pinned, left_open)
+        return (*_wholly_behind(self.problem, self.mesh), *pinned, *(() if idle is None else (left_open,)))
+
+
+def _wholly_behind(problem: Problem, mesh: Mesh) -> Iterator[str]:
+    """Note each rigid surface that has the whole body behind it; a disk with interference in a hole is not."""
+    for name, zone in problem.contact_zones.items():
+        if isinstance(zone.surface, DeflectedContour):
+            continue
+        gap = zone.surface.closest(mesh.nodes).gap
+        pressed_in = isinstance(zone.surface, Circle) and -gap.min() < PRESSED_IN * mesh.size
+        if gap.max() < 0 and not pressed_in:
+            depth = f"{-gap.min():.3g} {problem.units.length}".strip()
+            yield f"the whole body lies behind the surface of '{name}', up to {depth} deep; is its position right?"
 
 
 def _pinned(who: str) -> str:

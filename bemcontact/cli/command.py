@@ -128,6 +128,8 @@ class Source:
         from bemcontact.files.text import MOST_BYTES, decoded, text_of
 
         if self.spec == STANDARD_STREAM:
+            if sys.stdin is None:  # the shell has closed it, as with <&-
+                raise SpecError("standard input is closed; name a file, or send the spec to standard input")
             return decoded(sys.stdin.buffer.read(MOST_BYTES + 1), self.name)
         return text_of(self.spec)
 

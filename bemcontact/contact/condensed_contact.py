@@ -31,6 +31,8 @@ from bemcontact.options import Weights, named
 
 CANCELLED = 64 * float(np.finfo(float).eps)
 """Fraction of the terms of a sum below which the sum is round-off."""
+PRESSED = 1e-10
+"""Fraction of the peak up to which a pressure is round-off: the tension that the certificate allows is as large."""
 PEAK = 1e-12
 """Fraction of T below which the largest pressure is round-off, so that nothing touches."""
 
@@ -393,9 +395,10 @@ class CondensedContact(MotionAlgebra):
         return p / T > (self.initial_gap + u_n) / U
 
     def pressed(self, pressure: Array, displacement: Array) -> BoolArray:
-        """Which points (n,) are in contact under pressure; none if the largest pressure is round-off beside T."""
+        """Which points (n,) are in contact under pressure that is no round-off beside the peak, nor that beside T."""
         p = self._by_point(pressure, "pressure")
-        return self.touching(p, displacement) & (p > 0) & (self.peak(p) > 0)
+        peak = self.peak(p)
+        return self.touching(p, displacement) & (p > PRESSED * peak) & (peak > 0)
 
     def peak(self, pressure: Array) -> float:
         """Largest of the pressures p (n,), [p]; zero if it is round-off beside T."""

@@ -87,12 +87,21 @@ class MotionAlgebra:
     def amplitudes_of(self, displacement: Array) -> Array:
         """(ℓᵀR)⁻¹ ℓᵀu (k,): the a with which R a is nearest to u (n,) in the least squares of the weights."""
         ell = self.equilibrium
-        return np.asarray(np.linalg.solve(ell.T @ self.rigid_motions, ell.T @ displacement), float)
+        return self._solved(ell.T @ displacement)
 
     def balancing(self, load: Array) -> Array:
         """p0 = -R (ℓᵀR)⁻¹ load (n,): the pressure of least weighted square with ℓᵀp = -load, of either sign."""
-        R = self.rigid_motions
-        return -R @ np.linalg.solve(self.equilibrium.T @ R, load)
+        return -self.rigid_motions @ self._solved(load)
+
+    def _solved(self, right: Array) -> Array:
+        """(ℓᵀR)⁻¹ times a right side; `SingularSystemError` if the motions are singular to working precision."""
+        try:
+            return np.asarray(np.linalg.solve(self.equilibrium.T @ self.rigid_motions, right), float)
+        except np.linalg.LinAlgError:
+            raise SingularSystemError(
+                "the free motions are not independent of each other to working precision; give rigid_motions columns "
+                "of similar size that differ"
+            ) from None
 
     @cached_property
     def balancing_pressure(self) -> Array:

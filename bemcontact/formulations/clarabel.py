@@ -1,16 +1,19 @@
 """The one way to Clarabel: a cvxpy problem is scaled, solved to tight tolerances, and brought back with its progress.
 
 Clarabel is called directly, because cvxpy does not pass on the progress of a solver. Clarabel stops where residuals are
-small beside one, whatever the unit of a row is. So rows and columns are brought to size one before (Ruiz,
-RAL-TR-2001-034), cone by cone, unless the problem is dimensionless already.
+small beside one, whatever the unit of a row is. So rows and columns are brought to size one before, cone by cone,
+unless the problem is dimensionless already: units are taken out by the means of logarithms (Curtis and Reid, J. Inst.
+Maths Applics 10, 1972, 118-124), and the largest entries become one (Ruiz, RAL-TR-2001-034). Ruiz's method alone stops
+at any matrix whose largest entries are one, and leaves small what has a unit of its own, as a variable that cvxpy adds.
 
 No settings serve all programs. Clarabel's own regularization is too weak for Hessians that are semidefinite to
 round-off, a stronger one slows down others. So a few `ATTEMPTS` are made. The residuals of each end are computed anew
-from the data of the program, and they alone decide whether it is an answer.
+from the data of the program, and so are violations of the constraints as the user wrote them, relative to their terms.
+They alone decide whether it is an answer.
 """
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -29,6 +32,8 @@ AT_ONCE, GOOD, POOR = 1e-10, 1e-8, 1e-5
 PROOF = 1e-6
 """Error of a ray up to which it is a proof: nothing feasible is then smaller than a million times the data."""
 ITERATIONS = 200
+MEANS = 20
+"""Iterations of the means of logarithms."""
 ROUNDS = 12
 """Iterations of Ruiz's method; each takes the square root of how far rows and columns are from one."""
 REFINEMENT = {
@@ -95,12 +100,18 @@ class _Scaling(NamedTuple):
 
 
 def minimize(
-    problem: Any, max_iterations: int | None = None, *, equilibrate: bool = True, leave_point: bool = False
+    problem: Any,
+    max_iterations: int | None = None,
+    *,
+    equilibrate: bool = True,
+    leave_point: bool = False,
+    as_stated: bool = False,
 ) -> Answer:
     """Solve a convex cvxpy problem; its status and values are set as by its own `solve`, which has coarser tolerances.
 
     Rows and columns are scaled (`equilibrate`), unless the problem is dimensionless. `SolverError` if Clarabel cannot
-    state the problem, or no attempt is an answer; with `leave_point` the best point is left as an inaccurate one.
+    state the problem, or no attempt is an answer; with `leave_point` the best point is left as an inaccurate one. With
+    `as_stated` the constraints are checked as they were written, too.
     """
     import cvxpy as cp
 
@@ -108,14 +119,21 @@ def minimize(
         data, chain, inverse = problem.get_problem_data(cp.CLARABEL, solver_opts={})
     except cp.SolverError as error:
         raise SolverError(f"Clarabel cannot solve this model: {error}; state it without integers") from error
-    end = _best_end(data, max_iterations, equilibrate=equilibrate)
+
+    def put(end: _End) -> None:
+        with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status says the same
+            problem.unpack_results(_unscaled(end.solution, end.status, end.scaling), chain, inverse)
+
+    ends = _ends(data, max_iterations, equilibrate=equilibrate)
+    if as_stated:
+        ends = (_as_stated(end, problem, put) for end in ends)
+    end = _best_end(ends, max_iterations)
     failed = end.residual > POOR and end.status != LIMIT
     if (failed and not leave_point) or not np.isfinite(end.residual):
         raise SolverError(
             "Clarabel found no solution of this model; look for terms of very different size, or loosen what was added"
         )
-    with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status says the same
-        problem.unpack_results(_unscaled(end.solution, end.status, end.scaling), chain, inverse)
+    put(end)
     return Answer(end.progress / np.array([end.scaling.s, 1.0]), failed, end.note)
 
 
@@ -135,14 +153,43 @@ class _End(NamedTuple):
     scaling: _Scaling
 
 
-def _best_end(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> _End:
+def _best_end(made: Iterator[_End], max_iterations: int | None) -> _End:
     """The first end that is an answer or at the limit of iterations, or the best one."""
     ends: list[_End] = []
-    for end in _ends(data, max_iterations, equilibrate=equilibrate):
+    for end in made:
         ends.append(end)
         if end.status in RAYS or end.residual <= AT_ONCE or end.solution.iterations >= (max_iterations or np.inf):
             return end
     return min(ends, key=lambda end: end.residual)
+
+
+def _as_stated(end: _End, problem: Any, put: Callable[[_End], None]) -> _End:
+    """An end, with the violation of the constraints as they were written where that is larger than its residual."""
+    if end.status in (*RAYS, LIMIT) or not np.isfinite(end.residual):
+        return end
+    put(end)
+    violation = max((_violation(constraint) for constraint in problem.constraints), default=0.0)
+    if violation <= max(GOOD, end.residual):
+        return end
+    note = f"constraints of the model are violated by {violation:.0e} of their terms"
+    return end._replace(status="AlmostSolved", residual=violation, note="; ".join(filter(None, (end.note, note))))
+
+
+def _violation(constraint: Any) -> float:
+    """Violation of a constraint at the present values, relative to the largest of the terms in it."""
+    violation = _size(np.asarray(constraint.violation(), float))
+    if violation <= AT_ONCE:  # a variable that vanishes has no size
+        return 0.0
+    return violation / max((_terms(part) for part in constraint.args), default=1.0)
+
+
+def _terms(part: Any) -> float:
+    """Largest size of an expression, and of its derivatives times the largest entries of its variables."""
+    size = np.abs(np.asarray(part.value)).ravel(order="F").astype(float)
+    for variable, slope in part.grad.items():
+        if slope is not None:
+            size = size + np.asarray(np.abs(slope).sum(axis=0)).ravel() * _size(np.asarray(variable.value))
+    return max(_size(size), AT_ONCE)
 
 
 def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> Iterator[_End]:
@@ -244,7 +291,7 @@ def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], _Scaling]:
     A, c, b = csc_array(data["A"]), data["c"], data["b"]
     P = _symmetric(data)
     cone, work = _cone_of_rows(data["dims"]), A.tocoo()
-    D, E = np.ones(len(c)), np.ones(len(b))
+    D, E = _without_units(work, cone, A.shape)
     for _ in range(ROUNDS):
         entries = E[work.row] * np.abs(work.data) * D[work.col]
         column = _largest(entries, work.col, len(c))
@@ -256,6 +303,19 @@ def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], _Scaling]:
     s = 1.0 / (max(float(np.abs(P.data).max(initial=0.0)), float(np.abs(c).max(initial=0.0))) or 1.0)
     scaled = {**data, "A": csc_array(diags_array(E) @ A @ diags_array(D)), "b": E * b, "c": s * c}
     return scaled | ({"P": csc_array(s * P)} if "P" in data else {}), _Scaling(D, E, s)
+
+
+def _without_units(entries: Any, cone: IntArray, shape: tuple[int, int]) -> tuple[Array, Array]:
+    """Factors of columns and rows with which the logarithms of entries have the mean zero in each column and cone."""
+    present = entries.data != 0
+    row, column, logs = cone[entries.row[present]], entries.col[present], np.log(np.abs(entries.data[present]))
+    cones = int(cone.max(initial=-1)) + 1
+    in_row, in_column = (np.maximum(np.bincount(i, minlength=m), 1) for i, m in ((row, cones), (column, shape[1])))
+    r, d = np.zeros(cones), np.zeros(shape[1])
+    for _ in range(MEANS):
+        r = -np.bincount(row, logs + d[column], cones) / in_row
+        d = -np.bincount(column, logs + r[row], shape[1]) / in_column
+    return np.exp(d), np.exp(r)[cone]
 
 
 def _largest(entries: Array, index: NDArray[np.integer], size: int) -> Array:

@@ -90,6 +90,8 @@ class Start:
 
 def read_start(path: str | os.PathLike[str]) -> Start:
     """Read a start from a file that `bemcontact solve --json` wrote; `SpecError` says what is wrong with it."""
+    if os.fspath(path) == "-":
+        raise SpecError("a start is read from a file, not from standard input; name one that --json wrote")
     name, text = escaped(os.fspath(path)), text_of(path)
     try:
         record = json.loads(text, parse_int=float)

@@ -243,7 +243,8 @@ class ContactModel:
         chosen = problem or (self.problem(extra_objective, extra_constraints) if added else self._pure)
         if chosen is self._pure and (result := self._from_last()) is not None:
             return result
-        answer = minimize(chosen, max_iterations, leave_point=chosen is self._pure)
+        pure = chosen is self._pure
+        answer = minimize(chosen, max_iterations, leave_point=pure, as_stated=not pure)
         return self._read_back(chosen, answer)
 
     def _from_last(self) -> ModelResult | None:

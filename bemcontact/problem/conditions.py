@@ -9,7 +9,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from bemcontact.arrays import Array
-from bemcontact.problem.validation import Number, Point, Positive, SpecModel, described, invalid, not_tiny
+from bemcontact.problem.validation import Number, Point, Positive, SpecModel, described, invalid, not_tiny, number_hint
 
 
 class Field(SpecModel):
@@ -36,7 +36,8 @@ class Field(SpecModel):
             return {"constant": data}
         if not isinstance(data, Mapping | Field):
             keys = ", ".join(cls.model_fields)
-            raise invalid(f"expected a number, or a mapping with some of the keys {keys}; found {described(data)}")
+            found = f"{described(data)}{number_hint(data)}"
+            raise invalid(f"expected a number, or a mapping with some of the keys {keys}; found {found}")
         if isinstance(data, Mapping) and not data:
             raise invalid("the mapping is empty; give a number")
         return data

@@ -312,7 +312,9 @@ def _ensure_apart(line: Array) -> None:
     if (point := first_meeting(line, line, tolerance, itself=True)) is None:
         point = _first_repeated(line, tolerance)
     if point is not None:
-        raise invalid(f"the line crosses or touches itself at {_coordinates(point)}; it must not meet itself")
+        raise invalid(
+            f"the line crosses or touches itself at {_coordinates(point)}; it must not; check the order of its points"
+        )
     for end, before, rest, name in ((0, 1, line[1:], "first"), (-1, -2, line[:-1], "last")):
         away = line[end] - line[before]
         beyond = np.array([line[end], line[end] + reach * away / np.hypot(*away)])

@@ -117,7 +117,7 @@ def test_load_cases_compare_and_paths_say_it():
     compared = study(ComparisonOptions.of("qp3", "tributary", None), problem.with_case("large"), (1, 2))
     assert compared.finest.comparison.certified
     assert not compared.certified
-    assert compared.heading == "penetrates a surface"
+    assert compared.heading == "NOT certified"
     assert "penetrates" in compared.verdict
     record = compared.to_dict()
     assert record["certified"] is False
@@ -176,7 +176,9 @@ def groove(wall):
 
 
 @settings(max_examples=12, deadline=None)
-@given(st.floats(0.01, 5), st.floats(-0.5, 0.5))
+@given(st.floats(0.01, 5), st.floats(-0.1, 0.3))
+@example(1.0, 0.05)
+@example(3.0, 0.2)
 def test_a_tool_carries_a_body_into_a_wall(travel, past):
     """Translations are exact in linear theory, so the depth is the way less the gap, however long the way is."""
     gap, plane = travel * (1 - past), {"kind": "plane", "point": (0, 0), "normal": (1, 0)}
@@ -207,6 +209,7 @@ def test_a_side_that_fits_another_face_of_the_surface_penetrates_it(gap, cut, tu
     line = {"kind": "polyline", "points": (np.array(groove(SIDE + gap)["points"]) @ turned).tolist()}
     held = {"kind": "plane", "point": (0, 0), "normal": turned[0].tolist()}
     result = solve(block(corners, {"groove": ("0", line), "held": ("4", held)}, {"3": {"pressure": 40.0}}))
+    assert result.boundary is not None
     side = result.boundary.edge == 2
     moved = (result.boundary.displacement[side] @ turned[0]).max() - gap
     assert moved > 0.1
@@ -226,10 +229,11 @@ def test_a_pin_that_fits_its_hole_does_not_end_at_its_zone(gap, quarter):
     arcs = [{"name": f"arc {i}", "kind": "arc", "center": (0, 0), "radius": 1, "angles": (-90 * i, -90 * (i + 1)),
              "elements": 4} for i in range(4)]  # fmt: skip
     fixed = {"0": {"displacement": {"x": 0, "y": 0}}, "2": {"pressure": 20.0}}
-    plain = block(corners, {"pin": ("0", pin)}, fixed).model_dump()
-    boundary = {"outer": plain["boundary"]["outer"], "holes": [arcs]}
-    zones = {"pin": {"edges": f"arc {quarter}", "surface": pin}}
-    result = solve(Problem(**{**plain, "boundary": boundary, "contact_zones": zones}))
+    outer = [{"name": str(i), "start": at, "elements": 4} for i, at in enumerate(corners)]
+    data = {"name": "plate", "material": {"young_modulus": E, "poisson_ratio": NU}, "conditions": fixed}
+    data |= {"boundary": {"outer": outer, "holes": [arcs]}}
+    data |= {"contact_zones": {"pin": {"edges": f"arc {quarter}", "surface": pin}}}
+    result = solve(Problem(**data))
     assert result.penetration is not None
     assert result.penetration.depth > 0.05
     assert not any("taken to end" in note for note in result.notes)
@@ -252,13 +256,16 @@ def test_a_straight_face_may_end_where_its_zone_ends(beyond, ended):
 
 
 @settings(max_examples=12, deadline=None)
-@given(st.floats(0.8, 2.0), st.floats(3, 6), st.floats(1.5, 3), st.floats(-2, 1), st.sampled_from([0.0, 1e-3]))
-@example(1.4523, 5.805, 2.724, -1.0, 0.0)
-def test_zones_on_one_surface_are_as_one_zone(angle, width, height, power, off):
+@given(
+    st.floats(0.8, 2.0), st.floats(3, 6), st.floats(1.5, 3), st.sampled_from([0.0, 3.5e-4, 1e-3]), st.floats(0.05, 0.2)
+)
+@example(0.9745682, 4.219531, 2.864938, 3.5e-4, 0.1865)
+def test_zones_on_one_surface_are_as_one_zone(angle, width, height, off, share):
     """The contact points of one zone and of one zone for each edge are the same, and so are the verdicts."""
     corners = [(0, 0), (width, 0), (width + height / np.tan(angle), height), (12, height), (12, 9), (0, 9)]
-    surface = {"kind": "polyline", "points": np.add(corners[:4], (off, -off)).tolist()}
-    loads = {edge: {"pressure": share * 10**power} for edge, share in (("4", 1.0), ("3", 0.8), ("5", 0.6))}
+    surface = {"kind": "polyline", "points": (np.array(corners[:4]) + off).tolist()}
+    left = 0.8 * (1 - height / 9) + share  # more than balances the right side, so that the riser is pressed
+    loads = {edge: {"pressure": 0.1765 * p} for edge, p in (("4", 1.0), ("3", 0.8), ("5", left))}
     one = solve(block(corners, {"all": (("0", "1", "2"), surface)}, loads, elements=2))
     three = solve(block(corners, {f"zone {i}": (str(i), surface) for i in range(3)}, loads, elements=2))
     assert np.sort(one.solution.pressure) == pytest.approx(np.sort(three.solution.pressure), rel=1e-9)
@@ -276,6 +283,8 @@ def test_nodes_have_the_faces_of_contact_points(shift, power):
     zone = {"step": (("0", "1", "2"), {"kind": "polyline", "points": line.tolist()})}
     result = solve(block(corners, zone, {"4": {"pressure": 1.0}, "3": {"pressure": 1.0}, "5": {"pressure": 0.9}}))
     assert result.certified
+    assert result.problem is not None
+    assert result.boundary is not None
     gaps = surface_gaps(result.problem, result.boundary, result.contact, result.solution)
     seen = gaps.linear("step", np.flatnonzero(gaps.paired("step")))
     delta = result.contact.initial_gap + result.solution.displacement

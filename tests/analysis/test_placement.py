@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
 from bemcontact import follow, solve
@@ -13,6 +13,8 @@ from bemcontact.assessment.penetration import Misfit
 from bemcontact.problem import Problem
 
 R = 10.0
+QUICK = [Phase.explicit, Phase.generate]
+"""Examples are not made smaller: each takes half a second."""
 STEEL = {"young_modulus": 210e3, "poisson_ratio": 0.3}
 
 
@@ -47,17 +49,17 @@ def stated_change(result):
     return changes[0] if changes else 0.0
 
 
-@settings(max_examples=6, deadline=None)
-@given(st.floats(0.02, 4), st.floats(0, 360), st.sampled_from([1e-3, 1.0, 1e3]))
+@settings(max_examples=6, deadline=None, phases=QUICK)
+@given(st.floats(0.15, 4), st.floats(0, 360), st.sampled_from([1e-3, 1.0, 1e3]))
 @example(2.0, 270.0, 1.0)
 def test_the_change_of_a_peak_is_that_of_hertz(clearance, turn, size):
-    """Drawn concentric, the gap c (1 - cos φ) is that of the relative radius R²/c; it is R (R + c)/c if it touches."""
+    """Drawn concentric, the gap c (1 - cos φ) has the relative radius R²/c; it is R (R + c)/c when it touches."""
     result = solve(shaft(clearance, sinks=clearance, turn=turn, size=size))
     expected = np.sqrt(R / (R + clearance)) - 1
     change = stated_change(result)
-    if abs(expected) > 1.2 * NOTED:
-        assert change == pytest.approx(expected, rel=0.05, abs=0.001)
-    elif abs(expected) < 0.8 * NOTED:
+    if abs(expected) > NOTED + 0.005:
+        assert change == pytest.approx(expected, abs=0.005)  # half of (distance of nodes / half-width)²
+    elif abs(expected) < NOTED - 0.005:
         assert change == 0.0
     if abs(abs(expected) - WITHHELD) > 0.005:
         assert result.certified == (abs(expected) < WITHHELD)
@@ -67,7 +69,7 @@ def test_the_change_of_a_peak_is_that_of_hertz(clearance, turn, size):
         assert result.penetration.kind is Misfit.MOVED
 
 
-@pytest.mark.parametrize("clearance", [0.02, 2.0])
+@pytest.mark.parametrize("clearance", [0.2, 2.0])
 def test_the_body_drawn_where_it_touches_has_no_note(clearance):
     result = solve(shaft(clearance))
     assert result.certified
@@ -79,51 +81,45 @@ def test_the_remedy_of_the_message_is_one():
     drawn, moved = solve(shaft(2.0, sinks=2.0)), solve(shaft(2.0))
     assert "(0, -2)" in drawn.penetration.words
     ratio = moved.footprint.peak.pressure / drawn.footprint.peak.pressure
-    assert ratio - 1 == pytest.approx(stated_change(drawn), rel=0.03)
+    assert ratio - 1 == pytest.approx(stated_change(drawn), abs=0.005)
 
 
-def block(slide, *, end=25.0, left=-20.0, turn=0.0):
-    """A block on a table that ends, pushed sideways."""
-    c, s = np.cos(turn), np.sin(turn)
-
-    def at(x, y):
-        return c * x - s * y, s * x + c * y
-
+def block(slide, size=1.0):
+    """A block on a table that ends 5 from the block, pushed sideways."""
     corners = {"bottom": (0, 0), "right": (20, 0), "top": (20, 20), "left": (0, 20)}
-    outer = [{"name": name, "start": at(*corner), "elements": 8} for name, corner in corners.items()]
-    line = [at(left, 0), at(end, 0), at(end, -50)]
+    outer = [{"name": name, "start": (x * size, y * size), "elements": 8} for name, (x, y) in corners.items()]
+    line = [(-20 * size, 0), (25 * size, 0), (25 * size, -50 * size)]
     data = {
         "name": "block",
         "material": STEEL,
         "boundary": {"outer": outer},
-        "conditions": {"left": {"displacement": {"normal": -slide}}, "top": {"pressure": 1}},
+        "conditions": {"left": {"displacement": {"x": slide * size}}, "top": {"pressure": 1}},
         "contact_zones": {"foot": {"edges": "bottom", "surface": {"kind": "polyline", "points": line}}},
     }
     return Problem(**data)  # pyright: ignore[reportArgumentType]
 
 
-@settings(max_examples=8, deadline=None)
-@given(st.floats(0, 40), st.floats(0, 6.28))
-@example(30.0, 0.0)
-def test_pressure_where_no_surface_is_left_is_not_certified(slide, turn):
+@settings(max_examples=8, deadline=None, phases=QUICK)
+@given(st.floats(0.01, 40), st.sampled_from([1e-3, 1.0, 1e3]))
+@example(30.0, 1.0)
+def test_pressure_where_no_surface_is_left_is_not_certified(slide, size):
     """The distance of the leading corner from the end of the table is known; up to an element it is not resolved."""
-    result = solve(block(slide, turn=turn))
+    result = solve(block(slide, size))
     beyond = 20 + slide - 25
     if beyond > 20 / 8:
         assert not result.certified
         assert result.penetration.kind is Misfit.OFF
-        assert result.penetration.depth == pytest.approx(beyond, rel=1e-3)
+        assert result.penetration.depth == pytest.approx(beyond * size, rel=1e-3)
         assert "no surface" in result.penetration.words
     elif beyond < -0.01:
         assert result.certified
 
 
 def test_a_path_says_it_too():
-    path = follow(block(0.0), "conditions.left.displacement.normal", -30.0, 0.0)
+    path = follow(shaft(2.0, sinks=2.0), "loads.gravity.density", 2.0)
     assert not path.certified
     assert path.penetration is not None
-    assert path.penetration.kind is Misfit.OFF
-    assert path.penetrates_at == -30.0
+    assert path.penetration.kind is Misfit.MOVED
 
 
 def test_a_corner_of_the_surface_under_a_smooth_edge_is_no_alarm():

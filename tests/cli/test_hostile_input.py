@@ -127,3 +127,12 @@ def test_a_case_with_any_name_is_found(tmp_path: Path):
         f'{spec}\nload_cases: {{"\N{GRINNING FACE}": {{loads: {{gravity: {{density: 1, acceleration: [0, 0]}}}}}}}}\n'
     )
     assert CliRunner().invoke(cli.app, ["check", str(path), "--case", "\N{GRINNING FACE}"]).exit_code == 0
+
+
+def test_standard_input_that_is_closed_is_said():
+    """With <&- there is no standard input at all."""
+    command = f"exec {sys.executable} -m bemcontact check - <&-"
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False)
+    assert done.returncode
+    assert "standard input is closed" in done.stderr
+    assert "Traceback" not in done.stderr

@@ -7,6 +7,7 @@ import pytest
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import MotionAlgebra
+from bemcontact.errors import SingularSystemError
 
 
 @pytest.fixture(params=[0, 1, 3])
@@ -56,3 +57,10 @@ def test_forces_and_order_of_points():
     np.testing.assert_array_equal(contact.resultants(np.stack([pressure, 2 * pressure]))[1], [[0.0, 16.0], [8.0, 0.0]])
     assert contact.in_order(np.array([3, 1, 0, 2])).tolist() == [2, 3, 0, 1]
     assert contact.points_of_run(2).tolist() == [0, 1]
+
+
+def test_motions_that_underflow_are_said_to_be_singular():
+    """Squares of 1e-200 vanish, although the columns are independent."""
+    motions = MotionAlgebra(rigid_motions=np.full((3, 1), 1e-200), weights=np.ones(3), motion_load=np.ones(1))
+    with pytest.raises(SingularSystemError, match="working precision"):
+        motions.balancing(np.ones(1))

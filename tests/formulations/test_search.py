@@ -6,9 +6,9 @@ from contact_problems import resting
 
 import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.errors import OptionError
+from bemcontact.errors import OptionError, SpecError
 from bemcontact.formulations import qp1
-from bemcontact.formulations.search import Start, draw_starts
+from bemcontact.formulations.search import Start, draw_starts, read_start
 from bemcontact.options import SolveOptions
 
 
@@ -86,3 +86,8 @@ def test_a_seed_or_a_number_means_random_starts(asked, starts):
 def test_a_start_of_no_meaning_is_refused(pressure, displacement):
     with pytest.raises(OptionError, match=r"start needs|of a start (must|has)"):
         Start(pressure=pressure, displacement=displacement)
+
+
+def test_a_start_is_not_read_from_standard_input():
+    with pytest.raises(SpecError, match="from a file"):
+        read_start("-")

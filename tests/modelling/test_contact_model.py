@@ -449,3 +449,24 @@ def test_values_that_are_no_numbers_of_the_shape_are_refused(name, spoiled):
     with pytest.raises(ProblemError, match=f"the value of {name} "):
         parameter.value = spoiled(before)
     np.testing.assert_array_equal(parameter.value, before)
+
+
+@pytest.mark.parametrize(("length", "stress"), [(1.0, 1.0), (1e-6, 1e3), (1e6, 1e-6)])
+def test_bound_in_the_units_of_pressure_holds_in_any_units(length: float, stress: float):
+    """A bound on pressure differences, whose variable in cvxpy has the unit of pressure, under a large objective."""
+    n = 21
+    x = np.linspace(-1.0, 1.0, n)
+    M = np.exp(-3 * abs(x[:, None] - x)) * length / stress
+    contact = CondensedContact.from_compliance(M, (0.5 * x**2 - 0.4) * length, np.full(n, length / n))
+    peak = complementarity.solve(contact).pressure.max()
+    model_of_it = bemcontact.model(contact)
+    p, (U, T) = model_of_it.pressure, model_of_it.scales
+    pull = 1e5 * U * T * length * cp.sum_squares(p / T - 2 * peak / T)
+    bound = cp.max(cp.abs(cp.diff(p))) / peak <= 0.25
+    result = model_of_it.solve(extra_objective=pull, extra_constraints=[bound])
+    assert result.status is Status.SOLVED
+    assert bound.violation() <= 1e-7
+    assert result.pressure is not None
+    assert result.objective is not None
+    work = model_of_it.contact.weights @ (result.pressure * result.gap)
+    assert result.objective == pytest.approx(float(work) + float(pull.value), rel=1e-9)

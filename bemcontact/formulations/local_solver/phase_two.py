@@ -301,17 +301,20 @@ class Descent:
         return self.progress.fine_zero(multipliers[n:], working.W, working.N, self._reach())
 
     def _reach(self) -> Array:
-        """Size of the numbers whose rounding each component of the point has (n,), estimated by one sample.
+        """Size of the numbers whose rounding each component of the point has (n,), estimated by a sample.
 
         Each row is satisfied up to the rounding of its terms, on the way to the point too. A change of the rows moves
-        the point by N and by a Newton step.
+        the point by N and by a Newton step. The rows change with irregular phases, since with signs the movements by
+        several rows of whole numbers can cancel.
         """
         working, hessian, size = self.working, self.hessian, self.progress.travelled
         if working.size == 0:
             return size
-        signs = np.where(np.arange(working.size) % 2, -1.0, 1.0)
-        moved = working.N.dot(signs * np.abs(working.W).dot(size))
-        return np.abs(moved + hessian.newton(self.progress.statement.H.dot(moved)))
+        phases = np.square(np.arange(working.size, dtype=float))
+        terms = np.abs(working.W).dot(size)[:, None] * np.array([np.cos(phases), np.sin(phases)]).T
+        moved = working.N.dot(terms)
+        moved -= hessian.Z.dot(hessian.Z.T.dot(self.progress.statement.H.dot(moved)))
+        return np.hypot(moved[:, 0], moved[:, 1])
 
     def _advance(
         self, along: Array, length: float, step: float, change: float, block: BlockingConstraint | None

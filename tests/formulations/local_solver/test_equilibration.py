@@ -52,7 +52,7 @@ def test_natural_factors_are_the_least_squares_solution(seed):
 @settings(max_examples=100)
 @given(st.integers(0, 10**9))
 def test_natural_factors_change_with_the_units(seed):
-    """So scaled data do not depend on units, up to the small weight of the factors. No entry is of rounding size."""
+    """So scaled data do not depend on units, up to the small weight of the factors. No entry is as small as noise."""
     stated, rng = statement(seed), np.random.default_rng(seed)
     m, n = stated.A.shape
     columns, rows, unit = (10.0 ** rng.integers(-2, 3, size) for size in (n, m, 1))
