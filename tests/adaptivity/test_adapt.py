@@ -145,7 +145,7 @@ def plain() -> Meshed:
     return found(foot())
 
 
-def told(result: Meshed) -> dict[tuple[str, float], float]:
+def told(result: Meshed) -> dict[tuple[str, int], float]:
     """Bars by quantity; of starts and ends, the sorted ones."""
     judged = [(item.quantity, item.bar or 0.0) for item in result.accuracies[0].bars]
     ends = sorted(bar for quantity, bar in judged if quantity in ("start", "end"))
