@@ -305,7 +305,7 @@ def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], _Scaling]:
     return scaled | ({"P": csc_array(s * P)} if "P" in data else {}), _Scaling(D, E, s)
 
 
-def _without_units(entries: Any, cone: IntArray, shape: tuple[int, int]) -> tuple[Array, Array]:
+def _without_units(entries: Any, cone: IntArray, shape: Any) -> tuple[Array, Array]:
     """Factors of columns and rows with which the logarithms of entries have the mean zero in each column and cone."""
     present = entries.data != 0
     row, column, logs = cone[entries.row[present]], entries.col[present], np.log(np.abs(entries.data[present]))
