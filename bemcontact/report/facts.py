@@ -65,12 +65,16 @@ def in_short(verdicts: Sequence[Verdict]) -> str:
 def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:
     """Verdict on the solution of the equations on the mesh, with its sentences, and on what penetrates a surface."""
     if penetration is not None:
-        return Verdict(
-            "Equations", "bad", "penetrates a surface", f"{penetration['words']} At the contact points: {words}"
-        )
+        sentences = f"{penetration['words']} At the contact points: {words}"
+        return Verdict("Equations", "bad", misfit_in_words(penetration), sentences)
     kind: str = certificate["kind"]
     word = {"unique": "unique solution proved", "not a solution": "not solved"}.get(kind, kind)
     return Verdict("Equations", "good" if kind == "unique" else "bad", word, words)
+
+
+def misfit_in_words(penetration: Record) -> str:
+    """Name in a few words how a body does not fit a rigid surface."""
+    return "penetrates a surface" if penetration["kind"] == "penetration" else penetration["kind"]
 
 
 def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
