@@ -9,6 +9,8 @@ from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorizations import posv, row_lengths
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 
+SWEEPS = 4
+"""Sweeps of Ruiz's method (RAL-TR-2001-034) after the natural factors."""
 OF_OBJECTIVE, OF_BOUNDS, UNDECIDED = 1e-3, 1e-6, 1e-11
 """Weights in the least-squares problem: of H and c, of the bounds, and of the factors themselves. A has weight 1."""
 OF_VARIABLE, OF_ROW = 200.0, 1000.0
@@ -45,11 +47,15 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     n, bounds = statement.c.size, np.array([statement.lower, statement.upper])
     natural = natural_factors(statement, bounds)
     D, E = natural[:n], natural[n:]
-    A = E[:, None] * statement.A * D
-    columns = np.maximum.reduce(np.abs(A), axis=0, initial=0.0)
-    columns[columns == 0.0] = 1.0
-    D = _power_of_two(D / columns)
-    E = _power_of_two(E / row_lengths(A * (D / natural[:n])))
+    for _ in range(SWEEPS):
+        A = E[:, None] * statement.A * D
+        columns = np.maximum.reduce(np.abs(A), axis=0, initial=0.0)
+        columns[columns == 0.0] = 1.0
+        rows = np.maximum.reduce(np.abs(A), axis=1, initial=0.0)
+        rows[rows == 0.0] = 1.0
+        D, E = D / np.sqrt(columns), E / np.sqrt(rows)
+    D = _power_of_two(D)
+    E = _power_of_two(E / row_lengths(E[:, None] * statement.A * D))
     A = E[:, None] * statement.A * D
     bounds *= np.concatenate([1.0 / D, E])
     smaller = _smaller_unit(bounds)
