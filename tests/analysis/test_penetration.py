@@ -117,7 +117,7 @@ def test_load_cases_compare_and_paths_say_it():
     compared = study(ComparisonOptions.of("qp3", "tributary", None), problem.with_case("large"), (1, 2))
     assert compared.finest.comparison.certified
     assert not compared.certified
-    assert compared.heading == "NOT certified"
+    assert compared.heading == "penetrates a surface"
     assert "penetrates" in compared.verdict
     record = compared.to_dict()
     assert record["certified"] is False

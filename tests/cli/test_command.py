@@ -86,7 +86,6 @@ BROKEN = {
     "contact edge with a load": ("  top: {pressure: 3}", "  bottom: {pressure: 3}", "bottom"),
     "ν too large": ("poisson_ratio: 0.3", "poisson_ratio: 0.6", "0.5"),
     "E zero": ("young_modulus: 210e3", "young_modulus: 0", "young_modulus"),
-    "no elements": (", elements: 4}", "}", "elements"),
     "fractional elements": ("elements: 4", "elements: 4.5", "4.5"),
     "pulled off its support": ("pressure: 3", "pressure: -3", "off|away|lift|pull"),
     "held by nothing": ("left: {displacement: {x: 0}}", "left: {traction: {x: 1}}", "h[oe]ld|resist"),
@@ -212,7 +211,9 @@ def test_progress_shows_the_start_and_reaches_the_terminal(block: Path, monkeypa
 
     monkeypatch.setattr("bemcontact.cli.command.stages", listening)
     run("solve", block, "--formulation", "qp1", "--starts", 3)
-    assert said == [("solving", ""), *(("solving", f"start {number} of 3") for number in (2, 3, 3))]
+    assert said[0] == ("solving", "")
+    assert [now for stage, now in said if stage == "solving"] == ["", *(f"start {number} of 3" for number in (2, 3, 3))]
+    assert ("mesh", "") in said
 
 
 @pytest.mark.parametrize(

@@ -118,7 +118,7 @@ def test_comparison_that_is_not_certified_ends_with_status_1(block: Path, monkey
         (("--formulations", "complementarity"), "is the reference of every comparison"),
         (("--formulations", "qp1", "--penalty", "1"), "a penalty is an option of qp2"),
         (("--seed", "3"), "a seed goes with random starts"),
-        (("--out", "."), "--out: . "),
+        (("--out", "."), "--out . would replace"),
         (("--penalty", "1,x"), "--penalty: expected numbers with commas between, found 'x'"),
         (("--penalty", "0"), "the penalty must be a number"),
         (("--refine", "1,1.5"), "--refine: expected whole numbers with commas between, found '1.5'"),

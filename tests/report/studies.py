@@ -9,6 +9,10 @@ from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
 
 
+JUDGED = {"accuracy": 0.01, "mesh": {"adapt": False}}
+"""A mesh is taken as it is stated, and its errors are estimated and judged."""
+
+
 def block(**changes: object) -> Problem:
     """A block on a table under pressure 3, so that 3 is its contact pressure; contact alone keeps it from sinking."""
     corners = {"bottom": ([0, 0], 4), "right": ([40, 0], 2), "top": ([40, 20], 4), "left": ([0, 20], 2)}
@@ -25,6 +29,7 @@ def block(**changes: object) -> Problem:
             "theory": {"kind": "uniform", "pressure": 3},
             "Hertz": {"kind": "hertz", "load": 60, "radius": 0.01, "half": True},
         },
+        **JUDGED,
     }
     return Problem(**{**stated, **changes})  # pyright: ignore
 
@@ -45,6 +50,7 @@ def roller(**changes: object) -> Problem:
         "boundary": {"outer": edges},
         "conditions": {"top": {"pressure": 30}, "axis": {"displacement": {"x": 0}}},
         "contact_zones": {"foot": {"edges": "under", "surface": plane}},
+        **JUDGED,
     }
     return Problem(**{**stated, **changes})  # pyright: ignore
 

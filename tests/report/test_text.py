@@ -35,7 +35,7 @@ def block() -> Problem:
 
 @pytest.fixture(scope="module")
 def result() -> analysis.Result:
-    return analysis.solve(block())
+    return analysis.solve(block().with_value("accuracy", 0.01).with_value("mesh.adapt", False))
 
 
 def printed(renderable: RenderableType, width: int = 100) -> str:
@@ -204,7 +204,7 @@ UNITS = {"units": {"length": "mm", "force": "N"}}
 
 @cache
 def all_cases() -> CaseResults:
-    return bemcontact.solve_cases(made(FREE, **FREE_CASES, **UNITS))
+    return bemcontact.solve_cases(made(FREE, **FREE_CASES, **UNITS, accuracy=0.01, mesh={"adapt": False}))
 
 
 def shown(renderable: RenderableType, width: int = 160) -> str:
