@@ -8,7 +8,6 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
 
-
 JUDGED = {"accuracy": 0.01, "mesh": {"adapt": False}}
 """A mesh is taken as it is stated, and its errors are estimated and judged."""
 
