@@ -81,6 +81,7 @@ def test_equations_are_solved_in_fractions():
 @settings(max_examples=400)
 @given(st.integers(0, 10**9))
 @example(361)
+@example(9097)
 @example(1282)
 @example(2000161)
 @example(20004158)

@@ -102,6 +102,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
     if outcome.ending is Ending.LIMIT:
         return _finding(progress, QPStatus.ITERATION_LIMIT, descent.working.sides)
     if outcome.ending is Ending.UNBOUNDED and outcome.ray is not None:
+        progress.correct(descent.working.onto(progress.x))  # without the rounding of the steps, which has a slope too
         ray = cleaned_ray(progress, outcome.ray)
         if ray is None:
             return Restart(sides=descent.working.sides, failed=True)
