@@ -14,7 +14,7 @@ from local_solver_fuzz import case, outcomes, solved
 from bemcontact.formulations.local_solver import QPResult, QPStatus
 
 INF = np.inf
-BAD = ("judge", "numerical", "with working set")
+BAD = ("judge", "numerical", "restart")
 
 
 def saddle_in_a_box() -> IntegerProgram:
@@ -88,6 +88,10 @@ def test_equations_are_solved_in_fractions():
 @example(20001064)
 @example(70004828)
 @example(70013905)
+@example(100054772)
+@example(100045516)
+@example(100008520)
+@example(100054992)
 def test_no_claim_is_false_in_any_units_and_a_restart_at_an_answer_moves_nothing(seed):
     """Powers of ten from 1e-8 to 1e8 on rows, columns and the objective; random starts and working sets."""
     assert not [name for name in outcomes(seed) if any(bad in name for bad in BAD)]

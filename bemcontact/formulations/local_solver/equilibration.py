@@ -107,18 +107,18 @@ def natural_factors(statement: Statement, bounds: Array) -> Array:
 def _entries(statement: Statement) -> tuple[Array, Array]:
     """Which entries of [H; c; A] are present (n + 1 + m, n), and their binary logarithms; zeros elsewhere.
 
-    An entry of H and A counts as rounding if it is small beside the largest entry of its row and of its column.
+    An entry of H or A counts as rounding if it is small beside the largest entry of its row and of its column there.
     """
     n = statement.c.size
     sizes = np.abs(np.concatenate([statement.H, statement.c[None], statement.A]))
     present, logarithms = _logarithms(sizes)
     if logarithms.item(logarithms.argmax()) - logarithms.item(logarithms.argmin()) > WIDE:
-        sizes[n] = 0.0
-        sizes[n] = np.maximum.reduce(sizes, axis=0)
-        counts = sizes > 4.0 * EPS * np.minimum(np.maximum.reduce(sizes, axis=1)[:, None], sizes[n])
-        counts[n] = True
-        present *= counts
-        logarithms *= counts
+        for matrix in (slice(n), slice(n + 1, None)):  # H by itself: its units are not those of A, and it is symmetric
+            columns = np.maximum.reduce(sizes[matrix], axis=0, initial=0.0)
+            rows = np.maximum.reduce(sizes[matrix], axis=1, initial=0.0)
+            counts = sizes[matrix] > 4.0 * EPS * np.minimum(rows[:, None], columns)
+            present[matrix] *= counts
+            logarithms[matrix] *= counts
     return present, logarithms
 
 

@@ -266,7 +266,8 @@ def supporting(progress: Progress, sides: Sides) -> Sides:
     """Sides of independent active constraints with multipliers of the right sign, if the point is stationary.
 
     Other choices among dependent active constraints have multipliers of the wrong sign. Without such a set the sides
-    are returned unchanged.
+    are returned unchanged. Variables whose bounds are equal are fixed in any working set, with any multiplier. So they
+    are kept, and the choice is made on the other variables.
     """
     statement, n = progress.statement, progress.x.size
     free, rows = (sides[:n] == 0).nonzero()[0], sides[n:].nonzero()[0]
@@ -274,12 +275,14 @@ def supporting(progress: Progress, sides: Sides) -> Sides:
         return sides
     if orthogonal(unit_rows(statement.A[rows][:, free])[0], DEPENDENT)[3].size == rows.size:
         return sides
-    active = sides.nonzero()[0]
-    normals, _ = unit_rows(statement.normals(active))
+    fixed = statement.equality & (np.arange(sides.size) < n)
+    active = ((sides != 0) & ~fixed).nonzero()[0]
+    others = (~fixed[:n]).nonzero()[0]
+    normals, _ = unit_rows(statement.normals(active)[:, others])
     equal, upper = sides[active] == EQUALITY, sides[active] == 1
     inwards = np.where(upper, -1.0, 1.0)[:, None] * normals
     try:
-        multipliers, residual = nnls(np.vstack([inwards, -normals[equal]]).T, progress.gradient)
+        multipliers, residual = nnls(np.vstack([inwards, -normals[equal]]).T, progress.gradient[others])
     except RuntimeError:  # SciPy's iteration limit
         return sides
     if residual > progress.zero:
@@ -290,7 +293,7 @@ def supporting(progress: Progress, sides: Sides) -> Sides:
     first = np.zeros(active.size, dtype=bool)
     first[needed[independent_rows(normals[needed], strong[needed], DEPENDENT)]] = True
     kept = active[independent_rows(normals, first, DEPENDENT)]
-    supporting = np.zeros_like(sides)
+    supporting = np.where(fixed, sides, 0).astype(sides.dtype)
     supporting[kept] = sides[kept]
     return supporting
 

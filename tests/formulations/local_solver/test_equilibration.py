@@ -1,10 +1,18 @@
 """The natural factors solve their least-squares problem, and take out units of rows, variables and objective."""
 
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bemcontact.formulations.local_solver.equilibration import OF_BOUNDS, OF_OBJECTIVE, equilibrate, natural_factors
+from bemcontact.formulations.local_solver.equilibration import (
+    OF_BOUNDS,
+    OF_OBJECTIVE,
+    _entries,
+    equilibrate,
+    natural_factors,
+)
 from bemcontact.formulations.local_solver.statement import Statement
 
 
@@ -31,9 +39,11 @@ def least_squares(stated):
         right.append(-np.sqrt(weight) * np.log2(entry))
 
     for (i, j), entry in np.ndenumerate(stated.A):
-        add(unit[n + i] + unit[j], entry, 1.0)
+        if entry:
+            add(unit[n + i] + unit[j], entry, 1.0)
     for (i, j), entry in np.ndenumerate(stated.H):
-        add(unit[i] + unit[j] + unit[-1], entry, 0.5 * OF_OBJECTIVE)
+        if entry:
+            add(unit[i] + unit[j] + unit[-1], entry, 0.5 * OF_OBJECTIVE)
     for j, entry in enumerate(stated.c):
         add(unit[j] + unit[-1], entry, OF_OBJECTIVE)
     for i, entry in enumerate(stated.upper):
@@ -67,6 +77,24 @@ def test_natural_factors_change_with_the_units(seed):
     other = natural_factors(changed, np.array([changed.lower, changed.upper]))
     expected = plain / np.concatenate([columns, rows])
     assert np.abs(np.log2(other / expected)).max() <= 0.02
+
+
+@settings(max_examples=100)
+@given(st.integers(0, 10**9))
+def test_entries_that_are_rounding_do_not_count(seed):
+    """Those of H in pairs, and whatever the unit of the objective; the factors are those without these entries."""
+    stated, rng = statement(seed), np.random.default_rng(seed)
+    m, n = stated.A.shape
+    columns, rows = (10.0 ** rng.integers(-8, 9, size) for size in (n, m))
+    wide = replace(stated, H=columns[:, None] * stated.H * columns, A=rows[:, None] * stated.A * columns)
+    unit = 10.0 ** rng.integers(-12, 13)
+    counted = _entries(wide)[0]
+    np.testing.assert_array_equal(counted, _entries(replace(wide, H=unit * wide.H, c=unit * wide.c))[0])
+    np.testing.assert_array_equal(counted[:n], counted[:n].T)
+    without = replace(wide, H=counted[:n] * wide.H, A=counted[n + 1 :] * wide.A)
+    factors = natural_factors(wide, np.array([wide.lower, wide.upper]))
+    far = np.abs(np.log2(factors) - least_squares(without)).max()
+    assert far <= 0.01 * np.abs(np.log2([*columns, *rows, 2.0])).max()  # the factors have a small weight
 
 
 @settings(max_examples=100)
