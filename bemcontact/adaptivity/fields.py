@@ -1,6 +1,6 @@
 """The answer on one mesh: pressure, traction and displacement by element, and the stretches of contact."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,9 +18,14 @@ from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import SolverError
 from bemcontact.formulations import complementarity
 from bemcontact.problem.problem import Problem
+from bemcontact.problem.rigid_surface import DeflectedContour
 
 SLIT = 1e-3
 """Open length between two stretches of contact, over the shorter of these, that is not taken for an opening."""
+BETWEEN = 17
+"""Points of an open element where the gap is looked at."""
+PENETRATION = 1e-3
+"""Penetration between nodes, over the largest displacement, that a mesh must resolve."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -207,3 +212,29 @@ def _at_gauss(values: Array) -> Array:
 
 def _by_pairs(values: Array) -> Array:
     return values.reshape(-1, 2).sum(axis=1)
+
+
+def penetrations(answer: Solved, case: Answer) -> Iterator[tuple[int, float]]:
+    """Open elements through which a surface passes between the nodes, with the depth [L]."""
+    body, points = answer.body, answer.body.points
+    contact = case.condensation.contact
+    total = contact.initial_gap + case.solution.displacement
+    own = np.zeros_like(case.pressure)
+    own[points.zone[points.point], points.element, points.local] = total[points.point]
+    size = float(np.hypot(*np.moveaxis(case.displacement, 2, 0)).max())
+    xi = np.linspace(-1, 1, BETWEEN)[1:-1]
+    shapes = reference_element.values(xi)
+    nodes = answer.mesh.nodes[answer.mesh.elements]
+    for number, zone in enumerate(body.problem.contact_zones.values()):
+        if isinstance(zone.surface, DeflectedContour):
+            continue
+        elements = np.flatnonzero(answer.in_zone[number] & ~(case.pressure[number] > 0).any(axis=1))
+        if not len(elements):
+            continue
+        at_nodes = zone.surface.closest(nodes[elements].reshape(-1, 2)).gap.reshape(-1, 3)
+        moved = own[number, elements] - at_nodes
+        inside = zone.surface.closest((shapes @ nodes[elements]).reshape(-1, 2)).gap.reshape(len(elements), -1)
+        gap = inside + moved @ shapes.T
+        for element, least in zip(elements.tolist(), gap.min(axis=1).tolist(), strict=True):
+            if least < -PENETRATION * size:
+                yield element, -least

@@ -16,8 +16,8 @@ from adaptive_problems import (
 )  # fmt: skip
 
 from bemcontact.adaptivity import adapt
-from bemcontact.adaptivity.adapt import Meshed, first_mesh, meshed, penetrations
-from bemcontact.adaptivity.fields import solved
+from bemcontact.adaptivity.adapt import Meshed, first_mesh, meshed
+from bemcontact.adaptivity.fields import penetrations, solved
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.errors import ProblemError
 from bemcontact.problem import Problem
