@@ -349,6 +349,6 @@ def test_a_file_of_tests_without_a_module_is_found(name: str):
     assert module_of(Path(name)) is None
 
 
-@pytest.mark.parametrize("name", ["bem/test_mesh.py", "cli/test_cli.py", "report/test_figures.py", "test_options.py"])
+@pytest.mark.parametrize("name", ["bem/test_mesh.py", "cli/test_cli.py", "report/test_figures.py", "test_errors.py"])
 def test_a_file_of_tests_may_bear_the_name_of_a_module_or_a_room(name: str):
     assert module_of(Path(name)) is not None

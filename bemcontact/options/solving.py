@@ -1,25 +1,15 @@
-"""The options of solving and comparing, each declared once: name, default, range, meaning, and formulations.
-
-There are no numerics here, so that ``bemcontact --help`` answers at once.
-"""
+"""The options of solving, each declared once: name, default, range, meaning, and the formulations that take it."""
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from enum import StrEnum
-from itertools import product
-from textwrap import fill
-from typing import Any, Protocol, TypedDict, TypeVar, Unpack, cast, runtime_checkable
+from typing import Any, Protocol, TypedDict, Unpack, cast, runtime_checkable
 
-from bemcontact.checks.arguments import LARGEST_COUNT, real_number, shown, whole_number
+from bemcontact.checks.arguments import real_number, shown
 from bemcontact.errors import OptionError, ProblemError
+from bemcontact.options.declaration import STARTS, declared, documented, ensure_known, ensure_whole_fields, named
 
-Name = TypeVar("Name", bound=StrEnum)
-Options = TypeVar("Options")
-
-STARTS = "number of starts"
-MOST_STARTS = 1_000_000
-"""Largest number of random starts, which are drawn before the first search."""
 LEAST_PENALTY, LARGEST_PENALTY = 1e-8, 1e8
 """Outside this range the smaller of QP2's two terms is lost in the round-off of the other."""
 
@@ -103,37 +93,6 @@ class GivenStart(Protocol):
         ...
 
 
-def _option(
-    default: Any,
-    meaning: str,
-    *,
-    noun: str = "",
-    metavar: str | None = None,
-    least: int | None = None,
-    shown: str | bool = True,
-) -> Any:
-    """Declare an option by its default and its meaning, for help and documentation.
-
-    Parameters
-    ----------
-    noun : its name in errors, if that is another one
-    metavar : stands for its value in the help of the command line
-    least : least value of a whole number
-    shown : the default in words, or whether the help shows it
-    """
-    about = {"meaning": meaning, "noun": noun, "metavar": metavar, "least": least, "shown": shown}
-    return field(default=default, metadata=about)
-
-
-def _documented(options: type[Options]) -> type[Options]:
-    """Write the meanings of options into the docstring of their class, for `help` and documentation."""
-    head, rule, rest = (options.__doc__ or "").partition("\n\n    Raises\n")
-    about = (f"{item.name} : {item.metadata['meaning']}" for item in fields(cast(Any, options)))
-    lines = "\n".join(fill(text, 100, initial_indent="    ", subsequent_indent=" " * 8) for text in about)
-    options.__doc__ = f"{head}\n\n    Parameters\n    ----------\n{lines}{rule}{rest}"
-    return options
-
-
 class StatementKeywords(TypedDict, total=False):
     """Keywords of `bemcontact.random_starts`: types of fields of `SolveOptions`, with names as texts."""
 
@@ -152,7 +111,7 @@ class SolveKeywords(StatementKeywords, total=False):
     polish: bool
 
 
-@_documented
+@documented
 @dataclass(frozen=True, kw_only=True)
 class SolveOptions:
     """How a contact problem is solved.
@@ -165,38 +124,40 @@ class SolveOptions:
         A `ProblemError`: a name is unknown, a number out of range, or the formulation has no use for an option.
     """
 
-    formulation: FormulationName = _option(
+    formulation: FormulationName = declared(
         FormulationName.COMPLEMENTARITY,
         "Statement of the contact problem: complementarity (direct solver), qp3 (convex program), or qp1 and qp2 "
         "(local solver over pressures and displacements).",
         noun="formulation",
     )
-    weights: Weights = _option(Weights.TRIBUTARY, "Weights of the objective; complementarity has none.", noun="weights")
-    penalty: float = _option(
+    weights: Weights = declared(
+        Weights.TRIBUTARY, "Weights of the objective; complementarity has none.", noun="weights"
+    )
+    penalty: float = declared(
         1.0,
         f"qp2: an error of the equations costs its square over μ, a number without unit from {LEAST_PENALTY:g} to "
         f"{LARGEST_PENALTY:g}; a smaller μ enforces them harder.",
         metavar="μ",
     )
-    rows: Rows = _option(
+    rows: Rows = declared(
         Rows.STIFFNESS, "qp1, qp2: equations in terms of pressure (stiffness) or of displacement.", noun="rows"
     )
-    equilibrium: Equilibrium = _option(
+    equilibrium: Equilibrium = declared(
         Equilibrium.CONSTRAINT,
         "qp2, bodies with free rigid motions: exact (constraint), or penalized as in the paper.",
         noun="ways of equilibrium",
     )
-    start: GivenStart | os.PathLike[str] | StartName | None = _option(
+    start: GivenStart | os.PathLike[str] | StartName | None = declared(
         None,
         "qp1, qp2: first point of the solver; a FILE is one that --json wrote. With a seed or a number of starts the "
         "first point is random.",
         metavar="null|random|FILE",
         shown="null",
     )
-    seed: int | None = _option(
+    seed: int | None = declared(
         None, "qp1, qp2: seed of random starts; the same seed gives the same starts.", metavar="S", least=0, shown="0"
     )
-    starts: int | None = _option(
+    starts: int | None = declared(
         None,
         "qp1, qp2: search from N random starts; the result is the best of them.",
         noun=STARTS,
@@ -204,7 +165,7 @@ class SolveOptions:
         least=1,
         shown=False,
     )
-    max_iterations: int | None = _option(
+    max_iterations: int | None = declared(
         None,
         "Stop the solver after N iterations (complementarity: after N pivots of Lemke's method).",
         noun="limit of iterations",
@@ -212,7 +173,7 @@ class SolveOptions:
         least=1,
         shown="its own",
     )
-    polish: bool = _option(
+    polish: bool = declared(
         True, "qp1, qp2, qp3: make the result of the solver exact by a few steps of an active-set method."
     )
 
@@ -224,7 +185,7 @@ class SolveOptions:
                 object.__setattr__(self, item.name, name)
         if isinstance(self.start, str) and self.start in [*StartName]:
             object.__setattr__(self, "start", StartName(self.start))
-        object.__setattr__(self, "penalty", _penalty(self.penalty))
+        object.__setattr__(self, "penalty", penalty_of(self.penalty))
         ensure_whole_fields(self)
         if not isinstance(self.polish, bool):
             raise OptionError(f"polish must be True or False; found {shown(self.polish)}")
@@ -291,107 +252,6 @@ class SolveOptions:
                 )
 
 
-class ComparisonKeywords(TypedDict, total=False):
-    """Keywords of `bemcontact.compare`: types of fields of `ComparisonOptions`."""
-
-    starts: int | None
-    seed: int | None
-
-
-@_documented
-@dataclass(frozen=True, kw_only=True)
-class ComparisonOptions:
-    """What is compared with the direct solution: each formulation with all weights, QP2 with all penalties.
-
-    Raises
-    ------
-    OptionError
-        A value occurs twice, is missing, out of range, or of no use.
-    """
-
-    formulations: tuple[FormulationName, ...] = _option(
-        COMPARED, f"What to compare with the direct solution: {', '.join(COMPARED)}.", metavar="NAME,…"
-    )
-    weights: tuple[Weights, ...] = _option(
-        (Weights.TRIBUTARY,), f"Weights of the objectives: {', '.join(Weights)}.", metavar="NAME,…"
-    )
-    penalties: tuple[float, ...] | None = _option(
-        None, "qp2: penalties, such as 1e-6,1e-3,1,1e3.", metavar="μ,…", shown="1"
-    )
-    starts: int | None = _option(
-        None,
-        "qp1, qp2: count how many of N random starts end at the solution.",
-        noun=STARTS,
-        metavar="N",
-        least=1,
-        shown=False,
-    )
-    seed: int | None = _option(
-        None,
-        "qp1, qp2: seed of the random starts; the same seed gives the same starts.",
-        metavar="S",
-        least=0,
-        shown="0",
-    )
-
-    def __post_init__(self) -> None:
-        """Read names and numbers, a single one as a list; refuse what is out of range, given twice, or of no use."""
-        formulations = tuple(_compared(name) for name in _listed(self.formulations))
-        weights = tuple(named(Weights, name, "weights") for name in _listed(self.weights))
-        penalties = None if self.penalties is None else tuple(_penalty(value) for value in _listed(self.penalties))
-        for name, value in (("formulations", formulations), ("weights", weights), ("penalties", penalties)):
-            object.__setattr__(self, name, value)
-        for what in ("formulations", "weights", "penalties"):
-            _ensure_different(getattr(self, what), what)
-        if FormulationName.COMPLEMENTARITY in self.formulations:
-            raise OptionError("complementarity is the reference of every comparison; leave it out of the formulations")
-        if FormulationName.QP2 not in self.formulations and self.penalties is not None:
-            raise OptionError("a penalty is an option of qp2, which is not among the formulations; add it")
-        if self.starts is None and self.seed is not None:
-            raise OptionError("a seed goes with random starts; say how many (starts)")
-        ensure_whole_fields(self)
-        if self.starts is not None and self.formulations == (FormulationName.QP3,):
-            raise OptionError("random starts are for qp1 and qp2, which are not among the formulations; add one")
-        _ = self.attempts  # SolveOptions checks the penalties
-
-    @classmethod
-    def of(
-        cls,
-        formulations: Sequence[FormulationName | str] | str = COMPARED,
-        weights: Sequence[Weights | str] | str = (Weights.TRIBUTARY,),
-        penalties: Sequence[float] | float | None = None,
-        **options: Unpack[ComparisonKeywords],
-    ) -> "ComparisonOptions":
-        """Make options; unlike the constructor, it is typed for names as texts and for single items."""
-        ensure_known(options, (item.name for item in fields(cls)))
-        given = {"formulations": formulations, "weights": weights, "penalties": penalties, **options}
-        return cls(**cast(dict[str, Any], given))
-
-    @property
-    def attempts(self) -> tuple[SolveOptions, ...]:
-        """What is compared with the direct solution, each from the null start."""
-        return tuple(
-            SolveOptions(formulation=name, weights=weights, penalty=penalty)
-            for name, weights in product(self.formulations, self.weights)
-            for penalty in ((self.penalties or (1.0,)) if name is FormulationName.QP2 else (1.0,))
-        )
-
-    @property
-    def has_penalties(self) -> bool:
-        """Whether there are several penalties, so that each label needs its own."""
-        return len(self.penalties or ()) > 1
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the options as numbers, lists and texts, ready for JSON."""
-        return {
-            "formulations": [name.value for name in self.formulations],
-            "weights": [name.value for name in self.weights],
-            "penalties": [*(self.penalties or (1.0,))] if FormulationName.QP2 in self.formulations else [],
-            "starts": self.starts,
-            "seed": self.seed or 0,
-        }
-
-
 def options_of(formulation: FormulationName, options: SolveOptions | None) -> SolveOptions:
     """Options for a formulation: its defaults if none are given; those of another are refused."""
     if options is None:
@@ -401,55 +261,7 @@ def options_of(formulation: FormulationName, options: SolveOptions | None) -> So
     return options
 
 
-def named(kind: type[Name], name: object, what: str) -> Name:
-    """Read a name of a kind, which errors call `what`."""
-    try:
-        return kind(name if isinstance(name, str) else "")
-    except ValueError:
-        given = f"'{name}'" if isinstance(name, str) else shown(name)
-        raise OptionError(f"no {what} {given:.80}; take one of {', '.join(item.value for item in kind)}") from None
-
-
-def ensure_whole(value: object, what: str, least: int) -> None:
-    """Refuse all but a whole number of at least `least`, and too many starts; errors call it `what`."""
-    try:
-        whole_number(value, what, least, MOST_STARTS if what == STARTS else LARGEST_COUNT)
-    except ProblemError as error:
-        raise OptionError(str(error)) from None
-
-
-def ensure_whole_fields(options: SolveOptions | ComparisonOptions) -> None:
-    """Make each whole number that is given an int; refuse other values."""
-    for item in fields(options):
-        value, least = getattr(options, item.name), item.metadata["least"]
-        if least is not None and value is not None:
-            ensure_whole(value, item.metadata["noun"] or item.name, least)
-            object.__setattr__(options, item.name, whole_number(value, item.name, least))
-
-
-def ensure_known(options: Iterable[str], known: Iterable[str]) -> None:
-    """Refuse the name of an option that does not exist; list those that do."""
-    known = [*known]
-    for name in options:
-        if name not in known:
-            raise OptionError(f"there is no option '{name}'; choose from {', '.join(known)}")
-
-
-def _compared(name: object) -> FormulationName:
-    """Read the name of a formulation that can be compared with the direct solution."""
-    if not isinstance(name, str) or name not in [*FormulationName]:
-        given = f"'{name}'" if isinstance(name, str) else shown(name)
-        raise OptionError(f"no formulation {given:.80} to compare; take one of {', '.join(COMPARED)}")
-    return FormulationName(name)
-
-
-def _listed(items: Any) -> Iterable[Any]:
-    """The items; a single one, which is no list, as a list."""
-    is_list = isinstance(items, Iterable) and not isinstance(items, str | bytes | Mapping)
-    return items if is_list and getattr(items, "shape", None) != () else [items]
-
-
-def _penalty(value: object) -> float:
+def penalty_of(value: object) -> float:
     """Read a penalty, a number of any kind in its range."""
     try:
         number = real_number(value, "the penalty")
@@ -461,10 +273,3 @@ def _penalty(value: object) -> float:
             "outside this range the work or the equations are lost in the round-off of the other; 1 is the default"
         )
     return number
-
-
-def _ensure_different(items: Sequence[object] | None, what: str) -> None:
-    """Refuse an empty list, and one with equal items."""
-    if items is not None and (not items or len({*items}) < len(items)):
-        listed = ", ".join(map(str, items)) or "none"
-        raise OptionError(f"the {what} must be different from each other, and at least one; found {listed}")

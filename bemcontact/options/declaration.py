@@ -1,0 +1,82 @@
+"""How an option is declared: once, with its default, meaning and name in errors; and the checks of options."""
+
+from collections.abc import Iterable
+from dataclasses import field, fields
+from enum import StrEnum
+from textwrap import fill
+from typing import Any, TypeVar, cast
+
+from bemcontact.checks.arguments import LARGEST_COUNT, shown, whole_number
+from bemcontact.errors import OptionError, ProblemError
+
+Name = TypeVar("Name", bound=StrEnum)
+Options = TypeVar("Options")
+
+STARTS = "number of starts"
+MOST_STARTS = 1_000_000
+"""Largest number of random starts, which are drawn before the first search."""
+
+
+def declared(
+    default: Any,
+    meaning: str,
+    *,
+    noun: str = "",
+    metavar: str | None = None,
+    least: int | None = None,
+    shown: str | bool = True,
+) -> Any:
+    """Declare an option by its default and its meaning, for help and documentation.
+
+    Parameters
+    ----------
+    noun : its name in errors, if that is another one
+    metavar : stands for its value in the help of the command line
+    least : least value of a whole number
+    shown : the default in words, or whether the help shows it
+    """
+    about = {"meaning": meaning, "noun": noun, "metavar": metavar, "least": least, "shown": shown}
+    return field(default=default, metadata=about)
+
+
+def documented(options: type[Options]) -> type[Options]:
+    """Write the meanings of options into the docstring of their class, for `help` and documentation."""
+    head, rule, rest = (options.__doc__ or "").partition("\n\n    Raises\n")
+    about = (f"{item.name} : {item.metadata['meaning']}" for item in fields(cast(Any, options)))
+    lines = "\n".join(fill(text, 100, initial_indent="    ", subsequent_indent=" " * 8) for text in about)
+    options.__doc__ = f"{head}\n\n    Parameters\n    ----------\n{lines}{rule}{rest}"
+    return options
+
+
+def named(kind: type[Name], name: object, what: str) -> Name:
+    """Read a name of a kind, which errors call `what`."""
+    try:
+        return kind(name if isinstance(name, str) else "")
+    except ValueError:
+        given = f"'{name}'" if isinstance(name, str) else shown(name)
+        raise OptionError(f"no {what} {given:.80}; take one of {', '.join(item.value for item in kind)}") from None
+
+
+def ensure_whole(value: object, what: str, least: int) -> None:
+    """Refuse all but a whole number of at least `least`, and too many starts; errors call it `what`."""
+    try:
+        whole_number(value, what, least, MOST_STARTS if what == STARTS else LARGEST_COUNT)
+    except ProblemError as error:
+        raise OptionError(str(error)) from None
+
+
+def ensure_whole_fields(options: Any) -> None:
+    """Make each whole number among the fields that is given an int; refuse other values."""
+    for item in fields(options):
+        value, least = getattr(options, item.name), item.metadata["least"]
+        if least is not None and value is not None:
+            ensure_whole(value, item.metadata["noun"] or item.name, least)
+            object.__setattr__(options, item.name, whole_number(value, item.name, least))
+
+
+def ensure_known(options: Iterable[str], known: Iterable[str]) -> None:
+    """Refuse the name of an option that does not exist; list those that do."""
+    known = [*known]
+    for name in options:
+        if name not in known:
+            raise OptionError(f"there is no option '{name}'; choose from {', '.join(known)}")
