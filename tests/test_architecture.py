@@ -60,13 +60,7 @@ HOME = {
     "numba": ("bemcontact.bem.compiled",),
     "meshio": ("bemcontact.report.vtk",),
     "jinja2": ("bemcontact.report.page",),
-    "rich": (
-        "bemcontact.cli.terminal",
-        "bemcontact.report.text",
-        "bemcontact.report.text",
-        "bemcontact.report.text",
-        "bemcontact.report.reproduction",
-    ),
+    "rich": ("bemcontact.cli.terminal", "bemcontact.report.text", "bemcontact.report.reproduction"),
 }
 """Foreign package -> the only rooms that import it."""
 

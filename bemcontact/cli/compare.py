@@ -49,6 +49,7 @@ def compare(
     def work(report: Report) -> CommandOutput:
         from bemcontact.analysis import compare as comparing
         from bemcontact.report import text
+        from bemcontact.report.verdicts import study_shortfall
 
         parts = several(refine, "--refine", "whole number", int)
         penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
@@ -63,7 +64,7 @@ def compare(
             summary=lambda: text.study_summary(study),
             json=study.to_json,
             holds=study.holds,
-            verdict=text.study_shortfall(study),
+            verdict=study_shortfall(study),
         )
 
     run("reading", work, source=source, folder=out, json_file=json_file)

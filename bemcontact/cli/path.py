@@ -50,6 +50,7 @@ def path(
     def work(report: Report) -> CommandOutput:
         from bemcontact.analysis.follow import follow
         from bemcontact.report import text
+        from bemcontact.report.verdicts import path_sentence
 
         followed = follow(source.problem(refine), vary, to, start)
         if out:
@@ -61,7 +62,7 @@ def path(
             summary=lambda: text.path_summary(followed),
             json=followed.to_json,
             holds=followed.certified,
-            verdict=text.path_sentence(followed),
+            verdict=path_sentence(followed),
         )
 
     run("following", work, source=source, folder=out, kind="path", json_file=json_file)

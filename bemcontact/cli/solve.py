@@ -46,6 +46,7 @@ def solve(
         from bemcontact.analysis import load_cases
         from bemcontact.analysis import solve as analysis
         from bemcontact.report import text
+        from bemcontact.report.verdicts import shortfall
 
         def draw(results: analysis.Result | load_cases.CaseResults) -> None:
             if figure:
@@ -63,7 +64,7 @@ def solve(
                 summary=lambda: text.cases_summary(results),
                 json=results.to_json,
                 holds=results.holds,
-                verdict=text.shortfall(results),
+                verdict=shortfall(results),
             )
         several = options.starts or 1
         result = analysis.solve_with(
@@ -78,7 +79,7 @@ def solve(
             summary=lambda: text.result_summary(result),
             json=result.to_json,
             holds=result.holds,
-            verdict=text.shortfall(result),
+            verdict=shortfall(result),
         )
 
     run("solving", work, source=source, files={"--figure": figure, "--vtk": vtk_file}, json_file=json_file)

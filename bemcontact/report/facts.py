@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -35,91 +35,6 @@ BARS_ARE = (
     "Error bars are estimates, from the change of each quantity when every element is cut in two. They are not proved."
 )
 """What an error bar is."""
-
-
-class Verdict(NamedTuple):
-    """A verdict on the equations or on the mesh: its quality (good, fair or bad), in a few words, and in sentences."""
-
-    of: str
-    quality: str
-    word: str
-    words: str
-
-    @property
-    def good(self) -> bool:
-        """Whether nothing is left open."""
-        return self.quality == "good"
-
-
-def overall(verdicts: Sequence[Verdict]) -> str:
-    """Quality of an answer: good only if all verdicts are, bad if one is, else fair."""
-    qualities = {item.quality for item in verdicts}
-    return next(quality for quality in ("bad", "fair", "good") if quality in qualities)
-
-
-def in_short(verdicts: Sequence[Verdict]) -> str:
-    """Verdicts in few words, for a title: ``unique solution proved; error at most 0.4 % (asked 1 %)``."""
-    return "; ".join(item.word if item.good else f"{item.of.lower()}: {item.word}" for item in verdicts)
-
-
-def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:
-    """Verdict on the solution of the equations on the mesh, with its sentences, and on what penetrates a surface."""
-    if penetration is not None:
-        sentences = f"{penetration['words']} At the contact points: {words}"
-        return Verdict("Equations", "bad", misfit_in_words(penetration), sentences)
-    kind: str = certificate["kind"]
-    word = {"unique": "unique solution proved", "not a solution": "not solved"}.get(kind, kind)
-    return Verdict("Equations", "good" if kind == "unique" else "bad", word, words)
-
-
-def misfit_in_words(penetration: Record) -> str:
-    """Name in a few words how a body does not fit a rigid surface."""
-    return "penetrates a surface" if penetration["kind"] == "penetration" else penetration["kind"]
-
-
-def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
-    """Verdicts on the equations and on the finest mesh of a study, from its JSON; `words` replace its own.
-
-    The equations are solved if the direct solution is proved; a formulation that did not find it is a fair result.
-    """
-    finest = report["levels"][-1]
-    compared = finest["comparison"]
-    short = [level["refine"] for level in report["levels"][:-1] if not _proved(level)]
-    direct = compared["reference"]["certified"] and finest["penetration"] is None
-    quality = "bad" if not direct else "good" if _proved(finest) and not short else "fair"
-    sentences = [sentence_case(words or report["verdict"])]
-    if short:
-        meshes = f"coarser mesh{'es' * (len(short) > 1)} (refine {', '.join(map(str, short))})"
-        sentences.append(f"On the {meshes} not each answer is proved to be the solution.")
-    equations = Verdict("Equations", quality, report["heading"], " ".join(sentences))
-    return equations, mesh_verdict(finest["accuracy"])
-
-
-def _proved(level: Record) -> bool:
-    """Whether all solutions on a mesh are proved, and the body penetrates no surface."""
-    return level["comparison"]["certified"] and level["penetration"] is None
-
-
-def mesh_verdict(accuracy: Record) -> Verdict:
-    """Verdict on the errors of the mesh."""
-    asked, reason = accuracy["asked"], accuracy["reason"]
-    if accuracy["met"] is None:
-        return Verdict("Mesh", "fair", "not assessed", f"{sentence_case(reason)}.")
-    largest = worst_bar(accuracy)
-    known = largest is not None and largest["bar"] is not None
-    error = error_percent(largest["bar"]) if largest is not None and known else "0 %"
-    where = "" if largest is None else bar_in_words(largest)
-    if accuracy["met"]:
-        word = f"error at most {error} (asked {100 * asked:.3g} %)"
-        return Verdict(
-            "Mesh", "good", word, f"The largest error bar is that of the {where}." if where else "No contact."
-        )
-    found = f"The largest error bar is that of the {where}"
-    if largest is not None and not known:
-        error, found = "not known", f"The error of the {where} is not known: {largest['note']}"
-    remedy = reason or "leave elements out, or give --accuracy, and a mesh is found"
-    word = f"not met, error {'about ' * known}{error} (asked {100 * asked:.3g} %)"
-    return Verdict("Mesh", "fair", word, f"{found}. {sentence_case(remedy)}.")
 
 
 def mesh_in_short(accuracy: Record) -> str:

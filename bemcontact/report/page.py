@@ -19,12 +19,10 @@ from bemcontact.report.facts import (
     accuracy_rows,
     facts,
     infinite_peaks,
-    overall,
     peak_of,
     percent,
     scores_in_words,
     small,
-    study_verdicts,
 )
 from bemcontact.report.formatting import (
     number,
@@ -35,6 +33,7 @@ from bemcontact.report.formatting import (
     vector,
     with_unit,
 )
+from bemcontact.report.verdicts import overall, study_verdicts
 
 MANY = 5
 """Number of contenders from which the head of the page counts them instead of listing them."""

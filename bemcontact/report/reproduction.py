@@ -12,8 +12,6 @@ from bemcontact.report.facts import (
     NOTHING,
     QUALITIES,
     Record,
-    Verdict,
-    mesh_verdict,
     score_verdict,
     scores_in_words,
     small,
@@ -21,6 +19,7 @@ from bemcontact.report.facts import (
 from bemcontact.report.formatting import number, seconds_in_words, sentence_case, with_unit
 from bemcontact.report.page import picture, statement, template
 from bemcontact.report.text import add_verdict, list_of_facts, table_of
+from bemcontact.report.verdicts import Verdict, mesh_verdict
 
 FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
 """Columns of the table of iterations."""

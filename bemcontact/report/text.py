@@ -4,7 +4,7 @@ The functions return a renderable for `rich`, no wider than 100 columns where th
 into them as plain text, never as markup.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 
 from rich.console import Group, RenderableType
@@ -21,22 +21,17 @@ from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.problem import DeflectedContour, Problem, Units
 from bemcontact.report.facts import (
     Record,
-    Verdict,
-    equations_verdict,
     facts,
     mesh_in_short,
-    mesh_verdict,
     peak_of,
     pressed_by,
     scores_in_words,
     size_of,
     span,
-    study_verdicts,
     zone_forces,
 )
 from bemcontact.report.formatting import (
     case_in_words,
-    certificate_sentence,
     convexity_in_words,
     deflected_by,
     held_by,
@@ -47,7 +42,6 @@ from bemcontact.report.formatting import (
     reference_in_words,
     search_in_words,
     seconds_in_words,
-    sentence_case,
     surface_in_words,
     tool_in_words,
     units_of,
@@ -55,6 +49,7 @@ from bemcontact.report.formatting import (
     volume_loads,
     with_unit,
 )
+from bemcontact.report.verdicts import Verdict, case_verdicts, path_verdicts, result_verdicts, study_verdicts
 
 MANY = 4
 """Number of points up to which those that enter or leave together are named."""
@@ -116,7 +111,7 @@ def result_summary(result: Result) -> RenderableType:
         add(shown, "Starts", str(result.starts))
     for note in result.notes:
         add(shown, "Note", note)
-    for verdict in verdicts(result):
+    for verdict in result_verdicts(result):
         add_verdict(shown, verdict)
     polished = ", polished" if solution.polished else ""
     freedom = "" if result.degrees_of_freedom is None else f"{result.degrees_of_freedom} degrees of freedom, "
@@ -149,7 +144,7 @@ def cases_summary(cases: CaseResults) -> RenderableType:
         force = vector(record["resultant"], per_thickness(units), scale=pressed_by(record))
         cells = [
             name,
-            verdicts(result)[0].word,
+            result_verdicts(result)[0].word,
             mesh_in_short(result.accuracy.to_dict()),
             peak_of(record, units) if record["intervals"] else "",
             at,
@@ -167,51 +162,6 @@ def cases_summary(cases: CaseResults) -> RenderableType:
     for verdict in case_verdicts(cases):
         add_verdict(shown, verdict)
     return Group(Text(cases.name, "bold"), "", table, "", shown)
-
-
-def verdicts(result: Result) -> tuple[Verdict, Verdict]:
-    """Verdicts on the equations and on the mesh."""
-    words, deepest = certificate_sentence(result.solution, result.certificate), result.penetration
-    proved = equations_verdict(result.certificate.to_dict(), words, deepest.to_dict() if deepest else None)
-    return proved, mesh_verdict(result.accuracy.to_dict())
-
-
-def case_verdicts(cases: CaseResults) -> tuple[Verdict, Verdict]:
-    """Verdicts on the equations and on the mesh under all load cases; sentences on the cases that fall short."""
-    pairs = {name: verdicts(result) for name, result in cases.results.items()}
-    equations, mesh = ({name: pair[i] for name, pair in pairs.items() if not pair[i].good} for i in range(2))
-    largest = max(cases.results, key=lambda name: cases.results[name].accuracy.worst)
-    shared = (
-        f"{pairs[largest][1].words[:-1]}, under {largest}; one mesh serves all load cases, so that they can be added"
-    )
-    return (
-        _together(pairs[largest][0]._replace(words="In every load case."), equations),
-        _together(pairs[largest][1]._replace(words=f"{shared}."), mesh),
-    )
-
-
-def _together(every: Verdict, short: Mapping[str, Verdict]) -> Verdict:
-    """One verdict for all load cases: that on every one, or those that fall short, the same words once."""
-    if not short:
-        return every
-    worst = next((item for item in short.values() if item.quality == "bad"), next(iter(short.values())))
-    names = dict[str, list[str]]()
-    for name, item in short.items():
-        names.setdefault(item.words, []).append(name)
-    return worst._replace(words=" ".join(f"{', '.join(own)}: {words}" for words, own in names.items()))
-
-
-def shortfall(results: Result | CaseResults) -> str:
-    """Why a result, or each load case that falls short, does not hold."""
-    both = verdicts(results) if isinstance(results, Result) else case_verdicts(results)
-    return " ".join(f"{item.of}: {item.word}. {item.words}" for item in both if not item.good)
-
-
-def study_shortfall(study: Study) -> str:
-    """Why a comparison does not hold."""
-    return " ".join(
-        f"{item.of}: {item.word}. {item.words}" for item in study_verdicts(study.to_dict()) if not item.good
-    )
 
 
 def _places(record: Record, contact: CondensedContact) -> Iterator[str]:
@@ -264,26 +214,6 @@ def path_summary(path: ParameterPath) -> RenderableType:
     for verdict in path_verdicts(path):
         add_verdict(shown, verdict)
     return Group(Text(path.contact.name, "bold"), Text(f"{where}; {how}", "dim"), "", table, "", shown)
-
-
-def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
-    """Verdicts on the equations all along a path, and on the mesh at both ends."""
-    word = "unique solution proved" if path.certified else "not proved"
-    yield Verdict("Equations", "good" if path.certified else "bad", word, path_sentence(path))
-    for value, accuracy in zip((path.start, path.end), (path.start_accuracy, path.end_accuracy), strict=True):
-        verdict = mesh_verdict(accuracy.to_dict())
-        yield verdict._replace(words=f"At {path.key} = {number(value)}. {verdict.words}")
-
-
-def path_sentence(path: ParameterPath) -> str:
-    """Certificate of a path in sentences."""
-    first, last = map(number, path.reaches)
-    exact = f"The largest natural residual at a breakpoint is {path.residual:.0e}."
-    if path.certified:
-        return f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
-    deepest = () if path.penetration is None else (path.penetration.words,)
-    where = () if path.penetrates_at is None else (f"This is at {path.key} = {number(path.penetrates_at)}.",)
-    return " ".join((*deepest, *where, *(f"{sentence_case(note)}." for note in path.notes), exact))
 
 
 def _cells(contact: CondensedContact, state: PathState) -> list[str]:

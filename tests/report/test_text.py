@@ -18,6 +18,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import LocalSearch, Penalty, Status
 from bemcontact.problem import Problem
 from bemcontact.report import formatting, text
+from bemcontact.report.verdicts import shortfall
 
 
 def block() -> Problem:
@@ -72,9 +73,7 @@ def test_a_result_that_is_not_certified_states_so(result: analysis.Result):
     certificate = dataclasses.replace(result.certificate, kind=CertificateKind.LOCAL, words="Another may exist.")
     solution = dataclasses.replace(result.solution, status=Status.ITERATION_LIMIT)
     doubtful = dataclasses.replace(result, certificate=certificate, solution=solution)
-    assert_states(
-        text.shortfall(doubtful), f"Equations: local only … {Status.ITERATION_LIMIT.words} … Another may exist."
-    )
+    assert_states(shortfall(doubtful), f"Equations: local only … {Status.ITERATION_LIMIT.words} … Another may exist.")
     assert "Equations      local only." in printed(text.result_summary(doubtful))
 
 

@@ -8,10 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.report.facts import in_short, overall
 from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labelled, new_page, plain, shortened
 from bemcontact.report.formatting import number, per_thickness, units_of
-from bemcontact.report.text import path_verdicts
+from bemcontact.report.verdicts import in_short, overall, path_verdicts
 
 WIDTH, HEIGHT = 5.6, 2.5
 """Inches of each picture."""

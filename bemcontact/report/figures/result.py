@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.report.facts import Verdict, in_short, overall
 from bemcontact.report.figures.contact import draw_contact, draw_deformed, extent
 from bemcontact.report.figures.page import (
     BLACK,
@@ -27,7 +26,7 @@ from bemcontact.report.figures.page import (
     wrapped,
 )
 from bemcontact.report.formatting import number, units_of, with_unit
-from bemcontact.report.text import case_verdicts, verdicts
+from bemcontact.report.verdicts import Verdict, case_verdicts, in_short, overall, result_verdicts
 
 CLOSED = 1e-9
 """Gap over the displacement scale that is round-off."""
@@ -53,7 +52,7 @@ def figure_of_result(result: Result) -> Figure:
     draw_pressure(pressure, result)
     draw_gap(gap, result)
     title = f"{wrapped(result.contact.name, 6 * inches)}: {result.solution.formulation}"
-    _entitle(figure, title, verdicts(result), 9 * inches)
+    _entitle(figure, title, result_verdicts(result), 9 * inches)
     if contact is not None:
         draw_contact(contact, result)  # the last one: labels are placed on the page as it is laid out
     return figure

@@ -8,7 +8,8 @@ from studies import punch
 
 import bemcontact
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.report import figures, folder, text
+from bemcontact.report import figures, folder
+from bemcontact.report.verdicts import path_sentence
 
 MODELS = Path(__file__).parents[3] / "models"
 
@@ -48,7 +49,7 @@ def test_a_path_written_twice_is_the_same(link: ParameterPath, tmp_path: Path):
 
 
 def test_verdict_is_a_sentence(link: ParameterPath):
-    assert text.path_sentence(link).startswith("Each state from 0 to 20 is proved to be the only contact state.")
+    assert path_sentence(link).startswith("Each state from 0 to 20 is proved to be the only contact state.")
 
 
 def test_accuracies_of_both_ends_are_in_the_title(link: ParameterPath):

@@ -17,7 +17,7 @@ from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.problem import Problem
 from bemcontact.report import figures
-from bemcontact.report.text import case_verdicts
+from bemcontact.report.verdicts import case_verdicts
 
 
 @cache

@@ -1,0 +1,161 @@
+"""Verdicts on the equations and on the mesh: of results, load cases, paths and studies."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.analysis.result import Result
+from bemcontact.analysis.study import Study
+from bemcontact.parametric.parameter_path import ParameterPath
+from bemcontact.report.facts import Record, bar_in_words, error_percent, worst_bar
+from bemcontact.report.formatting import certificate_sentence, number, sentence_case
+
+
+class Verdict(NamedTuple):
+    """A verdict on the equations or on the mesh: its quality (good, fair or bad), in a few words, and in sentences."""
+
+    of: str
+    quality: str
+    word: str
+    words: str
+
+    @property
+    def good(self) -> bool:
+        """Whether nothing is left open."""
+        return self.quality == "good"
+
+
+def overall(verdicts: Sequence[Verdict]) -> str:
+    """Quality of an answer: good only if all verdicts are, bad if one is, else fair."""
+    qualities = {item.quality for item in verdicts}
+    return next(quality for quality in ("bad", "fair", "good") if quality in qualities)
+
+
+def in_short(verdicts: Sequence[Verdict]) -> str:
+    """Verdicts in few words, for a title: ``unique solution proved; error at most 0.4 % (asked 1 %)``."""
+    return "; ".join(item.word if item.good else f"{item.of.lower()}: {item.word}" for item in verdicts)
+
+
+def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:
+    """Verdict on the solution of the equations on the mesh, with its sentences, and on what penetrates a surface."""
+    if penetration is not None:
+        sentences = f"{penetration['words']} At the contact points: {words}"
+        return Verdict("Equations", "bad", misfit_in_words(penetration), sentences)
+    kind: str = certificate["kind"]
+    word = {"unique": "unique solution proved", "not a solution": "not solved"}.get(kind, kind)
+    return Verdict("Equations", "good" if kind == "unique" else "bad", word, words)
+
+
+def misfit_in_words(penetration: Record) -> str:
+    """Name in a few words how a body does not fit a rigid surface."""
+    return "penetrates a surface" if penetration["kind"] == "penetration" else penetration["kind"]
+
+
+def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
+    """Verdicts on the equations and on the finest mesh of a study, from its JSON; `words` replace its own.
+
+    The equations are solved if the direct solution is proved; a formulation that did not find it is a fair result.
+    """
+    finest = report["levels"][-1]
+    compared = finest["comparison"]
+    short = [level["refine"] for level in report["levels"][:-1] if not _proved(level)]
+    direct = compared["reference"]["certified"] and finest["penetration"] is None
+    quality = "bad" if not direct else "good" if _proved(finest) and not short else "fair"
+    sentences = [sentence_case(words or report["verdict"])]
+    if short:
+        meshes = f"coarser mesh{'es' * (len(short) > 1)} (refine {', '.join(map(str, short))})"
+        sentences.append(f"On the {meshes} not each answer is proved to be the solution.")
+    equations = Verdict("Equations", quality, report["heading"], " ".join(sentences))
+    return equations, mesh_verdict(finest["accuracy"])
+
+
+def _proved(level: Record) -> bool:
+    """Whether all solutions on a mesh are proved, and the body penetrates no surface."""
+    return level["comparison"]["certified"] and level["penetration"] is None
+
+
+def mesh_verdict(accuracy: Record) -> Verdict:
+    """Verdict on the errors of the mesh."""
+    asked, reason = accuracy["asked"], accuracy["reason"]
+    if accuracy["met"] is None:
+        return Verdict("Mesh", "fair", "not assessed", f"{sentence_case(reason)}.")
+    largest = worst_bar(accuracy)
+    known = largest is not None and largest["bar"] is not None
+    error = error_percent(largest["bar"]) if largest is not None and known else "0 %"
+    where = "" if largest is None else bar_in_words(largest)
+    if accuracy["met"]:
+        word = f"error at most {error} (asked {100 * asked:.3g} %)"
+        return Verdict(
+            "Mesh", "good", word, f"The largest error bar is that of the {where}." if where else "No contact."
+        )
+    found = f"The largest error bar is that of the {where}"
+    if largest is not None and not known:
+        error, found = "not known", f"The error of the {where} is not known: {largest['note']}"
+    remedy = reason or "leave elements out, or give --accuracy, and a mesh is found"
+    word = f"not met, error {'about ' * known}{error} (asked {100 * asked:.3g} %)"
+    return Verdict("Mesh", "fair", word, f"{found}. {sentence_case(remedy)}.")
+
+
+def result_verdicts(result: Result) -> tuple[Verdict, Verdict]:
+    """Verdicts on the equations and on the mesh."""
+    words, deepest = certificate_sentence(result.solution, result.certificate), result.penetration
+    proved = equations_verdict(result.certificate.to_dict(), words, deepest.to_dict() if deepest else None)
+    return proved, mesh_verdict(result.accuracy.to_dict())
+
+
+def case_verdicts(cases: CaseResults) -> tuple[Verdict, Verdict]:
+    """Verdicts on the equations and on the mesh under all load cases; sentences on the cases that fall short."""
+    pairs = {name: result_verdicts(result) for name, result in cases.results.items()}
+    equations, mesh = ({name: pair[i] for name, pair in pairs.items() if not pair[i].good} for i in range(2))
+    largest = max(cases.results, key=lambda name: cases.results[name].accuracy.worst)
+    shared = (
+        f"{pairs[largest][1].words[:-1]}, under {largest}; one mesh serves all load cases, so that they can be added"
+    )
+    return (
+        _together(pairs[largest][0]._replace(words="In every load case."), equations),
+        _together(pairs[largest][1]._replace(words=f"{shared}."), mesh),
+    )
+
+
+def _together(every: Verdict, short: Mapping[str, Verdict]) -> Verdict:
+    """One verdict for all load cases: that on every one, or those that fall short, the same words once."""
+    if not short:
+        return every
+    worst = next((item for item in short.values() if item.quality == "bad"), next(iter(short.values())))
+    names = dict[str, list[str]]()
+    for name, item in short.items():
+        names.setdefault(item.words, []).append(name)
+    return worst._replace(words=" ".join(f"{', '.join(own)}: {words}" for words, own in names.items()))
+
+
+def shortfall(results: Result | CaseResults) -> str:
+    """Why a result, or each load case that falls short, does not hold."""
+    both = result_verdicts(results) if isinstance(results, Result) else case_verdicts(results)
+    return " ".join(f"{item.of}: {item.word}. {item.words}" for item in both if not item.good)
+
+
+def study_shortfall(study: Study) -> str:
+    """Why a comparison does not hold."""
+    return " ".join(
+        f"{item.of}: {item.word}. {item.words}" for item in study_verdicts(study.to_dict()) if not item.good
+    )
+
+
+def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
+    """Verdicts on the equations all along a path, and on the mesh at both ends."""
+    word = "unique solution proved" if path.certified else "not proved"
+    yield Verdict("Equations", "good" if path.certified else "bad", word, path_sentence(path))
+    for value, accuracy in zip((path.start, path.end), (path.start_accuracy, path.end_accuracy), strict=True):
+        verdict = mesh_verdict(accuracy.to_dict())
+        yield verdict._replace(words=f"At {path.key} = {number(value)}. {verdict.words}")
+
+
+def path_sentence(path: ParameterPath) -> str:
+    """Certificate of a path in sentences."""
+    first, last = map(number, path.reaches)
+    exact = f"The largest natural residual at a breakpoint is {path.residual:.0e}."
+    if path.certified:
+        return f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
+    deepest = () if path.penetration is None else (path.penetration.words,)
+    where = () if path.penetrates_at is None else (f"This is at {path.key} = {number(path.penetrates_at)}.",)
+    return " ".join((*deepest, *where, *(f"{sentence_case(note)}." for note in path.notes), exact))

@@ -1,0 +1,43 @@
+"""Verdicts on the equations and on the mesh: what is written never states more than what is known."""
+
+from accuracies import accuracy, bar
+
+from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.report.facts import mesh_in_short
+from bemcontact.report.verdicts import in_short, mesh_verdict, overall
+
+
+def test_mesh_that_meets_the_accuracy():
+    verdict = mesh_verdict(accuracy(bar("peak", 183.3, 0.0041), bar("force", 405.0, 1e-4)))
+    assert (verdict.of, verdict.quality) == ("Mesh", "good")
+    assert verdict.word == "error at most 0.41 % (asked 1 %)"
+    assert "peak pressure of foot" in verdict.words
+
+
+def test_mesh_that_does_not_meet_the_accuracy():
+    met = accuracy(bar("peak", 183.3, 0.3), reason="a finer mesh would have more than 4000 unknowns")
+    assert mesh_verdict(met).word == "not met, error about 30 % (asked 1 %)"
+    assert mesh_verdict(met).quality == "fair"
+    assert "More than 4000".lower() in mesh_verdict(met).words
+    unknown = mesh_verdict(accuracy(bar("start", 2.0, None, note="the number of intervals changes", interval=0)))
+    assert unknown.word == "not met, error not known (asked 1 %)"
+    assert "number of intervals changes" in unknown.words
+
+
+def test_mesh_that_was_not_assessed_is_never_good():
+    """Neither if no accuracy is asked for, nor if errors could not be estimated."""
+    for asked in (None, 0.01):
+        verdict = mesh_verdict(Accuracy(asked=asked, reason="no errors are estimated").to_dict())
+        assert (verdict.quality, verdict.word) == ("fair", "not assessed")
+        assert mesh_in_short(Accuracy(asked=asked, reason="x").to_dict()) == "not assessed"
+
+
+def test_an_answer_is_good_only_if_both_verdicts_are():
+    good = mesh_verdict(accuracy(bar("peak", 1.0, 0.001)))
+    fair, bad = (
+        good._replace(quality="fair", word="not met"),
+        good._replace(quality="bad", word="not solved", of="Equations"),
+    )
+    qualities = [overall(pair) for pair in ((good, good), (good, fair), (fair, fair), (bad, good), (bad, fair))]
+    assert qualities == ["good", "fair", "fair", "bad", "bad"]
+    assert in_short((bad, fair)) == "equations: not solved; mesh: not met"
