@@ -17,7 +17,8 @@ from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.errors import ProblemError
 from bemcontact.problem.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
 from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.problem import Material, Problem
+from bemcontact.problem.material import Material
+from bemcontact.problem.problem import Problem
 
 EXACT_ORDER = 2
 """Gauss points that integrate x dy exactly along a quadratic element."""

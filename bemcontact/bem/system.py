@@ -24,7 +24,7 @@ from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
-from bemcontact.problem.problem import Material
+from bemcontact.problem.material import Material
 
 OFFSET = 2 / 3
 """|ξ| of the collocation points inside the two elements at a node where both prescribe the displacement."""

@@ -19,11 +19,10 @@ from bemcontact.problem.geometry import EllipseArc as EllipseArc
 from bemcontact.problem.geometry import Grading as Grading
 from bemcontact.problem.geometry import Line as Line
 from bemcontact.problem.load_case import LoadCase as LoadCase
-from bemcontact.problem.problem import Material as Material
+from bemcontact.problem.material import Material as Material
 from bemcontact.problem.problem import MeshDensity as MeshDensity
 from bemcontact.problem.problem import Problem as Problem
 from bemcontact.problem.problem import Units as Units
-from bemcontact.problem.problem import Variant as Variant
 from bemcontact.problem.reference import Crack as Crack
 from bemcontact.problem.reference import FlatPunch as FlatPunch
 from bemcontact.problem.reference import Hertz as Hertz
@@ -41,3 +40,4 @@ from bemcontact.problem.rigid_surface import Shape as Shape
 from bemcontact.problem.surface_lines import Closest as Closest
 from bemcontact.problem.surface_lines import Polyline as Polyline
 from bemcontact.problem.surface_lines import Spline as Spline
+from bemcontact.problem.variant import Variant as Variant

@@ -7,6 +7,7 @@ from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_valida
 
 from bemcontact.errors import KeyPath
 from bemcontact.problem.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
+from bemcontact.problem.tagged_union import TaggedUnion
 from bemcontact.problem.validation import (
     LARGEST_NUMBER,
     Count,
@@ -17,7 +18,6 @@ from bemcontact.problem.validation import (
     Positive,
     PositivePair,
     SpecModel,
-    TaggedUnion,
     described,
     invalid,
 )

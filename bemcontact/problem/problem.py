@@ -10,14 +10,12 @@ from pydantic import (
     ModelWrapValidatorHandler,
     Strict,
     ValidationError,
-    ValidationInfo,
-    field_validator,
     model_validator,
 )
 
 from bemcontact.arrays import real_array
 from bemcontact.checks.arguments import real_number, shown, text_of_argument, whole_number
-from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
+from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.contact_zone import ContactZone, RigidTool, ToolAction
@@ -33,14 +31,13 @@ from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, with_entry
 from bemcontact.problem.load_case import Combination, LoadCase
+from bemcontact.problem.material import Material
 from bemcontact.problem.reference import ReferenceSpec
 from bemcontact.problem.validation import (
     Count,
-    Finite,
     Flag,
     Label,
     Name,
-    Positive,
     SpecModel,
     Text,
     Title,
@@ -48,38 +45,7 @@ from bemcontact.problem.validation import (
     issues_of,
     unknown_word,
 )
-
-
-class Material(SpecModel):
-    """An isotropic linear elastic material in plane strain or plane stress."""
-
-    young_modulus: Positive
-    """The modulus of elasticity E (Young's modulus), in the unit of stress."""
-    state: Literal["plane_strain", "plane_stress"] = "plane_strain"
-    """The plane state: plane_strain (thick body, the default) or plane_stress (thin sheet)."""
-    poisson_ratio: Annotated[Finite, Field(json_schema_extra={"exclusiveMinimum": -1, "maximum": 0.5})]
-    """The Poisson ratio ν, for most materials between 0 and 0.5."""
-
-    @field_validator("poisson_ratio")
-    @classmethod
-    def _in_range(cls, value: float, info: ValidationInfo) -> float:
-        """Refuse ν without positive strain energy, and ν = 0.5 in plane strain, which is incompressible."""
-        if not -1 < value <= 0.5:
-            raise invalid(f"must be greater than -1 and less than 0.5, found {value:g}")
-        if value == 0.5 and info.data.get("state") == "plane_strain":
-            raise invalid("must be less than 0.5 in plane strain, found 0.5; take 0.499, or state: plane_stress")
-        return value
-
-    @property
-    def shear_modulus(self) -> float:
-        """G = E / (2 (1 + ν)) [p]."""
-        return self.young_modulus / (2 * (1 + self.poisson_ratio))
-
-    @property
-    def effective_poisson_ratio(self) -> float:
-        """The ν of the plane-strain formulas: ν itself in plane strain, ν / (1 + ν) in plane stress."""
-        nu = self.poisson_ratio
-        return nu if self.state == "plane_strain" else nu / (1 + nu)
+from bemcontact.problem.variant import Variant, issues_of_values
 
 
 class Units(SpecModel):
@@ -109,45 +75,6 @@ class MeshDensity(SpecModel):
     """Whether a mesh is found for the accuracy; where elements are stated, it is nowhere coarser. With false, the
     errors of the stated mesh are estimated if an accuracy is stated. If left out, a mesh is found if an accuracy is
     stated or an edge has no elements."""
-
-
-def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
-    """Refuse a variant without values."""
-    if not value:
-        raise invalid("the variant sets no value; give values by key path, such as boundary.outer.top.elements: 5")
-    return value
-
-
-class Variant(SpecModel):
-    """Values that replace others of the problem, all at once."""
-
-    description: Text = ""
-    """A description of the difference, and its reason."""
-    set: Annotated[dict[Text, Any], AfterValidator(_not_empty), Field(json_schema_extra={"minProperties": 1})]
-    """The values by key path, such as boundary.outer.top.elements: 5."""
-
-    def paths(self, data: Mapping[str, Any]) -> dict[str, KeyPath]:
-        """Key paths of the values in the data of a problem; `ProblemError` for keys that lead nowhere."""
-        paths, issues = {}, []
-        for key in self.set:
-            try:
-                path = parsed_path(key)
-                if path[0] == "variants":
-                    raise ProblemError("a variant cannot change variants; remove this value")
-                paths[key] = existing_path(data, path)
-            except ProblemError as error:
-                issues += [Issue(path=("set", key), message=str(item)) for item in error.issues]
-        if issues:
-            raise ProblemError(issues)
-        return paths
-
-
-def _issues_of_values(error: ProblemError, paths: Mapping[str, KeyPath]) -> Iterator[Issue]:
-    """Issues of a problem with a variant, each with the path in the variant of the value that causes it."""
-    for item in error.issues:
-        keys = [key for key, path in paths.items() if item.path[: len(path)] == path]
-        where = f"{dotted(item.path)}: " if item.path else ""
-        yield Issue(path=("set", keys[-1]) if keys else (), message=f"with this variant, {where}{item.message}")
 
 
 def _has_contact(value: dict[str, Any]) -> dict[str, Any]:
@@ -390,7 +317,7 @@ class Problem(SpecModel):
         try:
             return type(self)(**{**data, "name": f"{data['name']}, {name}"})
         except ProblemError as error:
-            raise ProblemError([*_issues_of_values(error, paths)]) from None
+            raise ProblemError([*issues_of_values(error, paths)]) from None
 
     def _variant_issues(self) -> Iterator[Issue]:
         """Issues of all variants, so that mistakes are reported before a variant is used."""

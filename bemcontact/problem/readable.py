@@ -8,7 +8,8 @@ from bemcontact.problem.contact_zone import ContactZone, RigidTool
 from bemcontact.problem.cross_checks import mesh_issues
 from bemcontact.problem.key_path import RawValue
 from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.problem import Material, MeshDensity, Problem, Units
+from bemcontact.problem.material import Material
+from bemcontact.problem.problem import MeshDensity, Problem, Units
 from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.validation import SpecModel
 

@@ -10,6 +10,7 @@ from typing import Annotated, Literal, Self, get_args
 from pydantic import AfterValidator, Field, Strict, ValidationInfo, field_validator, model_validator
 
 from bemcontact.errors import Issue
+from bemcontact.problem.tagged_union import TaggedUnion
 from bemcontact.problem.validation import (
     LARGEST_NUMBER,
     Flag,
@@ -18,7 +19,6 @@ from bemcontact.problem.validation import (
     Point,
     Positive,
     SpecModel,
-    TaggedUnion,
     Text,
     invalid,
     validation_error,

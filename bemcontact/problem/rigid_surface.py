@@ -9,7 +9,8 @@ from pydantic import BeforeValidator, Field, model_validator
 from bemcontact.arrays import Array
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.surface_lines import Closest, Polyline, SmoothSurface, Spline, unit_vectors
-from bemcontact.problem.validation import Name, Point, Positive, SpecModel, TaggedUnion, invalid
+from bemcontact.problem.tagged_union import TaggedUnion
+from bemcontact.problem.validation import Name, Point, Positive, SpecModel, invalid
 
 
 class Plane(SmoothSurface):

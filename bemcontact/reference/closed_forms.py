@@ -6,7 +6,7 @@ from math import copysign, pi, sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.problem.problem import Material
+from bemcontact.problem.material import Material
 
 
 def contact_modulus(material: Material) -> float:

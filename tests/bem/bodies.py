@@ -10,7 +10,7 @@ from bemcontact.bem.mesh import BoundaryValues, Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
 from bemcontact.bem.system import System, solve
 from bemcontact.problem.conditions import Loads
-from bemcontact.problem.problem import Material
+from bemcontact.problem.material import Material
 
 Curve = Callable[[np.ndarray], np.ndarray]
 

@@ -11,7 +11,7 @@ from bodies import arc, even, mesh_of, rectangle, segment, solved, values_of, wi
 from bemcontact.bem import compiled, influence
 from bemcontact.bem.influence import WORTH_COMPILING, Influence
 from bemcontact.bem.system import number_unknowns, place_equations
-from bemcontact.problem.problem import Material
+from bemcontact.problem.material import Material
 
 MATERIAL = Material(young_modulus=1000, poisson_ratio=0.3)
 STRESS = np.array([[3.0, 1.2], [1.2, -2.0]])

@@ -10,7 +10,8 @@ from bemcontact.bem.loading import case_loadings, combined, particular_solution,
 from bemcontact.bem.mesh import build
 from bemcontact.errors import ProblemError
 from bemcontact.problem.conditions import Centrifugal, Gravity, Loads, Temperature
-from bemcontact.problem.problem import Material, Problem
+from bemcontact.problem.material import Material
+from bemcontact.problem.problem import Problem
 
 PAIRS = [(HELD, HELD_CASES, HELD_BY_HAND), (FREE, FREE_CASES, FREE_BY_HAND)]
 

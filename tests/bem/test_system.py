@@ -6,7 +6,7 @@ from bodies import MESHES, arc, even, mesh_of, rectangle, solved, system_of, val
 
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.system import solve
-from bemcontact.problem.problem import Material
+from bemcontact.problem.material import Material
 
 MATERIAL = Material(young_modulus=1000, poisson_ratio=0.3)
 STRESS = np.array([[3.0, 1.2], [1.2, -2.0]])
