@@ -15,7 +15,6 @@ import typer
 import typer.main
 from docutils import nodes
 from pydantic import BaseModel
-from rich.text import Text
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 from sphinx.util.typing import stringify_annotation
@@ -36,7 +35,7 @@ def commands() -> str:
 
 def _command(name: str, command: Any) -> str:
     """Describe one command: its help, with the examples as a block, and its options."""
-    text, _, examples = Text.from_markup(inspect.cleandoc(command.help)).plain.partition("\n\nExamples\n")
+    text, _, examples = command.help.partition("\n\n\b\nExamples\n")
     arguments = [_usage(parameter) for parameter in command.params if parameter.param_type_name == "argument"]
     usage = " ".join(["bemcontact", name, *arguments, "[OPTIONS]"])
     shown = f"```text\n{inspect.cleandoc(examples)}\n```\n" if examples else ""

@@ -14,16 +14,16 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli import check, compare, path, reproduce, solve
-from bemcontact.cli.command import INTERRUPTED, flattened, refuse, reported
+from bemcontact.cli.command import INTERRUPTED, flattened, help_of, refuse, reported
 from bemcontact.cli.terminal import standard_output
 from bemcontact.errors import LINE_BREAKS, escaped, hidden_character
 
 app = typer.Typer(
     add_completion=False,
-    no_args_is_help=True,
+    invoke_without_command=True,
     pretty_exceptions_enable=False,
-    rich_markup_mode="rich",
-    context_settings={"help_option_names": ["-h", "--help"]},
+    rich_markup_mode=None,  # plain help, which breaks lines between words only
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
 
 
@@ -58,8 +58,8 @@ def _show_version(wanted: bool) -> None:
         raise typer.Exit()
 
 
-@app.callback()
 def bemcontact(
+    context: typer.Context,
     show_version: Annotated[
         bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
     ] = False,
@@ -70,12 +70,15 @@ def bemcontact(
 
     Exit status: 0 certified solution, 1 result that is not certified, 2 bad input.
 
-    [bold]Examples[/bold]
+    Examples
       bemcontact check models/cylinder_on_plane.yaml --figure problem.png
       bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
     """
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
 
 
+app.callback(help=help_of(bemcontact))(bemcontact)
 for function in (
     check.check,
     solve.solve,
@@ -85,4 +88,4 @@ for function in (
     check.condense,
     check.schema,
 ):
-    app.command()(flattened(function))
+    app.command(help=help_of(function), context_settings={"allow_extra_args": True})(flattened(function))

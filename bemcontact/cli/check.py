@@ -12,12 +12,12 @@ from bemcontact.errors import ProblemError, SingularSystemError, SpecError
 
 
 def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1) -> None:
-    """Validate a spec and show its edges, contact zones, mesh, loads and supports.
+    """Check a spec, and show its zones, mesh, loads and supports.
 
     No contact is solved. It is an error if nothing holds the body, or if the load of any load case pulls it off its
     supports. --figure then shows the parts of the problem that could be read.
 
-    [bold]Examples[/bold]
+    Examples
       bemcontact check models/cylinder_on_plane.yaml
       bemcontact check models/cylinder_on_plane.yaml --figure problem.svg
       bemcontact check models/cylinder_on_plane.yaml --set mesh.refine=2
@@ -58,11 +58,12 @@ def condense(
     out: Annotated[Path, typer.Option(metavar="FILE.npz", help="Where to write.", show_default=False)],
     refine: RefineOption = 1,
 ) -> None:
-    """Reduce a body to its contact points and save compliance, gaps and weights as one .npz file.
+    """Reduce a body to its contact points, and save them.
 
-    Read it with bemcontact.CondensedContact.load(FILE) and solve it with bemcontact.solve.
+    The file has compliance, gaps and weights. Read it with bemcontact.CondensedContact.load(FILE) and solve it with
+    bemcontact.solve.
 
-    [bold]Examples[/bold]
+    Examples
       bemcontact condense models/cylinder_on_plane.yaml --out cylinder.npz
       bemcontact condense models/cylinder_on_plane.yaml --refine 2 --out fine.npz
     """
@@ -89,9 +90,11 @@ def schema(
         bool, typer.Option("--reproduction", help="The schema of numbers.json, which reproduce writes.")
     ] = False,
 ) -> None:
-    """Print the JSON Schema of a spec, for completion and checks in editors, or the schema of a result.
+    """Print the JSON Schema of a spec or of a result.
 
-    [bold]Examples[/bold]
+    Editors complete and check a spec by it.
+
+    Examples
       bemcontact schema > bemcontact.schema.json
       bemcontact schema --result > result.schema.json
       bemcontact schema --report > report.schema.json

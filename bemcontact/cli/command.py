@@ -52,6 +52,11 @@ def _expected(kind: type[Any], least: int | None) -> str:
     return "a number" if kind is float else f"a whole number{'' if least is None else f' of at least {least}'}"
 
 
+def with_default(meaning: str, default: str) -> str:
+    """Help of an option whose default is no value but words."""
+    return f"{meaning}  [default: {default}]"
+
+
 RefineOption = Annotated[
     int, typer.Option(parser=reader(int, 1), metavar="K", help="Split each element into K equal parts.")
 ]
@@ -105,10 +110,18 @@ class Source:
         float | None,
         typer.Option(
             metavar="X",
-            help="Find a mesh on which no error bar is larger than X, relative: 0.003 is 0.3 %.",
-            show_default="as in the spec",
+            help=with_default(
+                "Find a mesh on which no error bar is larger than X, relative: 0.003 is 0.3 percent.", "as in the spec"
+            ),
+            show_default=False,
         ),
     ] = None
+
+    def __post_init__(self) -> None:
+        """Refuse a change without its value, which would be taken for another argument."""
+        for setting in self.overrides or ():
+            if "=" not in setting:
+                raise OptionError(f"--set {escaped(setting)}: there is no '='; write --set {escaped(setting)}=VALUE")
 
     @property
     def changes(self) -> list[str]:
@@ -175,7 +188,10 @@ def option(kind: type[SolveOptions | ComparisonOptions], name: str) -> Any:
         parser, metavar = reader(type(default)), f"<{'|'.join(type(default))}>"
     elif isinstance(default, float):
         parser = reader(float, finite=False)  # the options state the range
-    return typer.Option(metavar=metavar, help=about["meaning"], show_default=about["shown"], parser=parser)
+    meaning, shown = about["meaning"], about["shown"]
+    if isinstance(shown, str):
+        meaning, shown = with_default(meaning, shown), False
+    return typer.Option(metavar=metavar, help=meaning, show_default=shown, parser=parser)
 
 
 def _start(text: str) -> StartName | Path:
@@ -197,15 +213,29 @@ def flattened(command: Callable[..., None]) -> Callable[..., None]:
             parameters.append(parameter.replace(kind=parameter.KEYWORD_ONLY, annotation=hints[parameter.name]))
 
     @wraps(command)
-    def run(**given: Any) -> None:
+    def run(context: typer.Context, **given: Any) -> None:
         with reported():
             for name, kind in groups.items():
                 given[name] = kind(**{item.name: given.pop(item.name) for item in fields(kind)})
+            _refuse_extra(context.args, context.command_path)
         command(**given)
 
+    parameters.append(inspect.Parameter("context", inspect.Parameter.KEYWORD_ONLY, annotation=typer.Context))
     run.__signature__ = inspect.Signature(parameters)  # pyright: ignore[reportAttributeAccessIssue]
     run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     return run
+
+
+def _refuse_extra(arguments: Sequence[str], command: str) -> None:
+    """Refuse arguments that no parameter takes."""
+    for argument in arguments[:1]:
+        hint = f"write --set {argument}" if "=" in argument else f"an option has one value, see {command} --help"
+        raise OptionError(escaped(f"the argument '{argument}' is not expected; {hint}"))
+
+
+def help_of(command: Callable[..., None]) -> str:
+    """Help of a command, from its docstring; the lines of its examples are not folded."""
+    return inspect.cleandoc(command.__doc__ or "").replace("\n\nExamples\n", "\n\n\b\nExamples\n")
 
 
 def _parameters_of(group: Any) -> Iterator[inspect.Parameter]:

@@ -28,21 +28,21 @@ def compare(
     ] = None,
     json_file: JsonOption = None,
 ) -> None:
-    """Solve one problem by several formulations, and show whether they agree and which of them give the solution.
+    """Solve a problem by several formulations, and compare them.
 
-    QP1, QP2 and QP3 are compared with the direct solution of the complementarity problem; objectives, residuals and
-    certificates of all are recomputed. The exit status is 0 only if all of them are certified, and the mesh is as
-    accurate as was asked.
+    The table shows whether they agree, and which of them give the solution. QP1, QP2 and QP3 are compared
+    with the direct solution of the complementarity problem; objectives, residuals and certificates of all are
+    recomputed. The exit status is 0 only if all of them are certified, and the mesh is as accurate as was asked.
 
     FOLDER gets report.html (one file, pictures inside), report.json, figures/, contact.npz and spec.yaml; an earlier
     report there is replaced.
 
-    [bold]Examples[/bold]
+    Examples
       bemcontact compare models/cylinder_on_plane.yaml
       bemcontact compare models/cylinder_on_plane.yaml --out report
       bemcontact compare models/cylinder_on_plane.yaml --refine 1,2,4
-      bemcontact compare models/cylinder_on_plane.yaml --weights tributary,consistent,element_length
-      bemcontact compare models/cylinder_on_plane.yaml --formulations qp2 --penalty 1e-6,1e-3,1,1e3
+      bemcontact compare models/bolt_in_plate.yaml --weights tributary,consistent
+      bemcontact compare models/cylinder_on_plane.yaml --penalty 1e-3,1,1e3
       bemcontact compare models/cylinder_on_plane.yaml --starts 100
     """
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import CommandOutput, JsonOption, RefineOption, Source, read_number, run
+from bemcontact.cli.command import CommandOutput, JsonOption, RefineOption, Source, read_number, run, with_default
 from bemcontact.cli.terminal import Report
 
 
@@ -20,7 +20,11 @@ def path(
     start: Annotated[
         float | None,
         typer.Option(
-            "--from", parser=read_number, metavar="VALUE", help="Where the path begins.", show_default="as in the spec"
+            "--from",
+            parser=read_number,
+            metavar="VALUE",
+            help=with_default("Where the path begins.", "as in the spec"),
+            show_default=False,
         ),
     ] = None,
     refine: RefineOption = 1,
@@ -30,21 +34,24 @@ def path(
     ] = None,
     json_file: JsonOption = None,
 ) -> None:
-    """Follow the contact state from one value of a parameter to another, and list points that enter or leave contact.
+    r"""Follow contact from one value of a parameter to another.
 
-    Between two breakpoints pressure and gap are linear in the parameter, so the path is exact and has no steps. Only
-    gaps and loads may depend on the parameter, and only linearly. Examples are a pressure, a traction, a prescribed
-    displacement, gravity, the position of a rigid surface, the force on a tool, the factor of a load case
-    (load_cases.NAME). The exit status is 0 only if the path reaches its end and each state on it is proved to be the
-    only one.
+    The table lists the points that enter or leave contact. Between two breakpoints pressure and gap are linear in
+    the parameter, so the path is exact and has no steps. Only gaps and loads may depend on the parameter, and only
+    linearly. Examples are a pressure, a traction, a prescribed displacement, gravity, the position of a rigid surface,
+    the force on a tool, the factor of a load case (load_cases.NAME). The exit status is 0 only if the path reaches its
+    end and each state on it is proved to be the only one.
 
     FOLDER gets a picture of peak, resultants and ends of contact over the parameter (path.svg), a table of them with
     three rows between two breakpoints (path.csv), and all results (path.json). An earlier path is replaced.
 
-    [bold]Examples[/bold]
-      bemcontact path models/cylinder_on_plane.yaml --vary conditions.top.pressure --from 0 --to 50.625
-      bemcontact path models/cantilever_flat_surface.yaml --vary conditions.top.traction.y --from 0 --to -3.6 --out path
-      bemcontact path models/gallery/three_zones.yaml --vary conditions.loaded.pressure --to 40 --json - | jq .pivots
+    Examples
+      bemcontact path models/cylinder_on_plane.yaml \
+        --vary conditions.top.pressure --from 0 --to 50.625
+      bemcontact path models/cantilever_flat_surface.yaml \
+        --vary conditions.top.traction.y --from 0 --to -3.6 --out path
+      bemcontact path models/gallery/three_zones.yaml \
+        --vary conditions.loaded.pressure --to 40 --json - | jq .pivots
     """
 
     def work(report: Report) -> CommandOutput:

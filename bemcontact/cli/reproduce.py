@@ -17,14 +17,15 @@ def reproduce(
     refine: Annotated[str, typer.Option(metavar="K,…", help="Meshes: each element split into K parts.")] = "1,4",
     json_file: JsonOption = None,
 ) -> None:
-    """Solve the five problems of Simunovic and Saigal 1992, and compare the results with the paper.
+    """Solve the five problems of the paper, and compare with it.
 
-    Each is solved by QP1, QP2, QP3 and directly, on the mesh of its file, on finer meshes, and on those of the paper.
+    The paper is Simunovic and Saigal 1992. Each problem is solved by QP1, QP2, QP3 and directly, on the
+    mesh of its file, on finer meshes, and on those of the paper.
     The exit status is 0 only if all results are certified and agree with every reference value that can be judged.
 
     FOLDER gets page.html (one file, pictures inside), numbers.json and figures/; an earlier one is replaced.
 
-    [bold]Examples[/bold]
+    Examples
       bemcontact reproduce
       bemcontact reproduce --out paper
       bemcontact reproduce --refine 1,2,4,8 --json numbers.json

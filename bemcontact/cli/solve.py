@@ -22,7 +22,7 @@ def solve(
         typer.Option("--vtk", metavar="FILE", help="Write the boundary; ends in .vtu or .vtk.", show_default=False),
     ] = None,
 ) -> None:
-    """Compute the contact pressure, assess it, and print a short table.
+    """Compute the contact pressure, assess it, and print a table.
 
     Pressures are per UNDEFORMED length. Where the spec states no elements, or an accuracy is asked for, a mesh is
     found, for 1 % unless the spec or --accuracy says otherwise, and each number has an error bar. The exit status is 0
@@ -31,10 +31,10 @@ def solve(
 
     If a spec has load cases, all of them and all combinations are solved; --case selects one.
 
-    [bold]Examples[/bold]
+    Examples
       bemcontact solve models/cylinder_on_plane.yaml
       bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
-      bemcontact solve models/cylinder_on_plane.yaml --set material.young_modulus=2e6
+      bemcontact solve models/bolt_in_plate.yaml --set material.young_modulus=2e6
       bemcontact solve models/cylinder_on_plane.yaml --accuracy 0.001
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
       bemcontact solve models/gallery/roller_in_v_block.yaml --case aside

@@ -37,8 +37,8 @@ contact_zones:
 """Its contact pressure is 3 everywhere: uniform compression satisfies all equations."""
 
 
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(cli.app, [str(argument) for argument in arguments])
+def run(*arguments: object, **environment: str) -> Result:
+    return CliRunner(env=environment).invoke(cli.app, [str(argument) for argument in arguments])
 
 
 def in_a_process(

@@ -6,12 +6,14 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
+import typer.main
 from command_line import BLOCK, in_a_process, run
 
 import bemcontact
-from bemcontact import spec
+from bemcontact import cli, spec
 
 
 @pytest.mark.parametrize("arguments", [(), ("--help",), ("solve", "--help"), ("--version",)])
@@ -22,12 +24,47 @@ def test_help_answers_without_the_numerical_half(arguments: tuple[str, ...]):
     assert "bemcontact" in answer.stdout
 
 
-@pytest.mark.parametrize("command", ["check", "solve", "condense", "schema"])
-def test_help_of_each_command_teaches_by_examples(command: str):
-    answer = run(command, "--help")
+GROUP: Any = typer.main.get_command(cli.app)
+COMMANDS = {"": GROUP, **GROUP.commands}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("width", [80, 120])
+def test_help_of_each_command_has_whole_words_and_lines_of_the_width(command: str, width: int):
+    answer = run(*command.split(), "--help", COLUMNS=str(width))
     assert answer.exit_code == 0
-    assert "Examples" in answer.stdout
+    assert max(map(len, answer.stdout.splitlines())) <= width
+    text = " ".join(answer.stdout.split())
+    texts = [COMMANDS[command].help, *(item.help for item in COMMANDS[command].params)]
+    for meant in texts + [item.help.partition("\n")[0] for item in COMMANDS.values() if not command]:
+        assert " ".join(meant.replace("\b", "").split()) in text
+    for found in ("<bool>", "(null)", "[bold]", "\\["):
+        assert found not in answer.stdout
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_of_each_command_teaches_by_examples(command: str):
+    answer = run(*command.split(), "--help")
+    assert "Examples\n    bemcontact" in answer.stdout
     assert f"bemcontact {command}" in answer.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ("SPEC --set material.young_modulus 2e6", "--set material.young_modulus=VALUE"),
+        ("--set material.young_modulus 2e6 SPEC", "--set material.young_modulus=VALUE"),
+        ("SPEC material.young_modulus=2e6", "--set material.young_modulus=2e6"),
+        ("SPEC --refine 1 2", "one value"),
+        ("SPEC SPEC", "SPEC"),
+    ],
+)
+@pytest.mark.parametrize("command", ["check", "solve", "compare", "path --vary a --to 1", "condense --out a.npz"])
+def test_an_argument_too_many_is_refused_with_what_to_write(block: Path, command: str, arguments: str, told: str):
+    answer = run(*f"{command} {arguments}".replace("SPEC", str(block)).split())
+    assert answer.exit_code == 2
+    assert answer.stderr.startswith("error: ")
+    assert told.replace("SPEC", str(block)) in answer.stderr
 
 
 def test_version_is_stated():

@@ -90,10 +90,3 @@ def test_overrides_variants_and_refinement_come_first():
     told = json.loads(answer.stdout)
     assert told["name"] == "cylinder on a plane, paper"
     assert len(told["points"]) == 2 * 2 * 10 + 1  # 10 quadratic elements in the contact zone, cut in two
-
-
-def test_help_teaches_by_examples():
-    answer = run("--help")
-    assert answer.exit_code == 0
-    assert "Examples" in answer.stdout
-    assert "bemcontact path" in answer.stdout
