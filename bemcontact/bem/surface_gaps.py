@@ -214,8 +214,8 @@ class SurfaceGaps:
     def _fits(self, elements: IntArray, before: Array, turned: BoolArray) -> BoolArray:
         """Whether each element (k,) is on a stretch of boundary behind the surface that fits it with interference.
 
-        Such a stretch is nowhere deep in the surface, and turned to it somewhere. `before` (k, q) is the distance [L] of
-        places from the surface; `turned` (k, q) whether they are turned to it.
+        Such a stretch is nowhere deep in the surface, and turned to it somewhere. `before` (k, q) is the distance [L]
+        of places from the surface; `turned` (k, q) whether they are turned to it.
         """
         size = self.problem.boundary.size
         inside = before < -FLUSH * size
