@@ -119,10 +119,9 @@ def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:
 
 def _ended(gaps: SurfaceGaps, zone: str, ends: Iterable[End]) -> Iterator[str]:
     """Note where a surface is taken to end beside an edge that is in no zone, and the body moves to beyond it."""
-    in_zones = {edge for zone in gaps.problem.contact_zones.values() for edge in zone.edges}
     for end in ends:
         edge, (x, y) = gaps.state.edge_names[gaps.state.edge[end.element]], end.at.tolist()
-        if edge not in in_zones:
+        if not gaps.in_a_zone(end.element):
             yield (
                 f"the rigid surface of '{zone}' is taken to end at ({x:.5g}, {y:.5g}), where the zone ends: '{edge}' "
                 "lies in it and is in no zone; add it to the zone if the surface goes on"

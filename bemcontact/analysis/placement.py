@@ -61,10 +61,12 @@ def placement(
     if len(off):
         farthest = int(off[np.argmax(moved.distance[off])])
         return _off_the_surface(gaps, points, contact, farthest, moved), ()
+    overhangs = tuple(_overhangs(gaps, points, contact, beside, pressed, moved))
     moved.change[beside] = 0.0
     if abs(moved.change).max() <= NO_CHANGE * contact.scales.displacement:
-        return None, ()
-    return _changed(gaps, points, contact, solution, moved)
+        return None, overhangs
+    misfit, said = _changed(gaps, points, contact, solution, moved)
+    return misfit, (*overhangs, *said)
 
 
 def _displaced(
@@ -100,15 +102,42 @@ def _slipped(
 ) -> tuple[IntArray, IntArray]:
     """Points under pressure opposite to another face: those that are off the surface, and those beside which it is.
 
-    The latter have moved along a corner of the surface by less than an element, which the mesh does not resolve.
+    The latter have moved past an end of the surface by less than an element, and by a small part of the length that is
+    pressed: the mean pressure is off by that part.
     """
     allowed, off, beside = _allowed(gaps, contact), list[int](), list[int]()
     for i in np.flatnonzero(pressed & moved.other & (moved.change > 0)).tolist():
         around = np.flatnonzero(np.any(points.mesh.elements == points.node[i], axis=1))
         gone = moved.distance[i] > allowed
-        gone = gone and gaps.distance(contact.zone_names[contact.zone[i]], around).min() > allowed
+        past = moved.distance[i] > WITHHELD * _pressed_length(contact, pressed, i)
+        gone = gone and (past or gaps.distance(contact.zone_names[contact.zone[i]], around).min() > allowed)
         (off if gone else beside).append(i)
     return np.array(off, int), np.array(beside, int)
+
+
+def _pressed_length(contact: CondensedContact, pressed: BoolArray, i: int) -> float:
+    """Length [L] of the unbroken stretch of contact around a pressed point."""
+    own = np.flatnonzero(contact.run == contact.run[i])
+    own = own[np.argsort(contact.arc_position[own])]
+    stretch = np.cumsum(np.append(0, np.diff(pressed[own].astype(int)) != 0))
+    if np.isfinite(contact.run_length[contact.run[i]]) and pressed[own[[0, -1]]].all():
+        stretch[stretch == stretch[-1]] = 0  # across the seam of a closed run
+    return float(contact.weights[own[stretch == stretch[own == i]]].sum())
+
+
+def _overhangs(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, beside: IntArray, pressed: BoolArray,
+    moved: _Displaced,
+) -> Iterator[str]:  # fmt: skip
+    """Note pressed points that have moved past an end of the surface by a noticeable part of the pressed length."""
+    for i in beside.tolist():
+        part = moved.distance[i] / _pressed_length(contact, pressed, i)
+        if part >= NOTED:
+            yield (
+                f"pressure acts at {_vector(contact.points[i])} on '{_edge(gaps, points, i)}', which has moved past an "
+                f"end of the surface of '{contact.zone_names[contact.zone[i]]}', by {100 * part:.2g} % of the length "
+                "that is pressed: the pressure there is off by that part; draw the body where it will touch"
+            )
 
 
 def _allowed(gaps: SurfaceGaps, contact: CondensedContact) -> float:

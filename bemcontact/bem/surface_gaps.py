@@ -18,7 +18,7 @@ from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import SAMPLES, Outline
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, Shape
-from bemcontact.problem.surface_lines import Closest, Polyline
+from bemcontact.problem.surface_lines import Closest, Polyline, Spline
 
 NODES = [0, len(SAMPLES) // 2, -1]
 """Which of them are nodes."""
@@ -27,6 +27,11 @@ CHUNK = 8192
 FLUSH = 1e-6
 """Distance of an undeformed place from a surface, over the size of the body, up to which it lies in the surface; and
 difference of two unit normals up to which a surface is straight."""
+SNUG = 0.01
+"""Depth over the size of the body up to which it may be drawn inside a surface and fit it with interference: the strain
+that small displacements may have. What is drawn deeper reaches behind the end of the surface."""
+TURNED = 0.7
+"""Cosine of the angle between the normals of body and surface up to which a place is turned to the surface."""
 DIRECTIONS = np.stack([np.cos(angles := np.linspace(0.0, np.pi, 32, endpoint=False)), np.sin(angles)])
 """Directions (2, 32) in which the spread of displacements is measured."""
 SAME_FACE = 0.98
@@ -37,6 +42,9 @@ DIP = 1 / 8
 
 class End(NamedTuple):
     """Where a straight face of a surface is taken to end: an edge beside the zone goes on in it and is not paired.
+
+    A face has not ended where its own line has points further on, nor where it comes back under another edge of the
+    zone; unless the edge beside the zone is in a zone of its own.
 
     Parameters
     ----------
@@ -61,7 +69,8 @@ class Intrusion(NamedTuple):
     ----------
     depth : (m,) [L], negative outside, minus infinity for an element that was not compared
     xi : (m,) local coordinate where an element is deepest
-    behind : (m,) whether a place of an element that is not of the zone is behind the surface before anything moves
+    behind : (m,) whether a place of an element that is not of the zone is behind the surface before anything moves, and
+        does not fit it with interference
     ends : where the surface is taken to end, with the depth [L] that places beyond would have in it if it went on
     """
 
@@ -156,8 +165,8 @@ class SurfaceGaps:
 
         In elements of the zone this is the gap as contact sees it; where another face of the surface is nearer to the
         displaced place than the face that holds it, it is the distance, as for all other elements. A place of these
-        that is behind the surface before anything moves does not count, nor one opposite to which the surface is taken
-        to have ended.
+        that is behind the surface before anything moves does not count unless it fits it with interference, nor does
+        one opposite to which the surface is taken to have ended.
         """
         paired, near = self.paired(zone), self._near(zone)
         m, ends = len(paired), self._ends(zone, paired)
@@ -192,15 +201,37 @@ class SurfaceGaps:
         flush, at = FLUSH * self.problem.boundary.size, self.outline.sampled(elements)
         before, normals = self.undeformed(zone, at.points)
         after = self.exact(zone, at.points + self._displacement(elements)).gap
-        behind = np.zeros(len(self.state.points), bool)
-        behind[elements] = np.any(before < -flush, axis=1)
-        mesh = self.outline.mesh
+        snug = self._fits(elements, before, np.sum(at.inward * normals, axis=-1) > TURNED)[:, None]
+        behind, mesh = np.zeros(len(self.state.points), bool), self.outline.mesh
+        behind[elements] = np.any((before < -flush) & ~snug, axis=1)
         crosses = (behind | behind[mesh.before] | behind[mesh.elements[:, 2]])[elements, None]
-        outside = (before > flush) | (~crosses & (before >= -flush))
+        outside = (before > flush) | snug | (~crosses & (before >= -flush))
         depth = np.where(outside & (-after > self._second_order(zone)), -after, -np.inf)
         ended = [_opposite(end, at.points - before[..., None] * normals, normals, flush) for end in ends]
         hidden = [float(np.max(depth, initial=-np.inf, where=beyond)) for beyond in ended]
         return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden
+
+    def _fits(self, elements: IntArray, before: Array, turned: BoolArray) -> BoolArray:
+        """Whether each element (k,) is on a stretch of boundary behind the surface that fits it with interference.
+
+        Such a stretch is nowhere deep in the surface, and turned to it somewhere. `before` (k, q) is the distance [L]
+        of places from the surface; `turned` (k, q) whether they are turned to it.
+        """
+        size = self.problem.boundary.size
+        inside = before < -FLUSH * size
+        behind = elements[inside.any(axis=1)]
+        deep = self._spread(elements[(before < -SNUG * size).any(axis=1)], behind)
+        faces = self._spread(elements[(inside & turned).any(axis=1)], behind)
+        return (faces & ~deep)[elements]
+
+    def _spread(self, marked: IntArray, over: IntArray) -> BoolArray:
+        """Mark (m,) all elements of the unbroken stretches of some elements in which one is marked."""
+        mesh = self.outline.mesh
+        found, allowed = np.zeros((2, len(mesh.elements)), bool)
+        found[marked], allowed[over] = True, True
+        while (more := allowed & ~found & (found[mesh.before] | found[mesh.elements[:, 2]])).any():
+            found |= more
+        return found
 
     def _ends(self, zone: str, paired: BoolArray) -> list[End]:
         """Where the surface is taken to end: its straight face goes on along the edge directly beyond the zone."""
@@ -213,9 +244,15 @@ class SurfaceGaps:
                 if self._lies_in_face(zone, pair, at, normal):
                     along = self.state.points[beyond, last] - at
                     along = along / np.hypot(*along)
-                    ahead = [float(item) for item in self._ahead(zone, paired, at, along, normal)]
-                    ends.append(End(beyond, at, along, normal, min(ahead, default=np.inf)))
+                    ahead = min(map(float, self._ahead(zone, paired, at, along, normal)), default=np.inf)
+                    if ahead == np.inf or self.in_a_zone(beyond):
+                        ends.append(End(beyond, at, along, normal, ahead))
         return ends
+
+    def in_a_zone(self, element: int) -> bool:
+        """Whether the edge of an element is in any zone."""
+        edge = self.state.edge_names[self.state.edge[element]]
+        return any(edge in zone.edges for zone in self.problem.contact_zones.values())
 
     def _lies_in_face(self, zone: str, places: Array, at: Array, normal: Array) -> bool:
         """Whether places (k, q, 2) of elements are on the straight face with a normal (2,) through a point (2,)."""
@@ -224,12 +261,11 @@ class SurfaceGaps:
         return bool(straight and np.abs(gap).max() <= flush and np.abs((places - at) @ normal).max() <= flush)
 
     def _ahead(self, zone: str, paired: BoolArray, at: Array, along: Array, normal: Array) -> Iterator[float]:
-        """Distances [L] from an end of the zone to its next edges on the same line, and to corners of the surface."""
+        """Distances [L] from an end of the zone to its next edges on the same line, and to points of the surface."""
         flush, surface = FLUSH * self.problem.boundary.size, self.surfaces[zone]
         points = self.outline.sampled(np.flatnonzero(paired)).points.reshape(-1, 2)
-        if isinstance(surface, Polyline):
-            bends = np.abs(np.diff(surface.sides.lefts, axis=0)).max(axis=1) > FLUSH
-            points = np.concatenate([points, surface.sides.corners[1:-1][bends]])
+        if isinstance(surface, Polyline | Spline):
+            points = np.concatenate([points, np.array(surface.points)])
         there = points[np.abs((points - at) @ normal) <= flush]
         distances = (there - at) @ along
         yield from distances[distances > flush]
