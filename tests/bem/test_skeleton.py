@@ -35,13 +35,14 @@ def kernels_at(z, zeta):
 @pytest.mark.parametrize("name", BLOCKS)
 @pytest.mark.parametrize("ratio", [RATIO, 0.1, 1e-3])
 def test_far_influence_at_all_points_follows_from_a_few(name, ratio):
-    """To the tolerance of one integral, times the round-off of sums of dozens of terms, from the nearest sources on."""
+    """To the tolerance with which a few functions span the kernels, amplified by the weights: 1 + Σ|w|."""
     z = BLOCKS[name]
     middle, radius = disc(z)
     zeta = middle + (radius or 1.0) / ratio * np.exp(2j * np.pi * np.arange(50) / 50)
     exact = kernels_at(z, zeta)
     few = skeleton(z)
-    assert abs(exact[:, few.at] @ few.weights - exact).max() <= 30 * TOLERANCE * abs(exact).max()
+    amplified = 1 + abs(few.weights).sum(axis=0)
+    assert (abs(exact[:, few.at] @ few.weights - exact) <= amplified * TOLERANCE * abs(exact).max()).all()
 
 
 @pytest.mark.parametrize("name", BLOCKS)
@@ -74,7 +75,7 @@ def test_skeleton_does_not_depend_on_units_up_to_round_off(size):
 )
 @pytest.mark.parametrize("first", [0, 40, 150])
 def test_blocks_with_a_skeleton_agree_with_separate_pairs(loops, first, points, monkeypatch):
-    """Both have the tolerance of one integral of order one."""
+    """Entries of order one agree to the tolerance of one integral."""
     mesh = mesh_of(*loops)
     source = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(0, len(mesh.elements), 2))
     values = values_of(mesh, {}, lambda at: 0 * at, lambda at, normals: 0 * normals)
@@ -83,8 +84,8 @@ def test_blocks_with_a_skeleton_agree_with_separate_pairs(loops, first, points, 
     block = source.block(collocation, rows)
     monkeypatch.setattr(influence, "RATIO", 0.0)
     pairs = source.block(collocation, rows)
-    assert abs(block.F - pairs.F).max() <= 3 * TOLERANCE
-    assert abs(block.G - pairs.G).max() <= 3 * TOLERANCE
+    assert abs(block.F - pairs.F).max() <= TOLERANCE
+    assert abs(block.G - pairs.G).max() <= TOLERANCE
 
 
 @pytest.mark.parametrize("by_numba", [False, True])
