@@ -143,7 +143,7 @@ class Body:
 
 
 def _wholly_behind(problem: Problem, mesh: Mesh) -> Iterator[str]:
-    """Note each rigid surface that has the whole body behind it; a disk with interference in a hole is not."""
+    """Note each rigid surface that has the whole body behind it, except a hole that a disk is pressed into."""
     for name, zone in problem.contact_zones.items():
         if isinstance(zone.surface, DeflectedContour):
             continue
@@ -262,7 +262,7 @@ def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: K
 
 
 def _boundary_values(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> BoundaryValues:
-    """Spread the conditions of a contour; issues about its own get the path to them."""
+    """Spread the conditions of a contour over the mesh; issues of its own conditions get its key path."""
     other = problem.model_copy(update={"conditions": problem.conditions | surface.conditions})
     try:
         return boundary_values(other, mesh)

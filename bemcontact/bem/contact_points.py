@@ -158,7 +158,7 @@ def contact_points(
 
 
 class _NodeFaces(NamedTuple):
-    """Gap (N, 3) [L] and normals (N, 3, 2) at the nodes before, at and after each, as `Faces`; and what is alike."""
+    """Gap (N, 3) [L] and normals (N, 3, 2) before, at and after each node, as in `Faces`; whether the sides differ."""
 
     gap: Array
     normals: Array

@@ -206,10 +206,8 @@ class Influence:
             yield slice(first, last)
 
     def _far_tiers(self, z: ComplexArray, nodes: ComplexArray) -> tuple[IntArray, BoolArray]:
-        """The rule (m,) that each element may share for all points of a block, and whether it is far from the block.
-
-        |z - c0| = |c1 r + c2 r²| bounds |r| from below, and ρ >= |r| + sqrt(|r|² - 1).
-        """
+        """The rule (m,) that each element may share for all points of a block, and whether it is far from the block."""
+        # |z - c0| = |c1 r + c2 r²| bounds |r| from below, and ρ >= |r| + sqrt(|r|² - 1)
         c0, c1, c2 = kernels.element_coefficients(nodes)
         middle, radius = disc(z)
         c1, c2 = abs(c1), abs(c2)

@@ -35,7 +35,7 @@ class Outline:
 
     @cached_property
     def _elements(self) -> tuple[IntArray, Array]:
-        """Number (m,) of the edge of each element, and the fractions (m, 2) of its length between which it is."""
+        """Number (m,) of the edge of each element, and the fractions (m, 2) of the edge at its ends."""
         ends = [edge.breakpoints(self.problem.mesh.refine) for edge in self.problem.boundary.edges]
         number = np.repeat(np.arange(len(ends)), [len(item) - 1 for item in ends])
         return number, np.concatenate([np.column_stack([item[:-1], item[1:]]) for item in ends])

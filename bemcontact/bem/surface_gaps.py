@@ -194,10 +194,7 @@ class SurfaceGaps:
     def _depth_in_other(
         self, zone: str, elements: IntArray, ends: Sequence[End]
     ) -> tuple[Array, BoolArray, list[float]]:
-        """Depth (k, q) [L] of elements (k,) not of the zone, whether each is behind the surface, and depth at ends.
-
-        The last is the largest depth of the places opposite to which the surface has ended, for each end.
-        """
+        """Depth (k, q) [L] of elements (k,) not of the zone, whether each is behind, and the depth beyond each end."""
         flush, at = FLUSH * self.problem.boundary.size, self.outline.sampled(elements)
         before, normals = self.undeformed(zone, at.points)
         after = self.exact(zone, at.points + self._displacement(elements)).gap
@@ -212,10 +209,10 @@ class SurfaceGaps:
         return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden
 
     def _fits(self, elements: IntArray, before: Array, turned: BoolArray) -> BoolArray:
-        """Whether each element (k,) is on a stretch of boundary behind the surface that fits it with interference.
+        """Whether each element (k,) is on a stretch that fits the surface with interference.
 
-        Such a stretch is nowhere deep in the surface, and turned to it somewhere. `before` (k, q) is the distance [L]
-        of places from the surface; `turned` (k, q) whether they are turned to it.
+        Such a stretch lies behind the surface, nowhere deep, and faces it somewhere. `before` (k, q) is the distance
+        [L] of places from the surface, and `turned` (k, q) says whether they face it.
         """
         size = self.problem.boundary.size
         inside = before < -FLUSH * size
@@ -275,17 +272,15 @@ class SurfaceGaps:
         return reference_element.values(SAMPLES) @ self.state.displacement[elements]
 
     def _second_order(self, zone: str) -> float:
-        """Depth [L] by which linear theory may be off: by rotations and strains; translations are exact in it.
-
-        It is the square of differences of displacements over the size of the body, which rotations and strains cause.
-        """
+        """Depth [L] by which linear theory may be off: (difference of displacements)² over the size of the body."""
+        # only rotations and strains cause differences; translations are exact in linear theory
         size = self.problem.boundary.size
         spread = np.ptp(self.state.displacement.reshape(-1, 2) @ DIRECTIONS, axis=0).max()
         turns = [self.tools[name][2] for name, tool in self.problem.tools.items() if zone in tool.zones]
         return float(spread**2 / size + sum(turn**2 for turn in turns) * size)
 
     def _near(self, zone: str) -> BoolArray:
-        """Whether each element (m,) may touch a surface: a distance changes by no more than the way."""
+        """Whether each element (m,) may touch a surface: no place of it is farther from its middle than its length."""
         near = np.zeros(len(self.state.points), bool)
         for moved, gap in (
             (self.state.points, self.undeformed),
@@ -297,7 +292,7 @@ class SurfaceGaps:
 
 
 def _opposite(end: End, feet: Array, normals: Array, flush: float) -> BoolArray:
-    """Whether feet (..., 2) [L] of places on a surface with normals (..., 2) there are where it has ended."""
+    """Whether feet (..., 2) [L] on a surface with normals (..., 2) are beyond the end of the surface."""
     offset = feet - end.at
     along = offset @ end.along
     on = (np.abs(offset @ end.normal) <= flush) & (np.abs(normals - end.normal).max(axis=-1) <= FLUSH)

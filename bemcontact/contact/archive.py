@@ -57,7 +57,7 @@ def _opened(stream: io.BufferedReader) -> ZipFile:
     """The archive in a file."""
     try:
         return ZipFile(stream)
-    except Exception as error:  # zipfile raises errors of many kinds for what is no archive
+    except Exception as error:  # zipfile raises many kinds of errors for a file that is no archive
         raise ProblemError("not an .npz file; CondensedContact.save writes one") from error
 
 
@@ -75,7 +75,7 @@ def _known_arrays(package: ZipFile, kind: type[Any]) -> Arrays:
 
 
 def _member(package: ZipFile, name: str) -> NDArray[Any]:
-    """Read one array of plain data; not more is read than the file has."""
+    """Read one array of plain data, and no more bytes than the file has."""
     try:
         item = package.getinfo(f"{name}.npy")
         if item.compress_type != ZIP_STORED or item.file_size != item.compress_size:
@@ -85,7 +85,7 @@ def _member(package: ZipFile, name: str) -> NDArray[Any]:
             if len(content) != item.file_size or stream.read(1):
                 raise BadZipFile("its size is not the stated one")
         return _array(content)
-    except Exception as error:  # zipfile and NumPy raise errors of many kinds for damaged bytes
+    except Exception as error:  # zipfile and NumPy raise many kinds of errors for damaged bytes
         reason = str(error) if isinstance(error, ProblemError) else "its bytes are no array"
         raise ProblemError(f"member '{name}' is damaged: {reason}; {AGAIN}") from error
 

@@ -81,10 +81,10 @@ def ensure_parts_fit(contact: Any) -> None:
 
 
 def _ensure_runs(contact: Any) -> None:
-    """Refuse numbers of zones and runs that do not exist, and lengths of runs that are none."""
+    """Refuse numbers of zones and runs that do not exist, and lengths of runs that are not positive."""
     lengths = real_array(contact.run_length, "run_length", (None,), finite=False)
     object.__setattr__(contact, "run_length", lengths)
-    if not (lengths > 0).all():  # false also for what is not a number
+    if not (lengths > 0).all():  # false for NaN too
         raise ProblemError("run_length must be positive, and infinite for a run that does not close on itself")
     for name, count in (("zone", len(contact.zone_names)), ("run", len(lengths))):
         index: IntArray = getattr(contact, name)

@@ -283,11 +283,9 @@ def _solve(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations: int)
 
 
 def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], _Scaling]:
-    """Bring min ½xᵀP x + cᵀx, b - A x in cones, to size one.
-
-    D contains the size of b if that is below one, the least that Clarabel compares with.
-    """
-    # by the constraints alone: costs have a unit of their own, which would pull the columns along
+    """Bring min ½xᵀP x + cᵀx, b - A x in cones, to size one."""
+    # By the constraints alone: costs have a unit of their own, which would scale the columns too. D contains the size
+    # of b if that is below one, the least that Clarabel compares with.
     A, c, b = csc_array(data["A"]), data["c"], data["b"]
     P = _symmetric(data)
     cone, work = _cone_of_rows(data["dims"]), A.tocoo()

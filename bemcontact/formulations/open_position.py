@@ -80,10 +80,8 @@ def _open_ways(body: ScaledContact, pressure: Array, amplitudes: Array, motions:
 
 
 def _nearest(body: ScaledContact, pressure: Array, amplitudes: Array, motions: Array) -> Array:
-    """The amplitudes (k,) with least weighted squares of R a: a least-distance program, solved as nonnegative squares.
-
-    Lawson and Hanson, "Solving Least Squares Problems" (1974), chapter 23: min |z| with G z >= h.
-    """
+    """The amplitudes (k,) with least weighted squares of R a: a least-distance program."""
+    # Lawson and Hanson, "Solving Least Squares Problems" (1974), chapter 23: min |z| with G z >= h, by NNLS
     root = np.sqrt(body.weights)[:, None] * body.rigid_motions
     Q, S = np.linalg.qr(root @ motions)
     center = -np.linalg.solve(S, Q.T @ (root @ amplitudes))

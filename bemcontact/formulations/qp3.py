@@ -157,10 +157,7 @@ def _rescued(contact: CondensedContact, solution: ContactSolution) -> ContactSol
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Optimum:
-    """Outcome of the quadratic program; pressure and amplitudes are zeros if there is no point.
-
-    `progress` is the objective and the relative residual of the constraints at the start and after each iteration.
-    """
+    """Outcome of the quadratic program; pressure and amplitudes are zeros if there is no point."""
 
     status: Status
     pressure: Array
@@ -168,6 +165,7 @@ class _Optimum:
     iterations: int
     has_point: bool
     progress: Array
+    """Objective and relative residual of the constraints, at the start and after each iteration."""
     note: str
 
 

@@ -284,10 +284,8 @@ def _solution(contact: CondensedContact, formulation: str, result: QPResult, sea
 
 
 def _history(result: QPResult) -> tuple[Trace, ...]:
-    """Sum of infeasibilities after each iteration of phase one, `Program.value` after each of phase two.
-
-    `minimize` states squares and a product without a constant: the objective of the solver is that value. The solver
-    goes back to phase one where round-off has violated a constraint.
-    """
+    """Sum of infeasibilities after each iteration of phase one, `Program.value` after each of phase two."""
+    # The program is stated without a constant, so that the objective of the solver is that value. The solver goes back
+    # to phase one where round-off has violated a constraint.
     phases = groupby(result.log, key=lambda line: line.phase)
     return traces_in_turn(*((QUANTITIES[phase], [line.value for line in lines]) for phase, lines in phases))

@@ -56,10 +56,8 @@ def _joins(end: Point | None, start: Point | None, size: float) -> bool:
 
 
 def _turned(loop: Loop, size: float) -> dict[int, str]:
-    """The fewest edges that, turned round, close the loop, and how to write each; empty if nothing does.
-
-    A shortest path around the loop, through the edges as they are and, if both their ends are given, turned round.
-    """
+    """The fewest edges that, turned round, close the loop, and how to write each; empty if nothing does."""
+    # a shortest path around the loop: each edge as it is or, if both its ends are given, turned round
     choices = [(edge, *([] if None in edge.own_ends() else [_reversed(edge)[0]])) for edge in loop]
     best: tuple[int, ...] | None = None
     for first in range(len(choices[0])):
@@ -185,7 +183,7 @@ def _remedy(loop: Loop, i: int) -> str:
 
 
 def _hint_of_radians(loop: Loop, i: int) -> str:
-    """Suspect angles beside a gap that are at most a full turn (rounded) in radians."""
+    """Name the edges beside a gap whose angles may be in radians: they are at most a full turn (rounded) then."""
     angles = {edge.name: None if isinstance(edge, Line) else edge.angles for edge in (loop[i - 1], loop[i])}
     suspects = [f"'{name}'" for name, given in angles.items() if given and max(map(abs, given)) <= 2.01 * pi]
     return f"; angles are in degrees, but those of {' and '.join(suspects)} may be in radians" if suspects else ""

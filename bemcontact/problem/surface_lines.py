@@ -118,11 +118,9 @@ class Polyline(SpecModel):
         return Faces(gap, normals)
 
     def _hold_in_grooves(self, points: Array, inward: Array, gap: Array, normals: Array) -> None:
-        """Put the face to which each side is turned: that of the nearest segment, or of one that rises beside it.
-
-        At a corner of the body the other face counts beyond the corner of the surface too. If a corner of the body
-        stands on the nearest face, between two others, the face in the middle holds it.
-        """
+        """Put the face to which each side is turned: that of the nearest segment, or of one that rises beside it."""
+        # At a corner of the body the other face counts beyond the corner of the surface too. If a corner of the body
+        # stands on the nearest face, between two others, the face in the middle holds it.
         corners, directions, lefts, low, high = self.sides
         nearest, corner, _ = self._nearest(points)
         last = len(lefts) - 1
@@ -306,7 +304,7 @@ def _ensure_apart(line: Array) -> None:
     """Refuse a line (k, 2) that meets itself, or goes on straight beyond its ends so that it does."""
     turns = np.unwrap(np.arctan2(*np.diff(line, axis=0).T[::-1]))
     if np.ptp(turns) < np.pi - ON_CORNER:
-        return  # it never comes back, and neither do its ends
+        return  # neither the line nor its ends can come back
     extent = float(np.ptp(line, axis=0).max())
     tolerance, reach = ON_CORNER * extent, 3 * extent
     if (point := first_meeting(line, line, tolerance, itself=True)) is None:

@@ -75,7 +75,7 @@ def described(value: object) -> str:
             return "a mapping" if value else "an empty mapping"
     try:
         return _shortened(str(value))
-    except Exception:  # an object of the user may refuse to be written
+    except Exception:  # str() of a user's object may raise anything
         return f"an object of type {type(value).__name__}"
 
 

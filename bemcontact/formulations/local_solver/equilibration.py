@@ -105,10 +105,8 @@ def natural_factors(statement: Statement, bounds: Array) -> Array:
 
 
 def _entries(statement: Statement) -> tuple[Array, Array]:
-    """Which entries of [H; c; A] are present (n + 1 + m, n), and their binary logarithms; zeros elsewhere.
-
-    An entry of H or A counts as rounding if it is small beside the largest entry of its row and of its column there.
-    """
+    """Which entries of [H; c; A] are present (n + 1 + m, n), and their binary logarithms; zeros elsewhere."""
+    # an entry of H or A counts as rounding if it is small beside the largest entries of its row and of its column
     n = statement.c.size
     sizes = np.abs(np.concatenate([statement.H, statement.c[None], statement.A]))
     present, logarithms = _logarithms(sizes)

@@ -65,7 +65,7 @@ class Restart:
     failed: bool
 
 
-@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # ratio tests divide by what does not move
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # ratio tests divide by slopes that may be zero
 def run_phases(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
     """Repeat both phases until a claim passes its check, or until iterations or attempts are exhausted.
 
@@ -102,7 +102,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
     if outcome.ending is Ending.LIMIT:
         return _finding(progress, QPStatus.ITERATION_LIMIT, descent.working.sides)
     if outcome.ending is Ending.UNBOUNDED and outcome.ray is not None:
-        progress.correct(descent.working.onto(progress.x))  # without the rounding of the steps, which has a slope too
+        progress.correct(descent.working.onto(progress.x))  # the rounding of the steps has a slope too
         ray = cleaned_ray(progress, outcome.ray)
         if ray is None:
             return Restart(sides=descent.working.sides, failed=True)
@@ -148,10 +148,8 @@ def _second_order(
 
 
 def _strict(descent: Descent, conditions: FirstOrder) -> bool:
-    """Whether the held constraints are the active ones, all have multipliers, and the reduced Hessian is definite.
-
-    This is computed from the data: W N = I, W Z = 0, Zᵀ H Z = I, and the columns of Z span the null space.
-    """
+    """Whether the held constraints are the active ones, all have multipliers, and the reduced Hessian is definite."""
+    # computed from the data: W N = I, W Z = 0, Zᵀ H Z = I, and the columns of Z span the null space
     working, hessian = descent.working, descent.hessian
     if working.temporary or np.count_nonzero(conditions.weak) or np.count_nonzero(working.held != conditions.strong):
         return False

@@ -53,7 +53,7 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
         if not _step(progress, working, signs, direction, dropped):
             return working, _certificate(working, signs, working.multipliers(gradient))
     if working.number == n and working.sharp and not np.count_nonzero(statement.equality > working.held):
-        working.null_space = np.zeros((n, 0))  # a vertex: there is nothing to be made afresh
+        working.null_space = np.zeros((n, 0))  # a vertex needs no null space
         return working, None
     return _with_equalities(statement, working.sides), None
 

@@ -85,7 +85,7 @@ class ReducedHessian:
             product = H.dot(d)
             before, curvature = curvature, float(d.dot(product))
             if abs(curvature) > 0.01 * abs(before):
-                break  # no digits were lost that a second turn would bring back
+                break  # no digits were lost that a second pass would restore
         if self.size:
             length = float(d.dot(d))
         clear = curvature == 0.0 or abs(curvature) > 1e-8 * self._top * length
@@ -208,11 +208,9 @@ class Descent:
         self.changed, self.whole, self.idle = True, 0, self.idle + 1
 
     def _next(self, multipliers: Array) -> tuple[bool, int | None]:
-        """Whether to take a Newton step, and if not, the place of a constraint to drop, if there is one.
-
-        A quick test uses one tolerance for all components. If it finds nothing, the point is refined and each component
-        has its own tolerance. After three full Newton steps the remaining reduced gradient is rounding.
-        """
+        """Whether to take a Newton step, and if not, the place of a constraint to drop, if there is one."""
+        # A quick test uses one tolerance for all components. If it finds nothing, the point is refined and each
+        # component has its own tolerance. After three full Newton steps the remaining reduced gradient is rounding.
         progress, working = self.progress, self.working
         n, least = working.free.size, progress.least_index
         loose = self.whole < 3 and working.number < n
@@ -301,12 +299,10 @@ class Descent:
         return self.progress.fine_zero(multipliers[n:], working.W, working.N, self._reach())
 
     def _reach(self) -> Array:
-        """Size of the numbers whose rounding each component of the point has (n,), estimated by a sample.
-
-        Each row is satisfied up to the rounding of its terms, on the way to the point too. A change of the rows moves
-        the point by N and by a Newton step. The rows change with irregular phases, since with signs the movements by
-        several rows of whole numbers can cancel.
-        """
+        """Size of the numbers whose rounding each component of the point has (n,), estimated by a sample."""
+        # Each row is satisfied up to the rounding of its terms, on the way to the point too. A change of the rows moves
+        # the point by N and by a Newton step. The rows change with irregular phases, since with signs the movements by
+        # several rows of whole numbers can cancel.
         working, hessian, size = self.working, self.hessian, self.progress.travelled
         if working.size == 0:
             return size
