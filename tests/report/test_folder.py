@@ -109,11 +109,11 @@ def test_file_of_the_name_of_the_folder_is_refused(tmp_path: Path):
 KILLED = """
 import json, os, random, signal, sys, time
 from pathlib import Path
-from studies import on_one_mesh
+from studies import without_a_body
 from bemcontact.report import folder
 
 place, chance, seen = Path(sys.argv[1]), random.Random(0), set()
-study = on_one_mesh()
+study = without_a_body()
 folder.save(study, place, "warm")
 begin = time.monotonic()
 folder.save(study, place, "first")
