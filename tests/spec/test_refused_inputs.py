@@ -1,6 +1,6 @@
 """The page ``refused_inputs.md``: inputs that are refused, and the sentence that each gets.
 
-``python tests/spec/test_refused_inputs.py`` writes the page again.
+``PYTHONPATH=tests/cli python tests/spec/test_refused_inputs.py`` writes the page again.
 """
 
 import os
@@ -11,33 +11,13 @@ from collections.abc import Callable, Iterator
 from contextlib import chdir
 from pathlib import Path
 
+from command_line import BLOCK
 from typer.testing import CliRunner
 
 from bemcontact import cli
 
 PAGE = Path(__file__).with_name("refused_inputs.md")
-GOOD = """\
-name: block on a table
-units: {length: mm, force: N}
-material:
-  young_modulus: 210e3
-  poisson_ratio: 0.3
-boundary:
-  outer:
-    - {name: bottom, start: [0, 0], elements: 4}
-    - {name: right, start: [40, 0], elements: 2}
-    - {name: top, start: [40, 20], elements: 4}
-    - {name: left, start: [0, 20], elements: 2}
-conditions:
-  left: {displacement: {x: 0}}
-  top: {pressure: 3}
-contact_zones:
-  foot:
-    edges: bottom
-    surface: {kind: plane, point: [0, 0], normal: [0, 1]}
-load_cases:
-  more: {conditions: {top: {pressure: 1}}}
-"""
+GOOD = BLOCK + "load_cases:\n  more: {conditions: {top: {pressure: 1}}}\n"
 TOP, PLANE = "start: [40, 20], elements: 4", "{kind: plane, point: [0, 0], normal: [0, 1]}"
 HOLE = "  holes: [[{{name: h, kind: arc, center: [20, 10], {}, elements: 16}}]]\nconditions:\n"
 
@@ -213,7 +193,7 @@ def page(folder: Path) -> str:
         parts = [
             "# Refused inputs",
             "This page lists inputs that are refused, and the sentence that each gets. "
-            "`python tests/spec/test_refused_inputs.py` writes it, and a test compares it. "
+            "`PYTHONPATH=tests/cli python tests/spec/test_refused_inputs.py` writes it, and a test compares it. "
             "The first tables replace one part of this problem file, `a.yaml`:",
             f"```yaml\n{GOOD}```",
             *(f"## {kind}\n\n{table('Instead', rows_of(changes))}" for kind, changes in CHANGES.items()),
