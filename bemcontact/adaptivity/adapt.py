@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from bemcontact.adaptivity.error_bars import error_bars
-from bemcontact.adaptivity.fields import Difference, solved
+from bemcontact.adaptivity.fields import MeshDifference, solved
 from bemcontact.adaptivity.mesh_search import cut, mesh_search
 from bemcontact.adaptivity.singularities import Singularity
 from bemcontact.assessment.accuracy import Accuracy
@@ -79,7 +79,7 @@ def meshed(
         progress("every element in two")
         fine = solved(cut(problem, 2 * refine))
         bars = [
-            error_bars(Difference(coarse=coarse, fine=fine, number=i), its, of_fine=False)
+            error_bars(MeshDifference(coarse=coarse, fine=fine, number=i), its, of_fine=False)
             for i, its in enumerate(singular or [()] * len(fine.answers))
         ]
         accuracies = [Accuracy.of(asked, 1, its) for its in bars]
@@ -118,7 +118,7 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
                 raise
             reason = str(error).splitlines()[0]
             break
-        differences = [Difference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
+        differences = [MeshDifference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
         singular = [search.watch.look(item) for item in differences]
         bars = [error_bars(item, its) for item, its in zip(differences, singular, strict=True)]
         now = Meshed(

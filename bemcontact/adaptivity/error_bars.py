@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from bemcontact.adaptivity.fields import Answer, Difference, Solved, norm_squared
+from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved, norm_squared
 from bemcontact.adaptivity.singularities import BESIDE, FITTED, Singularity, run_elements
 from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun
 from bemcontact.arrays import Array, BoolArray, IntArray
@@ -30,7 +30,7 @@ TIP_ELEMENTS = 2
 
 
 def error_bars(
-    difference: Difference, singularities: Sequence[Singularity], *, of_fine: bool = True
+    difference: MeshDifference, singularities: Sequence[Singularity], *, of_fine: bool = True
 ) -> tuple[ErrorBar, ...]:
     """Error bars of all quantities of one load case on the fine mesh, or on the coarse one.
 
@@ -62,7 +62,7 @@ def error_bars(
 class _Estimate:
     """Which of two meshes the answer is taken from, and the error bar that follows from their difference."""
 
-    difference: Difference
+    difference: MeshDifference
     factor: float
     of_fine: bool
 
@@ -75,13 +75,13 @@ class _Estimate:
         return (SAFETY if smooth else self.factor) * change + (0.0 if self.of_fine else change)
 
     @property
-    def reported(self) -> tuple[Solved, Answer]:
+    def reported(self) -> tuple[Solved, CaseAnswer]:
         """Mesh and answer that are reported."""
         one, two = self.difference.pair
         return (self.difference.fine, two) if self.of_fine else (self.difference.coarse, one)
 
 
-def pressure_change(difference: Difference, zone: int, singularities: Sequence[Singularity]) -> float | None:
+def pressure_change(difference: MeshDifference, zone: int, singularities: Sequence[Singularity]) -> float | None:
     """‖Δp‖/‖p‖ of a zone, away from infinite pressures; None without pressure."""
     _, two = difference.pair
     compared = ~near_singularities(difference.fine, two, singularities)
@@ -92,7 +92,7 @@ def pressure_change(difference: Difference, zone: int, singularities: Sequence[S
     return float(np.sqrt(change / norm))
 
 
-def near_singularities(solved: Solved, answer: Answer, singularities: Sequence[Singularity]) -> BoolArray:
+def near_singularities(solved: Solved, answer: CaseAnswer, singularities: Sequence[Singularity]) -> BoolArray:
     """Which elements (m,) are so near to an infinite pressure that their pressure is not compared."""
     near = np.zeros(len(solved.mesh.elements), bool)
     for item in singularities:
@@ -189,7 +189,7 @@ def _spacing(run: ZoneRun, position: float) -> float:
     return float(run.ends[i + 1] - run.ends[i]) / 2
 
 
-def _intensity_bar(difference: Difference, item: Singularity, m: float) -> ErrorBar:
+def _intensity_bar(difference: MeshDifference, item: Singularity, m: float) -> ErrorBar:
     """Error bar of the intensity K of an infinite pressure K s^-α."""
     one, two = difference.pair
     coarse = _intensity(difference.coarse, one, item, 4)
@@ -209,7 +209,7 @@ def elements_beside(run: ZoneRun, position: float) -> IntArray:
     return near % count if run.closed else near[(near >= 0) & (near < count)]
 
 
-def _intensity(solved: Solved, answer: Answer, item: Singularity, degree: int) -> float | None:
+def _intensity(solved: Solved, answer: CaseAnswer, item: Singularity, degree: int) -> float | None:
     """K from a polynomial through p s^α at Gauss points beside the place."""
     run = solved.runs[item.place.run]
     side, length = contact_beside(run, answer.stretches[run.number], item.place.position)

@@ -29,7 +29,7 @@ PENETRATION = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Answer:
+class CaseAnswer:
     """The contact state under one load case on one mesh.
 
     Parameters
@@ -56,7 +56,7 @@ class Solved:
 
     condensation: Condensation
     runs: tuple[ZoneRun, ...]
-    answers: tuple[Answer, ...]
+    answers: tuple[CaseAnswer, ...]
 
     @property
     def body(self) -> Body:
@@ -99,7 +99,7 @@ def solved(problem: Problem) -> Solved:
     return Solved(condensation=condensation, runs=runs, answers=answers)
 
 
-def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> Answer:
+def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> CaseAnswer:
     """Solve the contact problem of one load case."""
     contact, body = condensation.contact, condensation.body
     solution = complementarity.solve(contact)
@@ -110,7 +110,7 @@ def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> Answer:
     points = body.points
     pressure = np.zeros((len(body.problem.contact_zones), *body.mesh.elements.shape))
     pressure[points.zone[points.point], points.element, points.local] = solution.pressure[points.point]
-    return Answer(
+    return CaseAnswer(
         condensation=condensation,
         solution=solution,
         stretches={run.number: _without_slits(contact_stretches(run, contact, solution, intervals)) for run in runs},
@@ -146,7 +146,7 @@ def _without_slits(stretches: Iterable[Stretch]) -> tuple[Stretch, ...]:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Difference:
+class MeshDifference:
     """What bisecting every element changes: `fine` is on the halves of the elements of `coarse`; one load case.
 
     Parameters
@@ -160,7 +160,7 @@ class Difference:
     number: int
 
     @property
-    def pair(self) -> tuple[Answer, Answer]:
+    def pair(self) -> tuple[CaseAnswer, CaseAnswer]:
         """Coarse and fine answer."""
         return self.coarse.answers[self.number], self.fine.answers[self.number]
 
@@ -214,7 +214,7 @@ def _by_pairs(values: Array) -> Array:
     return values.reshape(-1, 2).sum(axis=1)
 
 
-def penetrations(answer: Solved, case: Answer) -> Iterator[tuple[int, float]]:
+def penetrations(answer: Solved, case: CaseAnswer) -> Iterator[tuple[int, float]]:
     """Open elements through which a surface passes between the nodes, with the depth [L]."""
     body, points = answer.body, answer.body.points
     contact = case.condensation.contact

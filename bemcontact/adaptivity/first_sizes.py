@@ -37,7 +37,7 @@ FOCUS = 5
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Outline:
+class SizedOutline:
     """All loops of a body, sampled, with the thickness of the body at each sample."""
 
     loops: tuple[Loop, ...]
@@ -93,9 +93,9 @@ class Outline:
         yield from known
 
 
-def outline(problem: Problem) -> Outline:
+def outline(problem: Problem) -> SizedOutline:
     """The boundary of a problem, whatever its elements are."""
-    return Outline(loops=tuple(Loop(edges=edges) for edges in problem.boundary.loops))
+    return SizedOutline(loops=tuple(Loop(edges=edges) for edges in problem.boundary.loops))
 
 
 def _curvature(edge: Edge, start: float) -> Iterator[Limit]:
@@ -119,7 +119,7 @@ def _least_at_joints(loop: Loop, positions: Array, thickness: Array) -> Iterator
             yield Limit(low=position, high=position, size=float(size))
 
 
-def surface_sizes(problem: Problem, outline: Outline) -> tuple[dict[int, list[Limit]], dict[int, list[float]]]:
+def surface_sizes(problem: Problem, outline: SizedOutline) -> tuple[dict[int, list[Limit]], dict[int, list[float]]]:
     """Limits of the size where surfaces come near, and places where elements must end, both by loop."""
     limits: dict[int, list[Limit]] = {}
     marks: dict[int, list[float]] = {}

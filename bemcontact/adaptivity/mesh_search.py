@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 
 from bemcontact.adaptivity.error_bars import contact_beside, near_singularities
-from bemcontact.adaptivity.fields import Difference, Solved, norm_squared, penetrations, solved
-from bemcontact.adaptivity.first_sizes import Outline, outline, surface_sizes
+from bemcontact.adaptivity.fields import MeshDifference, Solved, norm_squared, penetrations, solved
+from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
 from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
 from bemcontact.adaptivity.sizes import Layers, Limit, Loop
 from bemcontact.adaptivity.zone_runs import ZoneRun
@@ -52,7 +52,7 @@ class MeshSearch:
     """State of the search for a mesh."""
 
     problem: Problem
-    outline: Outline
+    outline: SizedOutline
     sources: list[list[Limit]]
     marks: list[list[float]]
     layers: list[tuple[ContactEnd, float]] = field(default_factory=list)
@@ -173,7 +173,7 @@ class MeshSearch:
                         size = SPOT * (high - low) * length
                         yield number, Limit(low=start + low * length, high=start + high * length, size=size)
 
-    def refine(self, differences: Sequence[Difference], singular: Sequence[Sequence[Singularity]]) -> bool:
+    def refine(self, differences: Sequence[MeshDifference], singular: Sequence[Sequence[Singularity]]) -> bool:
         """Limit the size of elements where bisecting them changes most; whether the mesh will grow."""
         coarse = differences[0].coarse
         wanted = np.zeros(len(coarse.mesh.elements), bool)
@@ -188,7 +188,7 @@ class MeshSearch:
         self.sources = [_useful(*pair) for pair in zip(self.outline.loops, self.sources, strict=True)]
         return bool(wanted.any())
 
-    def _change_of_pressure(self, difference: Difference, singular: Sequence[Singularity]) -> Array:
+    def _change_of_pressure(self, difference: MeshDifference, singular: Sequence[Singularity]) -> Array:
         """Change of the pressure (m,) that elements can mend; where the layers of an end can, they become more."""
         coarse, (one, _) = difference.coarse, difference.pair
         change = difference.pressure_squared.copy()
@@ -227,7 +227,7 @@ class MeshSearch:
         ]
 
 
-def _tips(difference: Difference, singular: Sequence[Singularity]) -> IntArray:
+def _tips(difference: MeshDifference, singular: Sequence[Singularity]) -> IntArray:
     """Elements at infinite pressures that are not yet as short as they may become."""
     coarse, (one, _) = difference.coarse, difference.pair
     tips = [np.zeros(0, int)]
@@ -265,7 +265,7 @@ def _stretch(answer: Solved, element: int) -> tuple[float, float]:
     return float(ends[element - first]), float(ends[element - first + 1])
 
 
-def _middles(answer: Solved, outline: Outline) -> tuple[Array, Array]:
+def _middles(answer: Solved, outline: SizedOutline) -> tuple[Array, Array]:
     """Position of the middle of each element on its loop, and the number of the loop."""
     positions, loops = [], []
     for number, loop in enumerate(outline.loops):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bemcontact.adaptivity.fields import Difference, Solved
+from bemcontact.adaptivity.fields import MeshDifference, Solved
 from bemcontact.adaptivity.first_sizes import surface_corners
 from bemcontact.adaptivity.zone_runs import ZoneRun
 from bemcontact.arrays import IntArray
@@ -32,7 +32,7 @@ SAME = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True)
-class Place:
+class ContactPlace:
     """A place on a run where the pressure may be infinite."""
 
     run: int
@@ -49,7 +49,7 @@ class Place:
 class Singularity:
     """A place where the pressure is infinite like s^-α."""
 
-    place: Place
+    place: ContactPlace
     exponent: float
     """α."""
 
@@ -63,7 +63,7 @@ class Singularity:
 class _History:
     """Growth of the pressure at a place by bisection, and the element there, pass by pass."""
 
-    place: Place
+    place: ContactPlace
     case: int
     growth: list[float] = field(default_factory=list)
     element: list[float] = field(default_factory=list)
@@ -85,7 +85,7 @@ class Watch:
 
     histories: list[_History] = field(default_factory=list)
 
-    def look(self, difference: Difference) -> tuple[Singularity, ...]:
+    def look(self, difference: MeshDifference) -> tuple[Singularity, ...]:
         """Look at all places of one load case on a mesh; list those where the pressure is infinite."""
         coarse, case = difference.coarse, difference.number
         one, two = difference.pair
@@ -106,7 +106,7 @@ class Watch:
             if item.case == case and item.exponent is not None
         )
 
-    def _history(self, place: Place, case: int, same: float) -> _History:
+    def _history(self, place: ContactPlace, case: int, same: float) -> _History:
         """The history of a place under a load case, a new one if there is none."""
         for item in self.histories:
             if item.case == case and item.place.run == place.run and abs(item.place.position - place.position) <= same:
@@ -121,7 +121,7 @@ def _snapped(exponent: float) -> float:
     return nearest if abs(nearest - exponent) <= SNAP else exponent
 
 
-def _places(difference: Difference) -> Iterator[Place]:
+def _places(difference: MeshDifference) -> Iterator[ContactPlace]:
     """Ends of contact that are not free, and corners of the boundary and of the surface."""
     coarse = difference.coarse
     one, _ = difference.pair
@@ -131,14 +131,14 @@ def _places(difference: Difference) -> Iterator[Place]:
                 if not free:
                     at = position % run.length if run.closed else position
                     end = not run.closed and min(at, run.length - at) <= 1e-9 * run.length
-                    yield Place(run=run.number, zone=run.zone, position=at, end=end, corner=not end)
+                    yield ContactPlace(run=run.number, zone=run.zone, position=at, end=end, corner=not end)
         for position, corner in zip(run.joints, run.corner, strict=True):
             if corner and (run.closed or 0 < position < run.length):
-                yield Place(run=run.number, zone=run.zone, position=float(position), corner=True)
+                yield ContactPlace(run=run.number, zone=run.zone, position=float(position), corner=True)
         surface = coarse.body.problem.contact_zones[run.zone].surface
         for edge, start in zip(run.edges, run.joints, strict=False):
             for fraction in surface_corners(edge, surface):
-                yield Place(run=run.number, zone=run.zone, position=start + fraction * edge.length, corner=True)
+                yield ContactPlace(run=run.number, zone=run.zone, position=start + fraction * edge.length, corner=True)
 
 
 def elements_at(solved: Solved, run: ZoneRun, position: float) -> IntArray:

@@ -5,16 +5,16 @@ from adaptive_problems import half_disk, partial_load_lifts_off
 
 from bemcontact.adaptivity.adapt import first_mesh
 from bemcontact.adaptivity.error_bars import END, FORCE, PEAK, SAFETY, error_bars, pressure_change
-from bemcontact.adaptivity.fields import Difference, solved
+from bemcontact.adaptivity.fields import MeshDifference, solved
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.problem import Problem
 
 
-def difference(problem: Problem) -> Difference:
+def difference(problem: Problem) -> MeshDifference:
     """The first mesh and its halves."""
     coarse = first_mesh(problem)
     fine = coarse.model_copy(update={"mesh": coarse.mesh.model_copy(update={"refine": 2})})
-    return Difference(coarse=solved(coarse), fine=solved(fine), number=0)
+    return MeshDifference(coarse=solved(coarse), fine=solved(fine), number=0)
 
 
 def by_quantity(bars: tuple[ErrorBar, ...]) -> dict[str, ErrorBar]:
@@ -22,11 +22,11 @@ def by_quantity(bars: tuple[ErrorBar, ...]) -> dict[str, ErrorBar]:
 
 
 @pytest.fixture(scope="module", params=[lambda: half_disk(2000.0), lambda: partial_load_lifts_off()[0]])
-def changed(request: pytest.FixtureRequest) -> Difference:
+def changed(request: pytest.FixtureRequest) -> MeshDifference:
     return difference(request.param())
 
 
-def test_bars_are_no_smaller_than_the_change(changed: Difference):
+def test_bars_are_no_smaller_than_the_change(changed: MeshDifference):
     """Times 1.5 on the finer mesh; on the coarser one the change itself comes on top."""
     one, two = changed.pair
     fine, coarse = (by_quantity(error_bars(changed, (), of_fine=of_fine)) for of_fine in (True, False))
@@ -38,7 +38,7 @@ def test_bars_are_no_smaller_than_the_change(changed: Difference):
     assert (coarse["peak"].bar or 0) >= (SAFETY + 1) * change
 
 
-def test_the_change_of_the_pressure_as_a_whole_is_a_floor_of_all(changed: Difference):
+def test_the_change_of_the_pressure_as_a_whole_is_a_floor_of_all(changed: MeshDifference):
     bars = by_quantity(error_bars(changed, ()))
     m = pressure_change(changed, 0, ())
     assert m is not None
@@ -47,7 +47,7 @@ def test_the_change_of_the_pressure_as_a_whole_is_a_floor_of_all(changed: Differ
         assert (bars[quantity].bar or 0) >= SAFETY * share * m * (1 - 1e-12)
 
 
-def test_a_free_end_is_no_better_known_than_its_nodes(changed: Difference):
+def test_a_free_end_is_no_better_known_than_its_nodes(changed: MeshDifference):
     """Two meshes graded to the same place give the same end, whatever its error is: a spacing of nodes is the least."""
     bars = by_quantity(error_bars(changed, ()))
     run = changed.fine.runs[0]

@@ -5,15 +5,15 @@ import pytest
 from adaptive_problems import block_on_flat_floor, half_disk
 
 from bemcontact.adaptivity.adapt import first_mesh
-from bemcontact.adaptivity.fields import Difference, halves, norm_squared, solved
+from bemcontact.adaptivity.fields import MeshDifference, halves, norm_squared, solved
 from bemcontact.problem import Problem
 
 
-def difference(problem: Problem) -> Difference:
+def difference(problem: Problem) -> MeshDifference:
     """The first mesh and its halves."""
     coarse = first_mesh(problem)
     fine = coarse.model_copy(update={"mesh": coarse.mesh.model_copy(update={"refine": 2})})
-    return Difference(coarse=solved(coarse), fine=solved(fine), number=0)
+    return MeshDifference(coarse=solved(coarse), fine=solved(fine), number=0)
 
 
 def test_halves_prolong_quadratics_exactly():
@@ -34,11 +34,11 @@ def test_halves_of_scalars_have_the_shape_of_scalars():
 
 
 @pytest.fixture(scope="module")
-def patch() -> Difference:
+def patch() -> MeshDifference:
     return difference(block_on_flat_floor()[0])
 
 
-def test_a_patch_test_changes_by_nothing(patch: Difference):
+def test_a_patch_test_changes_by_nothing(patch: MeshDifference):
     """Uniform pressure and linear displacements are in the space of the elements: what changes is round-off."""
     coarse = patch.coarse
     one, two = patch.pair
@@ -50,7 +50,7 @@ def test_a_patch_test_changes_by_nothing(patch: Difference):
     assert patch.energy.sum() < 1e-16 * 7.0**2 / shear * 120**2
 
 
-def test_the_weights_integrate_along_the_boundary(patch: Difference):
+def test_the_weights_integrate_along_the_boundary(patch: MeshDifference):
     """Its length is 120."""
     assert patch.coarse.weights.sum() == pytest.approx(120, rel=1e-12)
     assert patch.fine.weights.sum() == pytest.approx(120, rel=1e-12)

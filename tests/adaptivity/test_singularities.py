@@ -4,9 +4,9 @@ from itertools import pairwise
 
 import pytest
 
-from bemcontact.adaptivity.singularities import Place, Singularity, Watch, _History, _snapped
+from bemcontact.adaptivity.singularities import ContactPlace, Singularity, Watch, _History, _snapped
 
-PLACE = Place(run=0, zone="z", position=0.0)
+PLACE = ContactPlace(run=0, zone="z", position=0.0)
 
 
 def history(growth: list[float], element: list[float]) -> _History:
@@ -60,8 +60,8 @@ def test_a_logarithm_is_like_a_kink():
 def test_histories_are_kept_by_place_and_case():
     watch = Watch()
     first = watch._history(PLACE, 0, 1e-6)
-    near = Place(run=0, zone="z", position=5e-7)
+    near = ContactPlace(run=0, zone="z", position=5e-7)
     assert watch._history(near, 0, 1e-6) is first
     assert watch._history(near, 1, 1e-6) is not first
-    assert watch._history(Place(run=1, zone="z", position=0.0), 0, 1e-6) is not first
-    assert watch._history(Place(run=0, zone="z", position=1e-3), 0, 1e-6) is not first
+    assert watch._history(ContactPlace(run=1, zone="z", position=0.0), 0, 1e-6) is not first
+    assert watch._history(ContactPlace(run=0, zone="z", position=1e-3), 0, 1e-6) is not first
