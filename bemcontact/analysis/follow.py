@@ -24,7 +24,7 @@ from bemcontact.parametric.sensitivity import Sensitivities, modulus_change
 from bemcontact.parametric.sensitivity import sensitivities as sensitivities_of_contact
 from bemcontact.problem.key_path import existing_path, parsed_path
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.validation import described, unknown_word
+from bemcontact.problem.wording import described, unknown_word
 
 MODULUS = "material.young_modulus"
 BODY = ("material", "boundary", "mesh")

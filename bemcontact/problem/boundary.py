@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice
 from math import dist
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 from pydantic import model_validator
@@ -18,7 +18,8 @@ from bemcontact.problem.closeness import near_miss, sagitta
 from bemcontact.problem.closing import JOINT_TOLERANCE, gap_issues, other_way_round
 from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc
 from bemcontact.problem.geometry import AnyEdge, Arc, Grading, LoopSpec, Place
-from bemcontact.problem.validation import LARGEST_NUMBER, Point, SpecModel, unknown_word, validation_error
+from bemcontact.problem.validation import LARGEST_NUMBER, Point, SpecModel, validation_error
+from bemcontact.problem.wording import unknown_word
 
 RADIUS_TOLERANCE = 1e-6
 """Relative difference up to which the radii at both ends of an arc agree: users round coordinates."""
@@ -38,6 +39,8 @@ FARTHEST = 1e8
 
 class Boundary(SpecModel):
     """The boundary of the body: an outer loop of edges, and loops around holes."""
+
+    example: ClassVar[str] = "{outer: [{name: bottom, start: [0, 0]}, …]}"
 
     outer: LoopSpec
     """The edges of the outer loop, counterclockwise: the body is on the left."""

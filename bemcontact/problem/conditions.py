@@ -1,7 +1,7 @@
 """Conditions on the edges of the body (displacement, traction, pressure) and loads on its volume."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import AfterValidator, GetJsonSchemaHandler, model_validator
@@ -9,11 +9,14 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from bemcontact.arrays import Array
-from bemcontact.problem.validation import Number, Point, Positive, SpecModel, described, invalid, not_tiny, number_hint
+from bemcontact.problem.validation import Number, Point, Positive, SpecModel, invalid, not_tiny
+from bemcontact.problem.wording import described, number_hint
 
 
 class Field(SpecModel):
     """A constant number, or a polynomial in the coordinates: constant + x X + y Y + xx X² + xy X Y + yy Y²."""
+
+    example: ClassVar[str] = "{constant: 3, x: 0.5}"
 
     constant: Number = 0.0
     """The value at the origin."""
@@ -56,6 +59,8 @@ class Field(SpecModel):
 class AxisFields(SpecModel):
     """A component along each axis; an axis that is left out is not prescribed."""
 
+    example: ClassVar[str] = "{x: 0}"
+
     x: Field | None = None
     """The component along x: a number, or a polynomial in the coordinates."""
     y: Field | None = None
@@ -69,6 +74,8 @@ class AxisFields(SpecModel):
 
 class Condition(SpecModel):
     """The condition on an edge. Along an axis without a condition, the edge is free of traction."""
+
+    example: ClassVar[str] = "{displacement: {x: 0}}"
 
     displacement: AxisFields = AxisFields()
     """The prescribed displacement. A symmetry line has displacement 0 along its normal."""
@@ -101,6 +108,8 @@ def _not_tiny(vector: Point) -> Point:
 class Gravity(SpecModel):
     """Weight: the body force density · acceleration."""
 
+    example: ClassVar[str] = "{density: 7.85e-9, acceleration: [0, -9810]}"
+
     density: Positive
     """The mass per volume."""
     acceleration: Annotated[Point, AfterValidator(_not_tiny)]
@@ -109,6 +118,8 @@ class Gravity(SpecModel):
 
 class Centrifugal(SpecModel):
     """Steady rotation: the body force density · angular_velocity² · (x - center)."""
+
+    example: ClassVar[str] = "{density: 7.85e-9, angular_velocity: 300}"
 
     density: Positive
     """The mass per volume."""
@@ -120,6 +131,8 @@ class Centrifugal(SpecModel):
 
 class Temperature(SpecModel):
     """Thermal expansion: the strain expansion · change in all directions."""
+
+    example: ClassVar[str] = "{expansion: 1.2e-5, change: 50}"
 
     expansion: Number
     """The coefficient of thermal expansion, per degree."""
@@ -137,6 +150,8 @@ class Temperature(SpecModel):
 
 class Loads(SpecModel):
     """The loads on the volume of the body; they are added."""
+
+    example: ClassVar[str] = "{temperature: {expansion: 1.2e-5, change: 50}}"
 
     gravity: Gravity | None = None
     """The weight of the body."""

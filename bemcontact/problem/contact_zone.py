@@ -1,6 +1,6 @@
 """Contact zones, and the tools that move their rigid surfaces."""
 
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
@@ -25,6 +25,8 @@ Names = Annotated[
 class ContactZone(SpecModel):
     """Edges of the body that may touch a rigid surface without friction."""
 
+    example: ClassVar[str] = "{edges: bottom, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}"
+
     edges: Names
     """The name of the edge, or a list of names of edges, that may touch the surface."""
     surface: SurfaceSpec
@@ -33,6 +35,8 @@ class ContactZone(SpecModel):
 
 class ToolDisplacement(SpecModel):
     """The displacement of a tool. The tool does not move along a component that is left out."""
+
+    example: ClassVar[str] = "{y: -0.01}"
 
     x: Number | None = None
     """The displacement along x."""
@@ -44,6 +48,8 @@ class ToolDisplacement(SpecModel):
 
 class ToolForce(SpecModel):
     """The force on a tool per thickness. The tool is free to move along each given component, even if it is 0."""
+
+    example: ClassVar[str] = "{y: -100}"
 
     x: Number | None = None
     """The force along x."""
@@ -59,6 +65,8 @@ TOOL_COMPONENTS = (("x", "x", "along x"), ("y", "y", "along y"), ("rotation", "m
 
 class ToolAction(SpecModel):
     """The displacement of a tool, or the force on it, or a displacement along one axis and a force along another."""
+
+    example: ClassVar[str] = "{force: {y: -100}}"
 
     displacement: ToolDisplacement = ToolDisplacement()
     """The small displacement of the tool along x and y, and its rotation; its normal component changes the gaps."""
@@ -122,6 +130,8 @@ def _without_repeats(value: tuple[str, ...]) -> tuple[str, ...]:
 
 class RigidTool(ToolAction):
     """The rigid surfaces of some contact zones, which move together as one rigid body."""
+
+    example: ClassVar[str] = "{zones: foot, force: {y: -100}}"
 
     zones: Annotated[Names, AfterValidator(_without_repeats)]
     """The name of the contact zone, or a list of names of zones, whose rigid surfaces move together."""

@@ -17,7 +17,8 @@ from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.reference import Hertz, Table, Values
 from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, RigidSurface, Shape
 from bemcontact.problem.surface_lines import Polyline, Spline
-from bemcontact.problem.validation import KeyIssue, unknown_word
+from bemcontact.problem.validation import KeyIssue
+from bemcontact.problem.wording import unknown_word
 
 LARGEST_TURNING = radians(60)
 """Largest angle by which a quadratic element may turn; beyond it the element deviates visibly from its arc."""
@@ -37,7 +38,7 @@ def edge_name_issues(boundary: RawValue, conditions: Iterable[RawValue], zones: 
     conditions may name the edges of a contact zone.
     """
     names = _edge_names(boundary)
-    prescribed = [condition for group in conditions for condition in group.each()]
+    prescribed = [condition for group in conditions for condition in group.named()]
     issues: list[Issue] = []
     for condition in (*prescribed, *_conditions_of_contours(zones)):
         if names is not None and (name := condition.name) not in names:
@@ -46,7 +47,7 @@ def edge_name_issues(boundary: RawValue, conditions: Iterable[RawValue], zones: 
     for zone, member in _edges_of_zones(zones):
         name = member.value
         if names is not None and name not in names:
-            issues.append(Issue(path=member.path, message=unknown_word("edge", name, names)))
+            issues.append(Issue(path=member.path, message=unknown_word("edge", name, names, "edges")))
         elif name in zone_of:
             issues.append(Issue(path=member.path, message=_repeated_edge(name, zone_of[name], zone)))
         zone_of.setdefault(name, zone)
@@ -67,7 +68,7 @@ def _edge_names(boundary: RawValue) -> list[str] | None:
 
 def _edges_of_zones(zones: RawValue) -> Iterator[tuple[str, RawValue]]:
     """Edge names in all contact zones, each with the name of its zone."""
-    for zone in zones.each():
+    for zone in zones.named():
         for member in _one_or_more(zone.below(ContactZone, "edges")):
             if isinstance(member.value, str):
                 yield zone.name, member
@@ -80,10 +81,10 @@ def _one_or_more(names: RawValue) -> Iterator[RawValue]:
 
 def _conditions_of_contours(zones: RawValue) -> Iterator[RawValue]:
     """Conditions of all deflected contours."""
-    for zone in zones.each():
+    for zone in zones.named():
         surface = zone.below(ContactZone, "surface")
         if surface.below(DeflectedContour, "kind").value == "deflected_contour":
-            yield from surface.below(DeflectedContour, "conditions").each()
+            yield from surface.below(DeflectedContour, "conditions").named()
 
 
 def _repeated_edge(edge: str, first: str, second: str) -> str:
@@ -97,14 +98,14 @@ def _repeated_edge(edge: str, first: str, second: str) -> str:
 
 def tool_issues(tools: RawValue, zones: RawValue) -> Iterator[Issue]:
     """Issues of tools that name unknown contact zones, or the same zone."""
-    names = [zone.name for zone in zones.each()]
+    names = [zone.name for zone in zones.named()]
     tool_of: dict[str, str] = {}
-    for tool in tools.each():
+    for tool in tools.named():
         members = tool.below(RigidTool, "zones")
         for member in [members] if isinstance(members.value, str) else members.each():
             zone, name = member.value, tool.name
             if names and isinstance(zone, str) and zone not in names:
-                yield Issue(path=member.path, message=unknown_word("contact zone", zone, names))
+                yield Issue(path=member.path, message=unknown_word("contact zone", zone, names, "zones"))
             elif isinstance(zone, str) and tool_of.setdefault(zone, name) != name:
                 message = f"zone '{zone}' already belongs to the tool '{tool_of[zone]}'; a surface moves with one tool"
                 yield Issue(path=member.path, message=message)
@@ -112,25 +113,25 @@ def tool_issues(tools: RawValue, zones: RawValue) -> Iterator[Issue]:
 
 def load_case_issues(cases: RawValue, combinations: RawValue, parts: Mapping[str, RawValue]) -> Iterator[Issue]:
     """Issues of load cases that contradict the "conditions" and "tools" of the problem, and of combinations."""
-    conditions = {item.name: item.read(Condition) for item in parts["conditions"].each()}
-    tools = {item.name: item.read(RigidTool) for item in parts["tools"].each()}
-    for case in cases.each():
-        for item in case.below(LoadCase, "conditions").each():
+    conditions = {item.name: item.read(Condition) for item in parts["conditions"].named()}
+    tools = {item.name: item.read(RigidTool) for item in parts["tools"].named()}
+    for case in cases.named():
+        for item in case.below(LoadCase, "conditions").named():
             name = item.name
             if name not in conditions or conditions[name] is not None:  # else the one of the problem is wrong
                 yield from _condition_issues(item, conditions.get(name))
-        for item in case.below(LoadCase, "tools").each():
+        for item in case.below(LoadCase, "tools").named():
             name = item.name
             if name not in tools:
                 yield KeyIssue(path=item.path, message=unknown_word("tool", name, tools))
             elif (tool := tools[name]) is not None:
                 yield from _action_issues(item, tool)
-    names = [case.name for case in cases.each()]
-    for combination in combinations.each():
+    names = [case.name for case in cases.named()]
+    for combination in combinations.named():
         if (name := combination.name) in names:
             message = f"a load case has the name '{name}' already; give the combination another name"
             yield KeyIssue(path=combination.path, message=message)
-        for factor in combination.each():
+        for factor in combination.named():
             if (name := factor.name) not in names:
                 yield KeyIssue(path=factor.path, message=unknown_word("load case", name, names))
 
@@ -177,9 +178,9 @@ def _action_issues(item: RawValue, tool: RigidTool) -> Iterator[Issue]:
 
 def reference_issues(references: RawValue, zones: RawValue, cases: Sequence[str]) -> list[Issue]:
     """Issues of references that name an unknown zone or load case, or no zone where there are several."""
-    names = [zone.name for zone in zones.each()]
+    names = [zone.name for zone in zones.named()]
     issues = []
-    for reference in references.each():
+    for reference in references.named():
         zone, case = reference.below(Hertz, "zone"), reference.below(Hertz, "case")
         if isinstance(case.value, str) and case.value not in cases:
             issues.append(Issue(path=case.path, message=unknown_word("load case", case.value, cases)))

@@ -1,7 +1,7 @@
 """Edges as the user gives them: lines, circular arcs and elliptic arcs, each with its number of elements."""
 
 from math import atan2, hypot, pi, radians
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_validator
 
@@ -18,9 +18,9 @@ from bemcontact.problem.validation import (
     Positive,
     PositivePair,
     SpecModel,
-    described,
     invalid,
 )
+from bemcontact.problem.wording import described
 
 MOST_ELEMENTS = 10_000
 """Largest number of elements of a problem; its dense matrix takes 13 gigabytes."""
@@ -74,6 +74,8 @@ Towards = Annotated[
 class Grading(SpecModel):
     """Element lengths in geometric progression along an edge."""
 
+    example: ClassVar[str] = "{ratio: 4, towards: end}"
+
     ratio: Annotated[float, Strict(), Field(ge=1, le=1e6)]
     """The ratio of the longest element to the shortest, such as 4."""
     towards: Towards
@@ -114,6 +116,8 @@ class _EdgeBase(SpecModel):
 class Line(_EdgeBase):
     """A straight edge. An end that is left out is taken from the neighboring edge."""
 
+    example: ClassVar[str] = "{name: bottom, start: [0, 0]}"
+
     kind: Literal["line"] = "line"
     """The shape of the edge: line, arc, or ellipse."""
     start: Point | None = None
@@ -136,6 +140,8 @@ class Line(_EdgeBase):
 
 class Arc(_EdgeBase):
     """A circular edge: center, radius and angles, or center, start, end and direction."""
+
+    example: ClassVar[str] = "{name: rim, kind: arc, center: [0, 5], radius: 5, angles: [-90, 0]}"
 
     kind: Literal["arc"] = "arc"
     """The shape of the edge: line, arc, or ellipse."""
@@ -192,6 +198,8 @@ class Arc(_EdgeBase):
 
 class EllipseArc(_EdgeBase):
     """An elliptic edge: center + rotated (a cos t, b sin t)."""
+
+    example: ClassVar[str] = "{name: rim, kind: ellipse, center: [0, 5], semi_axes: [8, 5], angles: [-90, 0]}"
 
     kind: Literal["ellipse"] = "ellipse"
     """The shape of the edge: line, arc, or ellipse."""

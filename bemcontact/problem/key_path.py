@@ -8,7 +8,8 @@ from pydantic import BaseModel, ValidationError
 
 from bemcontact.checks.arguments import text_of_argument
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
-from bemcontact.problem.validation import SpecModel, described, misspelled, unknown_word
+from bemcontact.problem.validation import SpecModel, misspelled
+from bemcontact.problem.wording import described, unknown_word
 
 _STEP = re.compile(r"\.([^.\[\]=]+)|\[(\d+)\]")
 Part = TypeVar("Part", bound=SpecModel)
@@ -134,6 +135,10 @@ class RawValue(NamedTuple):
                 return
         for key, value in entries:
             yield self._replace(path=(*self.path, key), value=value)
+
+    def named(self) -> Iterator[Self]:
+        """Entries of a mapping of names; other values have none."""
+        return self.each() if isinstance(self.value, Mapping) else iter(())
 
     def read(self, model: type[Part]) -> Part | None:
         """Validate the value as a part of a problem; None if it is wrong."""

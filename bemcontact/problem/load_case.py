@@ -1,6 +1,6 @@
 """Load cases and their combinations."""
 
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -15,6 +15,8 @@ class LoadCase(SpecModel):
     A load case does not change the supports of the body: it may give a displacement only where the problem has one, and
     a traction only where the problem has none.
     """
+
+    example: ClassVar[str] = "{conditions: {top: {pressure: 1}}}"
 
     description: Text = ""
     """A description of the load case."""

@@ -1,6 +1,6 @@
 """The material of a body."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
 
@@ -9,6 +9,8 @@ from bemcontact.problem.validation import Finite, Positive, SpecModel, invalid
 
 class Material(SpecModel):
     """An isotropic linear elastic material in plane strain or plane stress."""
+
+    example: ClassVar[str] = "{young_modulus: 210000, poisson_ratio: 0.3}"
 
     young_modulus: Positive
     """The modulus of elasticity E (Young's modulus), in the unit of stress."""

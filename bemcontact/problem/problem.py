@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import (
     AfterValidator,
@@ -43,13 +43,15 @@ from bemcontact.problem.validation import (
     Title,
     invalid,
     issues_of,
-    unknown_word,
 )
 from bemcontact.problem.variant import Variant, issues_of_values
+from bemcontact.problem.wording import unknown_word
 
 
 class Units(SpecModel):
     """Labels of the units of all numbers. Numbers are not converted."""
+
+    example: ClassVar[str] = "{length: mm, force: N}"
 
     length: Label = ""
     """The label of the unit of length, such as mm."""
@@ -68,6 +70,8 @@ ACCURACY = 0.01
 
 class MeshDensity(SpecModel):
     """The mesh: whether it is found or stated, and its refinement."""
+
+    example: ClassVar[str] = "{refine: 2}"
 
     refine: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] = 1
     """The number of equal parts into which each element is cut."""
@@ -152,7 +156,7 @@ class Problem(SpecModel):
     def _mismatches(cls, raw: RawValue) -> list[Issue]:
         """Issues of parts that do not fit each other: names first, then the geometry of valid parts."""
         boundary, conditions, zones = (raw.below(cls, key) for key in ("boundary", "conditions", "contact_zones"))
-        cases = [case.below(LoadCase, "conditions") for case in raw.below(cls, "load_cases").each()]
+        cases = [case.below(LoadCase, "conditions") for case in raw.below(cls, "load_cases").named()]
         issues = edge_name_issues(boundary, [conditions, *cases], zones)
         references = reference_issues(raw.below(cls, "reference"), zones, cls._raw_case_names(raw))
         references += cls._action_issues(raw, zones)
@@ -160,7 +164,7 @@ class Problem(SpecModel):
         if body is None:
             return [*issues, *references]
         if not issues:  # else an edge may be in the zone by mistake
-            valid = {item.path: zone for item in zones.each() if (zone := item.read(ContactZone))}
+            valid = {item.path: zone for item in zones.named() if (zone := item.read(ContactZone))}
             issues += facing_issues(body, valid)
         density = raw.below(cls, "mesh").read(MeshDensity) or MeshDensity()
         issues += cls._mesh_choice_issues(raw, body, density)
@@ -195,7 +199,7 @@ class Problem(SpecModel):
     def _raw_case_names(cls, raw: RawValue) -> list[str]:
         """Names of load cases and combinations, valid or not."""
         parts = (raw.below(cls, key) for key in ("load_cases", "combinations"))
-        return [item.name for part in parts for item in part.each()]
+        return [item.name for part in parts for item in part.named()]
 
     @property
     def case_names(self) -> tuple[str, ...]:

@@ -57,5 +57,5 @@ def readable_part(data: Any) -> Problem | None:
 
 def _entries(raw: RawValue, key: str, model: type[Part]) -> dict[str, Part]:
     """The entries under a key of a problem that can be read, by name."""
-    read = ((item.name, item.read(model)) for item in raw.below(Problem, key).each())
+    read = ((item.name, item.read(model)) for item in raw.below(Problem, key).named())
     return {name: part for name, part in read if part is not None}

@@ -5,7 +5,7 @@ Forces are per thickness, lengths are in the units of the problem. A reference d
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import Annotated, Literal, Self, get_args
+from typing import Annotated, ClassVar, Literal, Self, get_args
 
 from pydantic import AfterValidator, Field, Strict, ValidationInfo, field_validator, model_validator
 
@@ -62,6 +62,8 @@ class ReferenceBase(SpecModel):
 
 class Hertz(ReferenceBase):
     """Hertz theory for line contact of an elastic cylinder with a rigid plane or cylinder."""
+
+    example: ClassVar[str] = "{kind: hertz, radius: 10, load: 400}"
 
     kind: Literal["hertz"] = "hertz"
     """The closed form: hertz."""

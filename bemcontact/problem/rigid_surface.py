@@ -1,7 +1,7 @@
 """Rigid surfaces: gap and unit normal, which points from the surface into the body."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -15,6 +15,8 @@ from bemcontact.problem.validation import Name, Point, Positive, SpecModel, inva
 
 class Plane(SmoothSurface):
     """An infinite straight surface."""
+
+    example: ClassVar[str] = "{kind: plane, point: [0, 0], normal: [0, 1]}"
 
     kind: Literal["plane"] = "plane"
     """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""

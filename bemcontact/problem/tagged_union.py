@@ -10,7 +10,8 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from bemcontact.errors import Issue
-from bemcontact.problem.validation import SpecModel, described, invalid, unknown_word, validation_error
+from bemcontact.problem.validation import SpecModel, invalid, validation_error
+from bemcontact.problem.wording import described, unknown_word
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +28,11 @@ class TaggedUnion:
     what: str
     members: tuple[type[SpecModel], ...]
     default: str | None = None
+
+    @property
+    def example(self) -> str:
+        """A value as YAML has it."""
+        return self.members[0].example
 
     @cached_property
     def kinds(self) -> dict[str, type[SpecModel]]:
@@ -58,7 +64,8 @@ class TaggedUnion:
         if isinstance(value, self.members):
             return value
         if not isinstance(value, Mapping):
-            raise invalid(f"expected a mapping that describes {self.what}, found {described(value)}")
+            expected = f"expected a mapping that describes {self.what}, such as {self.example}"
+            raise invalid(f"{expected}; found {described(value)}")
         kind = value.get("kind", self.default)
         if not isinstance(kind, str) or kind not in self.kinds:
             raise validation_error(self.what, [Issue(path=("kind",), message=self._wrong_kind(value))])

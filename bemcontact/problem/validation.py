@@ -1,10 +1,8 @@
-"""The base class of all parts of a problem, the types of their values, and plain texts for validation errors."""
+"""The base class of all parts of a problem, the types of their values, and the translation of their errors."""
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import (
     AfterValidator,
@@ -20,15 +18,19 @@ from pydantic import (
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
 from bemcontact.errors import LINE_BREAKS, Issue, ProblemError, hidden_character
+from bemcontact.problem.examples import (
+    annotation_at,
+    annotation_of,
+    example_of,
+    likely_mapping,
+    list_hint,
+    text_hint,
+    types_in,
+)
+from bemcontact.problem.wording import LONGEST_NAME, MANY_WORDS, described, near_by, number_hint, unknown_word
 
 LARGEST_NUMBER = 1e30
 """The eighth power of this number is still finite, so that products of any four numbers can be squared."""
-LONGEST_NAME = 1000
-"""Largest number of characters in a name."""
-MANY_WORDS = 100
-"""Number of known or unknown words from which they are not compared with each other, which would take long."""
-_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
-_NUMBER_AND_UNIT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)? *[^\W\d_][^ ]*")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,38 +53,12 @@ def issues_of(error: ValidationError) -> list[Issue]:
     return [_issue(details) for details in error.errors(include_url=False, include_input=False)]
 
 
-def near_by(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that is closest to a misspelled one, or None."""
-    lower = {candidate.lower(): candidate for candidate in known}
-    if len(lower) > MANY_WORDS or len(word) > LONGEST_NAME:
-        return None
-    matches = get_close_matches(word.lower(), lower, n=1)
-    return lower[matches[0]] if matches else None
-
-
-def described(value: object) -> str:
-    """Describe a value for an error message: the text 'abc', a list of 3, nothing."""
-    match value:
-        case None:
-            return "nothing"
-        case bool():
-            return "true" if value else "false"
-        case str():
-            return "an empty text" if not value else f"the text {_shortened(repr(value))}"
-        case list() | tuple():
-            return f"a list of {len(value)}" if value else "an empty list"
-        case Mapping():
-            return "a mapping" if value else "an empty mapping"
-    try:
-        return _shortened(str(value))
-    except Exception:  # str() of a user's object may raise anything
-        return f"an object of type {type(value).__name__}"
-
-
 class SpecModel(BaseModel):
     """Base class of all parts of a problem: frozen, strict about types; `ProblemError` lists every issue at once."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
+    example: ClassVar[str]
+    """A value as YAML has it, for error messages."""
 
     def __init__(self, /, **data: Any) -> None:
         try:
@@ -101,6 +77,9 @@ class SpecModel(BaseModel):
             return handler(data)
         except ValidationError as error:
             issues = [*_translated_errors(cls, error), *_below_misspelled(cls, data, handler)]
+            nameless = _nameless(cls, data)
+            issues = [issue for issue in issues if issue.path[:1] not in [(key,) for key in nameless]]
+            issues += [Issue(path=(key,), message=message) for key, message in nameless.items()]
             raise validation_error(cls.__name__, issues) from None
 
 
@@ -188,7 +167,9 @@ def _translated_errors(cls: type[BaseModel], error: ValidationError) -> list[Iss
     return [
         _issue(item) if _is_translated(item) else _translated(cls, item)
         for item in details
-        if not (item["type"] == "missing" and item["loc"][-1] in meant) and not _is_consequence(item)
+        if not (item["type"] == "missing" and item["loc"][-1] in meant)
+        and not _is_consequence(item)
+        and not _is_other_word(item, details)
     ]
 
 
@@ -214,6 +195,28 @@ def _below_misspelled(cls: type[BaseModel], data: Any, handler: ModelWrapValidat
 def _is_consequence(details: ErrorDetails) -> bool:
     """Whether a list counts as too short only because some of its entries are wrong."""
     return details["type"] == "too_short" and len(details["input"]) >= details.get("ctx", {})["min_length"]
+
+
+def _is_other_word(details: ErrorDetails, others: Iterable[ErrorDetails]) -> bool:
+    """Whether a word was expected in a place that takes numbers too, of which another error tells."""
+    place = details["loc"][:-1]
+    return details["type"] == "literal_error" and any(
+        other["loc"][:-1] == place and other["type"] != "literal_error" for other in others if place
+    )
+
+
+def _nameless(cls: type[BaseModel], data: Any) -> dict[str, str]:
+    """Messages for mappings of names, by key, that have the keys of an entry instead of names."""
+    messages = {}
+    for key, field in cls.model_fields.items():
+        value, (origin, parts) = data.get(key) if isinstance(data, Mapping) else None, types_in(annotation_of(field))
+        entry = parts[1] if origin is dict else None
+        if not (isinstance(value, Mapping) and value and isinstance(entry, type) and issubclass(entry, SpecModel)):
+            continue
+        if {*value} <= {*entry.model_fields}:
+            wanted = example_of(annotation_of(field))
+            messages[key] = f"the names are missing, expected a mapping of names such as {wanted}"
+    return messages
 
 
 def _is_translated(details: ErrorDetails) -> bool:
@@ -244,28 +247,9 @@ def _translated(cls: type[BaseModel], details: ErrorDetails) -> Issue:
     if details["type"] == "missing":
         return Issue(path=path, message=_missing(cls, str(path[-1])))
     if details["type"] == "model_type":
-        expected = f"a mapping with the keys {', '.join(cls.model_fields)}"
-        return Issue(path=path, message=f"expected {expected}; found {described(details['input'])}")
-    return Issue(path=path, message=_wrong_value(details))
-
-
-def unknown_word(what: str, word: str, known: Iterable[str]) -> str:
-    """Say that a word is unknown or empty, and name the closest known word, or all of them."""
-    known = tuple(known)
-    if not word.strip():
-        return f"the name of the {what} is empty; {_available(known)}"
-    meant = near_by(word, known)
-    hint = f"did you mean '{meant}'?" if meant else _available(known)
-    return f"unknown {what} {_shortened(repr(word))}; {hint}"
-
-
-def _available(words: tuple[str, ...]) -> str:
-    match words:
-        case ():
-            return "there are none"
-        case (word,):
-            return f"there is only '{word}'"
-    return f"there are: {_shortened(', '.join(words), LONGEST_NAME)}"
+        found = f"such as {likely_mapping(cls, details['input'])}; found {described(details['input'])}"
+        return Issue(path=path, message=f"expected a mapping with the keys {', '.join(cls.model_fields)}, {found}")
+    return Issue(path=path, message=_wrong_value(details, example_of(annotation_at(cls, path))))
 
 
 def _missing(cls: type[BaseModel], key: str) -> str:
@@ -275,7 +259,7 @@ def _missing(cls: type[BaseModel], key: str) -> str:
     return f"missing; give {text[0].lower()}{text[1:].rstrip('.')}" if text else "missing"
 
 
-def _wrong_value(details: ErrorDetails) -> str:
+def _wrong_value(details: ErrorDetails, example: str) -> str:
     """Say what was expected and what was found."""
     value, context = details["input"], details.get("ctx", {})
     found = f"found {described(value)}"
@@ -289,8 +273,7 @@ def _wrong_value(details: ErrorDetails) -> str:
         case "bool_type":
             return f"expected true or false, {found}"
         case "string_type":
-            quotes = f"; write '{described(value)}' in quotes" if isinstance(value, int | float) else ""
-            return f"expected a text, {found}{quotes}"
+            return f"expected a text, {found}{text_hint(value)}"
         case "greater_than":
             return f"must be greater than {context['gt']:g}, {found}"
         case "greater_than_equal":
@@ -302,29 +285,11 @@ def _wrong_value(details: ErrorDetails) -> str:
         case "literal_error":
             return f"expected {context['expected']}, {found}"
         case "tuple_type":
-            return f"expected a list, {found}"
+            return f"expected a list such as {example}, {found}{list_hint(value)}"
         case "too_short":
             return f"expected at least {context['min_length']} in the list, {found}"
         case "too_long":
             return f"expected at most {context['max_length']} in the list, {found}"
         case "dict_type":
-            return f"expected a mapping of names, {found}"
+            return f"expected a mapping of names such as {example}, {found}"
     return f"{details['msg'][0].lower()}{details['msg'][1:]}, {found}"
-
-
-def number_hint(value: object) -> str:
-    """Say how to write the number that a text contains; empty if it contains none."""
-    if not isinstance(value, str):
-        return ""
-    if _THOUSANDS.fullmatch(value):
-        otherwise = f", or {value.replace(',', '.')} if the comma is the decimal sign" * (value.count(",") == 1)
-        return f"; write {value.replace(',', '')} without a comma between thousands{otherwise}"
-    try:
-        float(value.replace(",", ".", 1))
-    except ValueError:
-        return "; write the number alone, in the units of the file" if _NUMBER_AND_UNIT.fullmatch(value) else ""
-    return "; the decimal sign is a point" if "," in value else "; leave the quotes out"
-
-
-def _shortened(text: str, longest: int = 48) -> str:
-    return text if len(text) <= longest else f"{text[: longest - 3]}..."

@@ -1,7 +1,7 @@
 """Variants of a problem: values that replace others, by key path."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Field
 
@@ -19,6 +19,8 @@ def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
 
 class Variant(SpecModel):
     """Values that replace others of the problem, all at once."""
+
+    example: ClassVar[str] = "{set: {material.young_modulus: 70000}}"
 
     description: Text = ""
     """A description of the difference, and its reason."""

@@ -14,14 +14,15 @@ from bemcontact.files.text import place_after, text_of
 from bemcontact.problem import Problem, Variant
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path
 from bemcontact.problem.readable import readable_part
-from bemcontact.problem.validation import described, number_hint, unknown_word
+from bemcontact.problem.wording import described, number_hint, unknown_word
 from bemcontact.spec.document import Document, LocatedMessage, Mark, Place, error_text
 from bemcontact.spec.yaml_1_2 import MOST_CHARACTERS, MOST_KEYS, READERS, TAG, Budget, Loader, Refused, to_yaml
 
 _REQUIRED = ", ".join(key for key, item in Problem.model_fields.items() if item.is_required())
 _HINTS = {
     "found character '\\t'": "YAML indents with spaces; replace the tab",
-    "mapping values are not allowed": "put a text that contains a colon in quotes, or check the indentation",
+    "mapping values are not allowed": "write key: value with a blank after the colon, and several in one line in "
+    "braces, {a: 1, b: 2}; put a text that contains a colon in quotes, or check the indentation",
     "could not find expected ':'": "a key needs a colon and a space after it",
     "expected <block end>": "check the indentation of this line and the lines above",
     "found undefined alias": "an alias *name needs an anchor &name before it",
@@ -187,9 +188,13 @@ def _not_yaml(error: yaml.MarkedYAMLError, name: str) -> str:
 
 def _no_key(node: yaml.Node, before: yaml.Node | None) -> str:
     """Message for a key that is not a text; in braces it may be the part of a number after a comma."""
+    if isinstance(node, yaml.SequenceNode):
+        return "a key must be a text, found a list; write one entry for each name"
     if not isinstance(node, yaml.ScalarNode):
-        return "a key must be a text, found a list or a mapping; write it in quotes"
-    if isinstance(before, yaml.ScalarNode) and before.end_mark.index + 1 == node.start_mark.index:
+        return "a key must be a text, found a mapping; write a text that begins with a brace in quotes"
+    if isinstance(before, yaml.ScalarNode) and before.tag != f"{TAG}str" and node.tag != f"{TAG}str":
+        if before.end_mark.index + 1 != node.start_mark.index:
+            return f"a list stands in brackets; write [{before.value}, {node.value}]"
         number = f"{before.value},{node.value}"
         if hint := number_hint(number):
             return f"expected a number, found {number}{hint}"
@@ -314,7 +319,7 @@ def _varied(document: Document, name: str) -> Iterator[Document]:
 
     `SpecError` if there is no such variant, or if one of its keys leads nowhere.
     """
-    variants = {item.name: item for item in RawValue((), document.data).below(Problem, "variants").each()}
+    variants = {item.name: item for item in RawValue((), document.data).below(Problem, "variants").named()}
     if name not in variants:
         raise SpecError(f"--variant {name or repr(name)}: {unknown_word('variant', name, variants)}")
     variant = variants[name].read(Variant)

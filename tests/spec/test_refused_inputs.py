@@ -19,6 +19,7 @@ from bemcontact import cli
 PAGE = Path(__file__).with_name("refused_inputs.md")
 GOOD = BLOCK + "load_cases:\n  more: {conditions: {top: {pressure: 1}}}\n"
 TOP, PLANE = "start: [40, 20], elements: 4", "{kind: plane, point: [0, 0], normal: [0, 1]}"
+RIM = "{name: h, kind: arc, center: [20, 10], radius: 5, angles: [360, 0]}"
 HOLE = "  holes: [[{{name: h, kind: arc, center: [20, 10], {}, elements: 16}}]]\nconditions:\n"
 
 CHANGES: dict[str, list[tuple[str, str]]] = {
@@ -73,6 +74,33 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
         (TOP, f"{TOP}, ends_at: [2]"),
         ("conditions:\n", HOLE.format("radius: 10, angles: [360, 0]")),
         ("conditions:\n", HOLE.format("radius: 5, angles: [0, 360]")),
+    ],
+    "Lists, mappings and texts": [
+        ("edges: bottom", "edges: bottom, left"),
+        ("edges: bottom", "edges: {bottom, left}"),
+        ("edges: bottom", "edges: [[bottom]]"),
+        ("edges: bottom", "edges:"),
+        ("name: right", "name: [right]"),
+        ("units: {length: mm, force: N}", "units: [mm, N]"),
+        ("young_modulus: 210e3", "young_modulus: [210e3]"),
+        ("poisson_ratio: 0.3", "poisson_ratio: 30 %"),
+        ("poisson_ratio: 0.3", "poisson_ratio: 3/10"),
+        ("young_modulus: 210e3", "young_modulus:210e3"),
+        ("    - {name: bottom, start: [0, 0], elements: 4}", "    - name: bottom, start: [0, 0], elements: 4"),
+        (
+            "conditions:\n",
+            "  holes: [{name: h, kind: arc, center: [20, 10], radius: 5, angles: [360, 0]}]\nconditions:\n",
+        ),
+        ("  left: {displacement: {x: 0}}\n  top", "  - left: {displacement: {x: 0}}\n  - top"),
+        ("left: {displacement: {x: 0}}", "left: fixed"),
+        ("left: {displacement: {x: 0}}", "left: {displacement: [0, 0]}"),
+        ("left: {displacement: {x: 0}}", "left: {displacement: {x:0}}"),
+        ("  top: {pressure: 3}", "  top, right: {pressure: 3}"),
+        ("  top: {pressure: 3}", "  [top, right]: {pressure: 3}"),
+        ("  foot:\n    edges: bottom\n    surface:", "  edges: bottom\n  surface:"),
+        (PLANE, "plane"),
+        ("point: [0, 0]", "point: 0, 0"),
+        ("load_cases:", "accuracy: 1%\nload_cases:"),
     ],
     "Conditions and loads": [
         ("{pressure: 3}", "{}"),
@@ -164,15 +192,33 @@ def code(text: str) -> str:
     return "<br>".join(f"`` {line} ``" for line in visible.rstrip("\n").split("\n"))
 
 
-def rows_of(changes: list[tuple[str, str]]) -> Iterator[tuple[str, str]]:
-    """Rows of the changes to the good spec, each with the sentence that it gets."""
+def rows_of(changes: list[tuple[str, str]]) -> Iterator[tuple[str, ...]]:
+    """Rows of the changes to the good spec: the lines that replace others, and the message that they get."""
     for old, new in changes:
         assert old in GOOD
-        Path("a.yaml").write_text(GOOD.replace(old, new, 1), encoding="utf-8")
-        yield code(new), refusal("check a.yaml --case more")
+        wrong = GOOD.replace(old, new, 1)
+        Path("a.yaml").write_text(wrong, encoding="utf-8")
+        yield *changed_lines(wrong.split("\n")), refusal("check a.yaml --case more")
 
 
-def rows_of_texts() -> Iterator[tuple[str, str]]:
+def changed_lines(wrong: list[str]) -> tuple[str, str]:
+    """Numbers of the lines of the good spec that a wrong one replaces, or before which it has more, and its own."""
+    good = GOOD.split("\n")
+    same = equal_lines(good, wrong)
+    rest = equal_lines(good[same:][::-1], wrong[same:][::-1])
+    first, last = same + 1, len(good) - rest
+    number = f"before {first}" if last < first else str(first) if first == last else f"{first} to {last}"
+    lines = wrong[same : len(wrong) - rest]
+    indent = min(len(line) - len(line.lstrip(" ")) for line in lines)
+    return number, code("\n".join(line[indent:] for line in lines))
+
+
+def equal_lines(one: list[str], other: list[str]) -> int:
+    """How many lines are equal at the beginning."""
+    return next((i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
+
+
+def rows_of_texts() -> Iterator[tuple[str, ...]]:
     """Rows of whole files."""
     for title, made in TEXTS:
         content = made()
@@ -180,10 +226,10 @@ def rows_of_texts() -> Iterator[tuple[str, str]]:
         yield title, refusal("check a.yaml")
 
 
-def table(head: str, rows: Iterator[tuple[str, str]]) -> str:
-    """A table of two columns."""
-    lines = [f"| {left} | {cell(right)} |" for left, right in rows]
-    return "\n".join([f"| {head} | Sentence |", "|---|---|", *lines])
+def table(heads: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:
+    """A table; its last column has the messages."""
+    lines = [" | ".join(["", *others, cell(message), ""]).strip() for *others, message in rows]
+    return "\n".join([f"| {' | '.join(heads)} | Message |", "|---" * len(heads) + "|---|", *lines])
 
 
 def page(folder: Path) -> str:
@@ -192,14 +238,18 @@ def page(folder: Path) -> str:
     with chdir(folder):
         parts = [
             "# Refused inputs",
-            "This page lists inputs that are refused, and the sentence that each gets. "
-            "`PYTHONPATH=tests/cli python tests/spec/test_refused_inputs.py` writes it, and a test compares it. "
-            "The first tables replace one part of this problem file, `a.yaml`:",
+            "This page lists mistakes, and the message that a user gets for each. "
+            "`PYTHONPATH=tests/cli python tests/spec/test_refused_inputs.py` writes it, and a test compares it.",
+            "The first tables change a few lines of this problem file, which has no mistake:",
             f"```yaml\n{GOOD}```",
-            *(f"## {kind}\n\n{table('Instead', rows_of(changes))}" for kind, changes in CHANGES.items()),
-            f"## Whole files\n\n{table('Content of `a.yaml`', rows_of_texts())}",
+            "*Line* is the number of the line that is changed, and *Changed to* is what it says then. The message is "
+            "what `bemcontact check a.yaml` prints; it begins with file, line and column. "
+            "→ stands for a tab and ␀ for the character 0.",
+            *(f"## {kind}\n\n{table(('Line', 'Changed to'), rows_of(changes))}" for kind, changes in CHANGES.items()),
+            "## Whole files\n\nHere `a.yaml` has another content.\n\n"
+            + table(("Content of `a.yaml`",), rows_of_texts()),
             "## Commands\n\nThe file `good.yaml` is the problem above.\n\n"
-            + table("Command", ((code(item), refusal(item)) for item in COMMANDS)),
+            + table(("Command",), ((code(f"bemcontact {item}"), refusal(item)) for item in COMMANDS)),
         ]
     return re.sub(re.escape(str(folder.resolve())), "/folder", "\n\n".join(parts)) + "\n"
 
