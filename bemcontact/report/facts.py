@@ -184,10 +184,14 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     """List name and value of each fact of a record: contact, peak, resultants, free motions, tools and residuals."""
     size, pressed, moves = size_of(record), pressed_by(record), record["scales"]["displacement"]
     if not record["intervals"]:
-        yield "Contact", "nowhere"
+        held = "" if record["motion_names"] else ", and the supports alone hold the body"
+        yield "Contact", f"nowhere: the body presses on no rigid surface{held}"
     for interval, error in zip(record["intervals"], _end_errors(record), strict=False):
         ends = f", ends ± {with_unit(small(error), units.length)}" if error else ""
         yield "Contact", f"{interval['zone']}: {span(interval, size, units)}{ends}"
+    for zone in dict.fromkeys(record["zone"]):
+        if record["intervals"] and zone not in [interval["zone"] for interval in record["intervals"]]:
+            yield "Contact", f"{zone}: nowhere"
     yield from _peaks(record, size, units)
     for bar in bars_of(record, "intensity"):
         if bar["value"] is not None:

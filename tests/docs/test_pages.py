@@ -111,3 +111,14 @@ def test_sources_that_the_code_cites_are_listed():
     cited = {key for text in sources for key in re.findall(r"\[([A-Z][A-Za-z]{1,5}\d\d)\]", text)}
     assert cited <= listed
     assert "SS92" in cited
+
+
+def test_sources_that_are_cited_by_author_and_year_are_listed():
+    literature = (pages.DOCS / "reference" / "literature.md").read_text("utf-8").split("\n- ")[1:]
+    files = [*(ROOT / "bemcontact").rglob("*.py"), *(ROOT / "models").rglob("*.yaml"), *pages.pages()]
+    text = " ".join(" ".join(path.read_text(encoding="utf-8").split()) for path in files)
+    cited = {*re.findall(r"\b([A-Z]\w+)(?: and (?:af )?([A-Z]\w+))? \(?((?:19|20)\d\d)\b", text)}
+    authors = {entry for entry in cited if entry[0] not in ("In", "Version")}
+    missing = [entry for entry in authors if not any(all(word in item for word in entry) for item in literature)]
+    assert not missing
+    assert ("Bisshopp", "Drucker", "1945") in authors
