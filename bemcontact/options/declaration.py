@@ -74,9 +74,20 @@ def ensure_whole_fields(options: Any) -> None:
             object.__setattr__(options, item.name, whole_number(value, item.name, least))
 
 
+OF_PROBLEM = {
+    "accuracy": 'with_value("accuracy", 0.003)',
+    "refine": "refined(2)",
+    "case": 'with_case("NAME")',
+    "variant": 'variant("NAME")',
+}
+"""Options of the command line that change the problem, and how a problem is changed so in Python."""
+
+
 def ensure_known(options: Iterable[str], known: Iterable[str]) -> None:
-    """Refuse the name of an option that does not exist; list those that do."""
+    """Refuse the name of an option that does not exist; list those that do, or say where it belongs."""
     known = [*known]
     for name in options:
         if name not in known:
-            raise OptionError(f"there is no option '{name}'; choose from {', '.join(known)}")
+            known_words = f"choose from {', '.join(known)}"
+            belongs = f"it belongs to the problem; write problem.{OF_PROBLEM[name]}" if name in OF_PROBLEM else ""
+            raise OptionError(f"there is no option '{name}'; {belongs or known_words}")

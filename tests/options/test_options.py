@@ -1,6 +1,7 @@
 """The options of solving and comparing: keywords, uses and documentation follow the fields of one declaration."""
 
 from dataclasses import fields
+from pathlib import Path
 from typing import get_args, get_type_hints
 
 import pytest
@@ -15,7 +16,9 @@ from bemcontact.options import (
     SolveOptions,
     StatementKeywords,
 )
+from bemcontact.options.declaration import OF_PROBLEM
 
+MODEL = Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml"
 NAMED_IN_SIGNATURES = {"formulation", "formulations", "weights", "penalties"}
 STARTS_AND_POLISH = {"start", "seed", "starts", "polish"}
 
@@ -60,3 +63,12 @@ def test_each_option_that_a_formulation_uses_is_a_field():
 def test_the_docstring_has_the_meaning_of_each_option(options):
     words = " ".join(options.__doc__.split())
     assert all(f"{item.name} : {item.metadata['meaning']}" in words for item in fields(options))
+
+
+@pytest.mark.parametrize("option", OF_PROBLEM)
+def test_an_option_of_the_problem_is_refused_with_the_call_to_write(option: str):
+    problem = bemcontact.load(MODEL)
+    with pytest.raises(OptionError, match=rf"'{option}'.*write problem\.") as refused:
+        bemcontact.solve(problem, **{option: 2})
+    method = str(refused.value).rpartition("problem.")[2].partition("(")[0]
+    assert callable(getattr(problem, method))
