@@ -123,12 +123,12 @@ def surface_sizes(problem: Problem, outline: SizedOutline) -> tuple[dict[int, li
     """Limits of the size where surfaces come near, and places where elements must end, both by loop."""
     limits: dict[int, list[Limit]] = {}
     marks: dict[int, list[float]] = {}
-    for zone in problem.contact_zones.values():
+    for name, zone in problem.contact_zones.items():
         if isinstance(zone.surface, DeflectedContour):
             continue
         for number, loop in enumerate(outline.loops):
             for edge in loop.edges:
-                if edge.name in zone.edges:
+                if edge.name in problem.edges_of(name):
                     start = loop.start_of[edge.name]
                     limits.setdefault(number, []).extend(_near(edge, start, zone.surface))
                     for fraction in surface_corners(edge, zone.surface):

@@ -153,6 +153,4 @@ def elements_at(solved: Solved, run: ZoneRun, position: float) -> IntArray:
 
 def run_elements(solved: Solved, run: ZoneRun) -> IntArray:
     """Elements of a run in the order of the boundary."""
-    points = solved.body.points
-    own = (points.local == 1) & (points.run[points.point] == run.number)
-    return points.element[own]
+    return solved.body.points.elements_of_run[run.number]

@@ -80,10 +80,7 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
     """List the unbroken pieces of all contact zones of a body on its mesh, by their numbers."""
     mesh, points, problem = body.mesh, body.points, body.problem
     lengths, zones = element_lengths(mesh), [*problem.contact_zones]
-    middle = points.local == 1  # middle nodes are contact points of one run each, in the order of the boundary
-    for number in range(len(points.run_length)):
-        own = middle & (points.run[points.point] == number)
-        elements = points.element[own]
+    for number, elements in enumerate(points.elements_of_run):
         if not len(elements):
             continue  # a corner of the body that stands on a face by itself
         names = [mesh.edge_names[i] for i in dict.fromkeys(mesh.edge[elements].tolist())]
@@ -96,7 +93,7 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
         outside = mesh.before[elements[0]], mesh.elements[elements[-1], 2]
         yield ZoneRun(
             number=number,
-            zone=zones[points.zone[points.point[own][0]]],
+            zone=zones[points.zone_of_run[number]],
             edges=edges,
             closed=closed,
             arc=np.concatenate([[0.0], np.cumsum(lengths[elements])]),
@@ -144,8 +141,10 @@ def contact_stretches(
             start_arc = min(start_arc, (arcs[first] + arcs[max(first - 1, 0)]) / 2)
             end_arc = max(end_arc, (arcs[last] + arcs[min(last + 1, len(arcs) - 1)]) / 2)
         corners = first < last  # a single point at a corner does not decide on which side contact is
-        start, start_free = _end(run, start_arc, arcs[first], 0.0 if first == 0 else None, corners)
-        end, end_free = _end(run, end_arc, arcs[last], run.length if last == len(arcs) - 1 else None, corners)
+        at_start = first == 0 and arcs[first] <= run.arc[1] + same  # else points beyond are not turned to the surface
+        start, start_free = _end(run, start_arc, arcs[first], 0.0 if at_start else None, corners)
+        at_end = last == len(arcs) - 1 and arcs[last] >= run.arc[-2] - same
+        end, end_free = _end(run, end_arc, arcs[last], run.length if at_end else None, corners)
         narrow = last - first < POINTS_OF_ELEMENT - 1
         yield Stretch(start=start, end=end, start_free=start_free, end_free=end_free, narrow=narrow)
 

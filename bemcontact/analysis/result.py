@@ -171,7 +171,7 @@ class Result(Recorded):
         gaps = contact.initial_gap + self.solution.displacement
         pressure, gap = np.zeros(boundary.points.shape[:2]), np.full(boundary.points.shape[:2], np.nan)
         for number, name in enumerate(contact.zone_names):
-            edges = [boundary.edge_names.index(edge) for edge in problem.contact_zones[name].edges]
+            edges = [boundary.edge_names.index(edge) for edge in problem.edges_of(name)]
             own = np.flatnonzero(contact.zone == number)
             at = {tuple(contact.points[i]): i for i in own}
             on_run = {(run, *point): i for i in own for run, point in [(contact.run[i], contact.points[i])]}
@@ -180,7 +180,9 @@ class Result(Recorded):
                 run = contact.run[at[places[1]]] if places[1] in at else -1
                 for local, place in enumerate(places):
                     if (i := on_run.get((run, *place), at.get(place))) is not None:
-                        pressure[element, local], gap[element, local] = self.solution.pressure[i], gaps[i]
+                        here = self.solution.pressure[i], -gaps[i]
+                        if not here < (pressure[element, local], -gap[element, local]):
+                            pressure[element, local], gap[element, local] = here[0], gaps[i]
         return pressure, gap
 
     def record(self) -> ResultRecord:

@@ -27,6 +27,7 @@ from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Circle, DeflectedContour
+from bemcontact.problem.sight import zone_edges
 
 PRESSED_IN = 0.1
 """Interference over the size of a body up to which a disk is pressed into a hole, not drawn at a wrong place."""
@@ -139,7 +140,8 @@ class Body:
         left_open = (
             f"the loads do no work in the {idle}, which only opens gaps: contact does not determine its amplitude"
         )
-        return (*_wholly_behind(self.problem, self.mesh), *pinned, *(() if idle is None else (left_open,)))
+        placed = (*_wholly_behind(self.problem, self.mesh), *_left_out(self.problem))
+        return (*placed, *pinned, *(() if idle is None else (left_open,)))
 
 
 def _wholly_behind(problem: Problem, mesh: Mesh) -> Iterator[str]:
@@ -152,6 +154,16 @@ def _wholly_behind(problem: Problem, mesh: Mesh) -> Iterator[str]:
         if gap.max() < 0 and not pressed_in:
             depth = f"{-gap.min():.3g} {problem.units.length}".strip()
             yield f"the whole body lies behind the surface of '{name}', up to {depth} deep; is its position right?"
+
+
+def _left_out(problem: Problem) -> Iterator[str]:
+    """Note edges with conditions that can see the surface of a zone that names no edges."""
+    for name, zone in problem.contact_zones.items():
+        touching = problem.edges_of(name)
+        others = [edge for edge in zone_edges(problem.boundary, zone, ()) if edge not in touching]
+        if others:
+            names, it = ", ".join(f"'{edge}'" for edge in others), "it has" if len(others) == 1 else "they have"
+            yield f"{names} can see the surface of '{name}' and may not touch it, because {it} a condition"
 
 
 def _pinned(who: str) -> str:

@@ -11,8 +11,10 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.bem.outline import Outline
+from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, RigidSurface
+from bemcontact.problem.sight import turned_to
 from bemcontact.problem.surface_lines import Closest, Polyline
 
 PARALLEL = 1e-9
@@ -49,6 +51,8 @@ class ContactPoints:
     held_arc : (runs, 2) arc position of the first and the last node of a piece if a condition holds it on the rigid
         surface, else not a number [L]
     held_points : (runs, 2, 2) these nodes [L]
+    elements_of_run : elements of each piece in order; none for a corner of the body that stands on a face by itself
+    zone_of_run : number of the zone of each piece
     """
 
     mesh: Mesh
@@ -64,6 +68,8 @@ class ContactPoints:
     point: IntArray
     held_arc: Array
     held_points: Array
+    elements_of_run: tuple[IntArray, ...] = ()
+    zone_of_run: tuple[int, ...] = ()
 
     @classmethod
     def none(cls, mesh: Mesh) -> Self:
@@ -98,8 +104,8 @@ class ContactPoints:
         jacobian = np.hypot(tangents[..., 0], tangents[..., 1])
         local = np.einsum("gk,gl,mg,g->mkl", N, N, jacobian, weights)
         J = np.zeros((len(self), len(self)))
-        for element in np.unique(self.element):
-            at = self.element == element
+        for element, zone in np.unique(np.column_stack([self.element, self.zone[self.point]]), axis=0):
+            at = (self.element == element) & (self.zone[self.point] == zone)
             k, i = self.local[at], self.point[at]
             np.add.at(J, np.ix_(i, i), local[element][np.ix_(k, k)])
         return J
@@ -127,32 +133,40 @@ def contact_points(
     deflections: Mapping[str, Array],
     cases: Sequence[BoundaryValues] = (),
 ) -> ContactPoints:
-    """List the contact points of all zones; the middle node of an element is always one.
+    """List the contact points of all zones.
 
     `deflections` has the displacement (N, 2) [L] of the nodes by zone, for zones on a deflected contour. `cases` has
     what load cases prescribe in addition to `values`.
+
+    A node in several zones is a point of those only to whose surfaces it is turned: normals that oppose one another
+    would make the compliance singular.
     """
     halves = half_lengths(mesh)
     tool_of = {zone: tool for tool, stated in problem.tools.items() for zone in stated.zones}
     pieces: list[_Piece] = []
+    in_zones, choice = _elements_of_zones(problem, mesh)
+    middles = mesh.elements[:, 1]
     for number, (name, zone) in enumerate(problem.contact_zones.items()):
-        in_zone = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in zone.edges])
-        faces = _faces(problem, zone.surface, mesh, halves, deflections.get(name))
+        in_zone, faces = in_zones[number], _faces(problem, zone.surface, mesh, halves, deflections.get(name))
         for elements, closed in _between_corners(mesh, _runs(mesh, in_zone), faces):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
             gap, normals = faces.along(nodes, closed=closed)
-            free = ~_held_along(normals, values.displacement_given[nodes])
+            loose = ~_held_along(normals, values.displacement_given[nodes])
+            free = loose & ~(choice[nodes] & ~faces.turned(mesh, elements, closed=closed))
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
             fixed = not closed and name not in tool_of
             on_surface = _on_surface(mesh, (values, *cases), nodes, normals, gap)
             goes_on = _goes_on(mesh, values, elements, normals, on_surface) if fixed else (False, False)
-            held = np.where(~free & on_surface & fixed, arc, np.nan)[[0, -1]]
+            held = np.where(~loose & on_surface & fixed, arc, np.nan)[[0, -1]]
             pieces.append(
                 _Piece(
-                    number, tool_of.get(name), elements, length, goes_on, nodes[free], arc[free], normals[free],
-                    gap[free], held, mesh.nodes[nodes[[0, -1]]],
+                    number, tool_of.get(name), elements, elements, length, goes_on, nodes[free], arc[free],
+                    normals[free], gap[free], held, mesh.nodes[nodes[[0, -1]]],
                 )
             )  # fmt: skip
+        if not any(len(piece.nodes) for piece in pieces if piece.zone == number) and (in_zone & choice[middles]).any():
+            message = "no node of its edges is turned to the surface; give these edges more elements"
+            raise ProblemError(Issue(path=("contact_zones", name, "edges"), message=message))
         pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, values.displacement_given)
     return _joined(mesh, pieces)
 
@@ -169,6 +183,29 @@ class _NodeFaces(NamedTuple):
         side = np.full(len(nodes), 2)
         side[-1] = 2 if closed else 0
         return Closest(self.gap[nodes, side], self.normals[nodes, side])
+
+    def turned(self, mesh: Mesh, elements: IntArray, *, closed: bool) -> BoolArray:
+        """Whether a side of each node of a piece, on its elements in order, is turned to the face there."""
+        at_start, at_middle, at_end = (
+            turned_to(-mesh.normals[elements, local], self.normals[mesh.elements[elements, local], side])
+            for local, side in enumerate((2, 2, 0))
+        )
+        start = np.append(at_start, False) | np.append(False, at_end)
+        if closed:
+            start = at_start | np.roll(at_end, 1)
+        nodes = np.zeros(2 * len(elements) + (not closed), bool)
+        nodes[0::2], nodes[1::2] = start, at_middle
+        return nodes
+
+
+def _elements_of_zones(problem: Problem, mesh: Mesh) -> tuple[BoolArray, BoolArray]:
+    """Which elements each zone has (zones, m), and which nodes (N,) are in several zones."""
+    edges = [[mesh.edge_names.index(edge) for edge in problem.edges_of(name)] for name in problem.contact_zones]
+    in_zones = np.array([np.isin(mesh.edge, own) for own in edges])
+    count = np.zeros(len(mesh.nodes), int)
+    for own in in_zones:
+        count[np.unique(mesh.elements[own])] += 1
+    return in_zones, count > 1
 
 
 def _faces(problem: Problem, surface: RigidSurface, mesh: Mesh, halves: Array, deflection: Array | None) -> _NodeFaces:
@@ -221,8 +258,8 @@ def _standing(
         normals, nodes = faces.normals[[node], 1], np.array([node])
         if not _held_along(normals, given[nodes])[0]:
             yield _Piece(
-                zone, tool, elements, np.inf, (False, False), nodes, np.zeros(1), normals, faces.gap[[node], 1],
-                np.full(2, np.nan), mesh.nodes[[node, node]],
+                zone, tool, elements, elements[:0], np.inf, (False, False), nodes, np.zeros(1), normals,
+                faces.gap[[node], 1], np.full(2, np.nan), mesh.nodes[[node, node]],
             )  # fmt: skip
 
 
@@ -244,11 +281,12 @@ def _goes_on(
 
 
 class _Piece(NamedTuple):
-    """One run: its zone, tool, elements, length, points, held ends, and whether contact continues beyond its ends."""
+    """One run: zone, tool, elements beside its points and its own, length, points, held ends, and what is beyond."""
 
     zone: int
     tool: str | None
     elements: IntArray
+    own: IntArray
     length: float
     goes_on: tuple[bool, bool]
     nodes: IntArray
@@ -279,8 +317,11 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
                 carrier[element, end] = carrier[element, 1]
         elements.append(np.repeat(piece.elements, 3))
         points.append(carrier.ravel())
-    point = np.concatenate(points)
-    used = point >= 0
+    triples = np.column_stack(
+        [np.concatenate(elements), np.tile(np.arange(3), sum(map(len, elements)) // 3), np.concatenate(points)]
+    )
+    _, once = np.unique(triples, axis=0, return_index=True)  # zones that share an edge and a face share its points
+    element, local, point = triples[np.sort(once)[triples[np.sort(once), 2] >= 0]].T
     return ContactPoints(
         mesh=mesh,
         node=node[own],
@@ -290,11 +331,13 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
         run_length=np.array([piece.length for piece in pieces]),
         normals=normals[own],
         gap=gap[own],
-        element=np.concatenate(elements)[used],
-        local=np.tile(np.arange(3), len(point) // 3)[used],
-        point=point[used],
+        element=element,
+        local=local,
+        point=point,
         held_arc=np.array([piece.held_arc for piece in pieces]),
         held_points=np.array([piece.held_points for piece in pieces]),
+        elements_of_run=tuple(piece.own for piece in pieces),
+        zone_of_run=tuple(piece.zone for piece in pieces),
     )
 
 

@@ -119,7 +119,7 @@ class SurfaceGaps:
             apart = np.hypot(*np.moveaxis(held.normals - own.normals, 2, 0)) > ALIKE
             apart |= abs(held.gap - own.gap) > ALIKE * self.problem.boundary.size
             if tools.get(name) == tools.get(zone):
-                edges = [self.state.edge_names.index(edge) for edge in self.problem.contact_zones[name].edges]
+                edges = [self.state.edge_names.index(edge) for edge in self.problem.edges_of(name)]
                 paired |= np.isin(self.state.edge, edges) & ~apart.any(axis=1)
         return paired
 
@@ -249,7 +249,7 @@ class SurfaceGaps:
     def in_a_zone(self, element: int) -> bool:
         """Whether the edge of an element is in any zone."""
         edge = self.state.edge_names[self.state.edge[element]]
-        return any(edge in zone.edges for zone in self.problem.contact_zones.values())
+        return any(edge in self.problem.edges_of(zone) for zone in self.problem.contact_zones)
 
     def _lies_in_face(self, zone: str, places: Array, at: Array, normal: Array) -> bool:
         """Whether places (k, q, 2) of elements are on the straight face with a normal (2,) through a point (2,)."""

@@ -4,7 +4,7 @@ from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
-from bemcontact.problem.rigid_surface import SurfaceSpec
+from bemcontact.problem.rigid_surface import DeflectedContour, SurfaceSpec
 from bemcontact.problem.validation import Name, Number, Point, SpecModel, invalid
 
 
@@ -13,13 +13,18 @@ def _as_list(value: Any) -> Any:
     return (value,) if isinstance(value, str | int | float) else value
 
 
-Names = Annotated[
-    tuple[Name, ...],
-    Field(min_length=1),
-    BeforeValidator(_as_list),
-    WithJsonSchema({"type": ["string", "array"], "items": {"type": "string"}, "minItems": 1}),
-]
+_SCHEMA = WithJsonSchema({"type": ["string", "array"], "items": {"type": "string"}, "minItems": 1})
+Names = Annotated[tuple[Name, ...], Field(min_length=1), BeforeValidator(_as_list), _SCHEMA]
 """One name, or a list of names."""
+
+
+ALL = "all"
+"""The word for all edges that can see a surface; a list with this word names an edge."""
+
+
+def _unnamed(value: Any) -> Any:
+    """Read the word for all edges as no names."""
+    return None if isinstance(value, str) and value == ALL else value
 
 
 class ContactZone(SpecModel):
@@ -27,10 +32,18 @@ class ContactZone(SpecModel):
 
     example: ClassVar[str] = "{edges: bottom, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}"
 
-    edges: Names
-    """The name of the edge, or a list of names of edges, that may touch the surface."""
+    edges: Annotated[Names | None, BeforeValidator(_unnamed), _SCHEMA] = Field(None, json_schema_extra={"default": ALL})
+    """The name of the edge, or a list of names of edges, that may touch the surface. With `all`, or if it is left out,
+    these are all edges without a condition that can see the surface. An edge may be in several zones."""
     surface: SurfaceSpec
     """The rigid surface."""
+
+    @model_validator(mode="after")
+    def _contour_of_edges(self) -> Self:
+        """Refuse the contour of no edges."""
+        if self.edges is None and isinstance(self.surface, DeflectedContour):
+            raise invalid("a deflected contour is that of its own edges; give their names, such as edges: left")
+        return self
 
 
 class ToolDisplacement(SpecModel):

@@ -1,6 +1,7 @@
 """Checks of the parts of a problem against each other: names first, then the geometry."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import degrees, radians
 
@@ -9,13 +10,14 @@ import numpy as np
 from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.boundary import Boundary, far_issue
 from bemcontact.problem.conditions import Condition
-from bemcontact.problem.contact_zone import TOOL_COMPONENTS, ContactZone, RigidTool, ToolAction
+from bemcontact.problem.contact_zone import ALL, TOOL_COMPONENTS, ContactZone, RigidTool, ToolAction
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import MOST_ELEMENTS, Line
 from bemcontact.problem.key_path import RawValue
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.reference import Hertz, Table, Values
 from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, RigidSurface, Shape
+from bemcontact.problem.sight import turned_to, zone_edges
 from bemcontact.problem.surface_lines import Polyline, Spline
 from bemcontact.problem.validation import KeyIssue
 from bemcontact.problem.wording import unknown_word
@@ -44,12 +46,15 @@ def edge_name_issues(boundary: RawValue, conditions: Iterable[RawValue], zones: 
         if names is not None and (name := condition.name) not in names:
             issues.append(KeyIssue(path=condition.path, message=unknown_word("edge", name, names)))
     zone_of: dict[str, str] = {}
+    listed: set[tuple[str, str]] = set()
     for zone, member in _edges_of_zones(zones):
         name = member.value
         if names is not None and name not in names:
             issues.append(Issue(path=member.path, message=unknown_word("edge", name, names, "edges")))
-        elif name in zone_of:
-            issues.append(Issue(path=member.path, message=_repeated_edge(name, zone_of[name], zone)))
+        elif (zone, name) in listed:
+            message = f"edge '{name}' occurs twice in the zone; list it once"
+            issues.append(Issue(path=member.path, message=message))
+        listed.add((zone, name))
         zone_of.setdefault(name, zone)
     for condition in prescribed:
         if (name := condition.name) in zone_of:
@@ -69,7 +74,8 @@ def _edge_names(boundary: RawValue) -> list[str] | None:
 def _edges_of_zones(zones: RawValue) -> Iterator[tuple[str, RawValue]]:
     """Edge names in all contact zones, each with the name of its zone."""
     for zone in zones.named():
-        for member in _one_or_more(zone.below(ContactZone, "edges")):
+        edges = zone.below(ContactZone, "edges")
+        for member in [] if edges.value == ALL else _one_or_more(edges):
             if isinstance(member.value, str):
                 yield zone.name, member
 
@@ -85,15 +91,6 @@ def _conditions_of_contours(zones: RawValue) -> Iterator[RawValue]:
         surface = zone.below(ContactZone, "surface")
         if surface.below(DeflectedContour, "kind").value == "deflected_contour":
             yield from surface.below(DeflectedContour, "conditions").named()
-
-
-def _repeated_edge(edge: str, first: str, second: str) -> str:
-    if first == second:
-        return f"edge '{edge}' occurs twice in the zone; list it once"
-    return (
-        f"edge '{edge}' is already in the contact zone '{first}', and an edge can touch only one surface; divide it "
-        "into two edges, one for each surface, or state both surfaces as one polyline, the surface of one zone"
-    )
 
 
 def tool_issues(tools: RawValue, zones: RawValue) -> Iterator[Issue]:
@@ -224,17 +221,21 @@ def _too_few_elements(edge: Edge, refine: int) -> str:
     return f"{start}; give it more elements, and grade them towards the bend"
 
 
-def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> list[Issue]:
+def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone], prescribed: Collection[str]) -> list[Issue]:
     """Issues of rigid surfaces that are too far away or too wide, or whose normal points out of the body there.
 
-    The direction of a deflected contour must not point out of the body at any point of the zone.
+    The direction of a deflected contour must not point out of the body at any point of the zone. `prescribed` names
+    the edges with conditions.
     """
     edges = {edge.name: edge for edge in boundary.edges}
     issues = []
     for path, zone in zones.items():
-        members = [edges[name] for name in zone.edges]
+        members = [edges[name] for name in zone_edges(boundary, zone, prescribed)]
         if far := far_issue((*path, "surface"), [*_lengths(zone.surface)], boundary.size):
             issues.append(far)
+            continue
+        if not members:
+            issues.append(Issue(path=(*path, "surface"), message=_nothing_sees(boundary, zone)))
             continue
         if isinstance(zone.surface, DeflectedContour):
             cosine, name = max((_outward(edge, zone.surface), edge.name) for edge in members)
@@ -242,7 +243,49 @@ def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone]) -> l
             _, cosine, name = min((*_facing(edge, zone.surface), edge.name) for edge in members)
         if cosine > ALONG:
             issues.append(Issue(path=(*path, "surface"), message=_faces_away(name, zone.surface)))
-    return issues
+    return issues or [*_unseen(boundary, zones, prescribed)]
+
+
+def _unseen(boundary: Boundary, zones: Mapping[KeyPath, ContactZone], prescribed: Collection[str]) -> Iterator[Issue]:
+    """Issues of surfaces that no edge can touch, and of edges of several zones that turn their backs to one of them."""
+    touching = {path: zone_edges(boundary, zone, prescribed) for path, zone in zones.items()}
+    count = Counter(name for names in touching.values() for name in names)
+    edges = {edge.name: edge for edge in boundary.edges}
+    for number, (path, zone) in enumerate(zones.items()):
+        for other, its in list(zones.items())[:number]:
+            both = {*touching[path]} & {*touching[other]}
+            if both and its.surface.model_dump() == zone.surface.model_dump():
+                message = (
+                    f"the zone '{other[-1]}' has the same surface, and edge '{min(both)}' may touch it there; name "
+                    "this edge in one of the two zones"
+                )
+                yield Issue(path=(*path, "surface"), message=message)
+        for i, name in enumerate(zone.edges or ()):
+            if count[name] > 1 and not _turned(edges[name], zone.surface):
+                message = (
+                    f"edge '{name}' is in {count[name]} zones and cannot touch the surface of this one, to which it is "
+                    "turned nowhere; remove it from the list"
+                )
+                yield Issue(path=(*path, "edges", i), message=message)
+
+
+def _nothing_sees(boundary: Boundary, zone: ContactZone) -> str:
+    """Say why no edge can touch a surface."""
+    seeing = zone_edges(boundary, zone, ())
+    if not seeing:
+        return "no edge of the body is turned to this surface and can see it; look at its position and its direction"
+    names = ", ".join(f"'{name}'" for name in seeing)
+    return f"only {names} can see this surface, with a condition, and an edge with a condition cannot touch; remove it"
+
+
+def _turned(edge: Edge, surface: RigidSurface) -> bool:
+    """Whether some place of an edge is turned to a surface."""
+    fractions = np.linspace(0, 1, SAMPLES + 1)
+    if isinstance(surface, DeflectedContour):
+        normals = np.tile(surface.unit_direction, (len(fractions), 1))
+    else:
+        normals = surface.closest(edge.points(fractions)).normals
+    return bool(turned_to(-edge.normals(fractions), normals).any())
 
 
 def _lengths(surface: RigidSurface) -> Iterator[float]:

@@ -8,6 +8,7 @@ from pydantic import (
     AfterValidator,
     Field,
     ModelWrapValidatorHandler,
+    PrivateAttr,
     Strict,
     ValidationError,
     model_validator,
@@ -33,6 +34,7 @@ from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, wi
 from bemcontact.problem.load_case import Combination, LoadCase
 from bemcontact.problem.material import Material
 from bemcontact.problem.reference import ReferenceSpec
+from bemcontact.problem.sight import zone_edges
 from bemcontact.problem.validation import (
     Count,
     Flag,
@@ -136,6 +138,9 @@ class Problem(SpecModel):
     variants: dict[Name, Variant] = Field(default_factory=dict)
     """The variants by name: values that replace others, such as another mesh."""
 
+    _edges: dict[str, tuple[str, ...]] = PrivateAttr(default_factory=dict)
+    """The edges of each zone; copies with other elements or loads share them."""
+
     @model_validator(mode="wrap")
     @classmethod
     def _consistent(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
@@ -150,6 +155,8 @@ class Problem(SpecModel):
             issues += problem._variant_issues()
         if problem is None or issues:
             raise ProblemError(issues)
+        for zone in problem.contact_zones:
+            problem.edges_of(zone)
         return problem
 
     @classmethod
@@ -165,7 +172,8 @@ class Problem(SpecModel):
             return [*issues, *references]
         if not issues:  # else an edge may be in the zone by mistake
             valid = {item.path: zone for item in zones.named() if (zone := item.read(ContactZone))}
-            issues += facing_issues(body, valid)
+            prescribed = {item.name for group in (conditions, *cases) for item in group.named()}
+            issues += facing_issues(body, valid, prescribed)
         density = raw.below(cls, "mesh").read(MeshDensity) or MeshDensity()
         issues += cls._mesh_choice_issues(raw, body, density)
         return [*issues, *references, *mesh_issues(body, boundary.path, density.refine)]
@@ -280,6 +288,18 @@ class Problem(SpecModel):
         name = " + ".join(f"{factor:.6g} {case}" for case, factor in numbers.items()).replace(".", ",")
         data = self.model_dump(exclude={"variants"})
         return type(self)(**{**data, "combinations": {**self.combinations, name: numbers}, "case": name})
+
+    def edges_of(self, zone: str) -> tuple[str, ...]:
+        """Names of the edges that may touch the surface of a contact zone.
+
+        Parameters
+        ----------
+        zone : name of the zone
+        """
+        if zone not in self._edges:
+            prescribed = {*self.conditions}.union(*(case.conditions for case in self.load_cases.values()))
+            self._edges[zone] = zone_edges(self.boundary, self.contact_zones[zone], prescribed)
+        return self._edges[zone]
 
     def edge(self, name: str) -> Edge:
         """Edge with a name; `ProblemError` if there is none."""

@@ -30,7 +30,7 @@ def readable_part(data: Any) -> Problem | None:
     zones = {
         name: zone
         for name, zone in _entries(raw, "contact_zones", ContactZone).items()
-        if edges.issuperset(zone.edges) and (material or not isinstance(zone.surface, DeflectedContour))
+        if edges.issuperset(zone.edges or ()) and (material or not isinstance(zone.surface, DeflectedContour))
     }
     tools = {name: tool for name, tool in _entries(raw, "tools", RigidTool).items() if zones.keys() >= {*tool.zones}}
     cases = {

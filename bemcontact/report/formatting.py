@@ -78,7 +78,7 @@ def _range(values: Array) -> str:
 
 def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
     """Conditions of an edge: ``u_x = 0``, ``t_y = -3.6 kN/cm²``, ``pressure 3 N/mm²``, ``may touch in foot``."""
-    yield from (f"may touch in {name}" for name, zone in problem.contact_zones.items() if edge.name in zone.edges)
+    yield from (f"may touch in {name}" for name in problem.contact_zones if edge.name in problem.edges_of(name))
     if edge.name in problem.conditions:
         yield from _conditions(problem.conditions[edge.name], edge, problem.units)
     for case, factor in problem.factors().items():

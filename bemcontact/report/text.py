@@ -195,7 +195,7 @@ def _zone_table(checked: CheckedProblem) -> Table:
     for name, zone in checked.problem.contact_zones.items():
         gap = checked.gaps[name]
         smallest = with_unit(number(float(gap.min())), checked.problem.units.length)
-        edges, surface = ", ".join(zone.edges), surface_in_words(zone.surface)
+        edges, surface = ", ".join(checked.problem.edges_of(name)), surface_in_words(zone.surface)
         table.add_row(*map(Text, (name, edges, f"{len(gap)}", smallest, surface)))
     return table
 

@@ -15,6 +15,7 @@ from adaptive_problems import (
     no_contact,
 )  # fmt: skip
 
+from bemcontact import solve
 from bemcontact.adaptivity import adapt
 from bemcontact.adaptivity.adapt import Meshed, first_mesh, meshed
 from bemcontact.adaptivity.fields import penetrations, solved
@@ -243,3 +244,26 @@ def test_a_body_that_flies_off_has_no_answer():
     problem, _ = block_on_flat_floor()
     with pytest.raises(ProblemError):
         found(problem.with_value("conditions.top.pressure", -7.0))
+
+
+def test_a_roller_in_a_v_block_without_names_of_edges_and_without_elements():
+    """One edge in three zones: forces by statics, peaks by Hertz (1e-4 off: no half-plane)."""
+    planes = {"left": ([-6, -8], [3, 4]), "right": ([6, -8], [-3, 4]), "plate": ([0, 10], [0, -1])}
+    problem = Problem(
+        name="roller",
+        material={"young_modulus": 210e3, "poisson_ratio": 0.3},  # pyright: ignore[reportArgumentType]
+        boundary={"outer": [{"name": "rim", "kind": "arc", "center": [0, 0], "radius": 10, "angles": [-90, 270]}]},  # pyright: ignore[reportArgumentType]
+        contact_zones={
+            name: {"surface": {"kind": "plane", "point": p, "normal": n}} for name, (p, n) in planes.items()
+        },  # pyright: ignore[reportArgumentType]
+        tools={"plate": {"zones": "plate", "force": {"y": -400}}},  # pyright: ignore[reportArgumentType]
+    )
+    result = solve(problem)
+    assert result.holds
+    forces, peaks = {"left": 250, "right": 250, "plate": 400}, {"left": 1355.1, "right": 1355.1, "plate": 1714.1}
+    for bar in result.accuracy.bars:
+        if bar.quantity in ("force", "peak"):
+            assert bar.zone is not None
+            assert bar.bar is not None
+            truth = (forces if bar.quantity == "force" else peaks)[bar.zone]
+            assert bar.value == pytest.approx(truth, rel=bar.bar + 1e-4)

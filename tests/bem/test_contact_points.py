@@ -1,5 +1,7 @@
 """Points of contact: one for each face of the surface that holds a node; element lengths along the boundary."""
 
+import itertools
+
 import numpy as np
 import pytest
 from bodies import arc, even, mesh_of
@@ -138,3 +140,85 @@ def test_element_lengths_are_arc_lengths():
     mesh = mesh_of([("c", arc((0, 0), 2, 0, 360), even(64))])
     exact = 2 * np.pi / 32
     assert abs(element_lengths(mesh) / exact - 1).max() < (2 * np.pi / 64) ** 4 / 480
+
+
+def rounded(turn, cut, edges, load):
+    """A square whose rounded corner lies in the corner of two walls, with its arc in one edge or in several."""
+    c, s, degrees = np.cos(turn), np.sin(turn), np.degrees(turn)
+
+    def at(x, y):
+        return c * x - s * y, s * x + c * y
+
+    angles = [180 + degrees, *(180 + degrees + 90 * part for part in cut), 270 + degrees]
+    each = 12 // (len(angles) - 1)
+    arcs = [
+        {"name": f"round {i}", "kind": "arc", "center": at(1, 1), "radius": 1, "angles": pair, "elements": each}
+        for i, pair in enumerate(itertools.pairwise(angles))
+    ]
+    sides = {"bottom": (1, 0), "right": (3, 0), "top": (3, 3), "left": (0, 3)}
+    walls = {"floor": ((0, 0.0), (0, 1)), "wall": ((0.0, 0), (1, 0))}
+    return Problem(
+        name="rounded",
+        material={"young_modulus": 1000.0, "poisson_ratio": 0.3},  # pyright: ignore[reportArgumentType]
+        boundary={"outer": [*arcs, *({"name": k, "start": at(*p), "elements": 3} for k, p in sides.items())]},  # pyright: ignore[reportArgumentType]
+        loads={"gravity": {"density": 1, "acceleration": at(*load)}},  # pyright: ignore[reportArgumentType]
+        contact_zones={
+            name: {"edges": edges[name], "surface": {"kind": "plane", "point": at(*p), "normal": at(*n)}}
+            for name, (p, n) in walls.items()
+        },  # pyright: ignore[reportArgumentType]
+        mesh={"adapt": False},  # pyright: ignore[reportArgumentType]
+    )
+
+
+def by_place(result):
+    """Zone, place and pressure of all points under pressure, in a fixed order."""
+    contact, pressure = result.contact, result.solution.pressure
+    rows = np.column_stack([contact.zone, contact.points, pressure])[pressure > 0]
+    return rows[np.lexsort(np.round(rows[:, :3].T, 9))]
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4, 2.5])
+def test_an_edge_on_two_walls_is_that_edge_cut_into_one_for_each(turn):
+    """The same nodes: to round-off the same pressures, whoever names the edges; both states are proved unique."""
+    whole = {"floor": ("round 0", "bottom"), "wall": ("round 0", "left")}
+    halves = {"floor": ("round 1", "bottom"), "wall": ("round 0", "left")}
+    results = [
+        solve(rounded(turn, cut, edges, load=(-2, -3)))
+        for cut, edges in (([], whole), ([0.5], halves), ([], {"floor": None, "wall": None}))
+    ]
+    first = by_place(results[0])
+    assert {*first[:, 0]} == {0.0, 1.0}
+    for result in results:
+        assert result.certificate.kind.value == "unique"
+        np.testing.assert_allclose(by_place(result), first, rtol=0, atol=1e-9 * first[:, 3].max())
+    assert results[2].problem is not None
+    assert results[2].problem.edges_of("floor") == whole["floor"]
+    np.testing.assert_array_equal(results[2].solution.pressure, results[0].solution.pressure)
+    area = 9 - (1 - np.pi / 4)
+    c, s = np.cos(turn), np.sin(turn)
+    force = results[0].footprint.resultant.force
+    assert force == pytest.approx((area * (2 * c - 3 * s), area * (2 * s + 3 * c)), rel=1e-9)
+
+
+@pytest.mark.parametrize("start", [-90.0, 0.0, 33.0])
+def test_a_disk_between_two_plates_has_one_edge(start):
+    """Opposite plates: no node is a point of both, for their normals would make the compliance singular."""
+    angles = [start, start + 360]
+    rim = {"name": "rim", "kind": "arc", "center": [0, 0], "radius": 1, "angles": angles, "elements": 24}
+    plates = {"floor": ([0, -1], [0, 1]), "lid": ([0, 0.99], [0, -1])}
+    problem = Problem(
+        name="disk",
+        material={"young_modulus": 1000.0, "poisson_ratio": 0.3},  # pyright: ignore[reportArgumentType]
+        boundary={"outer": [rim]},  # pyright: ignore[reportArgumentType]
+        contact_zones={
+            name: {"surface": {"kind": "plane", "point": p, "normal": n}} for name, (p, n) in plates.items()
+        },  # pyright: ignore[reportArgumentType]
+        mesh={"adapt": False},  # pyright: ignore[reportArgumentType]
+    )  # fmt: skip
+    points = body_of(problem).points
+    assert np.bincount(points.node).max() == 1
+    result = solve(problem)
+    contact, pressure = result.contact, result.solution.pressure
+    floor, lid = (float(contact.weights[contact.zone == i] @ pressure[contact.zone == i]) for i in (0, 1))
+    assert floor == pytest.approx(lid, rel=1e-6)
+    assert floor > 0

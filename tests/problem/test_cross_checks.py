@@ -34,9 +34,9 @@ def test_no_name_is_unknown_if_an_edge_name_is_unreadable(boundary):
 
 
 def test_contradictory_names_are_reported_without_a_boundary():
-    zones = {"foot": {"edges": ["side"]}, "wall": {"edges": "side"}}
+    zones = {"foot": {"edges": ["side", "side"]}, "wall": {"edges": "side"}, "any": {"edges": "all"}}
     facts = [
-        "contact_zones.wall.edges[0]: … 'side' … already in … 'foot'",
+        "contact_zones.foot.edges[1]: … 'side' … twice",
         "conditions.side: … 'side' … contact zone 'foot' … no condition",
     ]
     assert_each_states(issues(None, {"side": 1}, zones), facts)

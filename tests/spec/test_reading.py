@@ -318,12 +318,12 @@ BROKEN = {
         "conditions.bottom",
         ("contact zone 'foot'", "no condition"),
     ),
-    "edge in two zones": Broken(
+    "edge in two zones with one surface": Broken(
         "contact_zones:\n",
         "contact_zones:\n  wall: {edges: bottom, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}\n",
-        "28:12",
-        "contact_zones.foot.edges",
-        ("'bottom' is already in the contact zone 'wall'",),
+        "29:14",
+        "contact_zones.foot.surface",
+        ("zone 'wall' has the same surface", "'bottom'"),
     ),
     "no contact zone": Broken(
         SPEC[SPEC.index("contact_zones:") :],

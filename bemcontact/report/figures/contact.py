@@ -208,7 +208,7 @@ def _surfaces(result: Result, problem: Problem, overhang: float) -> Iterator[tup
     for name, zone in problem.contact_zones.items():
         if isinstance(zone.surface, DeflectedContour):
             continue
-        line, normals = surface_line(problem, zone, overhang)
+        line, normals = surface_line(problem, name, overhang)
         for tool in (tool for tool, stated in problem.tools.items() if name in stated.zones):
             x, y, angle = moves[tool]
             line = line + (x, y) + angle * (line - points[tool])[:, ::-1] * (-1, 1)

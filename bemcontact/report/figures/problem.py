@@ -18,7 +18,6 @@ from bemcontact.problem import (
     AxisFields,
     Circle,
     Condition,
-    ContactZone,
     DeflectedContour,
     Edge,
     Field,
@@ -92,7 +91,7 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
 
 def role(problem: Problem, edge: str) -> str:
     """Role of an edge: one of `ROLES`."""
-    if any(edge in zone.edges for zone in problem.contact_zones.values()):
+    if any(edge in problem.edges_of(zone) for zone in problem.contact_zones):
         return "may touch"
     conditions = [condition for _, condition in _acting(problem, edge)]
     if not conditions:
@@ -212,12 +211,12 @@ def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
 def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     """Draw the rigid surfaces opposite the body with their normals."""
     size = problem.boundary.size
-    for zone in problem.contact_zones.values():
+    for name, zone in problem.contact_zones.items():
         if isinstance(zone.surface, DeflectedContour):
             continue
-        points, normals = surface_line(problem, zone, 0.12 * size)
+        points, normals = surface_line(problem, name, 0.12 * size)
         yield draw_ground(axes, points, normals, 0.03 * size, GREY)
-        facing = _facing(problem, zone)
+        facing = _facing(problem, name)
         middle = facing[len(facing) // 2][None]
         gap, normal = zone.surface.closest(middle)
         yield draw_arrows(axes, middle - gap[:, None] * normal, 0.09 * size * normal, GREY)
@@ -228,7 +227,7 @@ def _draw_contours(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     """Draw each edge opposite a deflected contour again, displaced by the gap."""
     size = problem.boundary.size
     for name, (feet, normals) in contours(problem, mesh).items():
-        for edge in problem.contact_zones[name].edges:
+        for edge in problem.edges_of(name):
             elements = mesh.elements[mesh.edge == mesh.edge_names.index(edge)]
             nodes = np.append(elements[:, :2], elements[-1, 2])
             yield draw_ground(axes, feet[nodes], normals[nodes], 0.03 * size, GREY)
@@ -236,23 +235,24 @@ def _draw_contours(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
             yield draw_arrows(axes, feet[middle], 0.09 * size * normals[middle], GREY)
 
 
-def _facing(problem: Problem, zone: ContactZone) -> Array:
+def _facing(problem: Problem, zone: str, count: int = 60) -> Array:
     """Points (k, 2) of the boundary that may touch in a zone, in order."""
-    return np.concatenate([problem.edge(name).points(np.linspace(0, 1, 60)) for name in zone.edges])
+    names = problem.edges_of(zone) or [edge.name for edge in problem.boundary.edges]
+    return np.concatenate([problem.edge(name).points(np.linspace(0, 1, count)) for name in names])
 
 
-def surface_line(problem: Problem, zone: ContactZone, overhang: float) -> tuple[Array, Array]:
+def surface_line(problem: Problem, zone: str, overhang: float) -> tuple[Array, Array]:
     """Points (k, 2) of the rigid surface of a zone, in order, with an overhang at its ends, and unit normals (k, 2).
 
     A plane that is the face of a punch has no overhang: it ends where the boundary beside the zone lies in it.
     """
-    surface, facing, size = zone.surface, _facing(problem, zone), problem.boundary.size
+    surface, facing, size = problem.contact_zones[zone].surface, _facing(problem, zone), problem.boundary.size
     assert not isinstance(surface, DeflectedContour)
     match surface:
         case Plane():
             normal = np.array(surface.unit_normal)
             along = np.array([normal[1], -normal[0]])
-            beside = [edge for edge in problem.boundary.edges if edge.name not in zone.edges]
+            beside = [edge for edge in problem.boundary.edges if edge.name not in problem.edges_of(zone)]
             others = np.concatenate([edge.points(np.array([0.5])) for edge in beside])
             flush = (others[np.abs(surface.closest(others)[0]) < FLUSH * size] - surface.point) @ along
             s = (facing - surface.point) @ along
@@ -350,8 +350,7 @@ def draw_tools(axes: Axes, problem: Problem) -> Iterator[tuple[Array, Name]]:
 def _place(problem: Problem, tool: str) -> tuple[Array, Array]:
     """Position (2,) of the force on a tool, and the normal (2,) of its surface into the body."""
     stated = problem.tools[tool]
-    zone = problem.contact_zones[stated.zones[0]]
-    facing = np.concatenate([problem.edge(name).points(np.linspace(0, 1, 61)) for name in zone.edges])
+    zone, facing = problem.contact_zones[stated.zones[0]], _facing(problem, stated.zones[0], 61)
     middle = facing[len(facing) // 2]
     if isinstance(zone.surface, DeflectedContour):
         foot, normal = middle, np.array(zone.surface.unit_direction)
