@@ -89,7 +89,7 @@ def _gravity(gravity: Gravity, material: Material, mesh: Mesh) -> ParticularSolu
     b = gravity.density * np.array(gravity.acceleration)
     nu = material.effective_poisson_ratio
     alpha = -(1 - 2 * nu) / (2 * material.shear_modulus * (3 - 4 * nu))
-    x = mesh.nodes - mesh.center
+    x = mesh.nodes - mesh.centroid
     gradient = 2 * alpha * np.einsum("i,mkj->mkij", b, x[mesh.elements])
     return ParticularSolution(
         displacement=alpha * np.sum(x * x, axis=1)[:, None] * b,
@@ -119,9 +119,9 @@ def _thermal(temperature: Temperature, material: Material, mesh: Mesh) -> Partic
     """u_p + i v_p = α' (T0 z + (a - ib) z²/2), free of stress, for T = T0 + a x + b y; α' = (1+ν) α in plane strain."""
     change, nu = temperature.change, material.poisson_ratio
     expansion = temperature.expansion * (1 + nu if material.state == "plane_strain" else 1)
-    x = mesh.nodes - mesh.center
+    x = mesh.nodes - mesh.centroid
     z = x[:, 0] + 1j * x[:, 1]
-    at_center = change.at(mesh.center[None, :])[0]
+    at_center = change.at(mesh.centroid[None, :])[0]
     w = expansion * (at_center * z + (change.x - 1j * change.y) * z * z / 2)
     return ParticularSolution(
         displacement=np.column_stack([w.real, w.imag]), traction=np.zeros((*mesh.elements.shape, 2))

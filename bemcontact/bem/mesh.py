@@ -61,10 +61,22 @@ class Mesh:
         """Diameter of the bounding box [L]."""
         return float(np.hypot(*np.ptp(self.nodes, axis=0)))
 
-    @property
+    @cached_property
+    def centroid(self) -> Array:
+        """Mean (2,) of the boundary [L]. It turns with the body, as the middle of a bounding box does not."""
+        first = self.nodes[0]
+        return first + np.average(
+            self.nodes[self.elements] - first, axis=(0, 1), weights=np.repeat(self.tributary[..., None], 2, axis=2)
+        )
+
+    @cached_property
     def reference_length(self) -> float:
-        """L0 = 2 diameters [L], over which the lengths in the integral equations are dimensionless."""
-        return 2 * self.size
+        """L0 [L], over which the lengths in the integral equations are dimensionless: four times the largest radius.
+
+        Where displacements are prescribed, discrete forces balance up to an error of discretization, and the constant
+        ln L0 times this error enters the answer. So L0 must not depend on how the body is turned.
+        """
+        return 4 * float(np.hypot(*(self.nodes - self.centroid).T).max())
 
     @cached_property
     def tangents(self) -> Array:
