@@ -13,17 +13,16 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body, body_of
 from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.condense import condense as condense_body
-from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.mesh import BoundaryState, Mesh
+from bemcontact.bem.outline import Outline
+from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import SolverError
 from bemcontact.formulations import complementarity
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour
 
 SLIT = 1e-3
 """Open length between two stretches of contact, over the shorter of these, that is not taken for an opening."""
-BETWEEN = 17
-"""Points of an open element where the gap is looked at."""
 PENETRATION = 1e-3
 """Penetration between nodes, over the largest displacement, that a mesh must resolve."""
 
@@ -38,16 +37,24 @@ class CaseAnswer:
     solution : of its contact problem
     stretches : stretches of contact by run; two with a slit between them are one
     pressure : (zones, m, 3) [p] by zone, element and local node, zero outside the zone
-    traction : (m, 3, 2) [p]
-    displacement : (m, 3, 2) less the motions that nothing determines [L]
+    state : traction and displacement of the boundary, less the motions that nothing determines
     """
 
     condensation: Condensation
     solution: ContactSolution
     stretches: Mapping[int, tuple[Stretch, ...]]
     pressure: Array
-    traction: Array
-    displacement: Array
+    state: BoundaryState
+
+    @property
+    def traction(self) -> Array:
+        """Traction (m, 3, 2) [p]."""
+        return self.state.traction
+
+    @property
+    def displacement(self) -> Array:
+        """Displacement (m, 3, 2) [L]."""
+        return self.state.displacement
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,6 +74,11 @@ class Solved:
     def mesh(self) -> Mesh:
         """The mesh."""
         return self.body.mesh
+
+    @cached_property
+    def outline(self) -> Outline:
+        """The curves of the edges under the elements."""
+        return Outline(problem=self.body.problem)
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -115,8 +127,7 @@ def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> CaseAnswer:
         solution=solution,
         stretches={run.number: _without_slits(contact_stretches(run, contact, solution, intervals)) for run in runs},
         pressure=pressure,
-        traction=state.traction,
-        displacement=_less_undetermined(body, state.displacement),
+        state=replace(state, displacement=_less_undetermined(body, state.displacement)),
     )
 
 
@@ -216,25 +227,12 @@ def _by_pairs(values: Array) -> Array:
 
 def penetrations(answer: Solved, case: CaseAnswer) -> Iterator[tuple[int, float]]:
     """Open elements through which a surface passes between the nodes, with the depth [L]."""
-    body, points = answer.body, answer.body.points
-    contact = case.condensation.contact
-    total = contact.initial_gap + case.solution.displacement
-    own = np.zeros_like(case.pressure)
-    own[points.zone[points.point], points.element, points.local] = total[points.point]
+    condensation = case.condensation
+    gaps = surface_gaps(condensation.body.problem, case.state, condensation.contact, case.solution, answer.outline)
     size = float(np.hypot(*np.moveaxis(case.displacement, 2, 0)).max())
-    xi = np.linspace(-1, 1, BETWEEN)[1:-1]
-    shapes = reference_element.values(xi)
-    nodes = answer.mesh.nodes[answer.mesh.elements]
-    for number, zone in enumerate(body.problem.contact_zones.values()):
-        if isinstance(zone.surface, DeflectedContour):
-            continue
+    for number, zone in enumerate(answer.body.problem.contact_zones):
         elements = np.flatnonzero(answer.in_zone[number] & ~(case.pressure[number] > 0).any(axis=1))
-        if not len(elements):
-            continue
-        at_nodes = zone.surface.closest(nodes[elements].reshape(-1, 2)).gap.reshape(-1, 3)
-        moved = own[number, elements] - at_nodes
-        inside = zone.surface.closest((shapes @ nodes[elements]).reshape(-1, 2)).gap.reshape(len(elements), -1)
-        gap = inside + moved @ shapes.T
-        for element, least in zip(elements.tolist(), gap.min(axis=1).tolist(), strict=True):
-            if least < -PENETRATION * size:
-                yield element, -least
+        if zone in gaps.surfaces and len(elements):
+            least = gaps.linear(zone, elements).gap.min(axis=1)
+            through = least < -PENETRATION * size
+            yield from zip(elements[through].tolist(), (-least[through]).tolist(), strict=True)

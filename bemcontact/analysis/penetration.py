@@ -17,28 +17,10 @@ from bemcontact.bem.condense import boundary_state
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import Outline
-from bemcontact.bem.surface_gaps import End, SurfaceGaps
+from bemcontact.bem.surface_gaps import End, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
-from bemcontact.problem.problem import Problem
-
-
-def surface_gaps(
-    problem: Problem,
-    state: BoundaryState,
-    contact: CondensedContact,
-    solution: ContactSolution,
-    outline: Outline | None = None,
-) -> SurfaceGaps:
-    """Compare the deformed boundary of a solution with the surfaces, where its tools have moved them."""
-    moved = contact.tools.displacement(solution.rigid_amplitudes)
-    return SurfaceGaps(
-        problem=problem,
-        outline=outline or Outline(problem=problem),
-        state=state,
-        tools=dict(zip(contact.tools.names, moved, strict=True)),
-    )
 
 
 def penetration(

@@ -9,13 +9,14 @@ from typing import Unpack
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
 from bemcontact.analysis.diagnostics import diagnostics
-from bemcontact.analysis.penetration import penetration, surface_gaps
+from bemcontact.analysis.penetration import penetration
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
 from bemcontact.bem.condense import Condensation, boundary_state
+from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.checks.arguments import ensure_callable, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts

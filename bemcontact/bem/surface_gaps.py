@@ -16,6 +16,8 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.contact_points import ALIKE, half_lengths, sides_of_nodes
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import SAMPLES, Outline
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, Shape
 from bemcontact.problem.surface_lines import Closest, Polyline, Spline
@@ -289,6 +291,23 @@ class SurfaceGaps:
             length = np.hypot(*np.moveaxis(np.diff(moved, axis=1), 2, 0)).sum(axis=1)
             near |= gap(zone, moved[:, 1]).gap <= length
         return near
+
+
+def surface_gaps(
+    problem: Problem,
+    state: BoundaryState,
+    contact: CondensedContact,
+    solution: ContactSolution,
+    outline: Outline | None = None,
+) -> SurfaceGaps:
+    """Compare the deformed boundary of a solution with the surfaces, where its tools have moved them."""
+    moved = contact.tools.displacement(solution.rigid_amplitudes)
+    return SurfaceGaps(
+        problem=problem,
+        outline=outline or Outline(problem=problem),
+        state=state,
+        tools=dict(zip(contact.tools.names, moved, strict=True)),
+    )
 
 
 def _opposite(end: End, feet: Array, normals: Array, flush: float) -> BoolArray:

@@ -5,7 +5,7 @@ import pytest
 from adaptive_problems import block_on_flat_floor, half_disk
 
 from bemcontact.adaptivity.adapt import first_mesh
-from bemcontact.adaptivity.fields import MeshDifference, halves, norm_squared, solved
+from bemcontact.adaptivity.fields import MeshDifference, halves, norm_squared, penetrations, solved
 from bemcontact.problem import Problem
 
 
@@ -72,3 +72,67 @@ def test_fields_of_a_stretch_are_zero_outside_the_zone():
     changed = difference(half_disk(2000.0))
     one, _ = changed.pair
     assert (one.pressure[0][~changed.coarse.in_zone[0]] == 0).all()
+
+
+def shaft(clearance: float, held: bool = False) -> Problem:
+    """A shaft on eight elements that hangs in a hole, by its weight or held on top."""
+    halves = [("top", (0, 180)), ("bottom", (180, 360))]
+    rim = [
+        {"name": name, "kind": "arc", "center": (0, 0), "radius": 1.0, "angles": angles, "elements": 4}
+        for name, angles in halves
+    ]
+    return Problem.model_validate(
+        {
+            "name": "shaft",
+            "material": {"young_modulus": 1000.0, "poisson_ratio": 0.3},
+            "boundary": {"outer": rim},
+            "conditions": {"top": {"displacement": {"x": 0, "y": 0}}} if held else {},
+            "loads": {"gravity": {"density": 1e-3, "acceleration": (0, -1)}},
+            "contact_zones": {
+                "hole": {
+                    "edges": "bottom",
+                    "surface": {"kind": "circle", "center": (0, clearance), "radius": 1 + clearance, "body": "inside"},
+                }
+            },
+            "mesh": {"adapt": False},
+        }
+    )
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_the_gap_between_nodes_is_that_of_the_curve(held: bool):
+    """A quarter of a right angle bulges by 6e-4 beyond its quadratic element; the arcs themselves do not cross.
+
+    The nodes at the ends of the zone that are held have no contact point, and their gap is known all the same.
+    """
+    answer = solved(shaft(1e-3, held))
+    body = answer.mesh
+    bulge = np.hypot(*(np.array([3 / 8, 3 / 4, -1 / 8]) @ body.nodes[body.elements[0]])) - 1
+    assert abs(bulge) > 1e-4
+    assert not [*penetrations(answer, answer.answers[0])]
+
+
+def test_a_tool_that_comes_between_two_nodes_is_seen_where_it_has_moved():
+    """A small disk below a wide element: it does not reach the nodes, and the element sinks into it by what it moves."""
+    bottom = {"name": "bottom", "start": (0, 0), "elements": 2}
+    corners = {"right": (8, 0), "top": (8, 4), "left": (0, 4)}
+    problem = Problem.model_validate(
+        {
+            "name": "block",
+            "material": {"young_modulus": 1000.0, "poisson_ratio": 0.3},
+            "boundary": {"outer": [bottom, *({"name": k, "start": at, "elements": 2} for k, at in corners.items())]},
+            "conditions": {"top": {"displacement": {"x": 0, "y": 0}}},
+            "contact_zones": {
+                "pin": {
+                    "edges": "bottom",
+                    "surface": {"kind": "circle", "center": (1, -0.6), "radius": 0.5, "body": "outside"},
+                }
+            },
+            "tools": {"pin": {"zones": "pin", "displacement": {"y": 0.15}}},
+            "mesh": {"adapt": False},
+        }
+    )
+    answer = solved(problem)
+    [(element, depth)] = penetrations(answer, answer.answers[0])
+    assert answer.mesh.edge_names[answer.mesh.edge[element]] == "bottom"
+    assert depth == pytest.approx(0.05, rel=1e-9)

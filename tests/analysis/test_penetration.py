@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from bemcontact import follow, solve, solve_cases
 from bemcontact.analysis.compare import study
-from bemcontact.analysis.penetration import surface_gaps
-from bemcontact.bem.surface_gaps import NODES
+from bemcontact.bem.surface_gaps import NODES, surface_gaps
 from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
 
