@@ -4,12 +4,12 @@ A single quantity may change little by accident, where its error passes through 
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved, norm_squared
+from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved, norm_squared, penetrations
 from bemcontact.adaptivity.singularities import BESIDE, FITTED, Singularity, run_elements
 from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun
 from bemcontact.arrays import Array, BoolArray, IntArray
@@ -25,6 +25,8 @@ INTENSITY, INTENSITY_FLOOR = 3.0, 5.0
 UNKNOWN_EXPONENT = 0.01
 """Least error of the intensity if its exponent is measured."""
 
+LEAST_POINTS = 5
+"""Points in contact in an interval, those of two elements, below which bisecting elements does not tell the error."""
 TIP_ELEMENTS = 2
 """Number of elements beside an infinite pressure that its intensity is not fitted to."""
 
@@ -34,28 +36,47 @@ def error_bars(
 ) -> tuple[ErrorBar, ...]:
     """Error bars of all quantities of one load case on the fine mesh, or on the coarse one.
 
-    The error on the coarse mesh is at most the change, plus the error on the fine one.
+    The error on the coarse mesh is at most the change, plus the error on the fine one. Where the coarse mesh does not
+    resolve contact in one place, none of its error bars is known: forces and displacements depend on all places.
     """
+    bars = tuple(_bars(difference, singularities, of_fine))
+    note = "" if of_fine else _unresolved(difference)
+    return tuple(replace(item, bar=None, note=item.note or note) for item in bars) if note else bars
+
+
+def _unresolved(difference: MeshDifference) -> str:
+    """Why bisecting its elements does not tell the error of a mesh that is stated; empty if it does."""
+    one, two = difference.pair
+    for run in difference.coarse.runs:
+        for item in one.stretches[run.number]:
+            if item.points < LEAST_POINTS:
+                return f"too few points in contact to estimate it: {item.points} in an interval of {run.zone}"
+    names = [*difference.coarse.body.problem.contact_zones]
+    for number, name in enumerate(names):
+        if one.pressure[number].any() != two.pressure[number].any():
+            return f"contact in {name} comes or goes when every element is bisected"
+    for solved, answer in ((difference.coarse, one), (difference.fine, two)):
+        if next(penetrations(solved, answer), None):
+            return "a surface passes between the nodes"
+    return ""
+
+
+def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_fine: bool) -> Iterator[ErrorBar]:
+    """Error bars as if the coarse mesh resolved contact."""
     slow = max((item.exponent for item in singularities), default=0.5)
     estimate = _Estimate(difference, SAFETY / (2 ** (2 * (1 - slow)) - 1) if slow > 0.5 else SAFETY, of_fine)
-    bars: list[ErrorBar] = []
     changes = [0.0]
     for number, name in enumerate(difference.fine.body.problem.contact_zones):
         its = [item for item in singularities if item.place.zone == name]
         m = pressure_change(difference, number, its)
         if m is None:
-            bars.append(ErrorBar(quantity="force", zone=name, value=0.0, bar=None, note="no contact in this zone"))
+            yield ErrorBar(quantity="force", zone=name, value=0.0, bar=None, note="no contact in this zone")
             continue
         changes.append(m)
-        bars += _zone_bars(estimate, number, name, m, its)
+        yield from _zone_bars(estimate, number, name, m, its)
     sizes = [float(np.hypot(*np.moveaxis(answer.displacement, 2, 0)).max()) for answer in difference.pair]
-    bars.append(
-        ErrorBar(
-            quantity="displacement", zone=None, value=estimate.value(*sizes),
-            bar=estimate.bar(max(_change(*sizes), *changes)),
-        )
-    )  # fmt: skip
-    return tuple(bars)
+    bar = estimate.bar(max(_change(*sizes), *changes))
+    yield ErrorBar(quantity="displacement", zone=None, value=estimate.value(*sizes), bar=bar)
 
 
 @dataclass(frozen=True, eq=False)

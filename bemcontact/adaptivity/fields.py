@@ -150,7 +150,7 @@ def _without_slits(stretches: Iterable[Stretch]) -> tuple[Stretch, ...]:
         if joined:
             last = joined[-1]
             if item.start - last.end <= SLIT * min(item.end - item.start, last.end - last.start):
-                joined[-1] = replace(last, end=item.end, end_free=item.end_free, narrow=False)
+                joined[-1] = replace(last, end=item.end, end_free=item.end_free, points=last.points + item.points)
                 continue
         joined.append(item)
     return tuple(joined)

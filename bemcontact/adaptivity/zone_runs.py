@@ -111,14 +111,19 @@ class Stretch:
     ----------
     start, end : positions [L]; on a closed run the end may be beyond its length
     start_free, end_free : whether contact ends there by itself, and not at the end of the run or at a corner
-    narrow : whether fewer points are in contact than one element has, so that the places of its ends are not known
+    points : number of points in contact
     """
 
     start: float
     end: float
     start_free: bool
     end_free: bool
-    narrow: bool = False
+    points: int
+
+    @property
+    def narrow(self) -> bool:
+        """Whether fewer points are in contact than one element has, so that the places of its ends are not known."""
+        return self.points < POINTS_OF_ELEMENT
 
 
 def contact_stretches(
@@ -145,8 +150,7 @@ def contact_stretches(
         start, start_free = _end(run, start_arc, arcs[first], 0.0 if at_start else None, corners)
         at_end = last == len(arcs) - 1 and arcs[last] >= run.arc[-2] - same
         end, end_free = _end(run, end_arc, arcs[last], run.length if at_end else None, corners)
-        narrow = last - first < POINTS_OF_ELEMENT - 1
-        yield Stretch(start=start, end=end, start_free=start_free, end_free=end_free, narrow=narrow)
+        yield Stretch(start=start, end=end, start_free=start_free, end_free=end_free, points=last - first + 1)
 
 
 def _points(run: ZoneRun, contact: CondensedContact, solution: ContactSolution) -> tuple[Array, BoolArray]:

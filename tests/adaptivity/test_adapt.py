@@ -182,7 +182,8 @@ def test_a_stated_mesh_is_judged_and_left_alone():
     (judged,) = result.accuracies
     assert (judged.met, judged.passes) == (False, 1)
     assert result.condensation.body.mesh.edge.size == 96
-    assert (entry(result, "peak").bar or 0) > 0.1  # the peak of Hertz is 28 % away
+    assert entry(result, "peak").bar is None  # the peak of Hertz is 28 % away, and bisecting changes it by 9 %
+    assert "too few points in contact" in entry(result, "peak").note
 
 
 def test_a_stated_mesh_without_an_accuracy_is_not_judged():

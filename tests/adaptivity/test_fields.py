@@ -113,7 +113,7 @@ def test_the_gap_between_nodes_is_that_of_the_curve(held: bool):
 
 
 def test_a_tool_that_comes_between_two_nodes_is_seen_where_it_has_moved():
-    """A small disk below a wide element: it does not reach the nodes, and the element sinks into it by what it moves."""
+    """A small disk below a wide element does not reach the nodes, and the element sinks into it by what it moves."""
     bottom = {"name": "bottom", "start": (0, 0), "elements": 2}
     corners = {"right": (8, 0), "top": (8, 4), "left": (0, 4)}
     problem = Problem.model_validate(
