@@ -105,10 +105,21 @@ class Loop:
         order = limits[np.lexsort((limits[:, 0], rounded))]
         kept = order[:1]
         for limit in order[1:]:
-            ends = np.linspace(limit[0], limit[1], 3)
-            if (self.size_at(ends, kept, ()) > (1 + SAME) * limit[2]).any():
+            if not self._idle(limit, kept):
                 kept = np.vstack([kept, limit])
         return kept
+
+    def _idle(self, limit: Array, others: Array) -> bool:
+        """Whether others (l, 3) allow no larger size than a limit (3,) anywhere on it: together they cover it."""
+        low, high, size = others.T
+        reach = ((1 + SAME) * limit[2] - size) / GROWTH
+        begin = np.mod(low - reach - limit[0], self.length)
+        begin, end = np.stack([[begin, begin - self.length], [begin, begin - self.length] + (high - low + 2 * reach)])
+        order = np.argsort(begin, axis=None)
+        begin = np.append(begin.ravel()[order], np.inf)
+        far = np.append(-np.inf, np.maximum.accumulate(end.ravel()[order]))
+        width = limit[1] - limit[0]
+        return not np.any((far < width) & (begin > 0) & (begin > far))
 
     def element_ends(
         self, limits: Array, layers: Sequence[Layers], marks: Iterable[float]
