@@ -50,7 +50,7 @@ def _unresolved(difference: MeshDifference) -> str:
     for run in difference.coarse.runs:
         for item in one.stretches[run.number]:
             if item.points < LEAST_POINTS:
-                return f"too few points in contact to estimate it: {item.points} in an interval of {run.zone}"
+                return f"too few points in contact to estimate it ({item.points} in an interval of {run.zone})"
     names = [*difference.coarse.body.problem.contact_zones]
     for number, name in enumerate(names):
         if one.pressure[number].any() != two.pressure[number].any():

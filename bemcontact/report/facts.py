@@ -171,7 +171,9 @@ def _peaks(record: Record, size: float, units: Units) -> Iterator[tuple[str, str
     """Write the largest pressure; where that of a zone is infinite, each zone by itself."""
     infinite = infinite_peaks(record)
     if not infinite and (peak := record["peak"]):
-        yield "Peak pressure", f"{peak_in_words(peak, size, units, _peak_bar(record))}; per UNDEFORMED length"
+        bar = _peak_bar(record)
+        error = "; error not known" if bar is None and record.get("accuracy", {}).get("met") is False else ""
+        yield "Peak pressure", f"{peak_in_words(peak, size, units, bar)}{error}; per UNDEFORMED length"
     if infinite:
         for bar in bars_of(record, "peak"):
             written = (

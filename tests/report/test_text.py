@@ -158,7 +158,7 @@ def test_round_off_in_a_resultant_is_zero(result: analysis.Result):
 def test_each_number_of_the_certificate_is_stated_once(result: analysis.Result):
     answer = " ".join(printed(text.result_summary(result)).split())
     assert answer.count("eigenvalue") == 1
-    assert answer.count("of the peak") == 1
+    assert answer.count("of the peak from") == 1
 
 
 @pytest.mark.parametrize(("seconds", "written"), [(0.04, "0.04 s"), (9.94, "9.9 s"), (104.0, "104 s")])

@@ -253,7 +253,7 @@ def surface_line(problem: Problem, zone: str, overhang: float) -> tuple[Array, A
             normal = np.array(surface.unit_normal)
             along = np.array([normal[1], -normal[0]])
             beside = [edge for edge in problem.boundary.edges if edge.name not in problem.edges_of(zone)]
-            others = np.concatenate([edge.points(np.array([0.5])) for edge in beside])
+            others = np.array([edge.points(np.array([0.5]))[0] for edge in beside]).reshape(-1, 2)
             flush = (others[np.abs(surface.closest(others)[0]) < FLUSH * size] - surface.point) @ along
             s = (facing - surface.point) @ along
             first = s.min() - (0.0 if (flush < s.min()).any() else overhang)
