@@ -3,11 +3,15 @@
 Truth is what statics and closed forms give, else a run at 2e-4, allowed its own bar. Run by hand, half an hour:
 
     python tests/benchmarks/error_bars.py [PATTERN ...]
+
+With --stated, on meshes of 4 to 128 equal elements on the longest edge instead: no bar may be smaller than the error, and
+it may be unknown. Truth is then a run at 1e-3.
 """
 
 import sys
 import time
 from collections.abc import Iterator, Sequence
+from math import ceil, radians
 from pathlib import Path
 from statistics import median
 
@@ -21,6 +25,7 @@ from bemcontact.assessment.accuracy import ErrorBar
 
 ACCURACIES = 1e-2, 3e-3, 1e-3
 TRUTH = 2e-4
+STATED = 4, 8, 12, 16, 24, 32, 48, 64, 96, 128
 MODELS = Path(bemcontact.__file__).parent.parent / "models"
 
 
@@ -72,8 +77,44 @@ def errors(found: Meshed, truth: Meshed | None, case: Case) -> Iterator[tuple[Er
             yield bar, max(0.0, abs(bar.value - alike[0].value) / scale - alike[0].bar)
 
 
+def stated(problem: Problem, elements: int) -> Problem:
+    """The problem on a mesh of equal elements, with the most on the longest edge, and at least two on each."""
+    data = problem.model_dump(exclude={"variants"})
+    longest = max(edge.length for edge in problem.boundary.edges)
+    specs = (data["boundary"]["outer"], *data["boundary"]["holes"])
+    for loop, edges in zip(specs, problem.boundary.loops, strict=True):
+        for spec, edge in zip(loop, edges, strict=True):
+            least = ceil(abs(getattr(edge.curve, "sweep", 0.0)) / radians(45))
+            spec.update(elements=max(2, round(elements * edge.length / longest), least), grading=None, ends_at=())
+    return Problem(**{**data, "accuracy": 0.01, "mesh": {"adapt": False}})
+
+
+def on_stated_meshes(patterns: Sequence[str]) -> None:
+    """Print each bar of a stated mesh that is smaller than the error, and how many bars are known and unknown."""
+    known = unknown = wrong = 0
+    for name, case in every():
+        if patterns and not any(pattern in name for pattern in patterns):
+            continue
+        truth = meshed(case[0].with_value("accuracy", 1e-3))
+        for elements in STATED:
+            found = meshed(stated(case[0], elements))
+            unknown += sum(bar.bar is None for accuracy in found.accuracies for bar in accuracy.bars)
+            for bar, error in errors(found, truth, case):
+                known += 1
+                if bar.bar is not None and error > bar.bar + 1e-9:
+                    wrong += 1
+                    print(
+                        f"{name} {elements}: {bar.quantity} {bar.zone}: error {error:.2e}, bar {bar.bar:.2e}",
+                        flush=True,
+                    )
+    print(f"{known} bars known, {unknown} unknown, {wrong} too small")
+
+
 def main(patterns: Sequence[str]) -> None:
     """Print a row a problem, and the sums."""
+    if "--stated" in patterns:
+        on_stated_meshes([pattern for pattern in patterns if pattern != "--stated"])
+        return
     rows: dict[float, list[tuple[bool, int, int, float]]] = {accuracy: [] for accuracy in ACCURACIES}
     ratios: dict[float, list[float]] = {accuracy: [] for accuracy in ACCURACIES}
     for name, case in every():

@@ -57,6 +57,24 @@ def test_rigid_surfaces_are_drawn_where_they_are():
     assert gap == pytest.approx(0, abs=1e-12 * 100)
 
 
+def test_a_body_whose_only_edge_may_touch_two_planes_is_drawn():
+    rim = {"name": "rim", "kind": "arc", "center": [0, 0], "radius": 1, "angles": [0, 360], "elements": 12}
+    planes = {"floor": ([0, -1], [0, 1]), "wall": ([-1, 0], [1, 0])}
+    problem = Problem.model_validate(
+        {
+            "name": "ball",
+            "material": {"young_modulus": 1000.0, "poisson_ratio": 0.3},
+            "boundary": {"outer": [rim]},
+            "contact_zones": {
+                name: {"surface": {"kind": "plane", "point": point, "normal": normal}}
+                for name, (point, normal) in planes.items()
+            },
+        }
+    )
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    assert [text.get_text() for text in axes.texts] == ["rim\nmay touch in floor\nmay touch in wall"]
+
+
 def test_a_deflected_contour_is_drawn_as_far_from_the_edge_as_the_gap_is():
     contour = {"kind": "deflected_contour", "conditions": {"top": {"traction": {"y": -1.2}}}, "direction": [0, 1]}
     problem = beam_over_a_circle().with_value("contact_zones.drum.surface", contour)
