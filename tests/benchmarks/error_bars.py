@@ -4,8 +4,8 @@ Truth is what statics and closed forms give, else a run at 2e-4, allowed its own
 
     python tests/benchmarks/error_bars.py [PATTERN ...]
 
-With --stated, on meshes of 4 to 128 equal elements on the longest edge instead: no bar may be smaller than the error, and
-it may be unknown. Truth is then a run at 1e-3.
+With --stated, on meshes of 4 to 128 equal elements on the longest edge instead: no bar may be smaller than the error,
+and it may be unknown. Truth is then a run at 1e-3.
 """
 
 import sys
