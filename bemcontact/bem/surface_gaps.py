@@ -186,10 +186,16 @@ class SurfaceGaps:
         """Depth (k, q) [L] of elements (k,) of the zone."""
         at, displacement = self.outline.sampled(elements), self._displacement(elements)
         here, there = self.linear(zone, elements), self.exact(zone, at.points + displacement)
-        dip = DIP * np.maximum(here.gap[:, NODES], 0.0).max(axis=1)
+        dip = DIP * np.where(self._same(zone, here), np.maximum(here.gap[:, None, NODES], 0.0), 0.0).max(axis=2)
         other = np.sum(here.normals * there.normals, axis=-1) < SAME_FACE
         beyond = other & (-there.gap > self._second_order(zone))
-        return np.maximum(-here.gap - dip[:, None], np.where(beyond, -there.gap, -np.inf))
+        return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
+
+    def _same(self, zone: str, here: Closest) -> BoolArray:
+        """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""
+        if not isinstance(self.surfaces[zone], Polyline):
+            return np.ones((*here.gap.shape, len(NODES)), bool)
+        return np.einsum("kqi,kni->kqn", here.normals, here.normals[:, NODES]) > SAME_FACE
 
     def _depth_in_other(
         self, zone: str, elements: IntArray, ends: Sequence[End]

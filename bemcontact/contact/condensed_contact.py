@@ -438,7 +438,7 @@ class CondensedContact(MotionAlgebra):
 
 def _terms(matrix: Array, columns: Array) -> Array:
     """All products (m, i j) whose sums by row are matrix (m, i) @ columns (i, j) @ ones."""
-    return (matrix[:, :, None] * columns).reshape(len(matrix), -1)
+    return (matrix[:, :, None] * columns).reshape(len(matrix), columns.size)
 
 
 def _sum(start: Array, terms: Array, least: float = 0.0) -> Array:

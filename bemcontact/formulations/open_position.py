@@ -86,7 +86,8 @@ def _nearest(body: ScaledContact, amplitudes: Array, limits: tuple[Array, Array]
     root, (G, h) = np.sqrt(body.weights)[:, None] * body.rigid_motions, limits
     Q, S = np.linalg.qr(root @ motions)
     center = -np.linalg.solve(S, Q.T @ (root @ amplitudes))
-    return amplitudes + motions @ (center + np.linalg.solve(S, _least(np.linalg.solve(S.T, G.T).T, h - G @ center)))
+    rows = np.asarray(np.linalg.solve(S.T, G.T).T, float)
+    return amplitudes + motions @ (center + np.linalg.solve(S, _least(rows, h - G @ center)))
 
 
 def _least(G: Array, h: Array) -> Array:
