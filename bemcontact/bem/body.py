@@ -80,7 +80,7 @@ class Body:
         on_body = np.column_stack([loading.true_work(self.mesh, motions.body) for loading in self.loadings])
         work = on_body + motions.tools.T @ self.tools.force
         unit = np.eye(len(self.loadings))
-        total = [self.pinned.total(alone, force) for alone, force in zip(unit, self.tools.force.T, strict=True)]
+        total = [self.pinned.total(alone, self.tools.force * alone) for alone in unit]
         return np.where(abs(work) > BALANCED * np.array(total), work, 0.0)
 
     @cached_property
@@ -98,8 +98,8 @@ class Body:
 
     @cached_property
     def forces(self) -> Array:
-        """Forces on the tools (3 t,)."""
-        return self.tools.force @ self.factors
+        """Terms (3 t, 1 + c) of the forces on the tools, a column for each loading."""
+        return self.tools.force * self.factors
 
     def normal_motion(self, motions: FreeMotions) -> Array:
         """R (n, k): change of the gaps in free motions."""

@@ -188,10 +188,16 @@ class SurfaceGaps:
         """Depth (k, q) [L] of elements (k,) of the zone."""
         at, displacement = self.outline.sampled(elements), self._displacement(elements)
         here, there = self.linear(zone, elements), self.exact(zone, at.points + displacement)
-        dip = DIP * np.maximum(here.gap[:, NODES], 0.0).max(axis=1)
+        dip = DIP * np.where(self._same(zone, here), np.maximum(here.gap[:, None, NODES], 0.0), 0.0).max(axis=2)
         other = np.sum(here.normals * there.normals, axis=-1) < SAME_FACE
         beyond = other & (-there.gap > self._second_order(zone))
-        return np.maximum(-here.gap - dip[:, None], np.where(beyond, -there.gap, -np.inf))
+        return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
+
+    def _same(self, zone: str, here: Closest) -> BoolArray:
+        """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""
+        if not isinstance(self.surfaces[zone], Polyline):
+            return np.ones((*here.gap.shape, len(NODES)), bool)
+        return np.einsum("kqi,kni->kqn", here.normals, here.normals[:, NODES]) > SAME_FACE
 
     def _depth_in_other(
         self, zone: str, elements: IntArray, ends: Sequence[End]
@@ -200,7 +206,7 @@ class SurfaceGaps:
         flush, at = FLUSH * self.problem.boundary.size, self.outline.sampled(elements)
         before, normals = self.undeformed(zone, at.points)
         after = self.exact(zone, at.points + self._displacement(elements)).gap
-        snug = self._fits(elements, before, np.sum(at.inward * normals, axis=-1) > TURNED)[:, None]
+        snug = self._fits(zone, elements, before, np.sum(at.inward * normals, axis=-1) > TURNED)[:, None]
         behind, mesh = np.zeros(len(self.state.points), bool), self.outline.mesh
         behind[elements] = np.any((before < -flush) & ~snug, axis=1)
         crosses = (behind | behind[mesh.before] | behind[mesh.elements[:, 2]])[elements, None]
@@ -210,18 +216,20 @@ class SurfaceGaps:
         hidden = [float(np.max(depth, initial=-np.inf, where=beyond)) for beyond in ended]
         return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden
 
-    def _fits(self, elements: IntArray, before: Array, turned: BoolArray) -> BoolArray:
+    def _fits(self, zone: str, elements: IntArray, before: Array, turned: BoolArray) -> BoolArray:
         """Whether each element (k,) is on a stretch that fits the surface with interference.
 
-        Such a stretch lies behind the surface, nowhere deep, and faces it somewhere. `before` (k, q) is the distance
-        [L] of places from the surface, and `turned` (k, q) says whether they face it.
+        Such a stretch lies behind the surface. It is nowhere deep and faces it somewhere, or it begins at an edge of
+        the zone. `before` (k, q) is the distance [L] of places from the surface, and `turned` (k, q) says whether they
+        face it.
         """
-        size = self.problem.boundary.size
+        size, mesh, paired = self.problem.boundary.size, self.outline.mesh, self.paired(zone)
         inside = before < -FLUSH * size
         behind = elements[inside.any(axis=1)]
         deep = self._spread(elements[(before < -SNUG * size).any(axis=1)], behind)
         faces = self._spread(elements[(inside & turned).any(axis=1)], behind)
-        return (faces & ~deep)[elements]
+        beside = (inside[:, 0] & paired[mesh.before[elements]]) | (inside[:, -1] & paired[mesh.elements[elements, 2]])
+        return ((faces & ~deep) | self._spread(elements[beside], behind))[elements]
 
     def _spread(self, marked: IntArray, over: IntArray) -> BoolArray:
         """Mark (m,) all elements of the unbroken stretches of some elements in which one is marked."""
@@ -243,9 +251,10 @@ class SurfaceGaps:
                 if self._lies_in_face(zone, pair, at, normal):
                     along = self.state.points[beyond, last] - at
                     along = along / np.hypot(*along)
-                    ahead = min(map(float, self._ahead(zone, paired, at, along, normal)), default=np.inf)
+                    foot = at - self.held[zone].gap[own, last] * normal
+                    ahead = min(map(float, self._ahead(zone, paired, foot, along, normal)), default=np.inf)
                     if ahead == np.inf or self.in_a_zone(beyond):
-                        ends.append(End(beyond, at, along, normal, ahead))
+                        ends.append(End(beyond, foot, along, normal, ahead))
         return ends
 
     def in_a_zone(self, element: int) -> bool:
@@ -254,15 +263,20 @@ class SurfaceGaps:
         return any(edge in self.problem.edges_of(zone) for zone in self.problem.contact_zones)
 
     def _lies_in_face(self, zone: str, places: Array, at: Array, normal: Array) -> bool:
-        """Whether places (k, q, 2) of elements are on the straight face with a normal (2,) through a point (2,)."""
+        """Whether places (k, q, 2) of elements are on the line through a point (2,) with the normal (2,) of the face.
+
+        The line is the straight face itself, or is drawn inside it: then they fit with interference.
+        """
         flush, (gap, normals) = FLUSH * self.problem.boundary.size, self.undeformed(zone, places)
         straight = np.abs(normals - normal)[:, 1:-1].max() <= FLUSH  # at its ends there may be a corner of the surface
-        return bool(straight and np.abs(gap).max() <= flush and np.abs((places - at) @ normal).max() <= flush)
+        return bool(straight and gap.max() <= flush and np.abs((places - at) @ normal).max() <= flush)
 
     def _ahead(self, zone: str, paired: BoolArray, at: Array, along: Array, normal: Array) -> Iterator[float]:
         """Distances [L] from an end of the zone to its next edges on the same line, and to points of the surface."""
         flush, surface = FLUSH * self.problem.boundary.size, self.surfaces[zone]
-        points = self.outline.sampled(np.flatnonzero(paired)).points.reshape(-1, 2)
+        of_zone = self.outline.sampled(np.flatnonzero(paired)).points.reshape(-1, 2)
+        gap, normals = self.undeformed(zone, of_zone)
+        points = (of_zone - gap[:, None] * normals)[gap <= flush]
         if isinstance(surface, Polyline | Spline):
             points = np.concatenate([points, np.array(surface.points)])
         there = points[np.abs((points - at) @ normal) <= flush]

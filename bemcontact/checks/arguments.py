@@ -18,7 +18,8 @@ from bemcontact.errors import ProblemError
 Kind = TypeVar("Kind")
 
 LARGEST_NUMBER = 1e100
-"""The square of this number is still finite, so that products can be computed."""
+"""Largest number in arrays and arguments. Its square is still finite, so that products can be computed. Numbers that a
+problem states have a lower limit, for those in arrays are products of them."""
 
 LARGEST_COUNT = 2**63 - 1
 """Largest whole number, which fits into all places that count."""

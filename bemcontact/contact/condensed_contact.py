@@ -226,8 +226,14 @@ class CondensedContact(MotionAlgebra):
     @property
     def net_load(self) -> float:
         """Largest work of the loads in a free motion, over the sum of their magnitudes; 1 if these are not known."""
-        total = self.pinned.total(np.append(1.0, self.cases.factors), self.tools.force)
+        total = self.pinned.total(*self._acting)
         return float(abs(self.motion_load).max(initial=0.0)) / total if total > 0 else 1.0
+
+    @property
+    def _acting(self) -> tuple[Array, Array]:
+        """Factors (1 + c,) of what is permanent and of the cases, and the terms (3 t, 1 + c) of the forces on tools."""
+        of_cases = self.cases.force * self.cases.factors
+        return np.append(1.0, self.cases.factors), np.column_stack([_sum(self.tools.force, -of_cases), of_cases])
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
         """Apply load cases, each by its factor, and no other ones; nothing is condensed anew.
@@ -253,7 +259,7 @@ class CondensedContact(MotionAlgebra):
         numbers = {name: real_number(factor, f"the factor of '{name}'") for name, factor in factors.items()}
         given = np.array([numbers.get(name, 0.0) for name in self.cases.names], float)
         step = given - self.cases.factors
-        return self.stepped(step, self.cases.position @ step, self.cases.force @ step).balanced()
+        return self.stepped(step, self.cases.position * step, self.cases.force * step).balanced()
 
     def with_tools(self, position: ArrayLike | None = None, force: ArrayLike | None = None) -> Self:
         """Change the displacements and forces of the tools; nothing is condensed anew.
@@ -284,32 +290,34 @@ class CondensedContact(MotionAlgebra):
             if given.shape not in ((len(tools), 3), now.shape):
                 raise ProblemError(f"tools have {len(tools)} x 3 components; found an array of shape {given.shape}")
             steps.append(np.where(used, given.ravel() - now, 0.0))
-        return self.stepped(np.zeros(len(self.cases)), *steps).balanced()
+        stepped = self.stepped(np.zeros(len(self.cases)), *steps)
+        exact = replace(tools, position=tools.position + steps[0], force=tools.force + steps[1])
+        return replace(stepped, tools=exact).balanced()
 
     def balanced(self) -> Self:
         """Refuse loads along a motion that nothing resists, with a `ProblemError`."""
-        if violation := self.pinned.violation(np.append(1.0, self.cases.factors), self.tools.force):
+        if violation := self.pinned.violation(*self._acting):
             raise ProblemError(violation)
         return self
 
     def stepped(self, factors: Array, position: Array, force: Array) -> Self:
-        """Add to the factors (c,), and to the displacements (3 t,) and forces (3 t,) of tools, balanced or not.
+        """Add to the factors (c,), and to the displacements and forces of tools, each (3 t,) or (3 t, j) in j terms.
 
-        What round-off leaves where terms cancel is zero.
+        The loads may be out of balance. What round-off leaves where terms cancel is zero.
         """
         cases, tools = self.cases, self.tools
         factors = real_array(factors, "factors", (len(cases),))
-        position = real_array(position, "position", (3 * len(tools),))
-        force = real_array(force, "force", (3 * len(tools),))
-        loads = np.column_stack([cases.motion_load * factors, tools.amplitudes.T * force])
-        acting = np.append(1.0, cases.factors + factors), tools.force + force
+        position, force = (
+            np.atleast_2d(real_array(terms, name).T).T for terms, name in ((position, "position"), (force, "force"))
+        )
+        loads = np.column_stack([cases.motion_load * factors, _terms(tools.amplitudes.T, force)])
+        moved = replace(tools, position=_sum(tools.position, position), force=_sum(tools.force, force))
+        stepped = replace(self, cases=replace(cases, factors=cases.factors + factors), tools=moved)
         return replace(
-            self,
+            stepped,
             free_displacement=_sum(self.free_displacement, cases.displacement * factors),
-            initial_gap=_sum(self.initial_gap, tools.motions * position),
-            motion_load=_sum(self.motion_load, loads, self.pinned.total(*acting)),
-            cases=replace(cases, factors=cases.factors + factors),
-            tools=replace(tools, position=tools.position + position, force=tools.force + force),
+            initial_gap=_sum(self.initial_gap, _terms(tools.motions, position)),
+            motion_load=_sum(self.motion_load, loads, self.pinned.total(*stepped._acting)),
         )
 
     @property
@@ -426,6 +434,11 @@ class CondensedContact(MotionAlgebra):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read what `save` wrote; `ProblemError` if the file is something else."""
         return archive.read(file_path(path, "the file to read"), cls)
+
+
+def _terms(matrix: Array, columns: Array) -> Array:
+    """All products (m, i j) whose sums by row are matrix (m, i) @ columns (i, j) @ ones."""
+    return (matrix[:, :, None] * columns).reshape(len(matrix), columns.size)
 
 
 def _sum(start: Array, terms: Array, least: float = 0.0) -> Array:

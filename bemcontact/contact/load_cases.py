@@ -175,14 +175,18 @@ class Pinned:
             magnitude=np.zeros(1 + cases), length=length,
         )  # fmt: skip
 
-    def total(self, factors: Array, force: Array) -> float:
-        """Sum of the magnitudes of all loads [p L], for factors (1 + c,) and forces on tools (3 t,)."""
-        x, y, moment = force.reshape(-1, 3).T
+    def total(self, factors: Array, forces: Array) -> float:
+        """Sum of the magnitudes of all loads [p L], for factors (1 + c,) and the terms (3 t, j) of forces on tools.
+
+        Terms that cancel count in full: the round-off that they leave is small beside this sum.
+        """
+        x, y, moment = forces.T.reshape(-1, 3).T
         return float(self.magnitude @ abs(factors) + (np.hypot(x, y) + abs(moment) / self.length).sum())
 
-    def violation(self, factors: Array, force: Array) -> str | None:
-        """Describe a motion that the loads drive and nothing resists; None if the loads balance."""
-        work, total = self.load @ factors + self.tools.T @ force, self.total(factors, force)
+    def violation(self, factors: Array, forces: Array) -> str | None:
+        """Describe a motion that the loads drive and nothing resists; None if the loads balance, as of `total`."""
+        driven = np.atleast_2d(forces.T).sum(axis=0)
+        work, total = self.load @ factors + self.tools.T @ driven, self.total(factors, forces)
         for motion, turns, done in zip(self.motions, self.turns, work, strict=True):
             if abs(done) > BALANCED * total * (self.length if turns else 1.0):
                 return (

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import null_space
 from scipy.optimize import linprog, nnls
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
@@ -26,20 +26,23 @@ ACCEPTED = 1e-11
 """Value of `ScaledContact.residual` up to which a position is one of contact."""
 
 
-def settled(contact: CondensedContact, solution: ContactSolution) -> ContactSolution:
+def settled(contact: CondensedContact, solution: ContactSolution, closed: BoolArray | None = None) -> ContactSolution:
     """Choose the position by the rule, and say so, if contact leaves one open; otherwise nothing changes.
 
     Points that do not solve the contact problem to round-off, and bodies that nothing touches, are left as they are.
+    `closed` (n,) are points that must stay closed although nothing presses them.
     """
     body = scaled(contact)
     p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
-    if not a.size or not (p > 0).any() or not body.residual(p, a) <= ACCEPTED:
+    if not a.size or not contact.peak(solution.pressure) or not body.residual(p, a) <= ACCEPTED:
         return solution
     p = np.where(p > VANISHED * p.max(), p, 0.0)
-    motions = _unseen(body, p)
-    if not motions.size or not (ways := _open_ways(body, p, a, motions)).any():
+    held = p > 0 if closed is None else (p > 0) | closed
+    motions = _unseen(body, held)
+    limits = _limits(body, held, body.gap(p, a), motions)
+    if not motions.size or not (ways := _open_ways(limits, motions)).any():
         return solution
-    a = _nearest(body, p, a, motions)
+    a = _nearest(body, a, limits, motions)
     if body.residual(p, a) > ACCEPTED:
         return solution
     p, u_n, a = unscaled(contact, p, a)
@@ -53,24 +56,23 @@ def settled(contact: CondensedContact, solution: ContactSolution) -> ContactSolu
     )
 
 
-def _unseen(body: ScaledContact, pressure: Array) -> Array:
-    """Basis (k, j) of the motions that no pressed point sees."""
-    pressed = body.rigid_motions[pressure > 0]
+def _unseen(body: ScaledContact, held: BoolArray) -> Array:
+    """Basis (k, j) of the motions that no held point (n,) sees."""
+    pressed = body.rigid_motions[held]
     scale = np.sqrt(len(body.weights))
     return np.asarray(null_space(np.vstack([pressed, np.zeros_like(pressed[:1])]) / scale, rcond=UNSEEN), float)
 
 
-def _limits(body: ScaledContact, pressure: Array, amplitudes: Array, motions: Array) -> tuple[Array, Array]:
+def _limits(body: ScaledContact, held: BoolArray, gap: Array, motions: Array) -> tuple[Array, Array]:
     """The rows G y >= h, h <= 0, of size one, for the points that must not penetrate where the body moves by y (j,)."""
-    free = pressure == 0
-    G, h = body.rigid_motions[free] @ motions, -np.maximum(body.gap(pressure, amplitudes)[free], 0.0)
+    G, h = body.rigid_motions[~held] @ motions, -np.maximum(gap[~held], 0.0)
     size = np.maximum(np.abs(G).max(axis=1, initial=UNSEEN), np.abs(h))
     return np.where(np.abs(G) > UNSEEN, G, 0.0) / size[:, None], h / size
 
 
-def _open_ways(body: ScaledContact, pressure: Array, amplitudes: Array, motions: Array) -> Array:
+def _open_ways(limits: tuple[Array, Array], motions: Array) -> BoolArray:
     """Which of the k motions (k,) have more than one amplitude, by linear programs."""
-    G, h = _limits(body, pressure, amplitudes, motions)
+    G, h = limits
     open_ways = np.zeros(len(motions), bool)
     for row, way in enumerate(motions):
         for cost in (way, -way) if np.abs(way).max() > UNSEEN else ():
@@ -79,17 +81,45 @@ def _open_ways(body: ScaledContact, pressure: Array, amplitudes: Array, motions:
     return open_ways
 
 
-def _nearest(body: ScaledContact, pressure: Array, amplitudes: Array, motions: Array) -> Array:
+def _nearest(body: ScaledContact, amplitudes: Array, limits: tuple[Array, Array], motions: Array) -> Array:
     """The amplitudes (k,) with least weighted squares of R a: a least-distance program."""
-    # Lawson and Hanson, "Solving Least Squares Problems" (1974), chapter 23: min |z| with G z >= h, by NNLS
-    root = np.sqrt(body.weights)[:, None] * body.rigid_motions
+    root, (G, h) = np.sqrt(body.weights)[:, None] * body.rigid_motions, limits
     Q, S = np.linalg.qr(root @ motions)
     center = -np.linalg.solve(S, Q.T @ (root @ amplitudes))
-    G, h = _limits(body, pressure, amplitudes, motions)
-    h = h - G @ center
+    rows = np.asarray(np.linalg.solve(S.T, G.T).T, float)
+    return amplitudes + motions @ (center + np.linalg.solve(S, _least(rows, h - G @ center)))
+
+
+def _least(G: Array, h: Array) -> Array:
+    """The smallest z (j,) with G z >= h, if there is one."""
+    # Lawson and Hanson, "Solving Least Squares Problems" (1974), chapter 23, by NNLS
     if (h <= 0).all():
-        return amplitudes + motions @ center
-    E = np.vstack([np.linalg.solve(S.T, G.T), h])
-    right = np.append(np.zeros(len(center)), 1.0)
+        return np.zeros(G.shape[1])
+    E = np.vstack([G.T, h])
+    right = np.append(np.zeros(G.shape[1]), 1.0)
     r = E @ nnls(E, right)[0] - right
-    return amplitudes + motions @ (center - np.linalg.solve(S, r[:-1] / r[-1]))
+    return -r[:-1] / r[-1]
+
+
+def farthest(values: Array, rates: Array, seen: Array, most: float) -> tuple[float, Array]:
+    """Find the largest step s <= most at which values + s rates + seen @ y >= 0 for some y (j,), and a y there.
+
+    Values (n,) are not negative; the numbers are of size one. A linear program names the rows that lock y; these are
+    then solved as equations, for the solver of the program leaves errors that would count as gaps.
+    """
+    rows = np.column_stack([rates, np.where(np.abs(seen) > UNSEEN, seen, 0.0)])
+    size = np.maximum(np.abs(rows).max(axis=1), UNSEEN)
+    rows, values = rows / size[:, None], values / size
+    cost = -np.eye(rows.shape[1])[0]
+    optimum = linprog(cost, A_ub=-rows, b_ub=values, bounds=[(0.0, most), *[(None, None)] * seen.shape[1]])
+    if not optimum.success:
+        return 0.0, np.zeros(seen.shape[1])
+    x, free = np.append(most, np.zeros(seen.shape[1])), np.eye(rows.shape[1])[:, 1:]
+    locking = optimum.ineqlin.marginals < -UNSEEN
+    if locking.any():
+        x = np.asarray(optimum.x, float)
+        x += np.linalg.lstsq(rows[locking], -values[locking] - rows[locking] @ x, rcond=None)[0]
+        free = null_space(rows[locking], rcond=UNSEEN)
+    others = ~locking & (np.abs(rows @ free).max(axis=1, initial=0.0) > UNSEEN)
+    x += free @ _least((rows @ free)[others], -(values + rows @ x)[others])
+    return float(x[0]), x[1:]

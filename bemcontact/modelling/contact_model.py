@@ -358,7 +358,7 @@ def typical_scales(contact: CondensedContact) -> ContactScales:
     """Displacement [L] and pressure [p] of the present state, or of a load case by itself, whichever is largest."""
     cases = contact.cases
     steps = np.eye(len(cases)) - cases.factors
-    states = [contact, *(contact.stepped(step, cases.position @ step, cases.force @ step) for step in steps)]
+    states = [contact, *(contact.stepped(step, cases.position * step, cases.force * step) for step in steps)]
     acting = [state for state in states if state.offset.any() or state.motion_load.any()]
     return max((state.scales for state in acting), default=contact.scales)
 

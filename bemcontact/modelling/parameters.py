@@ -109,8 +109,9 @@ class Parameters:
         factors = np.zeros(0) if self.case_factors is None else value_of(self.case_factors)
         position = none if self.tool_position is None else value_of(self.tool_position).ravel()
         force = none if self.tool_force is None else value_of(self.tool_force).ravel()
-        position = np.where(rest.tools.free, 0.0, position + rest.cases.position @ factors)
-        force = np.where(rest.tools.free, force + rest.cases.force @ factors, 0.0)
+        free = rest.tools.free[:, None]
+        position = np.where(free, 0.0, np.column_stack([position, rest.cases.position * factors]))
+        force = np.where(free, np.column_stack([force, rest.cases.force * factors]), 0.0)
         undisplaced = replace(rest, initial_gap=value_of(self.initial_gap))
         return undisplaced.stepped(factors, position, force).balanced()
 

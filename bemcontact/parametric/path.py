@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from pydantic import computed_field
@@ -14,6 +15,7 @@ from bemcontact.contact.load_cases import Change, LoadCases
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
+from bemcontact.formulations.open_position import settled
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
 from bemcontact.options import FormulationName
 from bemcontact.parametric.pivoting import LinearChange, Trail, follow
@@ -61,6 +63,10 @@ class LoadPath(Leaf):
     """Whether each state is proved to be the only one."""
     note: Internal[str]
     """Why the path does not reach from 0 to 1, or empty."""
+    open: Internal[BoolArray]
+    """Whether contact leaves a position open (b - 1,) between two breakpoints; it is then chosen by a rule."""
+    left_open: Internal[tuple[str, ...]] = ()
+    """Notes on these positions."""
 
     def __post_init__(self) -> None:
         """Make arrays read-only."""
@@ -114,7 +120,7 @@ class LoadPath(Leaf):
         """Notes on a path from `begin` to `end`, one sentence each."""
         where = f"from {begin} on" if self.begins_at > 0.0 else f"up to {end}"
         early = f"the path exists {where}; beyond that, {self.note}" if self.note else ""
-        return tuple(text for text in (early, "" if self.unique else NOT_PROVED) if text)
+        return (*(text for text in (early, "" if self.unique else NOT_PROVED) if text), *self.left_open)
 
     @computed_field
     @cached_property
@@ -153,10 +159,13 @@ class LoadPath(Leaf):
 
     @cached_property
     def residual(self) -> float:
-        """The largest natural residual at the breakpoints, recomputed from p and a, relative and free of units."""
+        """The largest natural residual at the breakpoints and midway between two, recomputed from p and a, relative."""
         unit, worst = measure(self.start, self.end), 0.0
         line, body = line_between(unit, self.start, self.end), scaled(unit)
-        for t, pressure, amplitudes in zip(self.parameter, self.pressure, self.rigid_amplitudes, strict=True):
+        found = (self.parameter, self.pressure, self.rigid_amplitudes)
+        midway = ((values[1:] + values[:-1]) / 2 for values in found)
+        states = zip(*(np.concatenate(pair) for pair in zip(found, midway, strict=True)), strict=True)
+        for t, pressure, amplitudes in states:
             offset, load = line.at(t)
             stated = replace(body, offset=offset, motion_load=load)
             worst = max(worst, stated.residual(*scaled_point(unit, pressure, amplitudes)))
@@ -214,7 +223,13 @@ class LoadPath(Leaf):
         share = (t - self.parameter[i]) / width if width else 0.0
         pressure = (1 - share) * self.pressure[i] + share * self.pressure[j]
         amplitudes = (1 - share) * self.rigid_amplitudes[i] + share * self.rigid_amplitudes[j]
-        return self._solution(t, pressure, amplitudes)
+        state = self._solution(t, pressure, amplitudes)
+        return settled(self.contact(t), state) if self._is_open(t) else state
+
+    def _is_open(self, t: float) -> bool:
+        """Whether contact leaves a position open beside t, and the body does not tip there."""
+        first, last = np.searchsorted(self.parameter, t, side="left"), np.searchsorted(self.parameter, t, side="right")
+        return bool(last - first < 2 and self.open[max(first - 1, 0) : last].any())
 
     def breakpoint(self, i: int) -> ContactSolution:
         """The contact state at breakpoint i, of `contact(parameter[i])`."""
@@ -328,10 +343,11 @@ def line_between(unit: CondensedContact, first: CondensedContact, last: Condense
 def _path(start: CondensedContact, end: CondensedContact, trail: Trail, note: str, backwards: bool = False) -> LoadPath:
     """Put units back, and t in ascending order."""
     unit, order = measure(start, end), slice(None, None, -1 if backwards else 1)
+    pieces = len(trail.states) - 1
     states = trail.states[order]
     points = [unscaled(unit, state.pressure, state.amplitudes) for state in states]
     s = np.array([state.s for state in states])
-    return LoadPath(
+    path = LoadPath(
         start=start,
         end=end,
         parameter=1.0 - s if backwards else s,
@@ -341,4 +357,32 @@ def _path(start: CondensedContact, end: CondensedContact, trail: Trail, note: st
         touching=np.array(trail.touching[order], bool).reshape(-1, start.size),
         unique=trail.unique,
         note=note,
+        open=np.zeros(pieces, bool),
     )
+    return _with_positions(path)
+
+
+def _with_positions(path: LoadPath) -> LoadPath:
+    """Choose the positions that contact leaves open by the rule of `settled`.
+
+    At a breakpoint the points that are pressed beside it stay closed, so that the states between are linear.
+    """
+    leaves_open, notes = np.zeros(len(path.open), bool), list[str]()
+    for i, (begin, end) in enumerate(pairwise(path.parameter.tolist())):
+        if begin < end:
+            middle = path.at((begin + end) / 2)
+            chosen = settled(path.contact((begin + end) / 2), middle)
+            leaves_open[i] = chosen is not middle
+            notes += chosen.notes
+    if not leaves_open.any():
+        return path
+    path = replace(path, open=leaves_open, left_open=tuple(dict.fromkeys(notes)))
+    amplitudes, gap = path.rigid_amplitudes.copy(), path.gap.copy()
+    pressed = np.vstack([path.pressure[:1], np.maximum(path.pressure[1:], path.pressure[:-1]), path.pressure[-1:]]) > 0
+    for i, t in enumerate(path.parameter.tolist()):
+        if path._is_open(t):
+            closed = pressed[i] | pressed[i + 1]
+            chosen = settled(path.contact(t), path.breakpoint(i), closed)
+            amplitudes[i] = chosen.rigid_amplitudes
+            gap[i] = np.where(closed, 0.0, np.maximum(path.contact(t).initial_gap + chosen.displacement, 0.0))
+    return replace(path, rigid_amplitudes=amplitudes, gap=gap)

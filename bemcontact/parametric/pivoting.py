@@ -18,12 +18,12 @@ If the load has moved beyond the support, the body tips at constant load until a
 stays, the position jumps.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
 
 import numpy as np
-from scipy.linalg import eigvalsh, qr
+from scipy.linalg import eigvalsh, null_space, qr
 from scipy.optimize import nnls
 
 from bemcontact.arrays import Array, BoolArray, IntArray
@@ -32,6 +32,7 @@ from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.formulations.active_set import EPS, ContactBlock
 from bemcontact.formulations.complementarity import lemke
+from bemcontact.formulations.open_position import farthest
 from bemcontact.formulations.scaling import ScaledContact
 
 WEAK = 1e-10
@@ -117,7 +118,16 @@ class Tangent:
     @cached_property
     def _unresisted(self) -> Array:
         """An orthonormal basis (k, ·) of the motions that move no point of S."""
-        R = self.contact.rigid_motions[self.strong]
+        return self._still(self.strong)
+
+    @cached_property
+    def open_motions(self) -> Array:
+        """An orthonormal basis (k, ·) of the motions that move no point of S and W."""
+        return self._still(np.append(self.strong, self.weak))
+
+    def _still(self, points: IntArray) -> Array:
+        """An orthonormal basis (k, ·) of the motions that move none of some points."""
+        R = self.contact.rigid_motions[points]
         k = R.shape[1]
         _, sizes, motions = np.linalg.svd(np.linalg.qr(np.vstack([R, np.zeros((k, k))]), mode="r"))
         return motions[sizes <= RANK].T
@@ -284,6 +294,12 @@ def follow(contact: ScaledContact, line: LinearChange, pressure: Array, amplitud
         try:
             if motion.any():
                 block, following = None, _tipped(contact, state, tangent, motion)
+            elif tangent.strong.size and tangent.open_motions.size:
+                following, loaded = _drifted(line, state, tangent)
+                states.append(following)
+                touching.append(loaded)
+                block = None
+                continue
             else:
                 block = tangent.after(line.rate)
                 following = _next(line, state.s, block)
@@ -322,6 +338,38 @@ def _next(line: LinearChange, s: float, block: ContactBlock) -> State:
         gap=np.where(touching, 0.0, reached),
         amplitudes=amplitudes[0] + step * amplitudes[1],
     )
+
+
+def _drifted(line: LinearChange, state: State, tangent: Tangent) -> tuple[State, BoolArray]:
+    """Continue where contact leaves motions open: until a pressure is zero, or no position penetrates nothing any more.
+
+    The pressures do not depend on the position. With it come the points in contact. `ProblemError` if there is no step.
+    """
+    contact, ways = tangent.contact, tangent.open_motions
+    held = null_space(ways.T)
+    seen, place = contact.rigid_motions @ ways, ways.T @ state.amplitudes
+    fixed = replace(contact, rigid_motions=contact.rigid_motions @ held, motion_load=held.T @ contact.motion_load)
+    (offset, load), rate = line.at(state.s), line.rate
+    now, rate = Change(offset + seen @ place, held.T @ load), Change(rate.offset, held.T @ rate.motion_load)
+    block = Tangent.at(fixed, state.pressure, state.gap, held.T @ state.amplitudes, tangent.unique).after(rate)
+    touching = block.touching
+    pressures, gaps, amplitudes = block.solve(now, rate)
+    values, rates = np.where(touching, pressures, gaps)
+    values = np.maximum(values, 0.0)
+    rates[np.abs(rates) <= STILL * size_of(rate, pressures[1], amplitudes[1])] = 0.0
+    step, moved = farthest(values, rates, np.where(touching[:, None], 0.0, seen), 1.0 - state.s)
+    if step <= WEAK * (1.0 - state.s):
+        raise ProblemError(NOT_HELD)
+    reached = np.maximum(values + step * rates + np.where(touching, 0.0, seen @ moved), 0.0)
+    small = WEAK * (1.0 + np.abs(pressures[0]).max(initial=0.0) + np.abs(amplitudes[0]).sum())
+    reached[reached <= small] = 0.0
+    following = State(
+        s=1.0 if step >= 1.0 - state.s else state.s + step,
+        pressure=np.where(touching, reached, 0.0),
+        gap=np.where(touching, 0.0, reached),
+        amplitudes=held @ (amplitudes[0] + step * amplitudes[1]) + ways @ (place + moved),
+    )
+    return following, touching
 
 
 def _tipped(contact: ScaledContact, state: State, tangent: Tangent, motion: Array) -> State | None:

@@ -18,7 +18,7 @@ from bemcontact.problem.closeness import near_miss, sagitta
 from bemcontact.problem.closing import JOINT_TOLERANCE, gap_issues, other_way_round
 from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc
 from bemcontact.problem.geometry import AnyEdge, Arc, Grading, LoopSpec, Place
-from bemcontact.problem.validation import LARGEST_NUMBER, Point, SpecModel, validation_error
+from bemcontact.problem.validation import LARGEST_STATED, Point, SpecModel, validation_error
 from bemcontact.problem.wording import unknown_word
 
 RADIUS_TOLERANCE = 1e-6
@@ -164,7 +164,7 @@ def _unknown_joints(path: KeyPath, loop: Sequence[AnyEdge]) -> Iterator[Issue]:
 
 def _out_of_range(path: KeyPath, loop: Sequence[AnyEdge], size: float) -> Iterator[Issue]:
     """Issues of a body too small to compute with, and of coordinates and radii that leave no digits for its shape."""
-    if size < 1 / LARGEST_NUMBER:
+    if size < 1 / LARGEST_STATED:
         message = f"the body has the size {size:.3g}, which is too small to compute with; choose another unit of length"
         yield Issue(path=path, message=message)
         return

@@ -1,11 +1,16 @@
 """Contact zones, and the tools that move their rigid surfaces."""
 
+from collections.abc import Iterable, Sequence
+from math import fsum
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
 from bemcontact.problem.rigid_surface import DeflectedContour, SurfaceSpec
 from bemcontact.problem.validation import Name, Number, Point, SpecModel, invalid
+
+CANCELLED = 1e-14
+"""Fraction of the terms of a sum below which the sum is round-off of factors such as 0.1."""
 
 
 def _as_list(value: Any) -> Any:
@@ -117,20 +122,23 @@ class ToolAction(SpecModel):
         """Force along x and y, and moment; zero where none is given."""
         return tuple(getattr(self.force, force) or 0.0 for _, force, _ in TOOL_COMPONENTS)
 
-    def plus(self, factor: float, other: "ToolAction") -> "ToolAction":
-        """Add a multiple of another action; the sum has each component that one of them has."""
-        displacement = ToolDisplacement(**_sum(self.displacement, factor, other.displacement))
-        return ToolAction(displacement=displacement, force=ToolForce(**_sum(self.force, factor, other.force)))
+    def plus(self, others: Sequence[tuple[float, "ToolAction"]]) -> "ToolAction":
+        """Add multiples of other actions; the sum has each component that one of them has."""
+        terms = ((1.0, self), *others)
+        displacement = _sum((factor, action.displacement) for factor, action in terms)
+        force = _sum((factor, action.force) for factor, action in terms)
+        return ToolAction(displacement=ToolDisplacement(**displacement), force=ToolForce(**force))
 
 
-def _sum(one: SpecModel, factor: float, other: SpecModel) -> dict[str, float]:
-    """Sum of the components of one model and a multiple of those of another, by name."""
-    total: dict[str, float] = {}
-    for weight, part in ((1.0, one), (factor, other)):
+def _sum(parts: Iterable[tuple[float, SpecModel]]) -> dict[str, float]:
+    """Sum of multiples of the components of models by name, in any order; zero if it is round-off beside its terms."""
+    terms: dict[str, list[float]] = {}
+    for factor, part in parts:
         for key, value in part:
             if value is not None:
-                total[key] = total.get(key, 0.0) + weight * value
-    return total
+                terms.setdefault(key, []).append(factor * value)
+    least = {key: CANCELLED * fsum(map(abs, some)) for key, some in terms.items()}
+    return {key: total if abs(total := fsum(some)) > least[key] else 0.0 for key, some in terms.items()}
 
 
 def _without_repeats(value: tuple[str, ...]) -> tuple[str, ...]:

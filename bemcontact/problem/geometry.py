@@ -9,7 +9,7 @@ from bemcontact.errors import KeyPath
 from bemcontact.problem.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
 from bemcontact.problem.tagged_union import TaggedUnion
 from bemcontact.problem.validation import (
-    LARGEST_NUMBER,
+    LARGEST_STATED,
     Count,
     Flag,
     Name,
@@ -35,7 +35,7 @@ def _place(value: Any) -> float | Point:
     if not all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers):
         raise invalid(f"expected a fraction of the length such as 0.4, or a point [x, y]; found {described(value)}")
     if isinstance(value, list | tuple):
-        if len(value) != 2 or not all(abs(number) <= LARGEST_NUMBER for number in value):
+        if len(value) != 2 or not all(abs(number) <= LARGEST_STATED for number in value):
             raise invalid(f"expected two coordinates such as [0.0, 1.5]; found {described(value)}")
         return float(value[0]), float(value[1])
     if not 0 < value < 1:

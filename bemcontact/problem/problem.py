@@ -246,11 +246,9 @@ class Problem(SpecModel):
         """Displacement of a tool and force on it, including the load cases that act."""
         if text_of_argument(tool, "the name of a tool") not in self.tools:
             raise ProblemError(Issue(path=("tools",), message=unknown_word("tool", tool, self.tools)))
-        action: ToolAction = self.tools[tool]
-        for case, factor in self.factors().items():
-            if tool in self.load_cases[case].tools:
-                action = action.plus(factor, self.load_cases[case].tools[tool])
-        return action
+        acting = [(self.load_cases[case].tools.get(tool), factor) for case, factor in self.factors().items()]
+        added = [(factor, action) for action, factor in acting if action is not None]
+        return self.tools[tool].plus(added) if added else self.tools[tool]
 
     def with_case(self, name: str) -> Self:
         """Copy with one load case or combination that acts.

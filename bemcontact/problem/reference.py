@@ -12,7 +12,7 @@ from pydantic import AfterValidator, Field, Strict, ValidationInfo, field_valida
 from bemcontact.errors import Issue
 from bemcontact.problem.tagged_union import TaggedUnion
 from bemcontact.problem.validation import (
-    LARGEST_NUMBER,
+    LARGEST_STATED,
     Flag,
     Name,
     Number,
@@ -140,7 +140,7 @@ class ShrinkFit(ReferenceBase):
     """The closed form: shrink_fit."""
     rigid: Literal["pin", "bore"] = "pin"
     """The rigid part: pin (inside the ring) or bore (around it)."""
-    inner_radius: Annotated[float, Strict(), Field(ge=0, le=LARGEST_NUMBER)]
+    inner_radius: Annotated[float, Strict(), Field(ge=0, le=LARGEST_STATED)]
     """The inner radius of the undeformed ring; 0 for a disk in a bore."""
     outer_radius: Positive
     """The outer radius of the undeformed ring."""
@@ -205,7 +205,7 @@ class ProppedBeam(ReferenceBase):
     """The distance between the end supports."""
     height: Positive
     """The height of the beam."""
-    gap: Annotated[float, Strict(), Field(ge=0, le=LARGEST_NUMBER)]
+    gap: Annotated[float, Strict(), Field(ge=0, le=LARGEST_STATED)]
     """The gap between the undeformed beam and the prop."""
     half: Flag = False
     """Whether only half of the beam is modeled, up to a line of symmetry through its middle."""

@@ -173,14 +173,19 @@ class Polyline(SpecModel):
         return self._concave[np.clip([segment - 1, segment], 0, last)]
 
     def _nearest(self, points: Array) -> tuple[IntArray, IntArray, Array]:
-        """Nearest segment (k,), its corner that is nearest or -1 (k,), and the nearest point of the line (k, 2)."""
+        """Nearest segment (k,), its corner that is nearest or -1 (k,), and the nearest point of the line (k, 2).
+
+        A point that is opposite to the end of a segment up to round-off is opposite to the segment: the direction from
+        the corner to a point close to it would be that of round-off.
+        """
         corners, directions, _, low, high = self.sides
+        slack = ON_CORNER * self._extent(points)
         along = np.einsum("ksi,si->ks", points[:, None] - corners[:-1], directions)
         held = np.clip(along, low, high)
         feet = corners[:-1] + held[:, :, None] * directions
-        nearest = np.argmin(np.hypot(*np.moveaxis(points[:, None] - feet, 2, 0)), axis=1)
-        rows = np.arange(len(points))
-        corner = np.where((held != along)[rows, nearest], nearest + (along > high)[rows, nearest], -1)
+        beyond, rows = np.abs(held - along) > slack, np.arange(len(points))
+        nearest = np.argmin(np.hypot(*np.moveaxis(points[:, None] - feet, 2, 0)) + slack * beyond, axis=1)
+        corner = np.where(beyond[rows, nearest], nearest + (along > high)[rows, nearest], -1)
         return nearest, corner, feet[rows, nearest]
 
     def _nearest_corner(self, points: Array) -> tuple[IntArray, Array]:

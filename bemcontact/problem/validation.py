@@ -29,8 +29,10 @@ from bemcontact.problem.examples import (
 )
 from bemcontact.problem.wording import LONGEST_NAME, MANY_WORDS, described, near_by, number_hint, unknown_word
 
-LARGEST_NUMBER = 1e30
-"""The eighth power of this number is still finite, so that products of any four numbers can be squared."""
+LARGEST_STATED = 1e30
+"""Largest number in a problem. Its eighth power is still finite, so that products of any four numbers can be squared.
+The arrays that are computed from a problem have larger numbers, and a limit of their own: products of three stated
+numbers, such as moments p L², are below `bemcontact.checks.arguments.LARGEST_NUMBER`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,14 +87,14 @@ class SpecModel(BaseModel):
 
 def _not_huge(value: float) -> float:
     """Refuse numbers whose powers overflow."""
-    if abs(value) > LARGEST_NUMBER:
+    if abs(value) > LARGEST_STATED:
         raise invalid(f"{value:.3g} is too large to compute with; choose other units")
     return value
 
 
 def not_tiny(value: float) -> float:
     """Refuse numbers other than 0 whose powers underflow."""
-    if 0 < abs(value) < 1 / LARGEST_NUMBER:
+    if 0 < abs(value) < 1 / LARGEST_STATED:
         raise invalid(f"{value:.3g} is too small to compute with; choose other units, or write 0 if it may be 0")
     return value
 

@@ -43,12 +43,14 @@ class Document:
     data : nested mappings and lists
     places : place of each value by its key path
     messages : errors found while reading
+    unread : paths of values that could not be read, as a message says
     change : override that made this document from another one, if any
     """
 
     data: Any
     places: Mapping[KeyPath, Place]
     messages: tuple[LocatedMessage, ...] = ()
+    unread: tuple[KeyPath, ...] = ()
     change: Mark | None = None
 
     def below(self, path: KeyPath) -> "Document":
@@ -69,6 +71,10 @@ class Document:
             data=with_entry(self.data, path, entry.data),
             places={**kept, **added},
             messages=(*self.messages, *((mark, message) for _, message in entry.messages)),
+            unread=(
+                *(other for other in self.unread if other[: len(path)] != path),
+                *((*path, *below) for below in entry.unread),
+            ),
             change=mark,
         )
 

@@ -161,7 +161,7 @@ def _parsed(text: str, name: str) -> Document:
         data = tree.value(node, (), None)
     except Refused as error:
         raise _refused(error, name) from None
-    return Document(data=data, places=tree.places, messages=tuple(tree.messages))
+    return Document(data=data, places=tree.places, messages=tuple(tree.messages), unread=tuple(tree.unread))
 
 
 def _marked(mark: yaml.Mark, name: str) -> Mark:
@@ -208,6 +208,7 @@ class _Tree:
         self.name = name
         self.places: dict[KeyPath, Place] = {}
         self.messages: list[LocatedMessage] = []
+        self.unread: list[KeyPath] = []
         self._above: list[yaml.Node] = []
         self._budget = Budget()
 
@@ -219,7 +220,10 @@ class _Tree:
         inline = scalar or (isinstance(node, yaml.CollectionNode) and node.flow_style)
         self.places[path] = Place(value=mark if inline else key_mark, key=key_mark, scalar=scalar)
         with self._inside(node, path) as new:
-            return self._content(node, path) if new else None
+            if new:
+                return self._content(node, path)
+            self.unread.append(path)
+            return None
 
     def _content(self, node: yaml.Node, path: KeyPath) -> Any:
         """Data of the content of a node."""
@@ -232,11 +236,8 @@ class _Tree:
                 try:
                     return READERS[tag](node.value)
                 except (ValueError, KeyError):
-                    self._find(self._mark(node), path, f"{described(node.value)} does not fit its tag; remove the tag")
-                    return None
-        message = f"the tag {node.tag.replace(TAG, '!!')} is not supported; remove it"
-        self._find(self._mark(node), path, message)
-        return None
+                    return self._not_read(node, path, f"{described(node.value)} does not fit its tag; remove the tag")
+        return self._not_read(node, path, f"the tag {node.tag.replace(TAG, '!!')} is not supported; remove it")
 
     def _mapping(self, node: yaml.MappingNode, path: KeyPath) -> dict[str, Any]:
         """Data of a mapping; repeated keys are an error, merged keys come last."""
@@ -292,6 +293,11 @@ class _Tree:
 
     def _mark(self, node: yaml.Node) -> Mark:
         return _marked(node.start_mark, self.name)
+
+    def _not_read(self, node: yaml.Node, path: KeyPath, message: str) -> None:
+        """Note that a value is not read; what else is wrong with it then is not worth a line."""
+        self.unread.append(path)
+        self._find(self._mark(node), path, message)
 
     def _find(self, mark: Mark, path: KeyPath, message: str) -> None:
         self.messages.append((mark, str(Issue(path=path, message=message))))
@@ -359,8 +365,9 @@ def _located_issues(stages: Sequence[Document]) -> Iterator[LocatedMessage]:
     for document in stages:
         blamed = {issue: blamed.get(issue, document.change) for issue in _issues(document)}
     for issue, override in blamed.items():
-        place, message = stages[-1].located(issue)
-        yield override or place, message
+        if not any(issue.path[: len(path)] == path for path in stages[-1].unread):
+            place, message = stages[-1].located(issue)
+            yield override or place, message
 
 
 def _issues(document: Document) -> tuple[Issue, ...]:

@@ -12,6 +12,7 @@ from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
 
 E, NU, SIDE = 1000.0, 0.3, 10.0
+TURNS = st.integers(0, 628).map(lambda hundredths: hundredths / 100)
 
 
 def seal(*, pressure=40.0, gap=0.02, edges=("bottom",), elements=3, turn=0.0, size=1.0, split=0.5, **more):
@@ -264,7 +265,7 @@ def test_a_straight_face_may_end_where_its_zone_ends(beyond, ended):
 @given(
     st.one_of(st.just(0.0), st.floats(-9, -4).map(lambda power: 10**power)),
     st.tuples(st.floats(1, 4), st.floats(6, 8)),
-    st.floats(0, 6.28),
+    TURNS,
     st.sampled_from(["one zone", "two zones", "plane beyond", "polyline beyond"]),
 )
 @example(0.0, (3.0, 6.0), 0.0, "one zone")
@@ -299,6 +300,60 @@ def test_a_surface_does_not_end_where_it_goes_on(gap, between, turn, kind):
         assert result.penetration is not None
         assert result.penetration.depth == pytest.approx(depth, rel=0.02)  # a node may be less deep than beside it
         assert result.penetration.edge in ("1", "2")
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.floats(-4, -0.3), TURNS, st.booleans())
+@example(-1.0, 0.0, True)
+@example(-1.0, 0.0, False)
+def test_interference_that_is_drawn_is_as_one_that_a_tool_makes(power, turn, both):
+    """A flat punch on the middle of the top, or one on both sides: the same pressure, verdict, depth and note."""
+    d, c, s = 10**power, np.cos(turn), np.sin(turn)
+    turned = np.array([(c, s), (-s, c)])
+    corners = (np.array([(0, 0), (SIDE, 0), (SIDE, SIDE), (7, SIDE), (3, SIDE), (0, SIDE)]) @ turned).tolist()
+    edges = ("2", "4") if both else "3"
+    results = []
+    for drawn, moved in ((d, 0.0), (0.0, d)):
+        point = (np.array([0, SIDE - drawn]) @ turned).tolist()
+        zones = {"punch": (edges, {"kind": "plane", "point": point, "normal": (-turned[1]).tolist()})}
+        x, y = (-moved * turned[1]).tolist()
+        tools = {"press": {"zones": "punch", "point": (0, 0), "displacement": {"x": x, "y": y}}} if moved else {}
+        results.append(solve(block(corners, zones, {"0": {"displacement": {"x": 0, "y": 0}}}, tools=tools)))
+    drawn, displaced = results
+    assert drawn.solution.pressure == pytest.approx(displaced.solution.pressure, rel=1e-8)
+    assert drawn.certified is displaced.certified is not both
+    ended = [[note.split(" at ")[0] for note in item.notes if "taken to end" in note] for item in results]
+    assert ended[0] == ended[1]
+    if both:  # between two edges of one zone the surface goes on
+        assert drawn.penetration.depth == pytest.approx(displaced.penetration.depth, rel=1e-6)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(4, 9), st.integers(2, 9), st.floats(5, 40), TURNS)
+@example(6.0, 2, 40.0, 0.0)
+def test_the_corner_of_a_table_between_two_nodes_is_found(end, elements, pressure, turn):
+    """The sole hangs over the table: what of it is above the table must not be below it, at any place of an element.
+
+    Its depth is computed anew. Tolerated is what `body.md` says: of the gap that nodes above the table have an eighth.
+    """
+    c, s = np.cos(turn), np.sin(turn)
+    turned = np.array([(c, s), (-s, c)])
+    corners = (np.array([(0, 0), (SIDE, 0), (SIDE, SIDE), (0, SIDE)]) @ turned).tolist()
+    line = (np.array([(-50, 0), (end, 0), (end, -50)]) @ turned).tolist()
+    zones = {"table": ("0", {"kind": "polyline", "points": line})}
+    zones["wall"] = ("3", {"kind": "plane", "point": (0, 0), "normal": turned[0].tolist()})
+    result = solve(block(corners, zones, {"2": {"pressure": pressure}, "1": {"pressure": 30.0}}, elements=elements))
+    assert result.boundary is not None
+    sole, xi = result.boundary.edge == 0, np.linspace(-1, 1, 33)
+    shapes = np.column_stack([xi * (xi - 1) / 2, 1 - xi**2, xi * (xi + 1) / 2])
+    moved = (result.boundary.points + result.boundary.displacement)[sole] @ turned.T
+    x, y = np.moveaxis(shapes @ moved, 2, 0)
+    depth = np.where(x < end, np.minimum(-y, end - x), 0.0).max()  # the nearer one of both faces
+    largest = np.hypot(*np.moveaxis(result.boundary.displacement, 2, 0)).max()
+    dip = np.where(moved[..., 0] < end, moved[..., 1], 0.0).max() / 8
+    second = np.ptp(result.boundary.displacement.reshape(-1, 2), axis=0) @ np.ones(2)
+    if depth > 0.01 * largest + max(dip, 0.0) + second**2 / SIDE:
+        assert not result.certified
 
 
 @settings(max_examples=12, deadline=None)

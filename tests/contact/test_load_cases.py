@@ -1,10 +1,11 @@
 """Changes without a new condensation: load cases and tools enter q = ε + Δ1 and the load linearly."""
 
 from functools import cache
+from random import Random
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from tool_problems import FREE, FREE_CASES, HELD, HELD_CASES, made
 
@@ -12,6 +13,7 @@ from bemcontact.analysis import solve as analysis
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
+from bemcontact.problem import Problem
 
 PROBLEMS = {"held": (HELD, HELD_CASES), "free": (FREE, FREE_CASES)}
 names = st.sampled_from([*PROBLEMS])
@@ -181,3 +183,49 @@ def test_forces_that_nothing_resists_are_refused_after_condensing_too():
 def test_none_is_empty():
     assert len(Tools.none(4, 2)) == len(LoadCases.none(4, 2, 0)) == 0
     assert Pinned.none(2, 1).violation(np.ones(3), np.ones(3)) is None
+
+
+@settings(max_examples=8, deadline=None)
+@given(
+    st.lists(st.sampled_from([0.1, 0.2, 0.3, 0.7, 1 / 3, 1.1]), min_size=2, max_size=4),
+    st.randoms(use_true_random=False),
+    st.sampled_from([1.0, 1e-3, 7e9]),
+)
+@example([0.1, 0.2], None, 1.0)
+def test_factors_that_cancel_leave_no_load(parts: list[float], shuffled: Random | None, force: float):
+    """Loads on a tool with factors such as 0.1 + 0.2 - 0.3, in any order, are those of the tool without them."""
+    values = {**{f"part {i}": part for i, part in enumerate(parts)}, "back": -sum(parts)}
+    names = [*values]
+    if shuffled is not None:
+        shuffled.shuffle(names)
+    cases = {name: {"tools": {"press": {"force": {"y": -force}}}} for name in names}
+    for own in (0.0, -2.0 * force):
+        problem = Problem.model_validate(
+            {
+                "name": "block under a press",
+                "material": {"young_modulus": 1000.0, "poisson_ratio": 0.3},
+                "boundary": {"outer": [
+                    {"name": name, "start": start, "elements": 2}
+                    for name, start in (("bottom", (0, 0)), ("right", (4, 0)), ("top", (4, 2)), ("left", (0, 2)))
+                ]},
+                "conditions": {"left": {"displacement": {"x": 0}}},
+                "contact_zones": {
+                    "table": {"edges": "bottom", "surface": {"kind": "plane", "point": (0, 0), "normal": (0, 1)}},
+                    "press": {"edges": "top", "surface": {"kind": "plane", "point": (0, 2), "normal": (0, -1)}},
+                },
+                "tools": {"press": {"zones": "press", "force": {"y": own}}},
+                "load_cases": cases,
+                "combinations": {"all": {name: values[name] for name in names}},
+            }
+        )  # fmt: skip
+        action = problem.with_case("all").tool_action("press")
+        assert action.load == pytest.approx((0.0, own, 0.0), rel=1e-14, abs=0.0)
+        contact = analysis.condense(problem.with_value("load_cases", cases))
+        for changed in (contact.with_factors(values), contact.with_factors(values).with_factors(values)):
+            assert changed.tools.force == pytest.approx(contact.tools.force, rel=1e-13, abs=0.0)
+            assert changed.motion_load == pytest.approx(contact.motion_load, rel=1e-13, abs=0.0)
+        if own:
+            assert analysis.solve(problem.with_case("all")).certified
+        else:
+            with pytest.raises(ProblemError, match="no load presses it onto its support"):
+                analysis.solve(problem.with_case("all"))

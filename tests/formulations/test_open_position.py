@@ -63,7 +63,7 @@ def test_amplitude_that_contact_determines_has_no_note():
 
 
 def block_under_ridge(length: float, stress: float) -> Problem:
-    """A block on a plane under a loaded tool whose flanks stand at a distance on both sides."""
+    """A block on a plane under a loaded tool with flanks at a distance on both sides; its corners are over nodes."""
     corners = np.array([(0, 0), (10, 0), (10, 10), (0, 10)]) * length
     ridge = np.array([(9, 10.5), (8, 10), (2, 10), (1, 10.5)]) * length
     names = ("bottom", "right", "top", "left")
@@ -73,7 +73,7 @@ def block_under_ridge(length: float, stress: float) -> Problem:
             "material": {"young_modulus": 1000.0 * stress, "poisson_ratio": 0.3},
             "boundary": {
                 "outer": [
-                    {"name": name, "start": tuple(start), "elements": 4}
+                    {"name": name, "start": tuple(start), "elements": 5}
                     for name, start in zip(names, corners.tolist(), strict=True)
                 ]
             },
@@ -109,3 +109,28 @@ def test_balance_of_loads_on_tools_has_no_unit(lengths: tuple[float, float]):
     one, other = (condense(block_under_ridge(length, 1.0)) for length in lengths)
     assert other.net_load == pytest.approx(one.net_load, rel=1e-9)
     assert other.pinned.length / lengths[1] == pytest.approx(one.pinned.length / lengths[0], rel=1e-12)
+
+
+def test_units_do_not_decide_a_sliding_tool_whose_corners_stand_over_nodes():
+    """Under a gap, the normals at its corners are those of its flat, so that no pressed point sees the tool slide."""
+    found = []
+    for length, stress in ((1.0, 1.0), (1e-12, 1e12), (7.3e8, 3e10), (3e-11, 1.0)):
+        for gap in (1e-7, 1e-3):
+            data = block_under_ridge(length, stress).model_dump()
+            c, s = np.cos(0.3), np.sin(0.3)
+            turn = np.array([(c, s), (-s, c)])
+            ridge = np.array([(9, 10.5), (8, 10 + gap), (2, 10 + gap), (1, 10.5)]) * length
+            for edge in data["boundary"]["outer"]:
+                edge["start"] = tuple((np.array(edge["start"]) @ turn).tolist())
+                edge.pop("end", None)
+            table, tool = (data["contact_zones"][name]["surface"] for name in ("table", "tool"))
+            table["normal"], tool["points"] = tuple(turn[1].tolist()), (ridge @ turn).tolist()
+            force = np.array([0.0, -30.0]) @ turn * stress * length
+            data["tools"]["tool"]["point"] = (np.array([5.0, 10.0]) * length @ turn).tolist()
+            data["tools"]["tool"]["force"] = {"x": force[0], "y": force[1], "moment": 3 * stress * length**2}
+            result = solve(Problem.model_validate(data))
+            assert result.certified
+            assert any(NOTE in note for note in result.notes)
+            found.append(result.solution.pressure / stress)
+    for pressure in found[2::2]:
+        np.testing.assert_allclose(pressure, found[0], rtol=0, atol=1e-9 * found[0].max())

@@ -4,6 +4,7 @@ import copy
 import warnings
 from collections.abc import Iterator
 from contextlib import suppress
+from math import isfinite
 from typing import Any
 
 import pytest
@@ -12,8 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import bemcontact
+from bemcontact.checks.arguments import LARGEST_NUMBER
 from bemcontact.problem.boundary import FARTHEST, Boundary
-from bemcontact.problem.validation import LARGEST_NUMBER
+from bemcontact.problem.validation import LARGEST_STATED
 from bemcontact.spec.yaml_1_2 import to_yaml
 
 SPEC = """\
@@ -77,13 +79,13 @@ def test_any_number_gives_a_problem_or_a_sentence_with_its_place(changes):
             bemcontact.Problem(**data)
 
 
-@pytest.mark.parametrize("value", [0.9 / LARGEST_NUMBER, 1e-300, 5e-324])
+@pytest.mark.parametrize("value", [0.9 / LARGEST_STATED, 1e-300, 5e-324])
 @pytest.mark.parametrize("key", ["material.young_modulus", "conditions.top.pressure", "loads.gravity.density"])
 def test_numbers_whose_powers_underflow_are_refused(key, value):
     problem = bemcontact.loads(SPEC)
     with pytest.raises(bemcontact.ProblemError, match="too small to compute with"):
         problem.with_value(key, value)
-    assert problem.with_value(key, 1.1 / LARGEST_NUMBER)
+    assert problem.with_value(key, 1.1 / LARGEST_STATED)
 
 
 @pytest.mark.parametrize("size", [1e-31, 1e-200, 5e-310])
@@ -134,3 +136,9 @@ def test_a_fillet_that_is_tangent_to_its_line_is_not_refused():
     fillet = "{name: round, kind: arc, center: [30, 10], radius: 10, angles: [0, 90], elements: 4}"
     text = SPEC.replace(right, f"{{name: right, start: [40, 0], elements: 2}}\n    - {fillet}")
     bemcontact.loads(text.replace("top, start: [40, 20]", "top, start: [30, 20]"))
+
+
+def test_products_of_three_stated_numbers_fit_into_arrays():
+    """Two limits have this reason: moments p L² are computed from three numbers, and squares of them are finite."""
+    assert LARGEST_STATED**3 < LARGEST_NUMBER
+    assert isfinite(LARGEST_NUMBER**2)

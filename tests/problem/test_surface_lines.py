@@ -122,3 +122,18 @@ def test_places_beyond_the_ends(line):
     surface = line(points=((-1.0, 0.0), (0.0, 0.0), (2.0, 0.0)))
     x = np.array([-3.0, -1.0 - 1e-6, -1.0, 0.0, 1.0, 2.0, 2.0 + 1e-6, 5.0])
     assert surface.beyond_ends(np.column_stack([x, np.full(8, 0.5)])).tolist() == [True, True, *[False] * 4, True, True]
+
+
+@given(st.integers(0, 628), st.floats(-6.5, 0), st.floats(0.05, 1.5), st.sampled_from([1e-9, 1.0, 3e7]))
+@example(30, -6.5, 0.5, 1.0)
+def test_a_point_opposite_to_the_end_of_a_segment_has_its_normal(hundredths, power, slope, size):
+    """Not that of the direction from the corner, which is round-off over the gap; on either side of a convex corner."""
+    c, s = np.cos(hundredths / 100), np.sin(hundredths / 100)
+    turned = size * np.array([(c, s), (-s, c)])
+    line = Polyline(points=tuple(map(tuple, (np.array([(-2, 0), (0, 0), (1, -slope)]) @ turned).tolist())))
+    for left in line.sides.lefts:
+        for shift in np.linspace(-1e-15, 1e-15, 5):
+            point = np.array(line.points[1]) + size * 10**power * left + shift * turned[0]
+            gap, normals = line.closest(point[None])
+            assert normals[0] == pytest.approx(left, abs=1e-13)
+            assert gap[0] == pytest.approx(size * 10**power, rel=1e-6)

@@ -1,5 +1,6 @@
 """Spec files, and the place and text of the error for each mistake."""
 
+import copy
 import json
 import math
 from dataclasses import dataclass
@@ -428,6 +429,28 @@ def test_text_that_is_no_yaml_mapping_is_refused_at_its_place(text, place, words
     assert len(lines) == 1
     assert lines[0].startswith(f"block.yaml:{place}: ")
     assert words in lines[0]
+
+
+@pytest.mark.parametrize("tagged", ["!!binary cQ==", "!!set {a}", "!other 1", "!!int x", "!!timestamp 2001-01-01"])
+def test_a_value_that_is_not_read_gets_one_line(tagged):
+    """The value is not judged a second time, as if nothing stood there, wherever it is."""
+
+    def places(data, path=()):
+        yield path
+        for key, value in data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ():
+            yield from places(value, (*path, key))
+
+    data = yaml.safe_load(SPEC)
+    for path in [*places(data)][1:]:
+        changed = copy.deepcopy(data)
+        below = changed
+        for key in path[:-1]:
+            below = below[key]
+        below[path[-1]] = "SENTINEL"
+        lines = error_lines(yaml.dump(changed, sort_keys=False).replace("SENTINEL", tagged))
+        own = [line for line in lines if f" {dotted(path)}: " in line]
+        assert len(own) == 1
+        assert "tag" in own[0]
 
 
 def test_all_mistakes_of_a_file_are_reported_in_order():
