@@ -17,7 +17,7 @@ LASTING = 0.6
 FINER = 0.75
 """Largest element at a place over that two passes before."""
 HIGH = 1.2
-"""Least pressure at a place over the mean pressure in its zone."""
+"""Least pressure at a place over the mean pressure of the contact in its zone."""
 KINK = 0.25
 """Exponent below which the pressure is infinite like a logarithm, as at a kink of the surface."""
 KNOWN_EXPONENTS = 1 / 2, 2 / 3
@@ -95,8 +95,9 @@ class Watch:
             zone = [*coarse.body.problem.contact_zones].index(place.zone)
             low = float(one.pressure[zone, elements].max())
             high = float(two.pressure[zone, np.concatenate([2 * elements, 2 * elements + 1])].max())
-            pressed = one.pressure[zone][one.pressure[zone] > 0]
-            history.growth.append(high / low if pressed.size and low > HIGH * pressed.mean() else 1.0)
+            pressed = coarse.weights * (one.pressure[zone] > 0)
+            force = float((pressed * one.pressure[zone]).sum())
+            history.growth.append(high / low if low * pressed.sum() > HIGH * force > 0 else 1.0)
             history.element.append(float(coarse.weights[elements].sum(axis=1).min()))
             if history.grows() or (history.exponent is not None and GROWING[0] < history.growth[-1] < GROWING[1]):
                 history.exponent = _snapped(float(np.log2(history.growth[-1])))

@@ -3,20 +3,23 @@
 Uniqueness. Let D = J be the tributary weights and λ the smallest eigenvalue of sym(DM) on the equilibrium space
 {v : ℓᵀv = 0}. For two solutions (p, δ) and (p', δ') the difference v = p - p' lies there, so that
 vᵀD(δ - δ') = vᵀDM v + ℓᵀv·(a - a') >= λ|v|², and complementarity makes the left side -pᵀDδ' - p'ᵀDδ <= 0.
-With λ > 0 the pressure is unique.
+With λ > 0 the pressure is unique. A diagonal S > 0 changes no sign: v = S f with f in {f : (Sℓ)ᵀf = 0}. So λ is that
+of S sym(DM) S, with S so that the diagonal is one (van der Sluis, Numer. Math. 14 (1969) 14-23). Then short elements
+beside long ones, whose weights differ by many orders, do not make λ small.
 
 Error bound. Let y >= 0 be a pressure in equilibrium, ℓᵀy = -load, a any amplitudes and δ = ε + Δ1 + M y + R a. Let s
 be the part of Dδ that should not be: s = Dδ where y > 0, s = min(Dδ, 0) where y = 0; so Dδ - s >= 0 and
 yᵀ(Dδ - s) = 0. For the solution (p*, δ*) and e = y - p*
 
-    λ|e|² <= eᵀDM e = eᵀD(δ - δ*) = eᵀs - yᵀDδ* - p*ᵀ(Dδ - s) <= |e||s|,
+    λ|S⁻¹e|² <= eᵀDM e = eᵀD(δ - δ*) = eᵀs - yᵀDδ* - p*ᵀ(Dδ - s) <= |S⁻¹e||Ss|,
 
-so that |y - p*| <= |s|/λ, and for any p at all |p - p*| <= |p - y| + |s|/λ. Here y is p cut off outside its contact set
-and brought into equilibrium by the smallest change. This sharpens Pang's bound for strongly monotone problems,
-(1 + ‖DM‖)/λ·|min(p, Dδ)| (Math. Oper. Res. 12(3), 1987, 474-484), which does not carry over to bodies with free
-motions: a small pressure on a body lifted off its support has a small min(p, Dδ), however far it is from the solution.
+so that |y - p*|ᵢ <= Sᵢ|Ss|/λ, and for any p at all |p - p*|ᵢ <= |p - y| + Sᵢ|Ss|/λ. Here y is p cut off outside its
+contact set and brought into equilibrium by the smallest change. This sharpens Pang's bound for strongly monotone
+problems, (1 + ‖DM‖)/λ·|min(p, Dδ)| (Math. Oper. Res. 12(3), 1987, 474-484), which does not carry over to bodies with
+free motions: a small pressure on a body lifted off its support has a small min(p, Dδ), however far it is from the
+solution.
 
-Where λ is not positive, `uniqueness` may still exclude other states, and gives a λ for the error bound.
+Where λ is not positive, `uniqueness` may still exclude other states, and gives a λ for the error bound with S = 1.
 """
 
 from dataclasses import dataclass
@@ -24,7 +27,7 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigvalsh
+from scipy.linalg import eigvalsh, qr
 
 from bemcontact.arrays import Array
 from bemcontact.assessment.residual import Residuals
@@ -60,7 +63,7 @@ class Certificate(Leaf):
     kind: CertificateKind
     """What is proved."""
     smallest_eigenvalue: float | None
-    """Smallest eigenvalue λ of sym(DM) on the equilibrium space, with D = J/max J and M of unit norm.
+    """Smallest eigenvalue λ of sym(JM) on the equilibrium space, with rows and columns scaled to a diagonal of ones.
 
     The pressure is unique if λ > 0. Null if equilibrium alone fixes the pressure.
     """
@@ -89,10 +92,9 @@ def certify(
     The tolerance is on penetration, tension, complementarity, equilibrium (12) and balance. Where the peak pressure is
     above T, gaps are judged relative to the displacement that goes with it, and never below their round-off.
     """
-    D, M = _scaled_compliance(contact)
-    eigenvalue = _smallest_eigenvalue(D, M, contact.equilibrium_space)
-    definite = eigenvalue is None or eigenvalue > contact.size * np.finfo(float).eps
-    bound = _error_bound(contact, solution, eigenvalue, definite)
+    stiff = _Definiteness.of(contact)
+    eigenvalue, definite = stiff.eigenvalue, stiff.definite
+    bound = _error_bound(contact, solution, stiff)
     unique = definite or bound is not None
     peak = contact.peak(solution.pressure)
     violation = _violation(residuals, tolerance, max(1.0, peak / contact.scales.pressure))
@@ -118,18 +120,34 @@ def _scaled_compliance(contact: CondensedContact) -> tuple[Array, Array]:
     return contact.weights / contact.weights.max(), contact.compliance * (T / U)
 
 
-def _smallest_eigenvalue(D: Array, M: Array, Z: Array) -> float | None:
-    """λ of Zᵀ sym(DM) Z, the columns of Z an orthonormal basis of {v : ℓᵀv = 0}."""
-    if not Z.shape[1]:
-        return None
-    weighted = D[:, None] * M
-    return float(eigvalsh(Z.T @ (weighted + weighted.T) @ Z / 2, subset_by_index=(0, 0))[0])
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Definiteness:
+    """λ of S sym(DM) S on the equilibrium space, and whether it is positive beyond round-off; None if there is none."""
+
+    scales: Array
+    eigenvalue: float | None
+    definite: bool
+
+    @classmethod
+    def of(cls, contact: CondensedContact) -> "_Definiteness":
+        """S makes the diagonal one, where this is positive."""
+        D, M = _scaled_compliance(contact)
+        diagonal = D * M.diagonal()
+        S = 1 / np.sqrt(np.where(diagonal > 0, diagonal, D))
+        ell, n = S[:, None] * contact.equilibrium, contact.size
+        if ell.shape[1] >= n:
+            return cls(scales=S, eigenvalue=None, definite=True)
+        K = S[:, None] * (D[:, None] * M + M.T * D) * S / 2
+        if ell.shape[1]:
+            Z = qr(ell / np.linalg.norm(ell, axis=0))[0][:, ell.shape[1] :]
+            K = Z.T @ K @ Z
+        smallest = float(eigvalsh(K, subset_by_index=(0, 0))[0])
+        round_off = n * np.finfo(float).eps * float(np.abs(K).sum(axis=1).max())
+        return cls(scales=S, eigenvalue=smallest, definite=smallest > round_off)
 
 
-def _error_bound(
-    contact: CondensedContact, solution: ContactSolution, eigenvalue: float | None, definite: bool
-) -> float | None:
-    """|p - y| + |s|/λ, as in the module's docstring, in units of pressure; s includes the round-off of δ.
+def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: _Definiteness) -> float | None:
+    """|p - y| + max Sᵢ |Ss|/λ, as in the module's docstring, in units of pressure; s includes the round-off of δ.
 
     If the compliance is not definite, λ is that of `uniqueness`; None if there is none.
     """
@@ -141,7 +159,7 @@ def _error_bound(
     if y is None:
         return None
     off = float(np.linalg.norm(p - y)) + _round_off_of_equilibrium(contact, y)
-    if eigenvalue is None:
+    if stiff.eigenvalue is None:
         return off * T
     q, R = contact.offset / U, contact.rigid_motions
     a = contact.amplitudes_of(gap - q - M @ y)
@@ -150,12 +168,14 @@ def _error_bound(
     round_off = len(D) * np.finfo(float).eps * D * (np.abs(q) + np.abs(M) @ y + np.abs(R) @ np.abs(a))
     work = np.where(y > 0, 0.0, np.maximum(D * delta - round_off, 0.0))
     round_off = np.where((y > 0) | (D * delta < round_off), round_off, 0.0)
-    residual = float(np.linalg.norm(s) + np.linalg.norm(round_off))
-    if not definite:
+    S = stiff.scales if stiff.definite else np.ones_like(D)
+    residual = float(np.linalg.norm(S * s) + np.linalg.norm(S * round_off))
+    eigenvalue: float | None = stiff.eigenvalue
+    if not stiff.definite:
         ell, _ = _unit_rows(contact)
         state = NearState(pressure=y, contact_set=y > 0, equilibrium=ell, work=work, residual=residual)
         eigenvalue = effective_eigenvalue(state, D, M, contact.equilibrium_space)
-    return None if eigenvalue is None else (off + residual / eigenvalue) * T
+    return None if eigenvalue is None else (off + float(S.max()) * residual / eigenvalue) * T
 
 
 def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> float:
