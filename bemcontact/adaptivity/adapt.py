@@ -51,8 +51,9 @@ def meshed(
 ) -> Meshed:
     """Condense a problem on the mesh that it states, or on one that is found for the accuracy asked.
 
-    The errors of a stated mesh are estimated, unless no accuracy is asked for or `errors` is false. `singular` are
-    infinite pressures under each load case that the search for another mesh of the problem recognized.
+    A found mesh is cut as `problem.mesh.refine` says. The errors of a stated mesh and of a cut one are estimated,
+    unless no accuracy is asked for or `errors` is false. `singular` are infinite pressures under each load case that
+    the search for another mesh of the problem recognized.
 
     Raises
     ------
@@ -62,8 +63,20 @@ def meshed(
         If the equations of the body have no unique solution.
     """
     progress = progress or (lambda _: None)
-    if problem.adapts:
-        return _found(problem, progress)
+    if not problem.adapts:
+        return _stated(problem, progress, errors, singular)
+    found = _found(cut(problem, 1), progress)
+    if problem.mesh.refine == 1:
+        return found
+    finer = _stated(found.problem.refined(problem.mesh.refine), progress, errors, found.singular)
+    known = tuple(mine.knowing(its) for mine, its in zip(finer.accuracies, found.accuracies, strict=True))
+    return replace(finer, accuracies=known, singular=found.singular)
+
+
+def _stated(
+    problem: Problem, progress: Callable[[str], object], errors: bool, singular: Sequence[Sequence[Singularity]]
+) -> Meshed:
+    """Condense a problem on its mesh, and estimate the errors by bisecting every element."""
     asked, refine = problem.asked_accuracy, problem.mesh.refine
     if asked is None or not errors:
         return _unsolved(problem, asked, NONE_ASKED if asked is None else NOT_ESTIMATED)

@@ -4,7 +4,16 @@ from dataclasses import dataclass
 from typing import Unpack
 
 from bemcontact.analysis.result import Result, ResultRecord
-from bemcontact.analysis.solve import Prepared, Progress, Stopwatch, assessed, ensure_kind, mesh_of
+from bemcontact.analysis.solve import (
+    AskedAccuracy,
+    Prepared,
+    Progress,
+    Stopwatch,
+    asking,
+    assessed,
+    ensure_kind,
+    mesh_of,
+)
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.search import with_start_read
@@ -96,6 +105,8 @@ def solve_cases(
     problem: Problem,
     formulation: FormulationName | str = FormulationName.COMPLEMENTARITY,
     weights: Weights | str = Weights.TRIBUTARY,
+    *,
+    accuracy: AskedAccuracy = "stated",
     **options: Unpack[SolveKeywords],
 ) -> CaseResults:
     """Solve all load cases and combinations of a problem by one formulation; the body is condensed once.
@@ -103,7 +114,7 @@ def solve_cases(
     Parameters
     ----------
     problem : with load cases
-    formulation, weights, options : as of `bemcontact.solve`
+    formulation, weights, accuracy, options : as of `bemcontact.solve`; all cases share one mesh
 
     Returns
     -------
@@ -114,7 +125,9 @@ def solve_cases(
     ProblemError
         If the problem states no load case, or one of them has no answer; otherwise as of `bemcontact.solve`.
     """
-    return solve_cases_with(SolveOptions.of(formulation, weights, **options), problem)
+    read = SolveOptions.of(formulation, weights, **options)
+    ensure_kind(problem, Problem)
+    return solve_cases_with(read, asking(problem, accuracy))
 
 
 def solve_cases_with(options: SolveOptions, problem: Problem, progress: Progress | None = None) -> CaseResults:

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Unpack
+from typing import Literal, TypeVar, Unpack
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
@@ -41,6 +41,9 @@ Progress = Callable[[str, str], object]
 """Takes the name of a stage and how far it has come; the latter is empty when the stage begins."""
 
 
+Stated = TypeVar("Stated", Problem, CondensedContact)
+AskedAccuracy = float | Literal["stated", "default"] | None
+"""A relative accuracy as `Problem.accuracy` has it; "stated" is that of the problem."""
 NO_MESH = Accuracy(asked=None, reason="a condensed problem has no mesh whose errors could be estimated")
 """Accuracy of a problem that is given condensed."""
 
@@ -66,12 +69,13 @@ class Stopwatch:
             self.progress(name, now)
 
 
-def condense(problem: Problem) -> CondensedContact:
+def condense(problem: Problem, *, accuracy: AskedAccuracy = "stated") -> CondensedContact:
     """Condense a body to its contact points.
 
     Parameters
     ----------
     problem : Problem
+    accuracy : relative, for which a mesh is found, in place of that of the problem; None if the stated mesh is wanted
 
     Returns
     -------
@@ -87,7 +91,7 @@ def condense(problem: Problem) -> CondensedContact:
         If the equations of the body have no unique solution.
     """
     ensure_kind(problem, Problem)
-    return meshed(problem, errors=False).condensation.contact
+    return meshed(asking(problem, accuracy), errors=False).condensation.contact
 
 
 def ensure_kind(problem: object, *kinds: type) -> None:
@@ -96,6 +100,15 @@ def ensure_kind(problem: object, *kinds: type) -> None:
     if not isinstance(problem, kinds):
         names = " or a ".join(kind.__name__ for kind in kinds)
         raise ProblemError(f"a {names} is needed, found {shown(problem)}; bemcontact.load reads one from a file")
+
+
+def asking(problem: Stated, accuracy: AskedAccuracy) -> Stated:
+    """The problem with another accuracy, unless that of the problem is wanted."""
+    if isinstance(accuracy, str) and accuracy == "stated":
+        return problem
+    if isinstance(problem, CondensedContact):
+        raise ProblemError(f"accuracy is {shown(accuracy)}, but a condensed problem has its mesh; give the Problem")
+    return problem.with_value("accuracy", accuracy)
 
 
 def ensure_acting(problem: Problem | CondensedContact) -> None:
@@ -113,6 +126,7 @@ def solve(
     formulation: FormulationName | str = FormulationName.COMPLEMENTARITY,
     weights: Weights | str = Weights.TRIBUTARY,
     *,
+    accuracy: AskedAccuracy = "stated",
     progress: Callable[[int], object] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> Result:
@@ -123,6 +137,7 @@ def solve(
     problem : Problem or CondensedContact
     formulation : "complementarity", the direct solver, or "qp3", "qp1" or "qp2"
     weights : of the objective of QP1, QP2 and QP3, a `Weights` or its name
+    accuracy : relative, to which a mesh is found, in place of that of the problem; None: nothing is said about errors
     progress : called after the search from each of several random starts with the number of those done
     options : penalty, rows, equilibrium, start, seed, starts, max_iterations, polish; `bemcontact.SolveOptions` says
         what each means, and its default
@@ -130,7 +145,8 @@ def solve(
     Returns
     -------
     Result
-        Check `certified`: a solver that fails is a `Status`, not an error.
+        Check `holds`: whether it is certified and as accurate as was asked. A solver that fails is a `Status`, not an
+        error.
 
     Raises
     ------
@@ -142,7 +158,9 @@ def solve(
         If the formulation needs a convex program and this is none.
     """
     ensure_callable(progress, "progress")
-    return solve_with(SolveOptions.of(formulation, weights, **options), problem, progress)
+    read = SolveOptions.of(formulation, weights, **options)
+    ensure_kind(problem)
+    return solve_with(read, asking(problem, accuracy), progress)
 
 
 def solve_with(

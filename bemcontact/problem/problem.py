@@ -11,6 +11,8 @@ from pydantic import (
     PrivateAttr,
     Strict,
     ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
     model_validator,
 )
 
@@ -90,6 +92,15 @@ def _has_contact(value: dict[str, Any]) -> dict[str, Any]:
     return value
 
 
+def _accuracy(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+    """Say in one sentence what an accuracy is, in place of one for each kind of value."""
+    try:
+        return handler(value)
+    except ValidationError:
+        message = "expected a relative accuracy between 0 and 1, such as 0.01 for 1 percent, or null for none; found "
+        raise invalid(message + shown(value)) from None
+
+
 class Problem(SpecModel):
     """A body in plane strain or plane stress, its conditions and loads, and the rigid surfaces that it may touch.
 
@@ -127,7 +138,9 @@ class Problem(SpecModel):
     """The combinations by name: sums of load cases, each with a factor."""
     case: Name | None = None
     """The load case or combination to solve; if left out, all of them are solved one after the other."""
-    accuracy: Annotated[float, Strict(), Field(gt=0, lt=1)] | Literal["default"] | None = "default"
+    accuracy: Annotated[
+        Annotated[float, Strict(), Field(gt=0, lt=1)] | Literal["default"] | None, WrapValidator(_accuracy)
+    ] = "default"
     """The accuracy to reach, relative: 0.003 is 0.3 %. A mesh is found on which no error bar is larger. If left out,
     it is 0.01, and a mesh that all edges state is taken as it is: its errors are estimated. With null none is asked
     for, all edges state their elements, and errors are not estimated."""

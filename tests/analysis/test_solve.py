@@ -21,7 +21,7 @@ FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
 
 @pytest.fixture(scope="module")
 def cylinder() -> Problem:
-    return bemcontact.load("models/cylinder_on_plane.yaml")
+    return bemcontact.load("models/cylinder_on_plane.yaml", variant="stated mesh")
 
 
 def half_width(result: bemcontact.Result) -> float:
@@ -361,8 +361,7 @@ assert bemcontact.solve(problem).certified
 bemcontact.sensitivities(problem)
 cases = bemcontact.load("models/gallery/roller_in_v_block.yaml")
 assert bemcontact.solve_cases(cases).certified
-fitted = bemcontact.load("models/cylinder_on_plane.yaml").with_value("accuracy", 1e-2)
-assert bemcontact.solve(fitted).certified
+assert bemcontact.solve(bemcontact.load("models/cylinder_on_plane.yaml")).certified
 print([name for name in ("cvxpy", "clarabel", "osqp", "scs", "highspy", "quadprog") if name in sys.modules])
 """
     answer = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
@@ -374,3 +373,19 @@ def test_the_direct_solver_is_the_default(cylinder, formulation, solver):
     result = bemcontact.solve(cylinder) if formulation is None else bemcontact.solve(cylinder, formulation)
     assert result.solution.solver == solver
     assert result.solution.formulation == (formulation or "complementarity")
+
+
+def test_an_accuracy_is_asked_for_in_place_of_that_of_the_problem(cylinder):
+    """None says nothing about errors; a number finds a mesh, nowhere coarser than the one that the problem states."""
+    stated = bemcontact.solve(cylinder)
+    assert stated.accuracy.asked is None
+    judged = bemcontact.solve(cylinder.with_value("mesh.adapt", False), accuracy="default")
+    assert (judged.accuracy.asked, judged.degrees_of_freedom) == (0.01, stated.degrees_of_freedom)
+    fine = bemcontact.solve(cylinder, accuracy=0.002)
+    assert (fine.accuracy.asked, fine.accuracy.met) == (0.002, True)
+    assert fine.degrees_of_freedom > stated.degrees_of_freedom
+    assert bemcontact.condense(cylinder, accuracy=0.002).size == fine.contact.size
+    with pytest.raises(bemcontact.ProblemError, match=r"a condensed problem has its mesh"):
+        bemcontact.solve(stated.contact, accuracy=0.01)
+    with pytest.raises(bemcontact.ProblemError, match=r"^accuracy: "):
+        bemcontact.solve(cylinder, accuracy=2.0)
