@@ -90,6 +90,7 @@ def sensitivities(
     Returns
     -------
     Sensitivities
+        On the mesh of the problem or on one that is found, with the error bars of the contact state.
 
     Raises
     ------
@@ -100,18 +101,22 @@ def sensitivities(
     """
     ensure_acting(problem)
     given = changes if changes is None or isinstance(changes, Mapping) else _keys(changes)
-    stated = _with_mesh(problem) if isinstance(problem, Problem) else None
-    contact = problem if isinstance(problem, CondensedContact) else condense(stated or problem)
+    if isinstance(problem, CondensedContact):
+        return _sensitivities(problem, None, given)
+    found = meshed(problem)
+    (accuracy,) = found.accuracies
+    return replace(_sensitivities(found.condensation.contact, found.problem, given), accuracy=accuracy)
+
+
+def _sensitivities(
+    contact: CondensedContact, problem: Problem | None, given: Mapping[str, Change] | Sequence[str] | None
+) -> Sensitivities:
+    """Sensitivities of a condensed problem, and of the problem on its mesh that it came from."""
     if given is None or isinstance(given, Mapping):
         return sensitivities_of_contact(contact, given)
     solution, known = complementarity.solve(contact), contact.changes
-    wanted = {key: known[key] if key in known else _change(contact, stated, key, solution.pressure) for key in given}
+    wanted = {key: known[key] if key in known else _change(contact, problem, key, solution.pressure) for key in given}
     return sensitivities_of_contact(contact, wanted, solution)
-
-
-def _with_mesh(problem: Problem) -> Problem:
-    """The problem on its mesh, which is found if it is not stated."""
-    return meshed(problem, errors=False).problem if problem.adapts else problem
 
 
 def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Problem, Mapping[float, Meshed]]:
@@ -123,7 +128,10 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Prob
         return problem, {}
     one = meshed(Variation(problem, key).at(start))
     boundary, refine = one.problem.boundary, one.problem.mesh.refine
-    mesh = problem.mesh.model_copy(update={"adapt": True, "refine": refine})
+    boundary = boundary.with_element_ends(
+        {edge.name: edge.breakpoints(refine)[1:-1].tolist() for edge in boundary.edges}
+    )
+    mesh = problem.mesh.model_copy(update={"adapt": True, "refine": 1})
     finer = problem.model_copy(update={"boundary": boundary, "mesh": mesh})
     two = meshed(Variation(finer, key).at(end))
     parts = ("boundary", "mesh", "accuracy")

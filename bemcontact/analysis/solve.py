@@ -11,7 +11,7 @@ from bemcontact.adaptivity.singularities import Singularity
 from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.penetration import penetration
 from bemcontact.analysis.result import Result
-from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
@@ -44,8 +44,6 @@ Progress = Callable[[str, str], object]
 Stated = TypeVar("Stated", Problem, CondensedContact)
 AskedAccuracy = float | Literal["stated", "default"] | None
 """A relative accuracy as `Problem.accuracy` has it; "stated" is that of the problem."""
-NO_MESH = Accuracy(asked=None, reason="a condensed problem has no mesh whose errors could be estimated")
-"""Accuracy of a problem that is given condensed."""
 
 
 @dataclass(kw_only=True)

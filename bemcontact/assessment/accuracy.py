@@ -88,3 +88,7 @@ class Accuracy(Leaf):
         kept = [item for item in self.bars if item.quantity != "peak" or item.zone not in known]
         now = replace(self, bars=(*known.values(), *kept))
         return now if self.met is None else replace(now, met=self.asked is not None and now.worst <= self.asked)
+
+
+NO_MESH = Accuracy(asked=None, reason="a condensed problem has no mesh whose errors could be estimated")
+"""Accuracy of a problem that is given condensed."""

@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import computed_field
 
 from bemcontact.arrays import Array, IntArray, freeze_arrays, real_array
+from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint, resting_ends
 from bemcontact.checks.arguments import shown
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -91,6 +92,9 @@ class Sensitivities(Leaf):
     """Indices of the points that are about to enter or leave contact: no pressure and no gap."""
     notes: tuple[str, ...]
     """Remarks on the contact state."""
+    accuracy: Accuracy = NO_MESH
+    """Accuracy of the mesh in the contact state: error bars of the peak, of forces, and of the ends that move. The
+    derivatives themselves have none."""
 
     def __getitem__(self, key: str) -> Sensitivity:
         """Return the sensitivity to a parameter; `ProblemError` if there is none of that key."""
