@@ -122,21 +122,35 @@ def _sensitivities(
 def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Problem, Mapping[float, Meshed]]:
     """The problem on a mesh that is accurate at both ends of a path, if a mesh is to be found.
 
-    With it comes what the searches at both ends found, for only a search recognizes infinite pressures.
+    With it comes what the searches at the ends found, for only a search recognizes infinite pressures. At one end the
+    load may fail to press the body onto its support.
     """
     if not problem.adapts:
         return problem, {}
-    one = meshed(Variation(problem, key).at(start))
-    boundary, refine = one.problem.boundary, one.problem.mesh.refine
-    boundary = boundary.with_element_ends(
-        {edge.name: edge.breakpoints(refine)[1:-1].tolist() for edge in boundary.edges}
-    )
+    found: dict[float, Meshed] = {}
+    refused: list[ProblemError] = []
+    on_mesh = problem
+    for value in (start, end):
+        try:
+            found[value] = meshed(Variation(_no_coarser(problem, on_mesh), key).at(value))
+        except ProblemError as error:
+            refused.append(error)
+        else:
+            parts = {name: getattr(found[value].problem, name) for name in ("boundary", "mesh", "accuracy")}
+            on_mesh = problem.model_copy(update=parts)
+    if not found:
+        raise refused[0]
+    return on_mesh, found
+
+
+def _no_coarser(problem: Problem, on_mesh: Problem) -> Problem:
+    """The problem with the elements of a mesh that was found for it, of which another one is to be made."""
+    if on_mesh is problem:
+        return problem
+    refine = on_mesh.mesh.refine
+    ends = {edge.name: edge.breakpoints(refine)[1:-1].tolist() for edge in on_mesh.boundary.edges}
     mesh = problem.mesh.model_copy(update={"adapt": True, "refine": 1})
-    finer = problem.model_copy(update={"boundary": boundary, "mesh": mesh})
-    two = meshed(Variation(finer, key).at(end))
-    parts = ("boundary", "mesh", "accuracy")
-    on_mesh = problem.model_copy(update={name: getattr(two.problem, name) for name in parts})
-    return on_mesh, {start: one, end: two}
+    return problem.model_copy(update={"boundary": on_mesh.boundary.with_element_ends(ends), "mesh": mesh})
 
 
 def _accuracy(varied: Variation, value: float, found: Meshed | None) -> Accuracy:

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 from tool_problems import BETWEEN, made
 
 import bemcontact
+from bemcontact.adaptivity.adapt import meshed
 from bemcontact.analysis.compare import study
 from bemcontact.analysis.follow import between, follow, sensitivities, stated_value
 from bemcontact.analysis.solve import condense
@@ -125,7 +127,7 @@ def test_invalid_parameters_are_refused(cylinder: Problem, key: str, to: float, 
 
 def on_a_circle() -> tuple[Problem, str]:
     """The small Hertz problem on a circle below, and the path to it."""
-    problem = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml")
+    problem = meshed(bemcontact.load(MODELS / "gallery" / "hertz_small.yaml")).problem
     (zone,) = problem.contact_zones
     key = f"contact_zones.{zone}.surface"
     return problem.with_value(key, {"kind": "circle", "center": [0, -100], "radius": 100, "body": "outside"}), key
@@ -162,11 +164,27 @@ def test_two_ends_that_nothing_presses_are_refused(cylinder: Problem):
         between(Variation(cylinder.with_value(PRESSURE, 0.0), "contact_zones.foot.surface.point[1]"), 0.0, 1.0)
 
 
+@cache
+def on_eccentric_punch() -> Problem:
+    """On the mesh of one load, so that a problem and a path share it."""
+    return meshed(bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("off the middle")).problem
+
+
+def test_a_mesh_is_found_at_the_end_that_presses():
+    """At the other end the force pulls at the punch, and there is no state for which a mesh could be found."""
+    problem = bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("off the middle")
+    found = follow(problem.with_value("accuracy", 0.05), "tools.punch.force.y", 2000.0, -2000.0)
+    assert found.reaches == pytest.approx((-2000.0, -800.0), rel=1e-9)  # where the moment of 4000 tips it off its edge
+    assert found.start_accuracy.met
+    assert found.end_accuracy.met is None
+    assert found.end_accuracy.reason
+
+
 @pytest.mark.parametrize("to", [2000.0, 6000.0, 9000.0])
 @pytest.mark.parametrize("backwards", [False, True])
 def test_load_that_turns_around_is_followed_to_where_the_tool_lifts_off(to: float, backwards: bool):
     """At no load, wherever that is between the ends: also half-way, or nearer to the end that presses."""
-    problem = bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("off the middle")
+    problem = on_eccentric_punch()
     problem = problem.with_value("load_cases.off the middle.tools.punch.force.moment", 0.0)
     key, ends = "tools.punch.force.y", (-2000.0, to)
     path = follow(problem, key, *(ends if backwards else ends[::-1])).path
@@ -178,8 +196,8 @@ def test_load_that_turns_around_is_followed_to_where_the_tool_lifts_off(to: floa
 
 def test_factor_of_a_load_case_is_known_all_along_a_path_from_where_nothing_presses():
     """(1 - t) 0 + t 1, which `with_factors` builds on, though the state at factor 0 cannot be condensed by itself."""
-    problem = bemcontact.load(MODELS / "gallery" / "roller_in_v_block.yaml")
-    data: dict[str, Any] = problem.model_dump(exclude={"reference"}) | {"combinations": {}}
+    problem = meshed(bemcontact.load(MODELS / "gallery" / "roller_in_v_block.yaml").with_case("still")).problem
+    data: dict[str, Any] = problem.model_dump(exclude={"reference"}) | {"combinations": {}, "case": None}
     data["tools"]["plate"]["force"]["y"] = 0.0
     data["load_cases"] = {"press": {"tools": {"plate": {"force": {"y": -400.0}}}}}
     problem = Problem(**data).with_case("press")

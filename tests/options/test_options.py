@@ -69,6 +69,6 @@ def test_the_docstring_has_the_meaning_of_each_option(options):
 def test_an_option_of_the_problem_is_refused_with_the_call_to_write(option: str):
     problem = bemcontact.load(MODEL)
     with pytest.raises(OptionError, match=rf"'{option}'.*write problem\.") as refused:
-        bemcontact.solve(problem, **{option: 2})
+        bemcontact.compare(problem, **{option: 2})
     method = str(refused.value).rpartition("problem.")[2].partition("(")[0]
     assert callable(getattr(problem, method))
