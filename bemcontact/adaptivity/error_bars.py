@@ -37,11 +37,21 @@ def error_bars(
     """Error bars of all quantities of one load case on the fine mesh, or on the coarse one.
 
     The error on the coarse mesh is at most the change, plus the error on the fine one. Where the coarse mesh does not
-    resolve contact in one place, none of its error bars is known: forces and displacements depend on all places.
+    resolve contact in one place, none of its error bars is known: forces and displacements depend on all places. Then
+    the note says what the change alone would give.
     """
     bars = tuple(_bars(difference, singularities, of_fine))
     note = "" if of_fine else _unresolved(difference)
-    return tuple(replace(item, bar=None, note=item.note or note) for item in bars) if note else bars
+    return (
+        tuple(replace(item, bar=None, note=item.note or _with_change(note, item.bar)) for item in bars)
+        if note
+        else bars
+    )
+
+
+def _with_change(note: str, bar: float | None) -> str:
+    """Why an error is not known, and what would follow from the change of a number."""
+    return f"{note}; by the change when every element is bisected it is about {100 * bar:.2g} %" if bar else note
 
 
 def _unresolved(difference: MeshDifference) -> str:

@@ -18,6 +18,7 @@ from statistics import median
 from adaptive_problems import Case, problems
 
 import bemcontact
+from bemcontact import Problem
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.fields import solved
 from bemcontact.assessment.accuracy import ErrorBar
