@@ -44,7 +44,7 @@ OVERHANG = 0.14
 """Length of a rigid surface beyond its contact zone, and beyond the body, over the size of what is shown."""
 LEVEL = 1e-3
 """Difference from the peak pressure, over that, below which a point counts as one at the peak."""
-MANY_ELEMENTS = 60
+MANY_ELEMENTS = 36
 """Number of elements from which their nodes alone show the curves."""
 
 
