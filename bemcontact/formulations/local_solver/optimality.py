@@ -256,7 +256,8 @@ def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
     slope = float(progress.gradient @ d)
     zero = statement.rounding(d)
     no_rows = statement.A[:0]
-    level = progress.level(d, progress.fine_zero(d[:0], no_rows, no_rows.T, 0.0 * d))
+    terms = progress.terms(d[:0], no_rows)
+    level = progress.level(d, progress.fine_zero(terms, no_rows, no_rows.T, 0.0 * d))
     return d if curvature < -zero or (curvature <= zero and slope < -level) else None
 
 

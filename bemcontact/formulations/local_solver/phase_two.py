@@ -183,10 +183,9 @@ class Descent:
             if hessian.pending is None and self._settled():
                 newton, place = self._next(working.multipliers(progress.gradient))
                 if not newton:
-                    if place is None:
+                    noise = self.idle > 2 * working.number + 10  # of the multipliers: releases lead nowhere
+                    if place is None or noise:
                         return PhaseTwoEnd(ending=Ending.STATIONARY)
-                    if self.idle > 2 * working.number + 10:  # multipliers are noise: releases lead nowhere
-                        return PhaseTwoEnd(ending=Ending.INACCURATE)
                     self._release(place)
             if progress.exhausted:
                 return PhaseTwoEnd(ending=Ending.LIMIT)
@@ -295,21 +294,25 @@ class Descent:
 
     def _fine_zero(self, multipliers: Array) -> Array:
         """Size of each component of the gradient that counts as zero (n,), with multipliers (n + r,)."""
-        working, n = self.working, self.progress.x.size
-        return self.progress.fine_zero(multipliers[n:], working.W, working.N, self._reach())
+        working, of_rows = self.working, multipliers[self.progress.x.size :]
+        terms = self.progress.terms(of_rows, working.W)
+        return self.progress.fine_zero(terms, working.W, working.N, self._reach(terms))
 
-    def _reach(self) -> Array:
-        """Size of the numbers whose rounding each component of the point has (n,), estimated by a sample."""
-        # Each row is satisfied up to the rounding of its terms, on the way to the point too. A change of the rows moves
-        # the point by N and by a Newton step. The rows change with irregular phases, since with signs the movements by
-        # several rows of whole numbers can cancel.
+    def _reach(self, terms: Array) -> Array:
+        """Size of the numbers whose rounding each component of the point has (n,), estimated by a sample.
+
+        `terms` (n,) are those of the gradient.
+        """
+        # A Newton step has the rounding of the gradient. Each row is satisfied up to the rounding of its terms, on the
+        # way to the point too. A change of the rows moves the point by N and by a Newton step. Terms and rows change
+        # with irregular phases, since with signs the movements by several rows of whole numbers can cancel.
         working, hessian, size = self.working, self.hessian, self.progress.travelled
-        if working.size == 0:
-            return size
-        phases = np.square(np.arange(working.size, dtype=float))
-        terms = np.abs(working.W).dot(size)[:, None] * np.array([np.cos(phases), np.sin(phases)]).T
-        moved = working.N.dot(terms)
-        moved -= hessian.Z.dot(hessian.Z.T.dot(self.progress.statement.H.dot(moved)))
+        Z = hessian.Z
+        moved = Z.dot(Z.T.dot(terms[:, None] * _phases(size.size)))
+        if working.size:
+            by_rows = working.N.dot(np.abs(working.W).dot(size)[:, None] * _phases(working.size))
+            by_rows -= Z.dot(Z.T.dot(self.progress.statement.H.dot(by_rows)))
+            moved = np.hypot(moved, by_rows)
         return np.hypot(moved[:, 0], moved[:, 1])
 
     def _advance(
@@ -334,6 +337,12 @@ class Descent:
         self.value += change
         progress.write(2, self.value / progress.unit, step, added, self.dropped, working.number, nonpositive)
         self.dropped, self.idle = None, 0
+
+
+def _phases(count: int) -> Array:
+    """Cosines and sines (count, 2) of irregular angles."""
+    angles = np.square(np.arange(count, dtype=float))
+    return np.array([np.cos(angles), np.sin(angles)]).T
 
 
 def _change(block: BlockingConstraint, slope: float, curvature: float) -> float:

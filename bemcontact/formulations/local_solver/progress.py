@@ -89,20 +89,22 @@ class Progress:
         """cᵀx + xᵀHx/2."""
         return 0.5 * float(self.x.dot(self.gradient + self.statement.c))
 
-    def fine_zero(self, of_rows: Array, rows: Array, inverse: Array, reach: Array) -> Array:
+    def terms(self, of_rows: Array, rows: Array) -> Array:
+        """Sum of the sizes of the terms of each component of the gradient (n,), multipliers of the rows included."""
+        H, c, _ = self.statement.absolute
+        terms = H.dot(np.abs(self.x)) + c
+        return terms + np.abs(of_rows).dot(np.abs(rows)) if of_rows.size else terms
+
+    def fine_zero(self, terms: Array, rows: Array, inverse: Array, reach: Array) -> Array:
         """Size of each component of the gradient that counts as zero, relative to its own terms (n,).
 
         The variables may differ in size by many orders, so each component has its own tolerance. Rounding in one
-        component changes others through the multipliers of the rows (r,), the rows (r, n) and their right inverse
-        (n, r). The components of the point have the rounding of numbers of the size `reach` (n,).
+        component changes others through the multipliers of the rows (r, n), which have the right inverse (n, r). The
+        components of the point have the rounding of numbers of the size `reach` (n,).
         """
-        H, c, _ = self.statement.absolute
-        W, terms = np.abs(rows), H.dot(np.abs(self.x)) + c
-        if of_rows.size:
-            terms += np.abs(of_rows).dot(W)
-        lost = EPS * np.maximum(terms, H.dot(np.maximum(self.travelled, reach)))
-        if of_rows.size:
-            lost += lost.dot(np.abs(inverse)).dot(W)
+        lost = EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(self.travelled, reach)))
+        if rows.size:
+            lost += lost.dot(np.abs(inverse)).dot(np.abs(rows))
         return np.maximum(FINE * self.options.optimality_tolerance * terms, 100.0 * lost)
 
     def level(self, direction: Array, zero: Array) -> float:
