@@ -4,8 +4,9 @@ Uniqueness. Let D = J be the tributary weights and λ the smallest eigenvalue of
 {v : ℓᵀv = 0}. For two solutions (p, δ) and (p', δ') the difference v = p - p' lies there, so that
 vᵀD(δ - δ') = vᵀDM v + ℓᵀv·(a - a') >= λ|v|², and complementarity makes the left side -pᵀDδ' - p'ᵀDδ <= 0.
 With λ > 0 the pressure is unique. A diagonal S > 0 changes no sign: v = S f with f in {f : (Sℓ)ᵀf = 0}. So λ is that
-of S sym(DM) S, with S so that the diagonal is one (van der Sluis, Numer. Math. 14 (1969) 14-23). Then short elements
-beside long ones, whose weights differ by many orders, do not make λ small.
+of S sym(DM) S, with S so that the diagonal is one (van der Sluis, Numer. Math. 14 (1969) 14-23); it is less where a
+compliance is below 1e-10 of ‖M‖, which may be round-off. Then short elements beside long ones, whose weights differ by
+many orders, do not make λ small. What round-off in D M and in the space may have added to λ is taken off.
 
 Error bound. Let y >= 0 be a pressure in equilibrium, ℓᵀy = -load, a any amplitudes and δ = ε + Δ1 + M y + R a. Let s
 be the part of Dδ that should not be: s = Dδ where y > 0, s = min(Dδ, 0) where y = 0; so Dδ - s >= 0 and
@@ -13,8 +14,10 @@ yᵀ(Dδ - s) = 0. For the solution (p*, δ*) and e = y - p*
 
     λ|S⁻¹e|² <= eᵀDM e = eᵀD(δ - δ*) = eᵀs - yᵀDδ* - p*ᵀ(Dδ - s) <= |S⁻¹e||Ss|,
 
-so that |y - p*|ᵢ <= Sᵢ|Ss|/λ, and for any p at all |p - p*|ᵢ <= |p - y| + Sᵢ|Ss|/λ. Here y is p cut off outside its
-contact set and brought into equilibrium by the smallest change. This sharpens Pang's bound for strongly monotone
+so that |y - p*|ᵢ <= Sᵢ|Ss|/λ, and for any p at all |p - p*|ᵢ <= |p - y| + Sᵢ|Ss|/λ. With Z an orthonormal basis of the
+space and its rows Zᵢ it is even Sᵢ|Zᵢ||ZᵀSs|/λ: nothing where equilibrium fixes a pressure. Here y is p cut off outside
+its contact set and brought into equilibrium by the smallest change. What round-off leaves of equilibrium changes y by
+that over the least lever of the points that carry, and is added. This sharpens Pang's bound for strongly monotone
 problems, (1 + ‖DM‖)/λ·|min(p, Dδ)| (Math. Oper. Res. 12(3), 1987, 474-484), which does not carry over to bodies with
 free motions: a small pressure on a body lifted off its support has a small min(p, Dδ), however far it is from the
 solution.
@@ -27,11 +30,11 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigvalsh, qr
+from scipy.linalg import eigvalsh
 
 from bemcontact.arrays import Array
 from bemcontact.assessment.residual import Residuals
-from bemcontact.assessment.uniqueness import NearState, effective_eigenvalue
+from bemcontact.assessment.uniqueness import EPS, NearState, effective_eigenvalue
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.options import FormulationName
@@ -42,6 +45,8 @@ TOLERANCE = 1e-10
 LARGEST_BOUND = 1e-3
 """Error bound, relative to the peak pressure, above which round-off alone leaves the answer open."""
 NEWTON_STEPS = 20
+LEAST_COMPLIANCE = 1e-10
+"""Fraction of ‖M‖∞ below which the compliance of a point may be what round-off leaves of zero."""
 LOCAL = (FormulationName.QP1, FormulationName.QP2)
 """Formulations whose solver starts somewhere and may end in a local minimum."""
 DIRECT = "--formulation complementarity"
@@ -122,28 +127,41 @@ def _scaled_compliance(contact: CondensedContact) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Definiteness:
-    """λ of S sym(DM) S on the equilibrium space, and whether it is positive beyond round-off; None if there is none."""
+    """λ of S sym(DM) S on the equilibrium space, None if there is none, and what is left of it less round-off."""
 
     scales: Array
+    reach: Array
+    """Norms (n,) of the rows of an orthonormal basis of the space: zero where equilibrium fixes the pressure."""
     eigenvalue: float | None
-    definite: bool
+    certain: float
+
+    @property
+    def definite(self) -> bool:
+        """Whether λ is positive beyond round-off."""
+        return self.eigenvalue is None or self.certain > 0
 
     @classmethod
     def of(cls, contact: CondensedContact) -> "_Definiteness":
-        """S makes the diagonal one, where this is positive."""
+        """S makes the diagonal one, except where a compliance is round-off or negative."""
         D, M = _scaled_compliance(contact)
-        diagonal = D * M.diagonal()
-        S = 1 / np.sqrt(np.where(diagonal > 0, diagonal, D))
+        S = 1 / np.sqrt(D * np.maximum(M.diagonal(), LEAST_COMPLIANCE))
         ell, n = S[:, None] * contact.equilibrium, contact.size
         if ell.shape[1] >= n:
-            return cls(scales=S, eigenvalue=None, definite=True)
-        K = S[:, None] * (D[:, None] * M + M.T * D) * S / 2
+            return cls(scales=S, reach=np.zeros(n), eigenvalue=None, certain=np.inf)
+        A, spread, reach = S[:, None] * (D[:, None] * M) * S, 1.0, np.ones(n)
+        K, terms = (A + A.T) / 2, (np.abs(A) + np.abs(A).T) / 2
         if ell.shape[1]:
-            Z = qr(ell / np.linalg.norm(ell, axis=0))[0][:, ell.shape[1] :]
-            K = Z.T @ K @ Z
+            ell = ell / np.linalg.norm(ell, axis=0)
+            Z, spread = np.linalg.qr(ell, mode="complete")[0][:, ell.shape[1] :], float(np.linalg.cond(ell))
+            K, reach = Z.T @ K @ Z, np.minimum(np.linalg.norm(Z, axis=1) + n * EPS * spread, 1.0)
         smallest = float(eigvalsh(K, subset_by_index=(0, 0))[0])
-        round_off = n * np.finfo(float).eps * float(np.abs(K).sum(axis=1).max())
-        return cls(scales=S, eigenvalue=smallest, definite=smallest > round_off)
+        round_off = n * EPS * spread * float(terms.sum(axis=1).max())
+        return cls(scales=S, reach=reach, eigenvalue=smallest, certain=smallest - round_off)
+
+    def largest_change(self, s: Array) -> float:
+        """Largest change of a pressure by forces up to s (n,), of either sign: max Sᵢ|Zᵢ||ZᵀSs|/λ."""
+        part = min(np.linalg.norm(self.scales * s), self.reach @ (self.scales * s))
+        return float((self.scales * self.reach).max() * part / self.certain)
 
 
 def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: _Definiteness) -> float | None:
@@ -158,32 +176,64 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: _D
     y = _balanced(contact, p, p > gap)
     if y is None:
         return None
-    off = float(np.linalg.norm(p - y)) + _round_off_of_equilibrium(contact, y)
+    imbalance = _round_off_of_equilibrium(contact, y)
+    if imbalance == np.inf:
+        return None
+    off = float(np.linalg.norm(p - y)) + imbalance
     if stiff.eigenvalue is None:
         return off * T
     q, R = contact.offset / U, contact.rigid_motions
     a = contact.amplitudes_of(gap - q - M @ y)
     delta = q + M @ y + R @ a
     s = D * np.where(y > 0, delta, np.minimum(delta, 0.0))
-    round_off = len(D) * np.finfo(float).eps * D * (np.abs(q) + np.abs(M) @ y + np.abs(R) @ np.abs(a))
+    round_off = len(D) * EPS * D * (np.abs(q) + np.abs(M) @ y + np.abs(R) @ np.abs(a))
+    round_off += D * np.linalg.norm(M, axis=1) * imbalance
     work = np.where(y > 0, 0.0, np.maximum(D * delta - round_off, 0.0))
     round_off = np.where((y > 0) | (D * delta < round_off), round_off, 0.0)
-    S = stiff.scales if stiff.definite else np.ones_like(D)
-    residual = float(np.linalg.norm(S * s) + np.linalg.norm(S * round_off))
-    eigenvalue: float | None = stiff.eigenvalue
-    if not stiff.definite:
-        ell, _ = _unit_rows(contact)
-        state = NearState(pressure=y, contact_set=y > 0, equilibrium=ell, work=work, residual=residual)
-        eigenvalue = effective_eigenvalue(state, D, M, contact.equilibrium_space)
-    return None if eigenvalue is None else (off + float(S.max()) * residual / eigenvalue) * T
+    if stiff.definite:
+        return (off + stiff.largest_change(np.abs(s) + round_off)) * T
+    residual = float(np.linalg.norm(s) + np.linalg.norm(round_off))
+    ell, spread = _unit_rows(contact)[0], 1.0
+    if contact.free_motions:
+        ell, spread = np.linalg.qr(ell)[0], float(np.linalg.cond(ell))
+    state = NearState(
+        pressure=y, contact_set=y > 0, equilibrium=ell, work=work, residual=residual, round_off=len(y) * EPS * spread
+    )
+    eigenvalue = effective_eigenvalue(state, D, M, contact.equilibrium_space)
+    return None if eigenvalue is None else (off + residual / eigenvalue) * T
 
 
 def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> float:
-    """Round-off of ℓᵀy = -load as an error of a scaled pressure: n eps cond(ℓ) |y|."""
+    """How far y (n,) may be from exact balance: what is left of ℓᵀy + load over the lever of the points that carry.
+
+    Points side by side carry a moment by large pressures only. A point whose pressure is no more than that error may
+    not carry at all. Infinite if some load is carried by round-off only.
+    """
     if not contact.free_motions:
         return 0.0
-    spread = float(np.linalg.cond(_unit_rows(contact)[0]))
-    return len(y) * float(np.finfo(float).eps) * spread * float(np.linalg.norm(y))
+    ell, load = _unit_rows(contact)
+    left = np.abs(ell.T @ y + load) + len(y) * EPS * (np.abs(ell).T @ y + np.abs(load))
+    least, change = -1.0, 0.0
+    while change < np.inf and (least < 0 or ((y > least) & (y <= change)).any()):
+        least = change
+        lever = _lever(ell, ell[y > least])
+        change = max(change, float(np.linalg.norm(left)) / lever) if lever > 0 else np.inf
+    return change
+
+
+def _lever(ell: Array, carried: Array) -> float:
+    """Least load per pressure of the rows (m, k) of ℓ, with the rows that add least to them where they lack any."""
+    lost = len(ell) * EPS
+    while True:
+        _, sizes, axes = np.linalg.svd(carried)
+        rank = int(np.count_nonzero(sizes > lost))
+        if rank == ell.shape[1]:
+            return float(sizes[-1])
+        levers = np.linalg.norm(ell @ axes[rank:].T, axis=1)
+        if levers.max() <= 2 * lost:
+            return 0.0
+        added = ell[[np.argmin(np.where(levers > 2 * lost, levers, np.inf))]]
+        carried = np.vstack([carried, added])
 
 
 def _unit_rows(contact: CondensedContact) -> tuple[Array, Array]:

@@ -48,9 +48,10 @@ class NearState:
     ----------
     pressure : (n,) y >= 0 in equilibrium
     contact_set : (n,) where y may be positive
-    equilibrium : (n, k) ℓ
+    equilibrium : (n, k) ℓ, with columns that are orthonormal, so that the linear programs see each direction
     work : (n,) g = Dδ - s on all points, zero on the contact set
     residual : |s|, with the round-off of s
+    round_off : of the eigenvalues
     """
 
     pressure: Array
@@ -58,6 +59,7 @@ class NearState:
     equilibrium: Array
     work: Array
     residual: float
+    round_off: float
 
 
 def effective_eigenvalue(state: NearState, D: Array, M: Array, Z: Array) -> float | None:
@@ -68,7 +70,7 @@ def effective_eigenvalue(state: NearState, D: Array, M: Array, Z: Array) -> floa
     weighted = D[:, None] * M
     last = min(MOST, Z.shape[1] - 1)
     values, vectors = eigh(Z.T @ (weighted + weighted.T) @ Z / 2, subset_by_index=(0, last))
-    values, vectors = values - len(D) * EPS, Z @ vectors
+    values, vectors = values - state.round_off, Z @ vectors
     for m in range(max(1, int(np.count_nonzero(values <= 0))), last + 1):
         if found := _with(state, float(max(-values[0], 0.0)), float(values[m]), vectors[:, :m]):
             return found

@@ -3,6 +3,7 @@
 import itertools
 import re
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -81,6 +82,53 @@ def test_short_elements_beside_long_ones_hide_nothing(seed):
         bound = judged(problem, other).error_bound
         assert bound is not None
         assert np.abs(other.pressure - exact.pressure).max() <= bound
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_pressure_that_equilibrium_fixes_is_no_obstacle(seed):
+    """A tool on a single point, or two: their compliance is round-off in the gauge, and their pressure is known."""
+    rng = np.random.default_rng(seed)
+    n, k = 6, 1 + seed % 2
+    A, D = rng.standard_normal((n, n)), 10.0 ** rng.uniform(-6 * (seed % 3), 0, n)
+    R = np.eye(n)[:, rng.permutation(n)[:k]] @ (rng.standard_normal((k, k)) + 2 * np.eye(k))
+    load = -(D[:, None] * R).T @ rng.uniform(0.5, 1, n)
+    M = (A @ A.T + np.eye(n)) * np.sqrt(D) / np.sqrt(D)[:, None]
+    problem = CondensedContact.from_compliance(M, rng.standard_normal(n), D, rigid_motions=R, motion_load=load)
+    certificate = judged(problem, complementarity.solve(problem))
+    assert certificate.certified
+    assert certificate.relative_error_bound is not None
+    assert certificate.relative_error_bound < 1e-6
+
+
+@pytest.mark.parametrize("distance", [1e-2, 1e-5, 1e-8, 1e-11])
+@pytest.mark.parametrize("seed", range(5))
+def test_points_side_by_side_carry_a_moment_to_less_accuracy(seed, distance):
+    """Contact on two of four points: the two equations of equilibrium, solved exactly, are the pressures."""
+    rng = np.random.default_rng(seed)
+    x = np.array([0.0, distance, 1.0, 2.0]) + rng.uniform(-1, 1)
+    J, p = rng.uniform(0.5, 1.5, 4), np.append(rng.uniform(0.5, 1.5, 2), [0, 0])
+    R = np.column_stack([np.ones(4), x])
+    problem = CondensedContact.from_compliance(
+        np.eye(4), [-p[0], -p[1], 50, 50], J, rigid_motions=R, motion_load=-(J[:, None] * R).T @ p
+    )
+    (a, b), (c, d) = ([Fraction(J[i]) * Fraction(R[i, j]) for i in (0, 1)] for j in (0, 1))
+    f, g = (-Fraction(load) for load in problem.motion_load)
+    exact = [(f * d - b * g) / (a * d - b * c), (a * g - f * c) / (a * d - b * c)]
+    solution = complementarity.solve(problem)
+    bound = judged(problem, solution).error_bound
+    assert bound is not None
+    assert max(abs(Fraction(u) - v) for u, v in zip(solution.pressure[:2], exact, strict=True)) <= bound
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_definite_parts_below_the_round_off_of_the_rest_prove_nothing(seed):
+    """[[1, b], [4 - b, 1]] with b = 1e16 and more has λ = -1, which a rounded product D M hides."""
+    rng = np.random.default_rng(seed)
+    b = float(round(rng.uniform(1e16, 3e16)) // 8 * 8)
+    M = np.array([[1.0, b], [4 - b, 1.0]])
+    assert Fraction(M[0, 1]) + Fraction(M[1, 0]) == 4
+    problem = CondensedContact.from_compliance(M, rng.standard_normal(2) - 2)
+    assert not judged(problem, complementarity.solve(problem)).certified
 
 
 @pytest.mark.parametrize("k", [0, 2])
