@@ -249,8 +249,8 @@ def size_of(record: Record) -> float:
 
 
 def pressed_by(record: Record) -> float:
-    """Sum of the magnitudes of all contact forces [p L], the scale of round-off in forces; infinity if none is more."""
-    if not record["peak"]:
+    """Sum of the magnitudes of all contact forces [p L], the scale of round-off in forces; infinity without contact."""
+    if not record["intervals"]:
         return np.inf
     return sum(w * abs(p) for w, p in zip(record["tributary_lengths"], record["pressure"], strict=True))
 

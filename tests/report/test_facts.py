@@ -85,3 +85,33 @@ def test_of_two_zones_one_of_which_is_infinite_the_other_has_its_peak():
     }  # fmt: skip
     peaks = [words for name, words in facts(record, UNITS) if name == "Peak pressure"]
     assert peaks == ["of foot: infinite at a corner", "of wall: 12.50 ± 0.13 kN/cm²"]
+
+
+def facts_under(infinite: bool, forces: list[float]) -> dict[str, str]:
+    """Facts of one zone with these forces along y, by name; its peak is infinite or 1."""
+    total = sum(forces)
+    record = {
+        "nodes": [[float(place), 0.0] for place in range(len(forces))], "zone": ["foot"] * len(forces),
+        "intervals": [{"zone": "foot", "start": [0.0, 0.0], "end": [9.0, 0.0], "arc": [0.0, 9.0]}] * any(forces),
+        "tributary_lengths": forces, "pressure": [1.0] * len(forces), "normals": [[0.0, 1.0]] * len(forces),
+        "peak": None if infinite or not any(forces) else {"pressure": 1.0, "at": [0.0, 0.0]},
+        "resultant": (1e-14 * total, total), "resultant_moment": 3.0 * total, "motion_names": (),
+        "rigid_amplitudes": (), "scales": {"displacement": 1.0},
+        "tools": [{"name": "punch", "point": [0.0, 0.0], "displacement": [0.0, -0.5], "rotation": 0.0,
+                   "force_of_body": [0.0, -total], "moment_of_body": 0.0, "free": [False, True, False]}],
+        "residuals": dict.fromkeys(("penetration", "tension", "complementarity", "equilibrium", "force_balance")),
+        "accuracy": accuracy(bar("peak", None if infinite else 1.0, None, note="infinite at a corner" * infinite)),
+    }  # fmt: skip
+    return dict(facts(record, UNITS))
+
+
+@given(st.lists(st.floats(1e-9, 1e9), min_size=1, max_size=5))
+@example([500.0, 500.0])
+def test_forces_are_the_same_words_whether_or_not_the_peak_is_infinite(forces: list[float]):
+    """A force is finite under an infinite peak; only round-off beside it, here 1e-14 of it along x, is zero."""
+    finite, infinite = facts_under(False, forces), facts_under(True, forces)
+    assert infinite["Resultant"] == finite["Resultant"]
+    assert infinite["Tool"] == finite["Tool"]
+    _, along = re.match(r"\((\S+), (\S+)\)", infinite["Resultant"]).groups()  # pyright: ignore
+    assert float(along) == pytest.approx(sum(forces), rel=1e-4)
+    assert f"presses on it with (0, -{along})" in infinite["Tool"]
