@@ -180,6 +180,17 @@ def test_a_mesh_is_found_at_the_end_that_presses():
     assert found.end_accuracy.reason
 
 
+@pytest.mark.parametrize("refine", [1, 2])
+def test_a_short_path_needs_no_finer_mesh_than_its_beginning(refine: int):
+    """Both ends need the same mesh. The second search divides its ends of contact anew; what is cut is not cut again."""
+    problem = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml").with_value("mesh.refine", refine)
+    alone = meshed(problem).condensation.contact
+    found = follow(problem, "conditions.top.pressure", 81.5 * (1 + 1e-6), 81.5)
+    assert alone.size <= found.contact.size <= 2 * alone.size
+    assert found.start_accuracy.met
+    assert found.end_accuracy.met
+
+
 @pytest.mark.parametrize("to", [2000.0, 6000.0, 9000.0])
 @pytest.mark.parametrize("backwards", [False, True])
 def test_load_that_turns_around_is_followed_to_where_the_tool_lifts_off(to: float, backwards: bool):
