@@ -105,7 +105,7 @@ def sensitivities(
         return _sensitivities(problem, None, given)
     found = meshed(problem)
     (accuracy,) = found.accuracies
-    return replace(_sensitivities(found.condensation.contact, found.problem, given), accuracy=accuracy)
+    return _sensitivities(found.condensation.contact, found.problem, given).knowing(accuracy)
 
 
 def _sensitivities(
