@@ -105,7 +105,7 @@ def sensitivities(
         return _sensitivities(problem, None, given)
     found = meshed(problem)
     (accuracy,) = found.accuracies
-    return replace(_sensitivities(found.condensation.contact, found.problem, given), accuracy=accuracy)
+    return _sensitivities(found.condensation.contact, found.problem, given).knowing(accuracy)
 
 
 def _sensitivities(
@@ -144,12 +144,14 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Prob
 
 
 def _no_coarser(problem: Problem, on_mesh: Problem) -> Problem:
-    """The problem with the elements of a mesh that was found for it, of which another one is to be made."""
+    """The problem with the elements of a mesh that was found for it, of which another one is to be made.
+
+    They are the elements before their cut, for the next search cuts its mesh too.
+    """
     if on_mesh is problem:
         return problem
-    refine = on_mesh.mesh.refine
-    ends = {edge.name: edge.breakpoints(refine)[1:-1].tolist() for edge in on_mesh.boundary.edges}
-    mesh = problem.mesh.model_copy(update={"adapt": True, "refine": 1})
+    ends = {edge.name: edge.breakpoints()[1:-1].tolist() for edge in on_mesh.boundary.edges}
+    mesh = problem.mesh.model_copy(update={"adapt": True})
     return problem.model_copy(update={"boundary": on_mesh.boundary.with_element_ends(ends), "mesh": mesh})
 
 

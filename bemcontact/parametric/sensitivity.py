@@ -1,7 +1,8 @@
 """Sensitivities: exact derivatives of a contact state, from the points in contact and one factorization for all."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from pydantic import computed_field
@@ -41,8 +42,8 @@ class Rates(Leaf):
     """Derivative of the amplitudes (k,)."""
     resultant: Pairs
     """Derivative of the force of the rigid surface of each zone on the body (zones, 2), per thickness [p L]."""
-    peak: float
-    """Derivative of the largest pressure [p]."""
+    peak: float | None
+    """Derivative of the largest pressure [p]; null if the peak pressure is infinite."""
     interval_ends: tuple[tuple[float | None, float | None], ...]
     """Derivatives of the arc positions of both ends of each contact interval [L].
 
@@ -74,8 +75,14 @@ class Sensitivity(Leaf):
 
     def __repr__(self) -> str:
         """One line: key and rate of the peak."""
-        peaks = f"{self.rising.peak:.6g}" + (f" rising, {self.falling.peak:.6g} falling" if self.one_sided else "")
-        return f"<Sensitivity to {self.key}: peak {peaks} per unit>"
+        rising, falling = ("infinite" if it.peak is None else f"{it.peak:.6g}" for it in (self.rising, self.falling))
+        peaks = f"{rising} rising, {falling} falling" if self.one_sided and rising != "infinite" else rising
+        return f"<Sensitivity to {self.key}: peak {peaks}{' per unit' * (rising != 'infinite')}>"
+
+    def without_peak(self) -> Self:
+        """The same without the derivative of the largest pressure, which is infinite."""
+        rising = replace(self.rising, peak=None)
+        return replace(self, rising=rising, falling=replace(self.falling, peak=None) if self.one_sided else rising)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -114,6 +121,11 @@ class Sensitivities(Leaf):
         """One line: keys and notes."""
         notes = "".join(f"; {note}" for note in self.notes)
         return f"<Sensitivities to {', '.join(self.each) or 'nothing'}{notes}>"
+
+    def knowing(self, accuracy: Accuracy) -> Self:
+        """The same with the accuracy of its mesh; the largest pressure has no derivative if it is infinite."""
+        each = {key: item.without_peak() for key, item in self.each.items()} if accuracy.infinite else self.each
+        return replace(self, accuracy=accuracy, each=each)
 
     @computed_field
     @property

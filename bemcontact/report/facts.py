@@ -157,8 +157,14 @@ def peak_of(record: Record, units: Units) -> str:
     if infinite_peaks(record):
         return "infinite"
     if peak := record["peak"]:
-        return with_unit(with_bar(peak["pressure"], _peak_bar(record)), units.stress)
+        return with_unit(with_bar(peak["pressure"], _peak_bar(record)), units.stress) + _unknown_error(record)
     return "no contact"
+
+
+def _unknown_error(record: Record) -> str:
+    """Words behind a largest pressure whose error was looked for and is not known; else nothing."""
+    sought = record.get("accuracy", {}).get("met") is False
+    return "; error not known" * (sought and _peak_bar(record) is None)
 
 
 def _peak_bar(record: Record) -> float | None:
@@ -171,9 +177,8 @@ def _peaks(record: Record, size: float, units: Units) -> Iterator[tuple[str, str
     """Write the largest pressure; where that of a zone is infinite, each zone by itself."""
     infinite = infinite_peaks(record)
     if not infinite and (peak := record["peak"]):
-        bar = _peak_bar(record)
-        error = "; error not known" if bar is None and record.get("accuracy", {}).get("met") is False else ""
-        yield "Peak pressure", f"{peak_in_words(peak, size, units, bar)}{error}; per UNDEFORMED length"
+        words = peak_in_words(peak, size, units, _peak_bar(record))
+        yield "Peak pressure", f"{words}{_unknown_error(record)}; per UNDEFORMED length"
     if infinite:
         for bar in bars_of(record, "peak"):
             written = (
@@ -209,9 +214,10 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     for name, amplitude in zip(record["motion_names"], record["rigid_amplitudes"], strict=True):
         if " of the tool " in name:
             continue  # its line tells where it is
-        # the amplitude of a rotation is a displacement [L] at a distance that no reader knows
-        moved = f": {with_unit(number(settled(amplitude, moves)), units.length)}" * name.startswith("translation")
-        yield "Free motion", f"{name}{moved}"
+        # the amplitude of a rotation is a displacement [L] at a distance that no reader knows, unless it is zero
+        moved = settled(amplitude, moves)
+        known = name.startswith("translation") or not moved
+        yield "Free motion", f"{name}{f': {with_unit(number(moved), units.length)}' * known}"
     for tool in record["tools"]:
         yield "Tool", _tool(tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
@@ -249,8 +255,8 @@ def size_of(record: Record) -> float:
 
 
 def pressed_by(record: Record) -> float:
-    """Sum of the magnitudes of all contact forces [p L], the scale of round-off in forces; infinity if none is more."""
-    if not record["peak"]:
+    """Sum of the magnitudes of all contact forces [p L], the scale of round-off in forces; infinity without contact."""
+    if not record["intervals"]:
         return np.inf
     return sum(w * abs(p) for w, p in zip(record["tributary_lengths"], record["pressure"], strict=True))
 

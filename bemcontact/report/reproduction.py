@@ -12,6 +12,7 @@ from bemcontact.report.facts import (
     NOTHING,
     QUALITIES,
     Record,
+    peak_of,
     score_verdict,
     scores_in_words,
     small,
@@ -155,13 +156,13 @@ def _contents(item: Record, pictures: Mapping[str, bytes]) -> dict[str, Any]:
     anchor, units = item["model"].replace("_", "-"), Units(**item["units"])
     finest = item["runs"][-1]
     compared = finest["level"]["comparison"]
-    peak = compared["reference"]["answer"]["peak"]
+    answer = compared["reference"]["answer"]
     meshes = [run for run in item["runs"] if run["variant"] is None]
     return {
         **item,
         "anchor": anchor,
-        "contact": with_unit(_values(finest["contact"]), item["coordinate_unit"] * bool(peak)),
-        "peak": with_unit(number(peak["pressure"]), units.stress) if peak else "no contact",
+        "contact": with_unit(_values(finest["contact"]), item["coordinate_unit"] * bool(answer["intervals"])),
+        "peak": peak_of({**compared["contact"], **answer, **finest["level"]}, units),
         "points": compared["contact"]["contact_nodes"],
         "rows": [{**row, "computed": [_values(values) for values in row["computed"]]} for row in item["statements"]],
         "meshes": [run["label"] for run in meshes],

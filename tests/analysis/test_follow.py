@@ -180,6 +180,17 @@ def test_a_mesh_is_found_at_the_end_that_presses():
     assert found.end_accuracy.reason
 
 
+@pytest.mark.parametrize("refine", [1, 2])
+def test_a_short_path_needs_no_finer_mesh_than_its_beginning(refine: int):
+    """Both ends need the same mesh. The second search divides ends of contact anew; what is cut is not cut again."""
+    problem = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml").with_value("mesh.refine", refine)
+    alone = meshed(problem).condensation.contact
+    found = follow(problem, "conditions.top.pressure", 81.5 * (1 + 1e-6), 81.5)
+    assert alone.size <= found.contact.size <= 2 * alone.size
+    assert found.start_accuracy.met
+    assert found.end_accuracy.met
+
+
 @pytest.mark.parametrize("to", [2000.0, 6000.0, 9000.0])
 @pytest.mark.parametrize("backwards", [False, True])
 def test_load_that_turns_around_is_followed_to_where_the_tool_lifts_off(to: float, backwards: bool):
@@ -236,6 +247,17 @@ def test_sensitivities_by_key_against_central_differences(cantilever: Problem):
         ends_of = [end.footprint.intervals[0].start_arc for end in ends]
         start = found[key].rising.interval_ends[0][0]
         assert start == pytest.approx((ends_of[0] - ends_of[1]) / (2 * step), rel=1e-5)
+
+
+def test_an_infinite_peak_has_no_derivative():
+    """Under the edge of a punch; the force grows by one per unit of the load all the same."""
+    problem = bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("off the middle")
+    found = sensitivities(problem.with_value("accuracy", 0.05), ["tools.punch.force.y"])
+    assert found.accuracy.infinite == ("punch",)
+    rates = found["tools.punch.force.y"]
+    assert rates.rising.peak is rates.falling.peak is None
+    assert rates.rising.resultant[0, 1] == pytest.approx(1.0, rel=1e-9)
+    assert "infinite" in repr(rates)
 
 
 def test_sensitivities_of_a_condensed_problem(cylinder: Problem):

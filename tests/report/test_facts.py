@@ -74,6 +74,14 @@ def test_an_infinite_peak_has_no_number():
     assert peak_of({"accuracy": accuracy(), "peak": None}, UNITS) == "no contact"
 
 
+def test_a_peak_whose_error_is_not_known_says_so_wherever_it_is_written():
+    """An error that was looked for and not found is told from one that nobody looked for."""
+    peak = {"pressure": 12.5, "at": [0.0, 0.0]}
+    sought = {"accuracy": accuracy(bar("peak", 12.5, None)), "peak": peak}
+    assert peak_of(sought, UNITS) == "12.5 kN/cm²; error not known"
+    assert peak_of({"accuracy": {**accuracy(), "met": None}, "peak": peak}, UNITS) == "12.5 kN/cm²"
+
+
 def test_of_two_zones_one_of_which_is_infinite_the_other_has_its_peak():
     lists = dict.fromkeys(("nodes", "intervals", "tributary_lengths", "pressure", "zone", "normals", "tools"), ())
     bars = (bar("peak", None, None, note="infinite at a corner"), bar("peak", 12.5, 0.01, zone="wall"))
@@ -85,3 +93,41 @@ def test_of_two_zones_one_of_which_is_infinite_the_other_has_its_peak():
     }  # fmt: skip
     peaks = [words for name, words in facts(record, UNITS) if name == "Peak pressure"]
     assert peaks == ["of foot: infinite at a corner", "of wall: 12.50 ± 0.13 kN/cm²"]
+
+
+def facts_of_forces(infinite: bool, forces: list[float]) -> list[tuple[str, str]]:
+    """Facts of one zone with these forces along y; its peak is infinite or 1."""
+    total = sum(forces)
+    record = {
+        "nodes": [[float(place), 0.0] for place in range(len(forces))], "zone": ["foot"] * len(forces),
+        "intervals": [{"zone": "foot", "start": [0.0, 0.0], "end": [9.0, 0.0], "arc": [0.0, 9.0]}] * any(forces),
+        "tributary_lengths": forces, "pressure": [1.0] * len(forces), "normals": [[0.0, 1.0]] * len(forces),
+        "peak": None if infinite or not any(forces) else {"pressure": 1.0, "at": [0.0, 0.0]},
+        "resultant": (1e-14 * total, total), "resultant_moment": 3.0 * total,
+        "motion_names": ("rotation about (1, 2)", "rotation about (3, 4)", "translation along (0, 1)"),
+        "rigid_amplitudes": (1e-15, 0.2, 0.3), "scales": {"displacement": 1.0},
+        "tools": [{"name": "punch", "point": [0.0, 0.0], "displacement": [0.0, -0.5], "rotation": 0.0,
+                   "force_of_body": [0.0, -total], "moment_of_body": 0.0, "free": [False, True, False]}],
+        "residuals": dict.fromkeys(("penetration", "tension", "complementarity", "equilibrium", "force_balance")),
+        "accuracy": accuracy(bar("peak", None if infinite else 1.0, None, note="infinite at a corner" * infinite)),
+    }  # fmt: skip
+    return [*facts(record, UNITS)]
+
+
+@given(st.lists(st.floats(1e-9, 1e9), min_size=1, max_size=5))
+@example([500.0, 500.0])
+def test_forces_are_the_same_words_whether_or_not_the_peak_is_infinite(forces: list[float]):
+    """A force is finite under an infinite peak; only round-off beside it, here 1e-14 of it along x, is zero."""
+    finite, infinite = (dict(facts_of_forces(infinite, forces)) for infinite in (False, True))
+    assert infinite["Resultant"] == finite["Resultant"]
+    assert infinite["Tool"] == finite["Tool"]
+    _, along = re.match(r"\((\S+), (\S+)\)", infinite["Resultant"]).groups()  # pyright: ignore
+    assert float(along) == pytest.approx(sum(forces), rel=1e-4)
+    assert f"presses on it with (0, -{along})" in infinite["Tool"]
+
+
+def test_a_rotation_has_no_amount_unless_it_is_zero():
+    record = facts_of_forces(False, [1.0])
+    assert [words for name, words in record if name == "Free motion"] == [
+        "rotation about (1, 2): 0", "rotation about (3, 4)", "translation along (0, 1): 0.3 cm",
+    ]  # fmt: skip
