@@ -55,11 +55,9 @@ def main(refine: list[int]) -> None:
     heads = ("points", "breakpoints", "pivots", "residual", "apart", "path, s", "direct, s", "ratio")
     print(f"{'':28}  " + "  ".join(heads))
     for name in NAMES:
-        print(row(bemcontact.condense(bemcontact.load(MODELS / f"{name}.yaml", variant="stated mesh"))))
+        print(row(bemcontact.condense(bemcontact.load(MODELS / f"{name}.yaml"))))
     for parts in refine or [FINE]:
-        print(
-            row(bemcontact.condense(bemcontact.load(MODELS / f"{NAMES[0]}.yaml", variant="stated mesh").refined(parts)))
-        )
+        print(row(bemcontact.condense(bemcontact.load(MODELS / f"{NAMES[0]}.yaml").refined(parts))))
 
 
 if __name__ == "__main__":
