@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Literal, TypeVar, Unpack
+from typing import Literal, Unpack
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
@@ -41,7 +41,6 @@ Progress = Callable[[str, str], object]
 """Takes the name of a stage and how far it has come; the latter is empty when the stage begins."""
 
 
-Stated = TypeVar("Stated", Problem, CondensedContact)
 AskedAccuracy = float | Literal["stated", "default"] | None
 """A relative accuracy as `Problem.accuracy` has it; "stated" is that of the problem."""
 
@@ -100,13 +99,10 @@ def ensure_kind(problem: object, *kinds: type) -> None:
         raise ProblemError(f"a {names} is needed, found {shown(problem)}; bemcontact.load reads one from a file")
 
 
-def asking(problem: Stated, accuracy: AskedAccuracy) -> Stated:
+def asking(problem: Problem, accuracy: AskedAccuracy) -> Problem:
     """The problem with another accuracy, unless that of the problem is wanted."""
-    if isinstance(accuracy, str) and accuracy == "stated":
-        return problem
-    if isinstance(problem, CondensedContact):
-        raise ProblemError(f"accuracy is {shown(accuracy)}, but a condensed problem has its mesh; give the Problem")
-    return problem.with_value("accuracy", accuracy)
+    as_stated = isinstance(accuracy, str) and accuracy == "stated"
+    return problem if as_stated else problem.with_value("accuracy", accuracy)
 
 
 def ensure_acting(problem: Problem | CondensedContact) -> None:
@@ -158,7 +154,11 @@ def solve(
     ensure_callable(progress, "progress")
     read = SolveOptions.of(formulation, weights, **options)
     ensure_kind(problem)
-    return solve_with(read, asking(problem, accuracy), progress)
+    if isinstance(problem, Problem):
+        problem = asking(problem, accuracy)
+    elif accuracy != "stated":
+        raise ProblemError(f"accuracy is {shown(accuracy)}, but a condensed problem has its mesh; give the Problem")
+    return solve_with(read, problem, progress)
 
 
 def solve_with(

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from contact_meshes import cylinder, ring, table
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 from tool_problems import BETWEEN, made
@@ -191,6 +191,7 @@ GROWTH = {load: growth(load) for load in LOADS}
 @given(load=st.sampled_from(LOADS), excess=st.floats(-9, 0.5), size=POWERS, stress=POWERS, formulation=st.booleans())
 def test_growth_within_the_clearance_makes_no_contact(load, excess, size, stress, formulation):
     """A clearance above the largest growth leaves p = 0 as the only solution, whatever the units."""
+    assume(stress - 2 * size < 30)  # the density, which is bounded like each stated number
     gap = float(GROWTH[load].max()) * (1 + 10**excess)
     problem = loose_ring(load, gap * 10.0**size, 10.0**size, 10.0**stress)
     result = solve(problem, "qp3" if formulation else "complementarity")
@@ -204,7 +205,7 @@ def test_growth_within_the_clearance_makes_no_contact(load, excess, size, stress
     U = result.contact.scales.displacement
     assert gap * 10.0**size <= U <= 10 * gap * 10.0**size  # no scale is round-off
     texts = dict(facts(result.to_dict(), units_of(result.contact)))
-    assert texts["Contact"] == "nowhere"
+    assert texts["Contact"].startswith("nowhere")
     assert "Peak pressure" not in texts
     assert texts["Resultant"].startswith("(0, 0)")
     assert result.residuals.force_balance < 1e-12

@@ -21,7 +21,7 @@ def acting(body: Body) -> list[np.ndarray]:
     loading = body.acting
     computed = [loading.values.displacement, loading.values.traction, loading.true_force, np.array(loading.true_moment)]
     part = loading.particular
-    return [*computed, part.displacement, part.traction, body.forces]
+    return [*computed, part.displacement, part.traction, body.forces.sum(axis=-1)]
 
 
 @pytest.mark.parametrize(("spec", "cases", "by_hand"), PAIRS)

@@ -6,6 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from bemcontact import CondensedContact, Problem, condense, solve
+from bemcontact.assessment.certificate import CertificateKind
 
 NOTE = "contact leaves the"
 
@@ -47,7 +48,8 @@ def test_open_amplitude_is_the_nearest_that_closes_no_gap(
     high = min(q[s < -1e-6] / -s[s < -1e-6])
     assume(high - low > 1e-3)
     result = solve(contact, formulation)
-    assert result.certified
+    levers = np.abs(s[(s != 0.0)])
+    assert result.certified or (levers.min() < 1e-6 and result.certificate.kind is CertificateKind.OPEN)
     assert result.solution.rigid_amplitudes[1] / length == pytest.approx(np.clip(0.0, low, high), abs=1e-8)
     assert any(NOTE in note and "motion 2" in note and "motion 1" not in note for note in result.notes)
 

@@ -79,7 +79,6 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
         ("edges: bottom", "edges: bottom, left"),
         ("edges: bottom", "edges: {bottom, left}"),
         ("edges: bottom", "edges: [[bottom]]"),
-        ("edges: bottom", "edges:"),
         ("name: right", "name: [right]"),
         ("units: {length: mm, force: N}", "units: [mm, N]"),
         ("young_modulus: 210e3", "young_modulus: [210e3]"),
