@@ -98,8 +98,13 @@ def test_the_full_problem_is_read():
     assert refusals(FULL, ()) == []
 
 
-@pytest.mark.parametrize("separator", [", ", ",", "; ", " and ", " ", " + ", " & ", "/"])
-@pytest.mark.parametrize("form", ["{}", "({})", "{{{}}}", "- {}", "'{}'"])
+@pytest.mark.parametrize(
+    ("separator", "form"),
+    [
+        *((separator, "{}") for separator in (", ", ",", "; ", " and ", " ", " + ", " & ", "/")),
+        *((", ", form) for form in ("({})", "{{{}}}", "- {}", "'{}'")),
+    ],
+)
 @pytest.mark.parametrize(("key", "place"), [("edges", "contact_zones.foot.edges"), ("zones", "tools.table.zones")])
 @pytest.mark.parametrize("as_entry", [False, True])
 def test_a_text_with_several_names_is_told_the_list_to_write(

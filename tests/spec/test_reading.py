@@ -431,9 +431,12 @@ def test_text_that_is_no_yaml_mapping_is_refused_at_its_place(text, place, words
     assert words in lines[0]
 
 
-@pytest.mark.parametrize("tagged", ["!!binary cQ==", "!!set {a}", "!other 1", "!!int x", "!!timestamp 2001-01-01"])
-def test_a_value_that_is_not_read_gets_one_line(tagged):
-    """The value is not judged a second time, as if nothing stood there, wherever it is."""
+@pytest.mark.parametrize(
+    ("tagged", "every"),
+    [("!!binary cQ==", 1), ("!!set {a}", 7), ("!other 1", 7), ("!!int x", 7), ("!!timestamp 2001-01-01", 7)],
+)
+def test_a_value_that_is_not_read_gets_one_line(tagged, every):
+    """The value is not judged a second time, as if nothing stood there: at all places, or at each seventh."""
 
     def places(data, path=()):
         yield path
@@ -441,7 +444,7 @@ def test_a_value_that_is_not_read_gets_one_line(tagged):
             yield from places(value, (*path, key))
 
     data = yaml.safe_load(SPEC)
-    for path in [*places(data)][1:]:
+    for path in [*places(data)][1::every]:
         changed = copy.deepcopy(data)
         below = changed
         for key in path[:-1]:
