@@ -315,8 +315,6 @@ class CondensedContact(MotionAlgebra):
                 raise ProblemError(
                     f"{name} needs {tools.position.size} numbers, three for each tool; found {len(terms)}"
                 )
-        if position.shape[1] != force.shape[1] and 1 not in (position.shape[1], force.shape[1]):
-            raise ProblemError("position and force are sums of different numbers of terms; give each as one")
         loads = np.column_stack([cases.motion_load * factors, _terms(tools.amplitudes.T, force)])
         moved = replace(tools, position=_sum(tools.position, position), force=_sum(tools.force, force))
         stepped = replace(self, cases=replace(cases, factors=cases.factors + factors), tools=moved)
