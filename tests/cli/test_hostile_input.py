@@ -71,14 +71,6 @@ def test_a_spec_is_read_from_standard_input():
     assert broken.stderr.startswith("error: standard input:1:5: ")
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-@pytest.mark.parametrize("arguments", [["schema"], ["--help"], ["check", MODEL]])
-def test_a_full_standard_output_is_said(arguments):
-    ended = in_a_process(*arguments, before="exec > /dev/full;")
-    assert ended.stderr == "error: standard output: No space left on device\n"
-    assert ended.returncode == 2
-
-
 @pytest.mark.parametrize("name", ["a.pdf", "a.png", "a.svg"])
 def test_a_file_that_cannot_grow_is_named(tmp_path: Path, name):
     ended = in_a_process("check", MODEL, "--figure", tmp_path / name, before="ulimit -f 2;")

@@ -378,7 +378,7 @@ def test_ends_that_are_not_of_one_body_are_refused():
         load_path(start, random_contact(0, 7, 1))
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(st.floats(-6, 6), st.floats(-6, 6))
 def test_units_change_nothing(length: float, stress: float):
     """Lengths times L, pressures times P, and M times L/P: the same breakpoints, the same points."""

@@ -93,8 +93,7 @@ def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     return place / "report.html"
 
 
-@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-@pytest.mark.parametrize("width", [380, 1200])
+@pytest.mark.parametrize(("width", "dark"), [(380, True), (1200, False)], ids=["narrow and dark", "wide and light"])
 def test_the_page_is_drawn_whole_and_fits(chromium: Browser, report: Path, width: int, dark: bool):
     with opened(chromium, report, width=width, dark=dark) as (page, complaints):
         sizes = page.evaluate(PICTURES)
@@ -110,6 +109,7 @@ def test_the_page_is_drawn_whole_and_fits(chromium: Browser, report: Path, width
     assert complaints == []
 
 
+@pytest.mark.parametrize("report", [PAPER], indirect=True)
 def test_a_picture_is_transparent_and_its_ink_follows_the_page(chromium: Browser, report: Path):
     seen = []
     for dark in (False, True):

