@@ -12,7 +12,7 @@ from typing import ClassVar, Self
 import numpy as np
 from pydantic import model_validator
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problem.closeness import near_miss, sagitta
 from bemcontact.problem.closing import JOINT_TOLERANCE, gap_issues, other_way_round
@@ -33,6 +33,8 @@ MOST_TRIED = 20
 """Number of arcs that are turned round to see whether that mends a boundary."""
 TOUCHING = 1e-9
 """Distance of two edges, relative to the size of the body, up to which they touch."""
+PAIRS_AT_ONCE = 2**20
+"""Pairs of sides whose bounding boxes are compared at once: a few megabytes."""
 FARTHEST = 1e8
 """Largest coordinate or radius over the size of the body: eight digits are left for the shape."""
 
@@ -334,20 +336,32 @@ def first_meeting(one: Array, other: Array, tolerance: float, *, itself: bool = 
 
     Up to the distance `tolerance` they touch; `itself` tells that both are the same polyline.
     """
-    for i in range(len(one) - 1):
-        others = other[i + 1 :] if itself else other
-        if len(others) < 2:
-            break
-        meets, points = _meetings(one[i], one[i + 1], others[:-1], others[1:], tolerance)
+    rows = max(PAIRS_AT_ONCE // len(other), 1)
+    for begin in range(0, len(one) - 1, rows):
+        some = one[begin : begin + rows + 1]
+        i, j = _sides_close_by(some, other, 2 * tolerance)
+        if itself:
+            i, j = i[later := j > i + begin], j[later]
+        meets, points = _meetings(some[i], some[i + 1], other[j], other[j + 1], tolerance)
         if meets.any():
             return points[np.argmax(meets)]
     return None
 
 
-def _meetings(p: Array, p_end: Array, q: Array, q_end: Array, tolerance: float) -> tuple[Array, Array]:
-    """Which sides q + u s (m, 2) cross, touch or overlap the side p + t r (2,), and the common points (m, 2)."""
+def _sides_close_by(one: Array, other: Array, distance: float) -> tuple[IntArray, IntArray]:
+    """Sides (pairs,) of two polylines whose bounding boxes are no farther apart than the distance, in order."""
+    near = np.ones((len(one) - 1, len(other) - 1), dtype=bool)
+    for x, y in zip(one.T, other.T, strict=True):
+        low, high = np.minimum(x[:-1], x[1:]) - distance, np.maximum(x[:-1], x[1:]) + distance
+        near &= (low[:, None] <= np.maximum(y[:-1], y[1:])) & (high[:, None] >= np.minimum(y[:-1], y[1:]))
+    i, j = np.nonzero(near)
+    return i, j
+
+
+def _meetings(p: Array, p_end: Array, q: Array, q_end: Array, tolerance: float) -> tuple[BoolArray, Array]:
+    """Which sides q + u s (m, 2) cross, touch or overlap their sides p + t r (m, 2), and the common points (m, 2)."""
     r, s = p_end - p, q_end - q
-    length, lengths = np.hypot(*r), np.hypot(s[:, 0], s[:, 1])
+    length, lengths = np.hypot(r[:, 0], r[:, 1]), np.hypot(s[:, 0], s[:, 1])
     turn, off = _cross(r, s), _cross(q - p, r)
     parallel = np.abs(turn) <= 1e-12 * length * lengths
     turn = np.where(parallel, 1.0, turn)
@@ -355,7 +369,7 @@ def _meetings(p: Array, p_end: Array, q: Array, q_end: Array, tolerance: float) 
     slack, slacks = tolerance / length, tolerance / lengths
     inside = (t >= -slack) & (t <= 1 + slack) & (u >= -slacks) & (u <= 1 + slacks)
     crossing = inside & ~(parallel | _share_a_corner((p, p_end), (q, q_end)))
-    first, last = (q - p) @ r / length**2, (q_end - p) @ r / length**2
+    first, last = (((end - p) * r).sum(axis=1) / length**2 for end in (q, q_end))
     low, high = np.maximum(np.minimum(first, last), 0), np.minimum(np.maximum(first, last), 1)
     overlapping = parallel & (np.abs(off) <= tolerance * length) & (high - low > slack)
     return crossing | overlapping, p + np.where(parallel, (low + high) / 2, t)[:, None] * r
