@@ -48,7 +48,8 @@ Each file here states one problem with a known answer. This command solves one a
   presses on a surface, the largest value depends on the mesh. There the picture cuts the pressure off at three times
   its mean.
 
-The errors are those of the default formulation on the mesh of the file. Each error is the largest over all load cases.
+No file states a mesh. The errors are those of the default formulation on the mesh that is found for 1 %, or for the
+accuracy that the file asks for. Each error is the largest over all load cases.
 An error of a pressure is relative to the peak of the reference. An error of a mean square is relative to the mean
 square of the reference, an error of an end of contact to the extent of contact, and every other error to its own
 quantity. *Round-off* is an error below 0.0001 %. `bemcontact compare` checks each error against the tolerance in the

@@ -23,6 +23,8 @@ FOLDER = "models"
 """Stands in the installed package, and beside the package in a source tree."""
 Reading = tuple[float, ...]
 """One number, the smallest and the largest of several, or none."""
+STATED_MESH = "stated mesh"
+"""The variant of each problem with a mesh that is refined; the problem itself states none."""
 LEVEL = 1e-9
 """Part of an extent, or of a scale, below which a difference is round-off."""
 
@@ -276,9 +278,11 @@ def _below(progress: Progress | None, name: str) -> Progress:
 
 
 def _problem(paper: PaperProblem, variant: str | None) -> Problem:
-    """Read a problem, or a variant of it, on the mesh that it states; references and refinement judge its errors."""
-    stated = spec.loads(shipped_model(paper.model), f"models/{paper.model}.yaml", variant=variant)
-    return stated.model_copy(update={"accuracy": None})
+    """Read a variant of a problem, or the problem on its stated mesh; references and refinement judge its errors."""
+    text, name = shipped_model(paper.model), f"models/{paper.model}.yaml"
+    problem = spec.loads(text, name)
+    stated = spec.loads(text, name, variant=STATED_MESH if variant is None else variant)
+    return stated.model_copy(update={"variants": problem.variants} | ({} if variant else {"name": problem.name}))
 
 
 def shipped_model(name: str) -> str:

@@ -142,8 +142,8 @@ class Problem(SpecModel):
         Annotated[float, Strict(), Field(gt=0, lt=1)] | Literal["default"] | None, WrapValidator(_accuracy)
     ] = "default"
     """The accuracy to reach, relative: 0.003 is 0.3 %. A mesh is found on which no error bar is larger. If left out,
-    it is 0.01 where a mesh is found; for a mesh that all edges state, none is asked for and errors are not estimated,
-    as with null."""
+    it is 0.01, and a mesh that all edges state is taken as it is: its errors are estimated. With null none is asked
+    for, all edges state their elements, and errors are not estimated."""
     mesh: MeshDensity = MeshDensity()
     """The mesh: whether it is found, and its refinement."""
     reference: dict[Title, ReferenceSpec] = Field(default_factory=dict)
@@ -230,9 +230,7 @@ class Problem(SpecModel):
     @property
     def asked_accuracy(self) -> float | None:
         """The relative accuracy to reach; None if none is asked for."""
-        if self.accuracy == "default":
-            return ACCURACY if self.adapts else None
-        return self.accuracy
+        return ACCURACY if self.accuracy == "default" else self.accuracy
 
     @property
     def adapts(self) -> bool:

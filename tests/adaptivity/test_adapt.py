@@ -186,10 +186,13 @@ def test_a_stated_mesh_is_judged_and_left_alone():
     assert "too few points in contact" in entry(result, "peak").note
 
 
-def test_a_stated_mesh_without_an_accuracy_is_not_judged():
-    (judged,) = meshed(stated(block_on_flat_floor()[0], [4, 4, 4, 4])).accuracies
-    assert (judged.asked, judged.met, judged.holds, judged.bars) == (None, None, True, ())
-    assert judged.reason
+def test_a_stated_mesh_is_judged_unless_no_accuracy_is_asked_for():
+    block = stated(block_on_flat_floor()[0], [4, 4, 4, 4])
+    (judged,) = meshed(block).accuracies
+    assert (judged.asked, judged.met, judged.holds, judged.passes) == (0.01, True, True, 1)
+    (unjudged,) = meshed(block.with_value("accuracy", None)).accuracies
+    assert (unjudged.asked, unjudged.met, unjudged.holds, unjudged.bars) == (None, None, True, ())
+    assert unjudged.reason
 
 
 def test_a_mesh_that_was_found_is_cut_as_asked():

@@ -31,12 +31,12 @@ PRESSURE = "conditions.top.pressure"
 
 @pytest.fixture(scope="module")
 def cylinder() -> Problem:
-    return bemcontact.load(MODELS / "cylinder_on_plane.yaml")
+    return bemcontact.load(MODELS / "cylinder_on_plane.yaml", variant="stated mesh")
 
 
 @pytest.fixture(scope="module")
 def cantilever() -> Problem:
-    return bemcontact.load(MODELS / "cantilever_flat_surface.yaml")
+    return bemcontact.load(MODELS / "cantilever_flat_surface.yaml", variant="stated mesh")
 
 
 def apart(one: CondensedContact, other: CondensedContact, pressure: np.ndarray) -> float:

@@ -272,7 +272,7 @@ def compared(name: str, levels: int, refine: tuple[int, ...]) -> Table:
     begin, problem = time.perf_counter(), PROBLEMS[name]
     touches = [problem.touch(2**level) for level in range(levels)]
     middle = time.perf_counter()
-    model = bemcontact.load(MODELS / f"{name}.yaml")
+    model = bemcontact.load(MODELS / f"{name}.yaml", variant="stated mesh")
     edges = tuple(edge for zone in model.contact_zones.values() for edge in zone.edges)
     results = tuple(bemcontact.solve(model.refined(parts)).to_dict() for parts in refine)
     end = time.perf_counter()

@@ -55,9 +55,11 @@ def main(refine: list[int]) -> None:
     heads = ("points", "breakpoints", "pivots", "residual", "apart", "path, s", "direct, s", "ratio")
     print(f"{'':28}  " + "  ".join(heads))
     for name in NAMES:
-        print(row(bemcontact.condense(bemcontact.load(MODELS / f"{name}.yaml"))))
+        print(row(bemcontact.condense(bemcontact.load(MODELS / f"{name}.yaml", variant="stated mesh"))))
     for parts in refine or [FINE]:
-        print(row(bemcontact.condense(bemcontact.load(MODELS / f"{NAMES[0]}.yaml").refined(parts))))
+        print(
+            row(bemcontact.condense(bemcontact.load(MODELS / f"{NAMES[0]}.yaml", variant="stated mesh").refined(parts)))
+        )
 
 
 if __name__ == "__main__":

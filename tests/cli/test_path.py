@@ -16,7 +16,7 @@ PRESSURE, TRACTION = "conditions.top.pressure", "conditions.top.traction.y"
 
 
 def run(*arguments: object) -> Result:
-    return CliRunner().invoke(cli.app, ["path", *map(str, arguments)])
+    return CliRunner().invoke(cli.app, ["path", *map(str, arguments), "--variant", "stated mesh"])
 
 
 def test_table_states_where_points_enter_and_how_the_peak_goes():

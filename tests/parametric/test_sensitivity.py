@@ -82,7 +82,7 @@ def test_gap_and_load_of_random_bodies_against_central_differences(seed: int):
 
 @pytest.fixture(scope="module")
 def cylinder() -> bemcontact.Problem:
-    return bemcontact.load(MODELS / "cylinder_on_plane.yaml")
+    return bemcontact.load(MODELS / "cylinder_on_plane.yaml", variant="stated mesh")
 
 
 def test_load_on_the_cylinder_against_central_differences(cylinder: bemcontact.Problem):

@@ -44,6 +44,8 @@ OVERHANG = 0.14
 """Length of a rigid surface beyond its contact zone, and beyond the body, over the size of what is shown."""
 LEVEL = 1e-3
 """Difference from the peak pressure, over that, below which a point counts as one at the peak."""
+MANY_ELEMENTS = 36
+"""Number of elements from which their nodes alone show the curves."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,7 +131,8 @@ def draw_contact(axes: Axes, result: Result) -> None:
 
 def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
     """Draw the deformed body, and its undeformed outline where the two differ visibly; return loops (j, 2)."""
-    before, after = element_curves(state.points, 5), element_curves(state.points + state.displacement, 5)
+    samples = 5 if len(state.points) < MANY_ELEMENTS else 3
+    before, after = (element_curves(at, samples) for at in (state.points, state.points + state.displacement))
     outline = outline_of(state, after)
     axes.add_patch(PathPatch(outline, facecolor=BODY, edgecolor="none", zorder=0))
     axes.add_patch(PathPatch(outline, facecolor="none", edgecolor=BLACK, linewidth=1.8, zorder=3))
