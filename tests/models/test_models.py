@@ -16,7 +16,7 @@ from bemcontact.reference import expected, score
 
 FOLDER = Path(__file__).parents[2] / "models"
 MODELS = sorted(path.stem for path in FOLDER.glob("*.yaml"))
-VARIANTS = [(name, variant) for name in MODELS for variant in (None, *spec.load(FOLDER / f"{name}.yaml").variants)]
+VARIANTS = [(name, variant) for name in MODELS for variant in spec.load(FOLDER / f"{name}.yaml").variants]
 FORMULATIONS = ("qp1", "qp2", "qp3")
 
 
@@ -71,7 +71,7 @@ def test_model_is_described_and_short(name: str):
 
 @pytest.mark.parametrize(("name", "variant"), VARIANTS)
 @pytest.mark.parametrize("formulation", FORMULATIONS)
-def test_each_variant_is_certified_by_each_formulation(name: str, variant: str | None, formulation: str):
+def test_each_variant_is_certified_by_each_formulation(name: str, variant: str, formulation: str):
     assert result(name, formulation, variant).certified
 
 
@@ -176,7 +176,7 @@ def test_cantilever_does_not_touch_with_the_printed_modulus():
     arguments = ["solve", str(FOLDER / "cantilever_flat_surface.yaml"), "--set", "material.young_modulus=2e6"]
     answer = CliRunner().invoke(cli.app, arguments)
     assert answer.exit_code == 0
-    assert "Contact    nowhere" in answer.stdout
+    assert "Contact nowhere" in " ".join(answer.stdout.split())
     assert "unique solution proved" in " ".join(answer.stdout.split())
     for formulation in FORMULATIONS:
         untouched = result("cantilever_flat_surface", formulation, "printed modulus")
