@@ -792,10 +792,11 @@ def test_schema_reports_invalid_values(old, new, path, message):
 
 
 def test_model_of_the_paper_is_short():
-    lines = MODEL.read_text(encoding="utf-8").splitlines()
+    """Geometry, load and references; no elements. The mesh of the paper is a variant."""
+    stated, _, _ = MODEL.read_text(encoding="utf-8").partition("\nvariants:")
     problem = bemcontact.spec.load(MODEL)
-    assert len(lines) <= 30
-    assert 4 * problem.mesh.refine * sum(edge.elements for edge in problem.boundary.edges) <= 260
+    assert len(stated.splitlines()) <= 30
+    assert not any(edge.elements for edge in problem.boundary.edges)
     assert "2.7685" in problem.description
     assert "183.335" in problem.description
 
