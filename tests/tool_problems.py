@@ -14,8 +14,8 @@ ROOF = {"kind": "plane", "point": [0, 1], "normal": [0, -1]}
 
 
 def made(spec: Spec, **more: Any) -> Problem:
-    """The problem of a spec, with some of its parts replaced or added."""
-    return Problem(**deepcopy({**spec, **more}))
+    """The problem of a spec, with some of its parts replaced or added; errors are not assessed unless it says so."""
+    return Problem(**deepcopy({"accuracy": None, **spec, **more}))
 
 
 HELD: Spec = {

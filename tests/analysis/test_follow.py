@@ -127,7 +127,7 @@ def test_invalid_parameters_are_refused(cylinder: Problem, key: str, to: float, 
 
 def on_a_circle() -> tuple[Problem, str]:
     """The small Hertz problem on a circle below, and the path to it."""
-    problem = meshed(bemcontact.load(MODELS / "gallery" / "hertz_small.yaml")).problem
+    problem = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml", variant="stated mesh")
     (zone,) = problem.contact_zones
     key = f"contact_zones.{zone}.surface"
     return problem.with_value(key, {"kind": "circle", "center": [0, -100], "radius": 100, "body": "outside"}), key
@@ -166,8 +166,9 @@ def test_two_ends_that_nothing_presses_are_refused(cylinder: Problem):
 
 @cache
 def on_eccentric_punch() -> Problem:
-    """On the mesh of one load, so that a problem and a path share it."""
-    return meshed(bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("off the middle")).problem
+    """On a mesh that a problem and a path share."""
+    stated = bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml", variant="stated mesh")
+    return stated.with_case("off the middle")
 
 
 def test_a_mesh_is_found_at_the_end_that_presses():
@@ -207,8 +208,8 @@ def test_load_that_turns_around_is_followed_to_where_the_tool_lifts_off(to: floa
 
 def test_factor_of_a_load_case_is_known_all_along_a_path_from_where_nothing_presses():
     """(1 - t) 0 + t 1, which `with_factors` builds on, though the state at factor 0 cannot be condensed by itself."""
-    problem = meshed(bemcontact.load(MODELS / "gallery" / "roller_in_v_block.yaml").with_case("still")).problem
-    data: dict[str, Any] = problem.model_dump(exclude={"reference"}) | {"combinations": {}, "case": None}
+    problem = bemcontact.load(MODELS / "gallery" / "roller_in_v_block.yaml", variant="stated mesh").with_case("still")
+    data: dict[str, Any] = problem.model_dump(exclude={"reference", "variants"}) | {"combinations": {}, "case": None}
     data["tools"]["plate"]["force"]["y"] = 0.0
     data["load_cases"] = {"press": {"tools": {"plate": {"force": {"y": -400.0}}}}}
     problem = Problem(**data).with_case("press")

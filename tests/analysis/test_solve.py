@@ -357,10 +357,10 @@ def test_the_default_imports_no_optimization_package():
     code = """
 import sys
 import bemcontact
-problem = bemcontact.load("models/gallery/three_zones.yaml")
+problem = bemcontact.load("models/gallery/three_zones.yaml", variant="stated mesh")
 assert bemcontact.solve(problem).certified
 bemcontact.sensitivities(problem)
-cases = bemcontact.load("models/gallery/roller_in_v_block.yaml")
+cases = bemcontact.load("models/gallery/roller_in_v_block.yaml", variant="stated mesh")
 assert bemcontact.solve_cases(cases).certified
 assert bemcontact.solve(bemcontact.load("models/cylinder_on_plane.yaml")).certified
 print([name for name in ("cvxpy", "clarabel", "osqp", "scs", "highspy", "quadprog") if name in sys.modules])

@@ -26,6 +26,7 @@ boundary:
     - {name: right, start: [40, 0], elements: 2}
     - {name: top, start: [40, 20], elements: 4}
     - {name: left, start: [0, 20], elements: 2}
+accuracy: null
 conditions:
   left: {displacement: {x: 0}}
   top: {pressure: 3}

@@ -19,6 +19,7 @@ def block(**changes: object) -> Problem:
     plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
     stated = {
         "name": "block <on> a table & more",
+        "accuracy": None,
         "units": {"length": "mm", "force": "N"},
         "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
         "boundary": {"outer": edges},
@@ -45,6 +46,7 @@ def roller(**changes: object) -> Problem:
     plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
     stated = {
         "name": "roller",
+        "accuracy": None,
         "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
         "boundary": {"outer": edges},
         "conditions": {"top": {"pressure": 30}, "axis": {"displacement": {"x": 0}}},

@@ -74,10 +74,10 @@ def test_lengths_pressures_and_forces_have_their_units():
 
 def of_each_kind() -> dict[str, list[Any]]:
     """Results of each kind but studies, and reproductions of the paper, which are tested with their page."""
-    tools = load("models/gallery/body_between_two_tools.yaml").with_case("raised")
+    tools = load("models/gallery/body_between_two_tools.yaml", variant="stated mesh").with_case("raised")
     contact = random_contact(3, 7, 2)
     loose = CondensedContact.from_compliance(np.eye(2), [1.0, 1.0])
-    cases = load("models/gallery/roller_in_v_block.yaml")
+    cases = load("models/gallery/roller_in_v_block.yaml", variant="stated mesh")
     relief = bemcontact.Relief(lower=-0.2, upper=0.4, slope=0.2)
     return {
         "result": [

@@ -27,7 +27,7 @@ POWERS = [lambda s, k=k: (1 - s / 5) ** k for k in (2, 4, 8)]
 
 @cache
 def condensed(name: str) -> CondensedContact:
-    return bemcontact.condense(spec.load(GALLERY / f"{name}.yaml"))
+    return bemcontact.condense(spec.load(GALLERY / f"{name}.yaml", variant="stated mesh"))
 
 
 def loaded(contact: CondensedContact, factor: float) -> CondensedContact:

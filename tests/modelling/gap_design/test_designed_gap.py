@@ -14,7 +14,7 @@ import bemcontact
 from bemcontact import GapDesign, Relief, design_gap, spec
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Polyline, Spline
+from bemcontact.problem import Polyline, Problem, Spline
 
 PUNCH = (Path(__file__).parents[3] / "models" / "gallery" / "flat_punch.yaml").read_text(encoding="utf-8")
 LOAD = "{pressure: 5}"
@@ -28,16 +28,20 @@ def spec_of(load: float, surface: str = PLANE) -> str:
     return PUNCH.replace(LOAD, f"{{pressure: {5 * load}}}").replace(PLANE, surface)
 
 
+def read(text: str) -> Problem:
+    return spec.loads(text, variant="stated mesh")
+
+
 @cache
 def relieved_punch(load: float = 1.0) -> GapDesign:
     """All bounds in proportion to the load, so that the design is."""
     relief = Relief(lower=0, upper=0.01 * load, slope=0.004 * load, curvature=0.004 * load)
-    return design_gap(bemcontact.condense(spec.loads(spec_of(load))), relief)
+    return design_gap(bemcontact.condense(read(spec_of(load))), relief)
 
 
 def through_the_chain(load: float, kind: str) -> CondensedContact:
     """The designed surface as text in a spec, read and condensed."""
-    return bemcontact.condense(spec.loads(spec_of(load, indent(relieved_punch(load).to_yaml(kind), "    "))))
+    return bemcontact.condense(read(spec_of(load, indent(relieved_punch(load).to_yaml(kind), "    "))))
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ MODELS = Path(__file__).parents[3] / "models"
 
 @pytest.fixture(scope="module")
 def link() -> ParameterPath:
-    problem = bemcontact.load(MODELS / "gallery" / "three_zones.yaml")
+    problem = bemcontact.load(MODELS / "gallery" / "three_zones.yaml", variant="stated mesh")
     return bemcontact.follow(problem, "conditions.loaded.pressure", 20, 0)
 
 
