@@ -55,7 +55,7 @@ def test_a_table_that_fits_and_a_verdict(block: Path):
         "direct",
         "solves it",
         "Equations      unique solution proved.",
-        "Mesh           not assessed.",
+        "Mesh           error at most",
         "uniform",
         "within 1 %",
         "Peak pressure  3",

@@ -137,7 +137,7 @@ def test_a_roller_crowned_by_the_closed_form():
     crown = 2 * pressure * a * (1 - 0.3**2) / (np.pi * 210e3) * sum(sides)
     points = ", ".join(f"[{at:.12f}, {height:.12f}]" for at, height in zip(x[::-1], crown[::-1], strict=True))
     surface = f"    surface: {{kind: spline, points: [{points}]}}\n"
-    result = bemcontact.solve(spec.loads(spec_of(0.1, surface)))
+    result = bemcontact.solve(read(spec_of(0.1, surface)))
     assert result.certified
     inside = abs(result.contact.points[:, 0]) < 0.9 * a
     np.testing.assert_allclose(result.solution.pressure[inside], pressure, rtol=1e-3)

@@ -22,7 +22,7 @@ MODELS = Path(__file__).parents[3] / "models"
 
 @cache
 def solved(name: str, case: str | None = None) -> analysis.Result:
-    problem = spec.load(MODELS / f"{name}.yaml")
+    problem = spec.load(MODELS / f"{name}.yaml", variant="stated mesh")
     return analysis.solve(problem if case is None else problem.with_case(case))
 
 

@@ -32,7 +32,7 @@ def test_curves_are_those_of_the_design(design: GapDesign, tmp_path: Path):
     assert above.get_ylabel() == "pressure [N/mm²]"
     assert below.get_ylabel() == "profile [mm]"
     assert below.get_xlabel() == "distance along the contact zone [mm]"
-    assert above.get_title() == "flat punch on a large block: peak on punch"
+    assert above.get_title() == "flat punch on a large block, stated mesh: peak on punch"
     legend = above.get_legend()
     assert legend is not None
     assert [text.get_text() for text in legend.get_texts()] == ["without", "with profile"]
