@@ -78,6 +78,7 @@ def condense(body: Body) -> Condensation:
         units={"length": body.problem.units.length, "force": body.problem.units.force},
         notes=body.notes,
         motion_names=body.seen.describe(),
+        motion_arms=body.seen.arms,
         points=body.mesh.nodes[points.node],
         normals=points.normals,
         zone=points.zone,

@@ -211,13 +211,9 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
     for zone in zone_forces(record, units):
         yield "Resultant", f"of {zone}"
-    for name, amplitude in zip(record["motion_names"], record["rigid_amplitudes"], strict=True):
-        if " of the tool " in name:
-            continue  # its line tells where it is
-        # the amplitude of a rotation is a displacement [L] at a distance that no reader knows, unless it is zero
-        moved = settled(amplitude, moves)
-        known = name.startswith("translation") or not moved
-        yield "Free motion", f"{name}{f': {with_unit(number(moved), units.length)}' * known}"
+    for j, name in enumerate(record["motion_names"]):
+        if " of the tool " not in name:  # the line of a tool tells where it is
+            yield "Free motion", f"{name}{_amount(record, j, units)}"
     for tool in record["tools"]:
         yield "Tool", _tool(tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
@@ -236,10 +232,21 @@ def _end_errors(record: Record) -> Iterator[float | None]:
         yield None if not own or None in own else max(own) * (last - first)
 
 
+def _amount(record: Record, motion: int, units: Units) -> str:
+    """How far the body moves along a free motion: a length, or an angle; nothing where the unit is not known."""
+    moved, angles = record["rigid_amplitudes"][motion], record["rotations"]
+    if not settled(moved, record["scales"]["displacement"]):
+        return ": 0"
+    if angles is None:
+        return ""
+    angle = angles[motion]
+    return f": {with_unit(number(angle), 'rad') if angle else with_unit(number(moved), units.length)}"
+
+
 def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units) -> str:
     """Displacement of a tool, and the force and moment of the body on it."""
     moved = vector(tool["displacement"], units.length, scale=moves)
-    turned = number(settled(tool["rotation"] * size, moves) / (size or 1.0))
+    turned = with_unit(number(settled(tool["rotation"] * size, moves) / (size or 1.0)), "rad")
     force = vector(tool["force_of_body"], per_thickness(units), scale=pressed)
     moment = with_unit(number(settled(tool["moment_of_body"], pressed * size)), units.force)
     about = vector(tool["point"])
