@@ -21,7 +21,7 @@ from bemcontact.bem.rigid_motions import (
     free_rigid_motions,
     placed_tools,
 )
-from bemcontact.bem.system import System, solve
+from bemcontact.bem.system import System, solve_system
 from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError
@@ -269,7 +269,7 @@ def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: K
     system = System(
         mesh=mesh, material=problem.material, points=ContactPoints.none(mesh), motions=motions, loadings=(loading,),
     )  # fmt: skip
-    displacement, _ = system.fields(solve(system)[:, 0], loading)
+    displacement, _ = system.fields(solve_system(system)[:, 0], loading)
     return displacement
 
 

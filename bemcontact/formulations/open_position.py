@@ -26,7 +26,9 @@ ACCEPTED = 1e-11
 """Value of `ScaledContact.residual` up to which a position is one of contact."""
 
 
-def settled(contact: CondensedContact, solution: ContactSolution, closed: BoolArray | None = None) -> ContactSolution:
+def with_chosen_position(
+    contact: CondensedContact, solution: ContactSolution, closed: BoolArray | None = None
+) -> ContactSolution:
     """Choose the position by the rule, and say so, if contact leaves one open; otherwise nothing changes.
 
     Points that do not solve the contact problem to round-off, and bodies that nothing touches, are left as they are.

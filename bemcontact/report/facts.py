@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from bemcontact.problem import Units
-from bemcontact.report.formatting import number, per_thickness, sentence_case, settled, vector, with_unit
+from bemcontact.report.formatting import number, per_thickness, sentence_case, vector, with_unit, zero_if_negligible
 
 Record = Mapping[str, Any]
 """A JSON object of a result."""
@@ -189,7 +189,7 @@ def _peaks(record: Record, size: float, units: Units) -> Iterator[tuple[str, str
 
 def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     """List name and value of each fact of a record: contact, peak, resultants, free motions, tools and residuals."""
-    size, pressed, moves = size_of(record), pressed_by(record), record["scales"]["displacement"]
+    size, pressed, moves = coordinate_size(record), pressed_by(record), record["scales"]["displacement"]
     if not record["intervals"]:
         held = "" if record["motion_names"] else ", and the supports alone hold the body"
         yield "Contact", f"nowhere: the body presses on no rigid surface{held}"
@@ -207,7 +207,7 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     for bar in bars_of(record, "displacement"):
         yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most"
     force = vector(record["resultant"], per_thickness(units), scale=pressed)
-    moment = with_unit(number(settled(record["resultant_moment"], pressed * size)), units.force)
+    moment = with_unit(number(zero_if_negligible(record["resultant_moment"], pressed * size)), units.force)
     yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
     for zone in zone_forces(record, units):
         yield "Resultant", f"of {zone}"
@@ -235,7 +235,7 @@ def _end_errors(record: Record) -> Iterator[float | None]:
 def _amount(record: Record, motion: int, units: Units) -> str:
     """How far the body moves along a free motion: a length, or an angle; nothing where the unit is not known."""
     moved, angles = record["rigid_amplitudes"][motion], record["rotations"]
-    if not settled(moved, record["scales"]["displacement"]):
+    if not zero_if_negligible(moved, record["scales"]["displacement"]):
         return ": 0"
     if angles is None:
         return ""
@@ -246,9 +246,9 @@ def _amount(record: Record, motion: int, units: Units) -> str:
 def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units) -> str:
     """Displacement of a tool, and the force and moment of the body on it."""
     moved = vector(tool["displacement"], units.length, scale=moves)
-    turned = with_unit(number(settled(tool["rotation"] * size, moves) / (size or 1.0)), "rad")
+    turned = with_unit(number(zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)), "rad")
     force = vector(tool["force_of_body"], per_thickness(units), scale=pressed)
-    moment = with_unit(number(settled(tool["moment_of_body"], pressed * size)), units.force)
+    moment = with_unit(number(zero_if_negligible(tool["moment_of_body"], pressed * size)), units.force)
     about = vector(tool["point"])
     return (
         f"{tool['name']}: moves by {moved}, turns by {turned}; the body presses on it with {force}, moment {moment} "
@@ -256,7 +256,7 @@ def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units)
     )
 
 
-def size_of(record: Record) -> float:
+def coordinate_size(record: Record) -> float:
     """Largest coordinate of a contact point [L], the scale of round-off in coordinates."""
     return max((abs(x) for point in record["nodes"] for x in point), default=0.0)
 

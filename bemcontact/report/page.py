@@ -73,7 +73,7 @@ def template(name: str, **more: Callable[..., Any]) -> Template:
     )
     environment.filters.update(
         number=_number, small=small, percent=percent, seconds=seconds_in_words, vector=vector, unit=with_unit,
-        plural=plural, plain=_plain, capital=sentence_case, statement=statement, inertia=_inertia, **more,
+        plural=plural, plain=_plain, capital=sentence_case, formulation_name=formulation_name, inertia=_inertia, **more,
     )  # fmt: skip
     return environment.get_template(name)
 
@@ -98,7 +98,7 @@ def _plain(text: str) -> str:
     return text.replace("_", " ")
 
 
-def statement(name: str) -> str:
+def formulation_name(name: str) -> str:
     """Printed name of a formulation."""
     return FORMULATIONS.get(name, name)
 
@@ -249,7 +249,7 @@ def _picture(name: str, svg: bytes, level: Record) -> Picture:
     if caption is None:
         solver, _, weights = name.removeprefix(HISTORY).partition("-")
         weighted = f" with {weights.replace('-', ' ')} weights" if weights else ""
-        caption = f"{statement(solver)}{weighted}" if solver != "direct" else "The direct solver"
+        caption = f"{formulation_name(solver)}{weighted}" if solver != "direct" else "The direct solver"
     answer = level["comparison"]["reference"]["answer"]
     peak = answer and answer["peak"]
     infinite = name == "pressure" and infinite_peaks(level)

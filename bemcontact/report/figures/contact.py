@@ -248,7 +248,7 @@ def draw_deformed(axes: Axes, result: Result) -> None:
     axes.add_patch(PathPatch(outline_of(state, after), facecolor=BODY, edgecolor="none", zorder=0))
     _draw_touching(axes, result, state, after)
     covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
-    size = float(np.hypot(*extent(state)))
+    size = float(np.hypot(*body_extent(state)))
     if factor == 1:
         covered += [draw_ground(axes, *ground, 0.025 * size, GREY) for ground in ground_of(result, NEAR * size)]
     unit = units_of(result.contact).length
@@ -269,7 +269,7 @@ def _draw_touching(axes: Axes, result: Result, state: BoundaryState, after: Arra
     axes.scatter(*after[:, ::4][touching].T, s=10, color=VERMILION, zorder=4)
 
 
-def extent(state: BoundaryState) -> tuple[float, float]:
+def body_extent(state: BoundaryState) -> tuple[float, float]:
     """Width and height of the body."""
     width, height = np.ptp(state.points.reshape(-1, 2), axis=0)
     return float(width), float(height)
@@ -302,7 +302,7 @@ def ground_of(result: Result, near: float) -> Iterator[tuple[Array, Array]]:
 def _magnification(state: BoundaryState) -> float:
     """Choose 1, 2 or 5 times a power of ten so that the largest displacement can be seen."""
     largest = float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
-    size = float(np.hypot(*extent(state)))
+    size = float(np.hypot(*body_extent(state)))
     if largest == 0 or largest >= MAGNIFIED * size / 2:
         return 1.0
     wanted = MAGNIFIED * size / largest

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.report.figures.contact import draw_contact, draw_deformed, extent
+from bemcontact.report.figures.contact import body_extent, draw_contact, draw_deformed
 from bemcontact.report.figures.page import (
     BLACK,
     GREY,
@@ -22,7 +22,7 @@ from bemcontact.report.figures.page import (
     new_page,
     pieces_of,
     plain,
-    shortened,
+    short_label,
     wrapped,
 )
 from bemcontact.report.formatting import number, units_of, with_unit
@@ -40,7 +40,7 @@ def figure_of_result(result: Result) -> Figure:
         pressure = figure.add_subplot(2, 1, 1)
         gap = figure.add_subplot(2, 1, 2, sharex=pressure)
     else:
-        width, height = extent(state)
+        width, height = body_extent(state)
         wide = width > 1.6 * height
         inches, figure = 12, new_page(12, 9.5 if wide else 9)
         grid = figure.add_gridspec(3, 2) if wide else figure.add_gridspec(2, 2)
@@ -161,7 +161,7 @@ def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
         width = 2.2 if order < len(PIECE_COLOURS) else 1.2
         for piece in pieces_of(contact):
             along, pressure = contact.arc_position[piece.index], result.solution.pressure[piece.index]
-            label, dashes = None if piece.order else shortened(name, 30), DASHES[piece.order % len(DASHES)]
+            label, dashes = None if piece.order else short_label(name, 30), DASHES[piece.order % len(DASHES)]
             axes.plot(along, pressure, color=colour, linestyle=dashes, linewidth=width, label=label)
     labels = [f"{DASHES[piece.order % len(DASHES)]}: {piece.label}" for piece in pieces_of(first.contact)]
     if len(labels) > 1:
@@ -188,7 +188,7 @@ def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
     peaks = [beyond if name in cases.infinite else peak for name, peak in finite.items()]
     labels = ["infinite" if name in cases.infinite else f"{peak:.5g}" for name, peak in finite.items()]
     colours = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
-    bars = axes.barh([shortened(name, 30) for name in cases.results], peaks, color=colours)
+    bars = axes.barh([short_label(name, 30) for name in cases.results], peaks, color=colours)
     axes.bar_label(bars, labels, padding=3)
     for bar, name in zip(bars, cases.results, strict=True):
         bar.set(hatch="//" if name in cases.infinite else None, alpha=0.5 if name in cases.infinite else 1.0)
