@@ -39,14 +39,14 @@ def test_cylinder_on_a_plane(cylinder, formulation):
     assert half_width(result) == pytest.approx(HALF_WIDTH, rel=5e-3)
     assert result.footprint.resultant.force == pytest.approx([0, 405], abs=405e-10)
     assert result.residuals.complementarity <= 1e-10
-    assert 0 < result.equilibrium_slack < 1e-4  # coarse meshes leave 1e-7 to 1e-4
     assert result.contact.free_motions == 1
 
 
 def test_three_times_finer_cylinder(cylinder):
-    """Peak to 0.01 %, of which the reference itself is worth half."""
+    """Peak to 0.01 %, of which the reference itself is worth half; the slack of equilibrium falls with h² at least."""
     result = bemcontact.solve(cylinder.refined(3))
     assert result.certified
+    assert 0 < result.equilibrium_slack < bemcontact.solve(cylinder).equilibrium_slack / 9
     assert result.footprint.peak.pressure == pytest.approx(PEAK, rel=1e-4)
 
 

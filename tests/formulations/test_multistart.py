@@ -77,7 +77,7 @@ def test_kinds_of_problems_have_their_properties(kind, n):
     for seed in range(3):
         problem = kind(np.random.default_rng([seed, n]), n)
         assert is_p_matrix(problem.compliance)
-        assert curvature(problem) > 0 if kind is definite else curvature(problem) < -0.05
+        assert (curvature(problem) > 0) is (kind is definite)
         assert len(contact_states(problem)) == 1
 
 
