@@ -1,5 +1,6 @@
 """Facts of a result in words, from its JSON, for the terminal and for pages."""
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -77,6 +78,11 @@ def infinite_peaks(record: Record) -> dict[str, str]:
 def with_bar(value: float, bar: float | None) -> str:
     """Write a number and its relative error: 183.3 ± 0.4."""
     return number(value) if bar is None or not value else with_error(value, abs(value) * bar)
+
+
+def without_digits_beyond(value: float, bar: float | None) -> str:
+    """Write a number alone, with the digits that a relative error leaves: 183.3."""
+    return re.sub(r"\(?([^ (]+) ± [^ )e]+\)?", r"\1", with_bar(value, bar))
 
 
 def with_error(value: float, error: float) -> str:
@@ -157,17 +163,17 @@ def peak_of(record: Record, units: Units) -> str:
     if infinite_peaks(record):
         return "infinite"
     if peak := record["peak"]:
-        return with_unit(with_bar(peak["pressure"], _peak_bar(record)), units.stress) + _unknown_error(record)
+        return with_unit(with_bar(peak["pressure"], peak_bar(record)), units.stress) + _unknown_error(record)
     return "no contact"
 
 
 def _unknown_error(record: Record) -> str:
     """Words behind a largest pressure whose error was looked for and is not known; else nothing."""
     sought = record.get("accuracy", {}).get("met") is False
-    return "; error not known" * (sought and _peak_bar(record) is None)
+    return "; error not known" * (sought and peak_bar(record) is None)
 
 
-def _peak_bar(record: Record) -> float | None:
+def peak_bar(record: Record) -> float | None:
     """Error of the largest pressure of all zones."""
     bars = [item for item in bars_of(record, "peak") if item["value"] is not None]
     return max(bars, key=lambda item: item["value"], default={"bar": None})["bar"]
@@ -177,7 +183,7 @@ def _peaks(record: Record, size: float, units: Units) -> Iterator[tuple[str, str
     """Write the largest pressure; where that of a zone is infinite, each zone by itself."""
     infinite = infinite_peaks(record)
     if not infinite and (peak := record["peak"]):
-        words = peak_in_words(peak, size, units, _peak_bar(record))
+        words = peak_in_words(peak, size, units, peak_bar(record))
         yield "Peak pressure", f"{words}{_unknown_error(record)}; per UNDEFORMED length"
     if infinite:
         for bar in bars_of(record, "peak"):

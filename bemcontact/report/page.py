@@ -19,10 +19,12 @@ from bemcontact.report.facts import (
     accuracy_rows,
     facts,
     infinite_peaks,
+    peak_bar,
     peak_of,
     percent,
     scores_in_words,
     small,
+    with_bar,
 )
 from bemcontact.report.formatting import (
     number,
@@ -253,7 +255,7 @@ def _picture(name: str, svg: bytes, level: Record) -> Picture:
     answer = level["comparison"]["reference"]["answer"]
     peak = answer and answer["peak"]
     infinite = name == "pressure" and infinite_peaks(level)
-    extent = f"; the peak is {number(peak['pressure'])}" if name == "pressure" and peak else ""
+    extent = f"; the peak is {with_bar(peak['pressure'], peak_bar(level))}" if name == "pressure" and peak else ""
     extent = f"; infinite in {', '.join(infinite)}, and cut off" if infinite else extent
     shown = ": objective, infeasibility and residual over the iterations" if name.startswith(HISTORY) else ""
     return picture(svg, caption, f"{caption}{shown}{extent}")

@@ -9,7 +9,15 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bemcontact.problem import Units
-from bemcontact.report.facts import LEAST_SHOWN, accuracy_rows, error_percent, facts, peak_of, with_bar
+from bemcontact.report.facts import (
+    LEAST_SHOWN,
+    accuracy_rows,
+    error_percent,
+    facts,
+    peak_of,
+    with_bar,
+    without_digits_beyond,
+)
 
 UNITS = Units(length="cm", force="kN")
 
@@ -43,6 +51,15 @@ def test_a_number_has_no_digit_beyond_its_error(value: float, error: float, nega
     assert Decimal(number).as_tuple().exponent == Decimal(shown).as_tuple().exponent
     assert len(shown.replace(".", "").strip("0")) <= 2
     assert abs(float(number) * scale - value) <= 0.5 * float(shown) * scale * (1 + 1e-6)
+
+
+@given(st.floats(1e-9, 1e12), st.none() | st.floats(0, 0.9))
+@example(1.83335e7, 0.01)
+@example(1e-5, 0.3)
+def test_a_number_alone_has_the_digits_that_it_has_beside_its_error(value: float, error: float | None):
+    beside = re.match(r"\(?([\d.e+-]+)( ± [\d.]+\))?(.*)", with_bar(value, error)).groups()  # pyright: ignore
+    power = beside[2] if beside[1] else ""
+    assert without_digits_beyond(value, error) == beside[0] + power
 
 
 @given(st.floats(1e-5, 1e3))

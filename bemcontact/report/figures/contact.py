@@ -14,6 +14,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.problem import DeflectedContour, Problem
+from bemcontact.report.facts import with_bar, without_digits_beyond
 from bemcontact.report.figures.page import (
     BLACK,
     BODY,
@@ -27,7 +28,7 @@ from bemcontact.report.figures.page import (
 )
 from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
 from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names
-from bemcontact.report.formatting import number, units_of, with_unit
+from bemcontact.report.formatting import units_of, with_unit
 
 VISIBLE = 0.005
 """Largest displacement over the size of the body from which on the undeformed outline is drawn."""
@@ -84,6 +85,12 @@ class Fan:
         return float(1 / (closing / (steps**2).sum(axis=1)).max()) if closing.any() else np.inf
 
 
+def _peak_text(fan: Fan, fans: Sequence[Fan], bar: float | None) -> str:
+    """The largest pressure of a piece of contact, with the error bar of its zone if it is the largest there."""
+    largest = fan.peak == max(other.peak for other in fans if other.zone == fan.zone)
+    return with_bar(fan.peak, bar) if largest else without_digits_beyond(fan.peak, bar)
+
+
 def draw_contact(axes: Axes, result: Result) -> None:
     """Draw the deformed body to scale, its supports and loads, the rigid surfaces, and the pressure as a fan.
 
@@ -115,7 +122,7 @@ def draw_contact(axes: Axes, result: Result) -> None:
         tips.append(fan.feet - length * np.minimum(fan.pressure / scale, 1.0)[:, None] * fan.normals)
         _draw_fan(axes, fan, tips[-1], 0.03 * size)
         if fan.zone not in infinite:
-            text = with_unit(number(fan.peak), plain(units.stress))
+            text = with_unit(_peak_text(fan, fans, result.accuracy.peak_bar(fan.zone)), plain(units.stress))
             names.append(_label(fan, tips[-1], text, cut=fan.peak > scale * (1 + LEVEL)))
         elif fan.peak == max(other.peak for other in fans if other.zone == fan.zone):
             names.append(_label(fan, tips[-1], "infinite", cut=True))

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
+from bemcontact.report.facts import with_bar
 from bemcontact.report.figures.contact import body_extent, draw_contact, draw_deformed
 from bemcontact.report.figures.page import (
     BLACK,
@@ -25,7 +26,7 @@ from bemcontact.report.figures.page import (
     short_label,
     wrapped,
 )
-from bemcontact.report.formatting import number, units_of, with_unit
+from bemcontact.report.formatting import units_of, with_unit
 from bemcontact.report.verdicts import Verdict, case_verdicts, in_short, overall, result_verdicts
 
 CLOSED = 1e-9
@@ -82,7 +83,8 @@ def draw_pressure(axes: Axes, result: Result) -> None:
         s = float(contact.arc_position[nearest])
         low, high = axes.get_xlim()
         side = "left" if s < low + 0.15 * (high - low) else "right" if s > high - 0.15 * (high - low) else "center"
-        text = f"peak {with_unit(number(peak.pressure), plain(units_of(contact).stress))}"
+        value = with_bar(peak.pressure, result.accuracy.peak_bar())
+        text = f"peak {with_unit(value, plain(units_of(contact).stress))}"
         axes.annotate(text, (s, peak.pressure), xytext=(0, 7), textcoords="offset points", ha=side, color=BLACK)
 
 
@@ -186,7 +188,10 @@ def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
     finite = {name: it.footprint.peak.pressure if it.footprint.peak else 0.0 for name, it in cases.results.items()}
     beyond = 2 * max(finite.values()) or 1.0
     peaks = [beyond if name in cases.infinite else peak for name, peak in finite.items()]
-    labels = ["infinite" if name in cases.infinite else f"{peak:.5g}" for name, peak in finite.items()]
+    bars_of_peaks = {name: it.accuracy.peak_bar() for name, it in cases.results.items()}
+    labels = [
+        "infinite" if name in cases.infinite else with_bar(peak, bars_of_peaks[name]) for name, peak in finite.items()
+    ]
     colours = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
     bars = axes.barh([short_label(name, 30) for name in cases.results], peaks, color=colours)
     axes.bar_label(bars, labels, padding=3)
