@@ -10,9 +10,9 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 from scipy.linalg import qr
-from scipy.optimize import nnls
 
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -271,7 +271,7 @@ def loose_load(contact: ScaledContact) -> Array:
     r·load = r·r > 0 (Farkas).
     """
     ell, load = contact.equilibrium, contact.motion_load
-    return ell.T @ nnls(ell.T, -load)[0] + load if load.size else load
+    return ell.T @ scipy.optimize.nnls(ell.T, -load)[0] + load if load.size else load
 
 
 def escape_note(contact: CondensedContact) -> str | None:

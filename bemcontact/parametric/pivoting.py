@@ -23,8 +23,8 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
+import scipy
 from scipy.linalg import eigvalsh, null_space, qr
-from scipy.optimize import nnls
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.load_cases import Change
@@ -112,7 +112,7 @@ class Tangent:
             return np.zeros_like(load)
         free = self._unresisted
         seen, uncarried = free.T @ ell[self.weak].T, free.T @ load
-        r = free @ (seen @ nnls(seen, -uncarried)[0] + uncarried if self.weak.size else uncarried)
+        r = free @ (seen @ scipy.optimize.nnls(seen, -uncarried)[0] + uncarried if self.weak.size else uncarried)
         return r if np.linalg.norm(r) > UNCARRIED * np.linalg.norm(load) else np.zeros_like(load)
 
     @cached_property
