@@ -230,6 +230,42 @@ def test_no_ring_of_imports():
     assert cycle(import_graph(MODULES)) == []
 
 
+ONE_MEANING = {
+    **dict.fromkeys(
+        ("check", "compare", "condense", "reproduce", "solve", "schema"), "a command is named after what it calls"
+    ),
+    "program_of": "each local formulation states its program",
+    "render": "a page, as HTML",
+    "save": "into a file or a folder",
+    "sensitivities": "of a problem by key, and of a condensed contact problem by change",
+}
+"""Name of public functions of several modules -> what all of them do."""
+
+
+def names_of_several_modules(modules: dict[str, ast.Module]) -> set[str]:
+    """Names of classes and of public functions that stand in several modules."""
+    places: dict[str, set[str]] = {}
+    for module, tree in modules.items():
+        for node in tree.body:
+            public = isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
+            if isinstance(node, ast.ClassDef) or public:
+                places.setdefault(node.name, set()).add(module)
+    return {name for name, where in places.items() if len(where) > 1}
+
+
+def test_no_name_means_two_things():
+    assert names_of_several_modules(MODULES) == ONE_MEANING.keys()
+
+
+def test_a_name_of_several_modules_is_found():
+    sources = {
+        "a": "class _E: ...\ndef f(): ...\ndef _g(): ...",
+        "b": "class _E: ...\ndef _g(): ...",
+        "c": "def f(): ...",
+    }
+    assert names_of_several_modules({name: ast.parse(text) for name, text in sources.items()}) == {"_E", "f"}
+
+
 BAD = [
     (arrows, "bemcontact.bem.system", "from bemcontact.formulations import qp3"),
     (arrows, "bemcontact.bem.mesh", "import bemcontact.analysis"),

@@ -140,7 +140,7 @@ def _compared(options: ComparisonOptions, prepared: Prepared, watch: Stopwatch) 
     assert reference.solution is not None  # the direct solver ends with a status, never refuses
     if FormulationName.QP3 in options.formulations:
         with watch.stage("loading cvxpy"):
-            qp3.load()
+            qp3.import_cvxpy()
     attempts = [_attempted(attempt, options, contact, watch) for attempt in options.attempts]
     with watch.stage("comparison"):
         compared = comparison(contact, reference, attempts, infinite=bool(prepared.accuracy.infinite))

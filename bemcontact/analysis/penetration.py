@@ -17,7 +17,7 @@ from bemcontact.bem.condense import boundary_state
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import Outline
-from bemcontact.bem.surface_gaps import End, SurfaceGaps, surface_gaps
+from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
@@ -99,7 +99,7 @@ def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:
         )
 
 
-def _ended(gaps: SurfaceGaps, zone: str, ends: Iterable[End]) -> Iterator[str]:
+def _ended(gaps: SurfaceGaps, zone: str, ends: Iterable[FaceEnd]) -> Iterator[str]:
     """Note where a surface is taken to end beside an edge that is in no zone, and the body moves to beyond it."""
     for end in ends:
         edge, (x, y) = gaps.state.edge_names[gaps.state.edge[end.element]], end.at.tolist()

@@ -211,7 +211,7 @@ class PaperStudy:
                     variant=run.variant,
                     description="" if run.variant is None else problem.variants[run.variant].description,
                     position=positions(run.level, axis),
-                    contact=extent(run.level, axis),
+                    contact=contact_extent(run.level, axis),
                     level=run.level.record(),
                 )
                 for run in runs
@@ -314,7 +314,7 @@ def positions(level: MeshLevel, axis: Values | Table) -> Array:
     return coordinates(axis, contact.points, contact.arc_position)
 
 
-def extent(level: MeshLevel, axis: Values | Table) -> Reading:
+def contact_extent(level: MeshLevel, axis: Values | Table) -> Reading:
     """Smallest and largest coordinate of the ends of contact [L], or in degrees; empty without contact."""
     intervals = level.answer.footprint.intervals
     if not intervals:
@@ -385,7 +385,7 @@ def _difference(_: PaperStatement, level: MeshLevel, axis: Values | Table) -> Re
 READERS: dict[PaperQuantity, Callable[[PaperStatement, MeshLevel, Values | Table], Reading]] = {
     PaperQuantity.PRESSURE: _pressure,
     PaperQuantity.PEAK: _peak,
-    PaperQuantity.CONTACT: lambda _, level, axis: extent(level, axis),
+    PaperQuantity.CONTACT: lambda _, level, axis: contact_extent(level, axis),
     PaperQuantity.OPEN_POINTS: _open_points,
     PaperQuantity.LEAST_GAP: _least_gap,
     PaperQuantity.FORCE: _force,

@@ -82,6 +82,12 @@ class Accuracy(Leaf):
         """The entries of peaks that are infinite."""
         return tuple(item for item in self.bars if item.quantity == "peak" and item.value is None)
 
+    def peak_bar(self, zone: str | None = None) -> float | None:
+        """Estimated error of the largest finite peak pressure, or of that of a zone, relative; None if not known."""
+        peaks = [item for item in self.bars if item.quantity == "peak" and zone in (None, item.zone)]
+        finite = [(item.value, item.bar) for item in peaks if item.value is not None]
+        return max(finite, key=lambda item: item[0], default=(0.0, None))[1]
+
     def knowing(self, *others: Self) -> Self:
         """Return the same, with the infinite peaks that were recognized on others of the same problem."""
         known = {item.zone: item for other in others for item in other.infinite_peaks}

@@ -85,7 +85,7 @@ OUTCOMES = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Verdict(Leaf):
+class Conclusion(Leaf):
     """What is shown of an answer, and why."""
 
     outcome: Outcome
@@ -120,13 +120,13 @@ class Reached:
         return f"objective {self.here:.2e}, {apart}{side} the {there} of the contact state"
 
 
-def verdict(
+def conclusion(
     solution: ContactSolution,
     certificate: Certificate,
     reached: Reached | None,
     matrices: WeightedCompliance | None,
     tributary: WeightedCompliance,
-) -> Verdict:
+) -> Conclusion:
     """Assess what is shown of an answer.
 
     `reached` is the objective of its own statement, None if it has none; `matrices` are those of its own weights,
@@ -135,35 +135,35 @@ def verdict(
     objective = "" if reached is None else f"{reached}, "
     match certificate.kind:
         case CertificateKind.UNIQUE:
-            return Verdict(
+            return Conclusion(
                 outcome=Outcome.SOLVES,
                 words=f"solves the contact problem: {objective}all conditions hold, and no other state exists, because "
                 f"{certificate.why_unique}",
             )
         case CertificateKind.LOCAL:
-            return Verdict(
+            return Conclusion(
                 outcome=Outcome.SOLVES_PERHAPS_NOT_ALONE,
                 words=f"solves the contact problem: {objective}all conditions hold; but local only: "
                 f"the compliance is not positive definite (smallest eigenvalue "
                 f"{certificate.smallest_eigenvalue:.1e}), so that another state may exist",
             )
         case CertificateKind.OPEN:
-            return Verdict(
+            return Conclusion(
                 outcome=Outcome.LEFT_OPEN,
                 words=f"meets all conditions to their tolerance: {objective}but round-off leaves open whether other "
                 "pressures, far from this one, meet them too",
             )
         case CertificateKind.NOT_A_SOLUTION:
-            return Verdict(
+            return Conclusion(
                 outcome=Outcome.NOT_THE_SOLUTION,
                 words=_why_not(solution, certificate, reached),
                 reason="" if matrices is None else _of_weights(matrices, tributary),
             )
 
 
-def refused(reason: str, matrices: WeightedCompliance, tributary: WeightedCompliance) -> Verdict:
+def refused(reason: str, matrices: WeightedCompliance, tributary: WeightedCompliance) -> Conclusion:
     """The verdict on a formulation that refused the problem, with the effect of its weights on the matrices."""
-    return Verdict(outcome=Outcome.REFUSED, words=f"{reason}.", reason=_of_weights(matrices, tributary))
+    return Conclusion(outcome=Outcome.REFUSED, words=f"{reason}.", reason=_of_weights(matrices, tributary))
 
 
 def _why_not(solution: ContactSolution, certificate: Certificate, reached: Reached | None) -> str:
@@ -246,7 +246,7 @@ class Contender:
     """Assessment of the solution; None if it refused the problem."""
     objective: float | None
     """Objective of its own statement with its own weights, scaled; None for the direct solution."""
-    verdict: Verdict
+    verdict: Conclusion
     """What is shown of its solution."""
     convex: bool | None
     """Whether its program is convex on what equations and equilibrium leave free; None for the direct solution."""
@@ -293,7 +293,7 @@ class ContenderRecord(Record):
     """Penalty μ of QP2, free of units; null for the others."""
     certified: bool
     """Whether its solution is proved to be the contact state, and the only one."""
-    verdict: Verdict
+    verdict: Conclusion
     """What is shown of its solution."""
     objective: float | None
     """Objective of its own statement with its own weights, scaled; null where it has none."""
@@ -384,7 +384,7 @@ def contender(
         attempt=attempt,
         assessment=assessment,
         objective=objective,
-        verdict=verdict(assessment.solution, assessment.certificate, reached, own, tributary),
+        verdict=conclusion(assessment.solution, assessment.certificate, reached, own, tributary),
         convex=search.penalty.convex if search and search.penalty else own.convex if own else None,
     )
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from scipy.optimize import brentq
+import scipy
 
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.serialization import Leaf
@@ -114,4 +114,4 @@ def _order(h: Sequence[float], values: Sequence[float]) -> float | None:
 
     if excess(ORDERS[0]) * excess(ORDERS[1]) > 0:
         return None
-    return float(brentq(excess, *ORDERS))  # pyright: ignore[reportArgumentType]
+    return float(scipy.optimize.brentq(excess, *ORDERS))  # pyright: ignore[reportArgumentType]

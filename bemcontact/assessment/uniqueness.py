@@ -26,8 +26,8 @@ of a compliance with the smallest eigenvalue λ/(1 + ρσ'/b).
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from scipy.linalg import eigh
-from scipy.optimize import linprog
 
 from bemcontact.arrays import Array, BoolArray
 
@@ -113,7 +113,7 @@ def _largest(state: NearState, x: Array, g: Array) -> float:
     size = np.maximum(1.0, g)
     columns = (state.equilibrium / size[:, None]).T
     ends = [
-        linprog(
+        scipy.optimize.linprog(
             side * x / size, A_ub=(g / size)[None, :], b_ub=[1.0], A_eq=columns,
             b_eq=state.equilibrium.T @ state.pressure, bounds=(0, None),
         )

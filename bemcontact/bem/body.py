@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import linprog, nnls
+import scipy
 
 from bemcontact.arrays import Array
 from bemcontact.bem.contact_points import ContactPoints, contact_points
@@ -21,7 +21,7 @@ from bemcontact.bem.rigid_motions import (
     free_rigid_motions,
     placed_tools,
 )
-from bemcontact.bem.system import System, solve
+from bemcontact.bem.system import System, solve_system
 from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError
@@ -122,7 +122,7 @@ class Body:
         R, load = self.relative_load
         if not load.size:
             return None
-        optimum = linprog(
+        optimum = scipy.optimize.linprog(
             -R.sum(axis=0), A_ub=-R, b_ub=np.zeros(len(R)), A_eq=load[None, :], b_eq=[0.0], bounds=(-1.0, 1.0),
             options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
         )  # fmt: skip
@@ -218,7 +218,7 @@ def ensure_held(body: Body) -> None:
 def _check_support(body: Body) -> None:
     """Refuse loads that no pressure p >= 0 can balance, and a body that no load presses on."""
     R, load = body.relative_load
-    forces, residual = nnls(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
+    forces, residual = scipy.optimize.nnls(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
     if residual > BALANCED:
         pull = body.seen.combined((R.T @ forces + load)[:, None])
         who, off = pull.who(0), "its support" if pull.who(0) == BODY else "what it touches"
@@ -269,7 +269,7 @@ def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: K
     system = System(
         mesh=mesh, material=problem.material, points=ContactPoints.none(mesh), motions=motions, loadings=(loading,),
     )  # fmt: skip
-    displacement, _ = system.fields(solve(system)[:, 0], loading)
+    displacement, _ = system.fields(solve_system(system)[:, 0], loading)
     return displacement
 
 

@@ -12,7 +12,7 @@ from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, ensure_held
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.rigid_motions import all_rigid_motions
-from bemcontact.bem.system import System, solve
+from bemcontact.bem.system import System, solve_system
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Tools
@@ -60,7 +60,7 @@ def condense(body: Body) -> Condensation:
         mesh=body.mesh, material=body.problem.material, points=body.points, motions=body.motions,
         loadings=body.loadings,
     )  # fmt: skip
-    response = solve(system)
+    response = solve_system(system)
     points, tools, s = body.points, body.tools, len(body.loadings)
     observed = _observe(system, response)
     prescribed = [np.sum(points.normals * item.values.displacement[points.node], axis=1) for item in body.loadings]
@@ -78,6 +78,7 @@ def condense(body: Body) -> Condensation:
         units={"length": body.problem.units.length, "force": body.problem.units.force},
         notes=body.notes,
         motion_names=body.seen.describe(),
+        motion_arms=body.seen.arms,
         points=body.mesh.nodes[points.node],
         normals=points.normals,
         zone=points.zone,

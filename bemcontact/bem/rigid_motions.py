@@ -227,11 +227,14 @@ class FreeMotions:
 
     def in_user_units(self) -> "FreeMotions":
         """These motions scaled so that work in them is a force [p L] for a translation, else a moment [p L²]."""
-        scales = []
-        for motion in range(len(self)):
-            x, y, turn = abs(self.coefficients[motion]).reshape(-1, 3).T
-            scales.append(self.radius / turn.max() if self.turns(motion) else 1 / np.hypot(x, y).max())
-        return self.combined(np.diag(scales))
+        largest = np.hypot(self.coefficients[:, ::3], self.coefficients[:, 1::3]).max(axis=1, initial=UNSEEN)
+        return self.combined(np.diag(np.where(np.isinf(self.arms), 1 / largest, self.arms)))
+
+    @property
+    def arms(self) -> Array:
+        """Distance (k,) [L] from the center of a rotation at which a motion moves by its amplitude; else infinite."""
+        turns = (abs(row[2::3]).max() if self.turns(motion) else 0.0 for motion, row in enumerate(self.coefficients))
+        return np.array([self.radius / turn if turn else np.inf for turn in turns], float)
 
     def turns(self, motion: int) -> bool:
         """Whether something turns in a motion."""

@@ -42,7 +42,7 @@ DIP = 1 / 8
 """Largest dip of a quadratic below zero between three nodes, over the largest of its values there, if none is below."""
 
 
-class End(NamedTuple):
+class FaceEnd(NamedTuple):
     """Where a straight face of a surface is taken to end: an edge beside the zone goes on in it and is not paired.
 
     A face has not ended where its own line has points further on, nor where it comes back under another edge of the
@@ -79,7 +79,7 @@ class Intrusion(NamedTuple):
     depth: Array
     xi: Array
     behind: BoolArray
-    ends: tuple[tuple[End, float], ...]
+    ends: tuple[tuple[FaceEnd, float], ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -200,7 +200,7 @@ class SurfaceGaps:
         return np.einsum("kqi,kni->kqn", here.normals, here.normals[:, NODES]) > SAME_FACE
 
     def _depth_in_other(
-        self, zone: str, elements: IntArray, ends: Sequence[End]
+        self, zone: str, elements: IntArray, ends: Sequence[FaceEnd]
     ) -> tuple[Array, BoolArray, list[float]]:
         """Depth (k, q) [L] of elements (k,) not of the zone, whether each is behind, and the depth beyond each end."""
         flush, at = FLUSH * self.problem.boundary.size, self.outline.sampled(elements)
@@ -240,9 +240,9 @@ class SurfaceGaps:
             found |= more
         return found
 
-    def _ends(self, zone: str, paired: BoolArray) -> list[End]:
+    def _ends(self, zone: str, paired: BoolArray) -> list[FaceEnd]:
         """Where the surface is taken to end: its straight face goes on along the edge directly beyond the zone."""
-        mesh, ends = self.outline.mesh, list[End]()
+        mesh, ends = self.outline.mesh, list[FaceEnd]()
         for last, neighbor in ((2, mesh.elements[:, 2]), (0, mesh.before)):
             for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
                 beyond, at = int(neighbor[own]), self.state.points[own, last]
@@ -254,7 +254,7 @@ class SurfaceGaps:
                     foot = at - self.held[zone].gap[own, last] * normal
                     ahead = min(map(float, self._ahead(zone, paired, foot, along, normal)), default=np.inf)
                     if ahead == np.inf or self.in_a_zone(beyond):
-                        ends.append(End(beyond, foot, along, normal, ahead))
+                        ends.append(FaceEnd(beyond, foot, along, normal, ahead))
         return ends
 
     def in_a_zone(self, element: int) -> bool:
@@ -324,7 +324,7 @@ def surface_gaps(
     )
 
 
-def _opposite(end: End, feet: Array, normals: Array, flush: float) -> BoolArray:
+def _opposite(end: FaceEnd, feet: Array, normals: Array, flush: float) -> BoolArray:
     """Whether feet (..., 2) [L] on a surface with normals (..., 2) are beyond the end of the surface."""
     offset = feet - end.at
     along = offset @ end.along

@@ -340,7 +340,7 @@ def assemble(system: System) -> tuple[Array, Array]:
     return matrix, right
 
 
-def solve(system: System) -> Array:
+def solve_system(system: System) -> Array:
     """Solve (size, s + n) for loads and unit pressures: LU in place, then one refinement with rows computed anew.
 
     `SingularSystemError` if the equations have no unique solution.

@@ -17,13 +17,14 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
+from bemcontact.checks.arguments import shown
 from bemcontact.errors import ProblemError
 from bemcontact.files import output
 
 Kind = TypeVar("Kind")
 Arrays = dict[str, NDArray[Any]]
 
-FILE_FORMAT = "bemcontact.condensed.4"
+FILE_FORMAT = "bemcontact.condensed.5"
 HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 """Versions of the form of an array in a file, and how their heads are read."""
 PLAIN = "biufU"
@@ -65,7 +66,8 @@ def _known_arrays(package: ZipFile, kind: type[Any]) -> Arrays:
     """The members that a dataclass has, checked against the format and the checksum; others are not read."""
     stated = _member(package, "format") if "format.npy" in package.namelist() else None
     if stated is None or str(stated) != FILE_FORMAT:
-        raise ProblemError(f"not a condensed contact problem of format {FILE_FORMAT}; {AGAIN} with this version")
+        found = "" if stated is None else f", but of format {shown(str(stated))}"
+        raise ProblemError(f"not a condensed contact problem of format {FILE_FORMAT}{found}; {AGAIN} with this version")
     present = {*package.namelist()}
     arrays = {name: _member(package, name) for name in _names(kind, "") if f"{name}.npy" in present}
     checksum = str(_member(package, "checksum")) if "checksum.npy" in present else "none"

@@ -65,6 +65,8 @@ class CondensedContact(MotionAlgebra):
         there is contact although there is no contact point; not a number for other ends; None if there are none [L]
     held_points : (number of runs, 2, 2) these ends [L], or None likewise
     motion_names : k descriptions of the free motions in words: those of the body, then those of tools
+    motion_arms : (k,) distance from the center of a rotation at which its amplitude is the displacement; infinite for a
+        translation; None if not known [L]
     tools : rigid surfaces that move; their displacements are part of ε, and their forces part of the load
     cases : load cases; those in effect are part of Δ1, the load and ε
     pinned : motions that move no contact point, in which all loads must balance
@@ -90,6 +92,7 @@ class CondensedContact(MotionAlgebra):
     element_length_weights: Array | None = None
     held_arc: Array | None = None
     held_points: Array | None = None
+    motion_arms: Array | None = None
     tools: Tools = field(default_factory=lambda: Tools.none(0, 0))
     cases: LoadCases = field(default_factory=lambda: LoadCases.none(0, 0, 0))
     pinned: Pinned = field(default_factory=lambda: Pinned.none(0, 0))
@@ -362,6 +365,14 @@ class CondensedContact(MotionAlgebra):
         p = self._by_point(pressure, "pressure")
         a = real_array(rigid_amplitudes, "rigid_amplitudes", (self.free_motions,), finite=False)
         return self.offset + self.compliance @ p + self.rigid_motions @ a
+
+    def rotations(self, rigid_amplitudes: Array) -> Array | None:
+        """Angle (k,) [rad] of each free motion, for amplitudes a (k,) [L]; zero in a translation; None if not known.
+
+        The sense is that of the name. It is the angle of the linear theory, displacement over distance.
+        """
+        a = real_array(rigid_amplitudes, "rigid_amplitudes", (self.free_motions,), finite=False)
+        return None if self.motion_arms is None else a / self.motion_arms
 
     def resultants(self, pressure: Array) -> Array:
         """Σ w p n (..., zones, 2) [p L]: the force of each zone's rigid surface on the body, from p (..., n) [p]."""

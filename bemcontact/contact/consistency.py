@@ -33,6 +33,7 @@ def ensure_arrays(contact: Any) -> None:
     ensure_independent(contact.rigid_motions)
     _ensure_runs(contact)
     _ensure_held(contact)
+    _ensure_arms(contact, k)
     _ensure_order(contact)
 
 
@@ -108,6 +109,16 @@ def _ensure_held(contact: Any) -> None:
     object.__setattr__(contact, "held_points", points)
     if np.isinf(arc).any() or not np.isfinite(points[~np.isnan(arc)]).all():
         raise ProblemError("held_arc and held_points need finite numbers at held ends; held_arc is nan at other ends")
+
+
+def _ensure_arms(contact: Any, motions: int) -> None:
+    """Refuse arms of free motions that are not positive."""
+    if contact.motion_arms is None:
+        return
+    arms = real_array(contact.motion_arms, "motion_arms", (motions,), finite=False)
+    object.__setattr__(contact, "motion_arms", arms)
+    if not (arms > 0).all():  # false for NaN too
+        raise ProblemError("motion_arms must be positive, and infinite for a translation")
 
 
 def _ensure_order(contact: Any) -> None:

@@ -5,7 +5,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
+import scipy
 
 from bemcontact.arrays import Array
 from bemcontact.errors import SingularSystemError
@@ -47,7 +47,7 @@ def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:
         return -float(q.min(initial=0.0))
     columns = np.column_stack([rigid_motions, np.ones(n)])
     cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
-    optimum = linprog(cost, A_ub=-columns, b_ub=q / widest, bounds=bounds)
+    optimum = scipy.optimize.linprog(cost, A_ub=-columns, b_ub=q / widest, bounds=bounds)
     return widest * optimum.fun if optimum.success and optimum.fun > INTERFERENCE else 0.0
 
 

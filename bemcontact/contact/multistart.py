@@ -13,7 +13,7 @@ LISTED = 8
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class End(Leaf):
+class SearchEnd(Leaf):
     """One end that searches from random starts reached."""
 
     solution: Internal[ContactSolution]
@@ -49,7 +49,7 @@ class End(Leaf):
 
     def __repr__(self) -> str:
         """The line of `str` in brackets."""
-        return f"<End: {self}>"
+        return f"<SearchEnd: {self}>"
 
     def __str__(self) -> str:
         """One line: how often, where, in how many iterations."""
@@ -69,7 +69,7 @@ class RandomStarts(Leaf):
     """Number of starts."""
     seed: int
     """Seed of the random numbers."""
-    ends: tuple[End, ...]
+    ends: tuple[SearchEnd, ...]
     """Distinct ends, the nearest to the contact state first."""
 
     @computed_field

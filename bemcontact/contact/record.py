@@ -100,7 +100,11 @@ class SolutionRecord(Record):
     status: Status
     """How the solver ended, which proves nothing of the solution."""
     rigid_amplitudes: Vector
-    """Displacement along each free rigid motion, those of the body first, then those of tools [L]."""
+    """Amplitude of each free rigid motion, those of the body first, then those of tools [L]: the displacement along a
+    translation; for a rotation, the displacement at a reference distance from its center; `rotations` has its angle."""
+    rotations: Vector | None
+    """Angle of each free rigid motion, in radians and in the sense of its name; zero in a translation; null if unknown.
+    Displacements are small in linear elasticity: the angle is the displacement over the distance from the center."""
     pressure: Vector
     """Normal traction per undeformed length, positive in compression [p]."""
     gap: Vector
@@ -127,6 +131,7 @@ def solution_record(contact: CondensedContact, solution: ContactSolution) -> Sol
         solver=solution.solver,
         status=solution.status,
         rigid_amplitudes=solution.rigid_amplitudes,
+        rotations=contact.rotations(solution.rigid_amplitudes),
         pressure=solution.pressure,
         gap=contact.initial_gap + solution.displacement,
         normal_displacement=solution.displacement,

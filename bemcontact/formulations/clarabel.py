@@ -58,7 +58,7 @@ LARGEST_COUNT = 2**32 - 1
 """Largest number of iterations that Clarabel can count to."""
 
 
-class Attempt(NamedTuple):
+class ClarabelSettings(NamedTuple):
     """Settings of Clarabel, and whether the program is scaled the other way."""
 
     words: str
@@ -67,10 +67,10 @@ class Attempt(NamedTuple):
 
 
 ATTEMPTS = (
-    Attempt("", {"static_regularization_constant": 1e-7, **REFINEMENT}),
-    Attempt("with less regularization", {"static_regularization_constant": 1e-8}),
-    Attempt("in another scaling", {"static_regularization_constant": 1e-7, **REFINEMENT}, rescaled=True),
-    Attempt("with more regularization", {"static_regularization_constant": 1e-6, **REFINEMENT}),
+    ClarabelSettings("", {"static_regularization_constant": 1e-7, **REFINEMENT}),
+    ClarabelSettings("with less regularization", {"static_regularization_constant": 1e-8}),
+    ClarabelSettings("in another scaling", {"static_regularization_constant": 1e-7, **REFINEMENT}, rescaled=True),
+    ClarabelSettings("with more regularization", {"static_regularization_constant": 1e-6, **REFINEMENT}),
 )
 """Made one after the other until one gives an answer."""
 
@@ -99,7 +99,7 @@ class _Scaling(NamedTuple):
     s: float = 1.0
 
 
-def minimize(
+def minimize_convex(
     problem: Any,
     max_iterations: int | None = None,
     *,
@@ -203,7 +203,7 @@ def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool
         yield _End(status, residual, _note(attempt, status, residual), solution, progress, scaling)
 
 
-def _note(attempt: Attempt, status: str, residual: float) -> str:
+def _note(attempt: ClarabelSettings, status: str, residual: float) -> str:
     """Say which attempt this was, unless it is the first, and how inaccurate its end is."""
     notes = [f"Clarabel answered {attempt.words}, after other attempts"] if attempt.words else []
     if status not in (*RAYS, LIMIT) and residual > GOOD:

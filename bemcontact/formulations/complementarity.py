@@ -10,16 +10,16 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 from scipy.linalg import qr
-from scipy.optimize import nnls
 
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual
-from bemcontact.formulations.open_position import settled
+from bemcontact.formulations.open_position import with_chosen_position
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
 from bemcontact.options import FormulationName, SolveOptions, options_of
 
@@ -243,7 +243,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
         iterations=search.iterations,
         history=search.history,
     )
-    return settled(contact, solution)
+    return with_chosen_position(contact, solution)
 
 
 def polish(contact: CondensedContact, solution: ContactSolution) -> ContactSolution:
@@ -258,10 +258,10 @@ def polish(contact: CondensedContact, solution: ContactSolution) -> ContactSolut
     end = primal_dual(body, touching, POLISH_STEPS)
     cleaner = end.residual <= ACCEPTED and solution.pressure[~touching].any()
     if not (cleaner or end.residual < body.residual(p, a)):
-        return settled(contact, solution)
+        return with_chosen_position(contact, solution)
     p, u_n, a = unscaled(contact, end.pressure, end.amplitudes)
     better = replace(solution, pressure=p, displacement=u_n, rigid_amplitudes=a, unpolished=solution.pressure)
-    return settled(contact, better)
+    return with_chosen_position(contact, better)
 
 
 def loose_load(contact: ScaledContact) -> Array:
@@ -271,7 +271,7 @@ def loose_load(contact: ScaledContact) -> Array:
     r·load = r·r > 0 (Farkas).
     """
     ell, load = contact.equilibrium, contact.motion_load
-    return ell.T @ nnls(ell.T, -load)[0] + load if load.size else load
+    return ell.T @ scipy.optimize.nnls(ell.T, -load)[0] + load if load.size else load
 
 
 def escape_note(contact: CondensedContact) -> str | None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.multistart import End, RandomStarts
+from bemcontact.contact.multistart import RandomStarts, SearchEnd
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.formulations import FORMULATIONS
 from bemcontact.formulations.search import contact_residual, draw_starts
@@ -44,7 +44,7 @@ def multistart(contact: CondensedContact, options: SolveOptions, progress: Progr
     `progress` is called after each search with the number of searches done.
     """
     count, seed = options.starts or 1, options.seed or 0
-    ends: list[End] = []
+    ends: list[SearchEnd] = []
     for number, start in enumerate(draw_starts(contact, count, seed)):
         one = replace(options, start=start, seed=None, starts=None, polish=False)
         solution = FORMULATIONS[options.formulation](contact, one)
@@ -61,10 +61,10 @@ def multistart(contact: CondensedContact, options: SolveOptions, progress: Progr
     return RandomStarts(formulation=options.formulation, count=count, seed=seed, ends=ordered)
 
 
-def _end(contact: CondensedContact, solution: ContactSolution, number: int) -> End:
+def _end(contact: CondensedContact, solution: ContactSolution, number: int) -> SearchEnd:
     """An end of which this search is the first."""
     known = solution.search is not None and solution.status not in NOWHERE
-    return End(
+    return SearchEnd(
         solution=solution,
         count=1,
         first_start=number,

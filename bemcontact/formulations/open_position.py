@@ -8,8 +8,8 @@ squares of the weights: that depends on no unit, no basis of the motions, and no
 from dataclasses import replace
 
 import numpy as np
+import scipy
 from scipy.linalg import null_space
-from scipy.optimize import linprog, nnls
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -26,7 +26,9 @@ ACCEPTED = 1e-11
 """Value of `ScaledContact.residual` up to which a position is one of contact."""
 
 
-def settled(contact: CondensedContact, solution: ContactSolution, closed: BoolArray | None = None) -> ContactSolution:
+def with_chosen_position(
+    contact: CondensedContact, solution: ContactSolution, closed: BoolArray | None = None
+) -> ContactSolution:
     """Choose the position by the rule, and say so, if contact leaves one open; otherwise nothing changes.
 
     Points that do not solve the contact problem to round-off, and bodies that nothing touches, are left as they are.
@@ -76,7 +78,7 @@ def _open_ways(limits: tuple[Array, Array], motions: Array) -> BoolArray:
     open_ways = np.zeros(len(motions), bool)
     for row, way in enumerate(motions):
         for cost in (way, -way) if np.abs(way).max() > UNSEEN else ():
-            optimum = linprog(cost, A_ub=-G, b_ub=-h, bounds=(-1.0, 1.0))
+            optimum = scipy.optimize.linprog(cost, A_ub=-G, b_ub=-h, bounds=(-1.0, 1.0))
             open_ways[row] |= optimum.success and -optimum.fun > OPEN
     return open_ways
 
@@ -97,7 +99,7 @@ def _least(G: Array, h: Array) -> Array:
         return np.zeros(G.shape[1])
     E = np.vstack([G.T, h])
     right = np.append(np.zeros(G.shape[1]), 1.0)
-    r = E @ nnls(E, right)[0] - right
+    r = E @ scipy.optimize.nnls(E, right)[0] - right
     return -r[:-1] / r[-1]
 
 
@@ -111,7 +113,9 @@ def farthest(values: Array, rates: Array, seen: Array, most: float) -> tuple[flo
     size = np.maximum(np.abs(rows).max(axis=1), UNSEEN)
     rows, values = rows / size[:, None], values / size
     cost = -np.eye(rows.shape[1])[0]
-    optimum = linprog(cost, A_ub=-rows, b_ub=values, bounds=[(0.0, most), *[(None, None)] * seen.shape[1]])
+    optimum = scipy.optimize.linprog(
+        cost, A_ub=-rows, b_ub=values, bounds=[(0.0, most), *[(None, None)] * seen.shape[1]]
+    )
     if not optimum.success:
         return 0.0, np.zeros(seen.shape[1])
     x, free = np.append(most, np.zeros(seen.shape[1])), np.eye(rows.shape[1])[:, 1:]

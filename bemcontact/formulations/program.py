@@ -128,7 +128,7 @@ def lower_bounds(contact: CondensedContact, size: int) -> Array:
     return np.concatenate([-gap, np.zeros(n), np.full(size - 2 * n, -np.inf)])
 
 
-def minimize(program: Program, start: Array, max_iterations: int | None) -> QPResult:
+def minimize_program(program: Program, start: Array, max_iterations: int | None) -> QPResult:
     """Minimize a program by the local solver from a start (N,); the result is over x with s after it.
 
     Penalized equations become √μ s = E x - e with |s|² in the objective, which avoids the condition of EᵀE.

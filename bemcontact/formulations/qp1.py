@@ -25,7 +25,7 @@ from bemcontact.formulations.search import polished, searched
 from bemcontact.options import FormulationName, Rows, SolveOptions, options_of
 
 
-def statement(contact: CondensedContact, options: SolveOptions) -> Program:
+def program_of(contact: CondensedContact, options: SolveOptions) -> Program:
     """(27)-(29) on the scaled problem, over (u_n, p), or (u_n, p, a) with the compliance rows.
 
     The compliance rows need ℓᵀp = -load beside them. `ProblemError` if the problem does not carry the weights.
@@ -52,7 +52,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     `Program.value`. `ProblemError` if the problem does not carry the weights, or an option has no meaning for QP1.
     """
     options = options_of(FormulationName.QP1, options)
-    program = statement(contact, options)
+    program = program_of(contact, options)
     eigenvalue = smallest_eigenvalue(scaled(contact), scaled_weights(contact, options.weights))
     only = eigenvalue is None or eigenvalue > NEGLIGIBLE
     solution = searched(contact, options, program, only=only)

@@ -61,7 +61,7 @@ class Ray:
     limit: float
 
 
-def statement(contact: CondensedContact, options: SolveOptions) -> Program:
+def program_of(contact: CondensedContact, options: SolveOptions) -> Program:
     """(30)-(34) on the scaled problem, over (u_n, p), or (u_n, p, a) with the compliance rows.
 
     `ProblemError` if the problem does not carry the weights, or the rows do not contain the equilibrium to be
@@ -86,7 +86,7 @@ def statement(contact: CondensedContact, options: SolveOptions) -> Program:
     )
 
 
-def penalty_unit(contact: CondensedContact, options: SolveOptions) -> float:
+def penalty_scale(contact: CondensedContact, options: SolveOptions) -> float:
     """The μ in the user's units that is 1 in scaled ones: T/(U max J) for stiffness rows, U/(T max J) for others.
 
     It is that of pᵀJδ + (1/μ)|K u_n - B p - r|² with K, B, r, J as they are. Where a change of units multiplies
@@ -152,8 +152,8 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     the rows do not contain the equilibrium to be penalized.
     """
     options = options_of(FormulationName.QP2, options)
-    program = statement(contact, options)
-    unit = penalty_unit(contact, options)
+    program = program_of(contact, options)
+    unit = penalty_scale(contact, options)
     if ray := two_point_ray(contact, options):
         raise OptionError(_unbounded(contact, options, ray, unit))
     limit = convexity_limit(contact, options)

@@ -16,7 +16,7 @@ from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace
 from bemcontact.errors import NotConvexError, SolverError
-from bemcontact.formulations.clarabel import STATUSES, minimize
+from bemcontact.formulations.clarabel import STATUSES, minimize_convex
 from bemcontact.formulations.complementarity import ACCEPTED, escape_note, polish
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, scaled_weights, unscaled
 from bemcontact.options import FormulationName, SolveOptions, Weights, options_of
@@ -27,7 +27,7 @@ SLIGHT = 1e-2
 """Negative part of a Hessian, relative to its largest eigenvalue, that is attributed to the mesh."""
 
 
-def load() -> None:
+def import_cvxpy() -> None:
     """Import cvxpy, which takes half a second, so that later steps can be timed."""
     import cvxpy  # noqa: F401
 
@@ -183,7 +183,7 @@ def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | No
         goal, gap, balance = goal + work.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
     program = cp.Problem(cp.Minimize(goal), [gap >= 0, *balance])
     try:
-        answer = minimize(program, max_iterations, equilibrate=False, leave_point=True)
+        answer = minimize_convex(program, max_iterations, equilibrate=False, leave_point=True)
     except SolverError as error:
         raise SolverError(
             "Clarabel found no solution of QP3; check the mesh for very short elements, or solve the "

@@ -17,7 +17,7 @@ from bemcontact.errors import OptionError, ProblemError, SpecError, escaped
 from bemcontact.files.text import text_of
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.local_solver import QPResult, QPStatus
-from bemcontact.formulations.program import Program, minimize
+from bemcontact.formulations.program import Program, minimize_program
 from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
 from bemcontact.options import STARTS, SolveOptions, StartName, Weights, ensure_whole
 
@@ -188,7 +188,7 @@ def searched(
     solver's own u_n. The penalty is reported with the search.
     """
     start = start_of(contact, options)
-    result = minimize(program, start_vector(contact, start, len(program.linear)), options.max_iterations)
+    result = minimize_program(program, start_vector(contact, start, len(program.linear)), options.max_iterations)
     solution = _solution(contact, options.formulation, result, _search(start, program, result, penalty))
     residual, objective = contact_residual(contact, solution), program.value(result.x)
     if solution.status is not Status.SOLVED or residual <= SOLUTION:

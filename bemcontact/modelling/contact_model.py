@@ -15,7 +15,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import qp3
-from bemcontact.formulations.clarabel import Answer, minimize
+from bemcontact.formulations.clarabel import Answer, minimize_convex
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
 from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
 from bemcontact.modelling.model_result import ModelResult, judged, read_back, solution_at
@@ -244,7 +244,7 @@ class ContactModel:
         if chosen is self._pure and (result := self._from_last()) is not None:
             return result
         pure = chosen is self._pure
-        answer = minimize(chosen, max_iterations, leave_point=pure, as_stated=not pure)
+        answer = minimize_convex(chosen, max_iterations, leave_point=pure, as_stated=not pure)
         return self._read_back(chosen, answer)
 
     def _from_last(self) -> ModelResult | None:
@@ -306,7 +306,7 @@ def model(contact: CondensedContact) -> ContactModel:
         The Hessian has a negative eigenvalue on the equilibrium space, of more than a hundredth of the largest.
     """
     instance_of(contact, CondensedContact, "contact", "bemcontact.condense makes one of a problem")
-    U, T = scales = typical_scales(contact)
+    U, T = scales = largest_scales(contact)
     problem, given = scaled(contact, scales), Parameters.of(contact)
     n, k = contact.rigid_motions.shape
     hessian, notes = _convex_hessian(problem)
@@ -354,7 +354,7 @@ def ensure_convex(problem: cp.Problem) -> None:
     )
 
 
-def typical_scales(contact: CondensedContact) -> ContactScales:
+def largest_scales(contact: CondensedContact) -> ContactScales:
     """Displacement [L] and pressure [p] of the present state, or of a load case by itself, whichever is largest."""
     cases = contact.cases
     steps = np.eye(len(cases)) - cases.factors

@@ -15,10 +15,10 @@ from bemcontact.contact.load_cases import Change, LoadCases
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.formulations.open_position import settled
+from bemcontact.formulations.open_position import with_chosen_position
 from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
 from bemcontact.options import FormulationName
-from bemcontact.parametric.pivoting import LinearChange, Trail, follow
+from bemcontact.parametric.pivoting import LinearChange, Trail, trail_along
 from bemcontact.serialization import Internal, Leaf, Matrix, PairTables, Vector
 
 COMMON = {
@@ -224,7 +224,7 @@ class LoadPath(Leaf):
         pressure = (1 - share) * self.pressure[i] + share * self.pressure[j]
         amplitudes = (1 - share) * self.rigid_amplitudes[i] + share * self.rigid_amplitudes[j]
         state = self._solution(t, pressure, amplitudes)
-        return settled(self.contact(t), state) if self._is_open(t) else state
+        return with_chosen_position(self.contact(t), state) if self._is_open(t) else state
 
     def _is_open(self, t: float) -> bool:
         """Whether contact leaves a position open beside t, and the body does not tip there."""
@@ -322,7 +322,7 @@ def _followed(first: CondensedContact, last: CondensedContact) -> tuple[Trail | 
         return None, "; ".join(solution.notes) or solution.status.words
     unit = measure(first, last)
     point = scaled_point(unit, solution.pressure, solution.rigid_amplitudes)
-    trail = follow(scaled(unit), line_between(unit, first, last), *point)
+    trail = trail_along(scaled(unit), line_between(unit, first, last), *point)
     return trail, trail.stop if trail.escape is None else complementarity.escape_words(first, trail.escape)
 
 
@@ -371,7 +371,7 @@ def _with_positions(path: LoadPath) -> LoadPath:
     for i, (begin, end) in enumerate(pairwise(path.parameter.tolist())):
         if begin < end:
             middle = path.at((begin + end) / 2)
-            chosen = settled(path.contact((begin + end) / 2), middle)
+            chosen = with_chosen_position(path.contact((begin + end) / 2), middle)
             leaves_open[i] = chosen is not middle
             notes += chosen.notes
     if not leaves_open.any():
@@ -382,7 +382,7 @@ def _with_positions(path: LoadPath) -> LoadPath:
     for i, t in enumerate(path.parameter.tolist()):
         if path._is_open(t):
             closed = pressed[i] | pressed[i + 1]
-            chosen = settled(path.contact(t), path.breakpoint(i), closed)
+            chosen = with_chosen_position(path.contact(t), path.breakpoint(i), closed)
             amplitudes[i] = chosen.rigid_amplitudes
             gap[i] = np.where(closed, 0.0, np.maximum(path.contact(t).initial_gap + chosen.displacement, 0.0))
     return replace(path, rigid_amplitudes=amplitudes, gap=gap)

@@ -23,8 +23,8 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
+import scipy
 from scipy.linalg import eigvalsh, null_space, qr
-from scipy.optimize import nnls
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.load_cases import Change
@@ -112,7 +112,7 @@ class Tangent:
             return np.zeros_like(load)
         free = self._unresisted
         seen, uncarried = free.T @ ell[self.weak].T, free.T @ load
-        r = free @ (seen @ nnls(seen, -uncarried)[0] + uncarried if self.weak.size else uncarried)
+        r = free @ (seen @ scipy.optimize.nnls(seen, -uncarried)[0] + uncarried if self.weak.size else uncarried)
         return r if np.linalg.norm(r) > UNCARRIED * np.linalg.norm(load) else np.zeros_like(load)
 
     @cached_property
@@ -195,7 +195,7 @@ class Tangent:
         b = len(self.exchanged)
         (pressure,), (gap,), (amplitudes,) = self.held.solve(change)
         vector = np.append(pressure[points[:b]], gap[points[b:]])
-        vector[np.abs(vector) <= STILL * size_of(change, pressure, amplitudes)] = 0.0
+        vector[np.abs(vector) <= STILL * size_of_terms(change, pressure, amplitudes)] = 0.0
         scale = _scale(N, b)
         rows = scale * self.contact.weights[points]
         matrix, vector = rows[:, None] * N * scale, rows * vector
@@ -214,7 +214,7 @@ def _scale(N: Array, b: int) -> Array:
     return np.where(np.arange(len(N)) < b, np.sqrt(compliance), 1.0 / np.sqrt(compliance))
 
 
-def size_of(change: Change, pressure: Array, amplitudes: Array) -> float:
+def size_of_terms(change: Change, pressure: Array, amplitudes: Array) -> float:
     """Size of the numbers that are added in a rate, or in a state."""
     return float(np.abs(change.offset).max(initial=0.0) + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
 
@@ -276,7 +276,7 @@ class Trail:
     unique: bool
 
 
-def follow(contact: ScaledContact, line: LinearChange, pressure: Array, amplitudes: Array) -> Trail:
+def trail_along(contact: ScaledContact, line: LinearChange, pressure: Array, amplitudes: Array) -> Trail:
     """Follow a state, p (n,) and a (k,) at s = 0, along the line of offsets and loads, as far as it goes.
 
     The first state of the trail is the limit of those that follow, which differs from the given one where that is not
@@ -327,7 +327,7 @@ def _next(line: LinearChange, s: float, block: ContactBlock) -> State:
     touching, rate = block.touching, line.rate
     pressures, gaps, amplitudes = block.solve(line.at(s), rate)
     values, rates = np.where(touching, pressures, gaps)
-    step, blocking = first_zero(values, rates, STILL * size_of(rate, pressures[1], amplitudes[1]))
+    step, blocking = first_zero(values, rates, STILL * size_of_terms(rate, pressures[1], amplitudes[1]))
     small = WEAK * (1.0 + np.abs(pressures[0]).max(initial=0.0) + np.abs(amplitudes[0]).sum())
     if s + step >= 1.0 or (values + (1.0 - s) * rates).min() >= -small:  # at the end all pressures may vanish
         step, blocking = 1.0 - s, np.zeros_like(touching)
@@ -356,7 +356,7 @@ def _drifted(line: LinearChange, state: State, tangent: Tangent) -> tuple[State,
     pressures, gaps, amplitudes = block.solve(now, rate)
     values, rates = np.where(touching, pressures, gaps)
     values = np.maximum(values, 0.0)
-    rates[np.abs(rates) <= STILL * size_of(rate, pressures[1], amplitudes[1])] = 0.0
+    rates[np.abs(rates) <= STILL * size_of_terms(rate, pressures[1], amplitudes[1])] = 0.0
     step, moved = farthest(values, rates, np.where(touching[:, None], 0.0, seen), 1.0 - state.s)
     if step <= WEAK * (1.0 - state.s):
         raise ProblemError(NOT_HELD)

@@ -8,7 +8,7 @@ from math import atan2, cos, degrees, fsum, hypot, log, pi, radians, sin
 from typing import Protocol
 
 import numpy as np
-from scipy.special import ellipeinc
+import scipy
 
 from bemcontact.arrays import Array
 
@@ -166,8 +166,8 @@ class EllipticArc:
         """Arc length from a fixed point to eccentric angle t; the parameter of the elliptic integral is in [0, 1)."""
         a, b = self.semi_axes
         if a > b:
-            return a * ellipeinc(t - pi / 2, 1 - (b / a) ** 2)
-        return b * ellipeinc(t, 1 - (a / b) ** 2)
+            return a * scipy.special.ellipeinc(t - pi / 2, 1 - (b / a) ** 2)
+        return b * scipy.special.ellipeinc(t, 1 - (a / b) ** 2)
 
     def _speed(self, t: Array) -> Array:
         return np.hypot(self.semi_axes[0] * np.sin(t), self.semi_axes[1] * np.cos(t))

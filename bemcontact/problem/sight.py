@@ -39,7 +39,8 @@ def edges_that_see(boundary: Boundary, surface: Shape) -> tuple[str, ...]:
     """
     fractions = np.linspace(0, 1, SAMPLES)
     outline = [edge.points(fractions) for edge in boundary.edges]
-    sides = _Sides(np.concatenate([line[:-1] for line in outline]), np.concatenate([line[1:] for line in outline]))
+    starts, ends = [line[:-1] for line in outline], [line[1:] for line in outline]
+    sides = _OutlineSides(np.concatenate(starts), np.concatenate(ends))
     seeing = []
     for edge, line in zip(boundary.edges, outline, strict=True):
         places = line[1:-1]
@@ -51,14 +52,14 @@ def edges_that_see(boundary: Boundary, surface: Shape) -> tuple[str, ...]:
     return tuple(seeing)
 
 
-class _Sides(NamedTuple):
+class _OutlineSides(NamedTuple):
     """Straight pieces of the boundary, from starts (k, 2) to ends (k, 2) [L]."""
 
     starts: Array
     ends: Array
 
 
-def _blocked(places: Array, feet: Array, sides: _Sides, near: float) -> BoolArray:
+def _blocked(places: Array, feet: Array, sides: _OutlineSides, near: float) -> BoolArray:
     """Whether a side crosses the line from each place (q, 2), and farther than `near` from it, to its foot (q, 2)."""
     way, along = feet - places, sides.ends - sides.starts
     offset = sides.starts - places[:, None]

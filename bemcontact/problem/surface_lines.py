@@ -5,8 +5,8 @@ from itertools import pairwise
 from typing import Annotated, Literal, NamedTuple, Self
 
 import numpy as np
+import scipy
 from pydantic import Field, model_validator
-from scipy.interpolate import CubicSpline
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.boundary import first_meeting
@@ -228,10 +228,12 @@ class Spline(SmoothSurface):
         return self
 
     @cached_property
-    def curve(self) -> CubicSpline:
+    def curve(self) -> "scipy.interpolate.CubicSpline":
         """Points (2,) of the curve by the length along the chords, which starts at zero."""
         points = np.array(self.points)
-        return CubicSpline(np.append(0.0, np.hypot(*np.diff(points, axis=0).T).cumsum()), points, bc_type="natural")
+        return scipy.interpolate.CubicSpline(
+            np.append(0.0, np.hypot(*np.diff(points, axis=0).T).cumsum()), points, bc_type="natural"
+        )
 
     @cached_property
     def samples(self) -> Array:

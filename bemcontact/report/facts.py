@@ -1,5 +1,6 @@
 """Facts of a result in words, from its JSON, for the terminal and for pages."""
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -7,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from bemcontact.problem import Units
-from bemcontact.report.formatting import number, per_thickness, sentence_case, settled, vector, with_unit
+from bemcontact.report.formatting import number, per_thickness, sentence_case, vector, with_unit, zero_if_negligible
 
 Record = Mapping[str, Any]
 """A JSON object of a result."""
@@ -77,6 +78,11 @@ def infinite_peaks(record: Record) -> dict[str, str]:
 def with_bar(value: float, bar: float | None) -> str:
     """Write a number and its relative error: 183.3 ± 0.4."""
     return number(value) if bar is None or not value else with_error(value, abs(value) * bar)
+
+
+def without_digits_beyond(value: float, bar: float | None) -> str:
+    """Write a number alone, with the digits that a relative error leaves: 183.3."""
+    return re.sub(r"\(?([^ (]+) ± [^ )e]+\)?", r"\1", with_bar(value, bar))
 
 
 def with_error(value: float, error: float) -> str:
@@ -157,17 +163,17 @@ def peak_of(record: Record, units: Units) -> str:
     if infinite_peaks(record):
         return "infinite"
     if peak := record["peak"]:
-        return with_unit(with_bar(peak["pressure"], _peak_bar(record)), units.stress) + _unknown_error(record)
+        return with_unit(with_bar(peak["pressure"], peak_bar(record)), units.stress) + _unknown_error(record)
     return "no contact"
 
 
 def _unknown_error(record: Record) -> str:
     """Words behind a largest pressure whose error was looked for and is not known; else nothing."""
     sought = record.get("accuracy", {}).get("met") is False
-    return "; error not known" * (sought and _peak_bar(record) is None)
+    return "; error not known" * (sought and peak_bar(record) is None)
 
 
-def _peak_bar(record: Record) -> float | None:
+def peak_bar(record: Record) -> float | None:
     """Error of the largest pressure of all zones."""
     bars = [item for item in bars_of(record, "peak") if item["value"] is not None]
     return max(bars, key=lambda item: item["value"], default={"bar": None})["bar"]
@@ -177,7 +183,7 @@ def _peaks(record: Record, size: float, units: Units) -> Iterator[tuple[str, str
     """Write the largest pressure; where that of a zone is infinite, each zone by itself."""
     infinite = infinite_peaks(record)
     if not infinite and (peak := record["peak"]):
-        words = peak_in_words(peak, size, units, _peak_bar(record))
+        words = peak_in_words(peak, size, units, peak_bar(record))
         yield "Peak pressure", f"{words}{_unknown_error(record)}; per UNDEFORMED length"
     if infinite:
         for bar in bars_of(record, "peak"):
@@ -189,7 +195,7 @@ def _peaks(record: Record, size: float, units: Units) -> Iterator[tuple[str, str
 
 def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     """List name and value of each fact of a record: contact, peak, resultants, free motions, tools and residuals."""
-    size, pressed, moves = size_of(record), pressed_by(record), record["scales"]["displacement"]
+    size, pressed, moves = coordinate_size(record), pressed_by(record), record["scales"]["displacement"]
     if not record["intervals"]:
         held = "" if record["motion_names"] else ", and the supports alone hold the body"
         yield "Contact", f"nowhere: the body presses on no rigid surface{held}"
@@ -207,17 +213,13 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     for bar in bars_of(record, "displacement"):
         yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most"
     force = vector(record["resultant"], per_thickness(units), scale=pressed)
-    moment = with_unit(number(settled(record["resultant_moment"], pressed * size)), units.force)
+    moment = with_unit(number(zero_if_negligible(record["resultant_moment"], pressed * size)), units.force)
     yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
     for zone in zone_forces(record, units):
         yield "Resultant", f"of {zone}"
-    for name, amplitude in zip(record["motion_names"], record["rigid_amplitudes"], strict=True):
-        if " of the tool " in name:
-            continue  # its line tells where it is
-        # the amplitude of a rotation is a displacement [L] at a distance that no reader knows, unless it is zero
-        moved = settled(amplitude, moves)
-        known = name.startswith("translation") or not moved
-        yield "Free motion", f"{name}{f': {with_unit(number(moved), units.length)}' * known}"
+    for j, name in enumerate(record["motion_names"]):
+        if " of the tool " not in name:  # the line of a tool tells where it is
+            yield "Free motion", f"{name}{_amount(record, j, units)}"
     for tool in record["tools"]:
         yield "Tool", _tool(tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
@@ -236,12 +238,23 @@ def _end_errors(record: Record) -> Iterator[float | None]:
         yield None if not own or None in own else max(own) * (last - first)
 
 
+def _amount(record: Record, motion: int, units: Units) -> str:
+    """How far the body moves along a free motion: a length, or an angle; nothing where the unit is not known."""
+    moved, angles = record["rigid_amplitudes"][motion], record["rotations"]
+    if not zero_if_negligible(moved, record["scales"]["displacement"]):
+        return ": 0"
+    if angles is None:
+        return ""
+    angle = angles[motion]
+    return f": {with_unit(number(angle), 'rad') if angle else with_unit(number(moved), units.length)}"
+
+
 def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units) -> str:
     """Displacement of a tool, and the force and moment of the body on it."""
     moved = vector(tool["displacement"], units.length, scale=moves)
-    turned = number(settled(tool["rotation"] * size, moves) / (size or 1.0))
+    turned = with_unit(number(zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)), "rad")
     force = vector(tool["force_of_body"], per_thickness(units), scale=pressed)
-    moment = with_unit(number(settled(tool["moment_of_body"], pressed * size)), units.force)
+    moment = with_unit(number(zero_if_negligible(tool["moment_of_body"], pressed * size)), units.force)
     about = vector(tool["point"])
     return (
         f"{tool['name']}: moves by {moved}, turns by {turned}; the body presses on it with {force}, moment {moment} "
@@ -249,7 +262,7 @@ def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units)
     )
 
 
-def size_of(record: Record) -> float:
+def coordinate_size(record: Record) -> float:
     """Largest coordinate of a contact point [L], the scale of round-off in coordinates."""
     return max((abs(x) for point in record["nodes"] for x in point), default=0.0)
 

@@ -38,7 +38,7 @@ def number(value: float) -> str:
     return f"{value:.5g}" if value else "0"
 
 
-def settled(value: float, scale: float) -> float:
+def zero_if_negligible(value: float, scale: float) -> float:
     """The value, or zero where it is negligible beside the scale."""
     return value if abs(value) > NEGLIGIBLE * scale else 0.0
 
@@ -46,7 +46,7 @@ def settled(value: float, scale: float) -> float:
 def vector(components: tuple[float, float], unit: str = "", *, scale: float = 0.0) -> str:
     """Write a point or a force: (2.7685, 0.48) cm; what is negligible beside it, or beside the scale, is zero."""
     largest = max(*map(abs, components), scale)
-    x, y = (number(settled(value, largest)) for value in components)
+    x, y = (number(zero_if_negligible(value, largest)) for value in components)
     return with_unit(f"({x}, {y})", unit)
 
 

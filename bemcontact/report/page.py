@@ -19,10 +19,12 @@ from bemcontact.report.facts import (
     accuracy_rows,
     facts,
     infinite_peaks,
+    peak_bar,
     peak_of,
     percent,
     scores_in_words,
     small,
+    with_bar,
 )
 from bemcontact.report.formatting import (
     number,
@@ -73,7 +75,7 @@ def template(name: str, **more: Callable[..., Any]) -> Template:
     )
     environment.filters.update(
         number=_number, small=small, percent=percent, seconds=seconds_in_words, vector=vector, unit=with_unit,
-        plural=plural, plain=_plain, capital=sentence_case, statement=statement, inertia=_inertia, **more,
+        plural=plural, plain=_plain, capital=sentence_case, formulation_name=formulation_name, inertia=_inertia, **more,
     )  # fmt: skip
     return environment.get_template(name)
 
@@ -98,7 +100,7 @@ def _plain(text: str) -> str:
     return text.replace("_", " ")
 
 
-def statement(name: str) -> str:
+def formulation_name(name: str) -> str:
     """Printed name of a formulation."""
     return FORMULATIONS.get(name, name)
 
@@ -249,11 +251,11 @@ def _picture(name: str, svg: bytes, level: Record) -> Picture:
     if caption is None:
         solver, _, weights = name.removeprefix(HISTORY).partition("-")
         weighted = f" with {weights.replace('-', ' ')} weights" if weights else ""
-        caption = f"{statement(solver)}{weighted}" if solver != "direct" else "The direct solver"
+        caption = f"{formulation_name(solver)}{weighted}" if solver != "direct" else "The direct solver"
     answer = level["comparison"]["reference"]["answer"]
     peak = answer and answer["peak"]
     infinite = name == "pressure" and infinite_peaks(level)
-    extent = f"; the peak is {number(peak['pressure'])}" if name == "pressure" and peak else ""
+    extent = f"; the peak is {with_bar(peak['pressure'], peak_bar(level))}" if name == "pressure" and peak else ""
     extent = f"; infinite in {', '.join(infinite)}, and cut off" if infinite else extent
     shown = ": objective, infeasibility and residual over the iterations" if name.startswith(HISTORY) else ""
     return picture(svg, caption, f"{caption}{shown}{extent}")

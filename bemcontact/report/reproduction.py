@@ -18,7 +18,7 @@ from bemcontact.report.facts import (
     small,
 )
 from bemcontact.report.formatting import number, seconds_in_words, sentence_case, with_unit
-from bemcontact.report.page import picture, statement, template
+from bemcontact.report.page import formulation_name, picture, template
 from bemcontact.report.text import add_verdict, list_of_facts, table_of
 from bemcontact.report.verdicts import Verdict, mesh_verdict
 
@@ -40,7 +40,7 @@ def render(record: Record, pictures: Mapping[str, bytes]) -> str:
     `figures.figures_of_reproduction`.
     """
     problems = [_contents(item, pictures) for item in record["problems"]]
-    counted = [statement(name) for item in record["problems"] for name in item["iterations"]]
+    counted = [formulation_name(name) for item in record["problems"] for name in item["iterations"]]
     return template("reproduction.html", in_words=_in_words).render(
         record=record,
         problems=problems,

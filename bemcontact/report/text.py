@@ -21,12 +21,12 @@ from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.problem import DeflectedContour, Problem, Units
 from bemcontact.report.facts import (
     Record,
+    coordinate_size,
     facts,
     mesh_in_short,
     peak_of,
     pressed_by,
     scores_in_words,
-    size_of,
     span,
     zone_forces,
 )
@@ -140,7 +140,7 @@ def cases_summary(cases: CaseResults) -> RenderableType:
         record, units = result.to_dict(), units_of(result.contact)
         peak, at = record["peak"], ""
         if peak:
-            at = vector(peak["at"], units.length, scale=size_of(record))
+            at = vector(peak["at"], units.length, scale=coordinate_size(record))
         force = vector(record["resultant"], per_thickness(units), scale=pressed_by(record))
         cells = [
             name,
@@ -171,7 +171,7 @@ def _places(record: Record, contact: CondensedContact) -> Iterator[str]:
         start, end = interval["arc"]
         alone = len(contact.zone_names) == 1
         length = with_unit(number(end - start), units.length)
-        yield f"{interval['zone']}: {span(interval, size_of(record), units) if alone else length}"
+        yield f"{interval['zone']}: {span(interval, coordinate_size(record), units) if alone else length}"
 
 
 def _edge_table(problem: Problem) -> Table:

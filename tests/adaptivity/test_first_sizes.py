@@ -7,6 +7,7 @@ import pytest
 
 from bemcontact.adaptivity.adapt import first_mesh
 from bemcontact.adaptivity.first_sizes import outline, surface_corners, surface_sizes
+from bemcontact.adaptivity.sizes import GROWTH
 from bemcontact.problem import Problem
 
 PLANE = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
@@ -126,12 +127,15 @@ def test_corners_of_a_polyline_are_ends_of_elements():
 
 
 def test_a_least_gap_has_elements_of_the_size_of_the_radius_beside_it():
-    """Two rods of radius 0.5 under a face of 40: an element of 1/4 reaches to each, and it grows by 1.2 beyond."""
+    """A rod of radius 0.5 under a face of 40: the size is half of the radius, and 1/100 of the edge at least, 0.4.
+
+    It grows by `GROWTH` from there, so that an element is h (e^G - 1) / G long at most; see the tests of sizes.
+    """
     circle = {"kind": "circle", "center": [11.3, -0.5], "radius": 0.5, "body": "outside"}
     problem = first_mesh(block(40, 20, circle))
     ends = 40 * problem.edge("bottom").breakpoints(1)
     at = int(np.searchsorted(ends, 11.3))
-    assert ends[at] - ends[at - 1] <= 0.40 * 1.4  # the size is 0.01 of the edge at least: 0.4
+    assert ends[at] - ends[at - 1] <= 0.4 * (np.exp(GROWTH) - 1) / GROWTH
 
 
 def test_a_corner_halves_the_size():

@@ -8,7 +8,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bemcontact.adaptivity.sizes import GROWTH, LEAST, OUTSIDE, RESOLUTION, SHORTEST, Layers, Limit, Loop
+from bemcontact.adaptivity import sizes
+from bemcontact.adaptivity.sizes import (
+    GROWTH,
+    LEAST,
+    OUTSIDE,
+    RESOLUTION,
+    ROUNDING,
+    SHORTEST,
+    Layers,
+    Limit,
+    Loop,
+)
 from bemcontact.arrays import Array
 from bemcontact.problem.boundary import Boundary
 
@@ -114,12 +125,14 @@ def test_marks_are_ends_of_elements(rows: list, marks: list[float]):
 
 @pytest.mark.parametrize("after", [True, False])
 @pytest.mark.parametrize("count", [4.0, 6.0])
-def test_layers_grow_with_the_cubes(after: bool, count: float):
+def test_layers_grow_with_the_cubes(after: bool, count: float, monkeypatch: pytest.MonkeyPatch):
     """With h = max(w/n³, 3/n w^(1/3) s^(2/3)) the integral ∫ds/h is n (s/w)^(1/3) - c beyond h / 5, c = 2/(3 √3).
 
-    So the cube roots of the distances of element ends are a constant step apart, n of them from c on. This step is up
-    to one: the rest of the edge beyond the layers has a whole number of elements. The trapezoidal rule errs by a tenth.
+    Beyond the layers h grows by `GROWTH`, and the rest of the edge, here as long as the layers, adds a logarithm. So
+    the cube roots of the distances of element ends are c and whole numbers of steps. Samples that are a hundredth of h
+    apart err by its square; and at the end itself h is that in contact, although the first step may be outside.
     """
+    monkeypatch.setattr(sizes, "RESOLUTION", 0.01)
     loop = rectangle()
     layer = Layers(position=4.0, width=2.0, count=count, after=after)
     ends = positions(loop, loop.element_ends(np.array([whole(loop, 100.0)]), [layer], [4.0]))
@@ -127,10 +140,10 @@ def test_layers_grow_with_the_cubes(after: bool, count: float):
     for n, way in ((count, side), (count / OUTSIDE, -side)):
         away = np.sort(way * (ends - 4.0))
         roots = n * np.cbrt(away[(away > 0) & (away <= 2.0)] / 2.0)
-        steps = np.diff(roots)
-        assert steps == pytest.approx(steps.mean(), rel=0.15)
-        assert 0.75 <= steps.mean() <= 1.1
-        assert roots[0] == pytest.approx(steps.mean() + 2 / (3 * np.sqrt(3)), rel=0.15)
+        start = 2 / (3 * np.sqrt(3))
+        whole_edge = n - start + np.log1p(GROWTH * n / 3) / GROWTH
+        step = whole_edge / ceil(whole_edge - ROUNDING)
+        assert roots == pytest.approx(start + step * np.arange(1, len(roots) + 1), abs=0.01 / 2 * (OUTSIDE**3 - 1))
 
 
 @settings(max_examples=30, deadline=None)

@@ -8,7 +8,7 @@ from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.loading import Loading, particular_solution
 from bemcontact.bem.mesh import BoundaryValues, Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
-from bemcontact.bem.system import System, solve
+from bemcontact.bem.system import System, solve_system
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.material import Material
 
@@ -96,7 +96,7 @@ def solved(
     """Displacement (N, 2) and traction (m, 3, 2) of a body without contact, and its system."""
     motions = free_rigid_motions(mesh, values.displacement_given)
     system = system_of(mesh, material, values, motions, loads)
-    displacement, traction = system.fields(solve(system)[:, 0], system.loadings[0])
+    displacement, traction = system.fields(solve_system(system)[:, 0], system.loadings[0])
     return displacement, traction, system
 
 

@@ -136,6 +136,19 @@ def test_work_is_a_force_or_a_moment_in_user_units():
     assert [motions.who(j) for j in range(3)] == ["the body and the tool 'a' together"] * 2 + ["the tool 'a'"]
 
 
+@pytest.mark.parametrize("name", BODIES)
+def test_arms_turn_amplitudes_into_angles(name: str):
+    """Two points r apart move by θ ẑ x r relative to each other, and tools turn by θ; the name has the sense."""
+    seen = BODIES[name].seen
+    ends = np.array([[0.3, -1.0], [2.3, 3.0]])
+    (x, y), (dx, dy) = ends[1] - ends[0], np.diff(seen.body.displacement(ends), axis=0)[0]
+    of_body = (x * dy - y * dx) / (x**2 + y**2)
+    for motion, described in enumerate(seen.describe()):
+        angles = [of_body[motion], *seen.tools[2::3, motion]]
+        sense = {"rotation counterclockwise": 1, "rotation clockwise": -1}.get(described.split(" about")[0], 0)
+        assert sum(angles) == pytest.approx(sense / seen.arms[motion], rel=1e-12, abs=1e-12)
+
+
 def test_a_motion_is_described_without_warning():
     assert RigidMotions(coefficients=np.eye(3), center=np.array([1.0, 2]), radius=3.0).describe() == (
         SIDE, UP, f"{TURN} (1, 2)",

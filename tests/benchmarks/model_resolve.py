@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from contact_problems import random_contact
 
 import bemcontact
-from bemcontact.formulations.clarabel import minimize
+from bemcontact.formulations.clarabel import minimize_convex
 
 POINTS = 100
 REPETITIONS = 15
@@ -52,7 +52,7 @@ def main() -> None:
         "new: model and compilation": milliseconds(lambda: compiled(bemcontact.model(contact).problem())),
         "new: with solution and judgement": milliseconds(lambda: bemcontact.model(contact).solve()),
         "again by cvxpy: data alone": milliseconds(lambda: compiled(added), change),
-        "again by cvxpy: with solution": milliseconds(lambda: minimize(added), change),
+        "again by cvxpy: with solution": milliseconds(lambda: minimize_convex(added), change),
         "again by cvxpy: and judgement": milliseconds(lambda: model.solve(problem=added), change),
         "again: with solution and judgement": milliseconds(model.solve, change),
     }

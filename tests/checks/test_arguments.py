@@ -176,6 +176,7 @@ CALLS: dict[str, Call] = {
     "with_tools": (BODY.with_tools, {"position": np.zeros((1, 3)), "force": None}),
     "stepped": (BODY.stepped, {"factors": np.ones(1), "position": np.zeros(3), "force": np.zeros(3)}),
     "gap": (CONTACT.gap, {"pressure": P, "rigid_amplitudes": np.zeros(1)}),
+    "rotations": (BODY.rotations, {"rigid_amplitudes": np.zeros(BODY.free_motions)}),
     "resultants": (CONTACT.resultants, {"pressure": P}),
     "forces": (CONTACT.forces, {"pressure": P}),
     "tool_reactions": (CONTACT.tool_reactions, {"pressure": P}),

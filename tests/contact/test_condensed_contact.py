@@ -56,6 +56,9 @@ def test_load_refuses_other_files(tmp_path):
     np.savez(tmp_path / "other.npz", x=np.ones(3))
     with pytest.raises(ProblemError, match="not a condensed contact problem of format"):
         CondensedContact.load(tmp_path / "other.npz")
+    np.savez(tmp_path / "old.npz", format=np.array("bemcontact.condensed.4"))
+    with pytest.raises(ProblemError, match=r"of format \S+, but of format 'bemcontact.condensed.4'; condense"):
+        CondensedContact.load(tmp_path / "old.npz")
 
 
 def test_arrays_are_read_only():
@@ -68,6 +71,8 @@ def test_arrays_are_read_only():
     [
         ({"initial_gap": np.ones(3)}, r"initial_gap has shape \(3,\) where \(12,\) is needed"),
         ({"initial_gap": np.full(12, np.nan)}, "initial_gap has entries that are not finite"),
+        ({"motion_arms": np.zeros(2)}, "motion_arms must be positive, and infinite for a translation"),
+        ({"motion_arms": np.ones(3)}, r"motion_arms has shape \(3,\) where \(2,\) is needed"),
         ({"weights": np.zeros(12)}, "weights must be positive; the smallest is 0"),
     ],
 )

@@ -3,16 +3,16 @@
 from dataclasses import replace
 
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.multistart import End, RandomStarts
+from bemcontact.contact.multistart import RandomStarts, SearchEnd
 from bemcontact.contact.solution import Status
 from bemcontact.formulations import qp1
 
 
-def ends(count: int) -> tuple[End, ...]:
+def ends(count: int) -> tuple[SearchEnd, ...]:
     """Local minima at pressures 1, 2, ..., the last after one iteration."""
     solution = qp1.solve(CondensedContact.from_compliance([[2.0]], [-3.0]))
     return tuple(
-        End(
+        SearchEnd(
             solution=replace(solution, status=Status.LOCAL_MINIMUM),
             count=2,
             first_start=i,
@@ -34,5 +34,5 @@ def test_ends_are_printed_in_short_lines():
     many = RandomStarts(formulation="qp1", count=22, seed=0, ends=ends(11))
     assert len(str(many).splitlines()) == 10
     assert str(many).splitlines()[-1] == "and 3 more ends, of 6 starts"
-    assert repr(many.ends[0]) == f"<End: {few.ends[0]}>"
+    assert repr(many.ends[0]) == f"<SearchEnd: {few.ends[0]}>"
     assert repr(few) == "<RandomStarts of qp1: 0 of 4 random starts (seed 0) end at the contact state, 2 distinct>"

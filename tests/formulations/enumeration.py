@@ -82,7 +82,7 @@ def first_order_points_of_qp1(condensed: CondensedContact) -> list[Array]:
 
 def first_order_points_of_qp2(condensed: CondensedContact, penalty: float) -> list[Array]:
     """The scaled (δ, p) of a held body at which QP2 is stationary: x >= lower complementary to H x + c >= 0."""
-    program = qp2.statement(condensed, SolveOptions.of("qp2", penalty=penalty))
+    program = qp2.program_of(condensed, SolveOptions.of("qp2", penalty=penalty))
     return complementary_points(program.hessian, program.linear + program.hessian @ program.lower)
 
 

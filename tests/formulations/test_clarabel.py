@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from bemcontact.errors import SolverError
 from bemcontact.formulations import clarabel
-from bemcontact.formulations.clarabel import ATTEMPTS, Attempt, minimize
+from bemcontact.formulations.clarabel import ATTEMPTS, ClarabelSettings, minimize_convex
 
 UNITS = [1.0, 1e-9, 1e6]
 
@@ -19,7 +19,7 @@ def test_quadratic_program(unit):
     x, y = cp.Variable(), cp.Variable()
     bound = x + y <= 2 * unit
     problem = cp.Problem(cp.Minimize(cp.square(x - 3 * unit) + cp.square(y - unit)), [bound, x == y + unit])
-    minimize(problem)
+    minimize_convex(problem)
     assert problem.status == "optimal"
     assert x.value == pytest.approx(1.5 * unit, rel=1e-9)
     assert y.value == pytest.approx(0.5 * unit, rel=1e-9)
@@ -33,7 +33,7 @@ def test_second_order_cone(unit):
     """The point of a disc of radius 2 about (3, 4) that is nearest to the origin, at 5 - 2."""
     x = cp.Variable(2)
     problem = cp.Problem(cp.Minimize(cp.norm(x)), [cp.norm(x - unit * np.array([3.0, 4.0])) <= 2 * unit])
-    minimize(problem)
+    minimize_convex(problem)
     assert problem.value == pytest.approx(3 * unit, rel=1e-8)
     np.testing.assert_allclose(x.value, unit * np.array([1.8, 2.4]), rtol=1e-6)
 
@@ -43,7 +43,7 @@ def test_semidefinite_cone(unit):
     """The least t with t I - A positive semidefinite is the largest eigenvalue of A."""
     A = unit * np.array([[2.0, 1.0, 0.0], [1.0, 2.0, 1.0], [0.0, 1.0, 2.0]])
     t = cp.Variable()
-    minimize(cp.Problem(cp.Minimize(t), [t * np.eye(3) - A >> 0]))
+    minimize_convex(cp.Problem(cp.Minimize(t), [t * np.eye(3) - A >> 0]))
     assert t.value == pytest.approx((2 + np.sqrt(2)) * unit, rel=1e-8)
 
 
@@ -53,34 +53,34 @@ def test_exponential_and_power_cones():
     Both are flat there: 1e-11 of the value is 3e-6 of the place.
     """
     x = cp.Variable()
-    minimize(problem := cp.Problem(cp.Minimize(cp.exp(x) - 2 * x)))
+    minimize_convex(problem := cp.Problem(cp.Minimize(cp.exp(x) - 2 * x)))
     assert x.value == pytest.approx(np.log(2), abs=1e-5)
     assert problem.value == pytest.approx(2 - 2 * np.log(2), rel=1e-9)
     share, mean = cp.Variable(2), cp.Variable()
     for cone in (cp.PowCone3D(share[0], share[1], mean, 0.3), cp.PowConeND(share, mean, np.array([0.3, 0.7]))):
-        minimize(cp.Problem(cp.Maximize(mean), [cp.sum(share) == 1, cone]))
+        minimize_convex(cp.Problem(cp.Maximize(mean), [cp.sum(share) == 1, cone]))
         np.testing.assert_allclose(share.value, [0.3, 0.7], atol=1e-5)
 
 
 @pytest.mark.parametrize("unit", UNITS)
 def test_status(unit):
     x = cp.Variable()
-    minimize(none := cp.Problem(cp.Minimize(x), [x >= 2 * unit, x <= unit]))
+    minimize_convex(none := cp.Problem(cp.Minimize(x), [x >= 2 * unit, x <= unit]))
     assert none.status == "infeasible"
     assert x.value is None
-    minimize(endless := cp.Problem(cp.Minimize(x / unit), [x <= unit]))
+    minimize_convex(endless := cp.Problem(cp.Minimize(x / unit), [x <= unit]))
     assert endless.status == "unbounded"
 
 
 def test_iteration_limit_is_a_status():
     x = cp.Variable(3)
-    minimize(problem := cp.Problem(cp.Minimize(cp.norm(x - 1)), [cp.norm(x) <= 1]), max_iterations=2)
+    minimize_convex(problem := cp.Problem(cp.Minimize(cp.norm(x - 1)), [cp.norm(x) <= 1]), max_iterations=2)
     assert problem.status == "user_limit"
 
 
 def test_integers_are_refused():
     with pytest.raises(SolverError, match=r"Clarabel cannot solve this model: .* state it without integers"):
-        minimize(cp.Problem(cp.Minimize(cp.Variable(integer=True))))
+        minimize_convex(cp.Problem(cp.Minimize(cp.Variable(integer=True))))
 
 
 def degenerate_program(seed: int, n: int, rank: int, decades: int) -> tuple[cp.Problem, cp.Variable, float]:
@@ -107,20 +107,20 @@ def degenerate_program(seed: int, n: int, rank: int, decades: int) -> tuple[cp.P
 @given(seed=st.integers(0, 10**6), n=st.integers(2, 25), rank=st.integers(0, 25), decades=st.integers(0, 3))
 def test_degenerate_programs_have_the_minimum_they_were_made_with(seed, n, rank, decades):
     problem, given, least = degenerate_program(seed, n, min(rank, n), decades)
-    minimize(problem)
+    minimize_convex(problem)
     size = 1.0 + abs(least) + 100.0 * np.abs(given.value).max()
     assert problem.status == "optimal"
     assert problem.value == pytest.approx(least, abs=1e-8 * size)
 
 
-HOPELESS = Attempt("", {"max_iter": 1})
+HOPELESS = ClarabelSettings("", {"max_iter": 1})
 
 
 def test_another_attempt_answers_and_is_named(monkeypatch):
     """The first attempt gives up at once; the next one has the minimum, and says that it was not the first."""
     monkeypatch.setattr(clarabel, "ATTEMPTS", (HOPELESS, *ATTEMPTS[1:]))
     problem, _, least = degenerate_program(1, 6, 3, 0)
-    answer = minimize(problem)
+    answer = minimize_convex(problem)
     assert problem.value == pytest.approx(least, abs=1e-7)
     assert ATTEMPTS[1].words in answer.note
     assert not answer.failed
@@ -130,8 +130,8 @@ def test_no_attempt_is_an_error_unless_the_point_is_wanted(monkeypatch):
     monkeypatch.setattr(clarabel, "ATTEMPTS", (HOPELESS,))
     problem, given, _ = degenerate_program(1, 6, 3, 0)
     with pytest.raises(SolverError, match="Clarabel found no solution"):
-        minimize(problem)
-    answer = minimize(problem, leave_point=True)
+        minimize_convex(problem)
+    answer = minimize_convex(problem, leave_point=True)
     assert answer.failed
     assert "not reached: residual" in answer.note
     assert given.value is not None
@@ -142,7 +142,7 @@ def test_each_attempt_by_itself_solves_plain_programs(attempt, monkeypatch):
     monkeypatch.setattr(clarabel, "ATTEMPTS", (attempt,))
     for seed in range(3):
         problem, _, least = degenerate_program(seed, 6, 3, 0)
-        answer = minimize(problem)
+        answer = minimize_convex(problem)
         assert not answer.failed
         assert problem.value == pytest.approx(least, abs=1e-6)
 
@@ -151,6 +151,6 @@ def test_each_attempt_by_itself_solves_plain_programs(attempt, monkeypatch):
 def test_what_is_hardly_feasible_is_not_called_infeasible_or_unbounded(gap):
     """X >= -1 costs `gap` apiece, and y saves 1 up to 1: the least is -gap - 1; a ray of round-off would cross it."""
     x, y = cp.Variable(), cp.Variable()
-    minimize(problem := cp.Problem(cp.Minimize(gap * x - y), [x >= -1, y <= 1]), equilibrate=False)
+    minimize_convex(problem := cp.Problem(cp.Minimize(gap * x - y), [x >= -1, y <= 1]), equilibrate=False)
     assert problem.status.startswith("optimal")
     assert problem.value == pytest.approx(-gap - 1, rel=1e-7)

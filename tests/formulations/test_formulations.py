@@ -91,7 +91,7 @@ def test_objective_of_a_local_search_is_that_of_the_program(formulation, options
     starts = draw_starts(problem, 5)
     solutions = [formulation.solve(problem, replace(options, start=start)) for start in starts]
     start, whole = next(pair for pair in zip(starts, solutions, strict=True) if of(pair[1], "objective").size)
-    program = formulation.statement(problem, options)
+    program = formulation.program_of(problem, options)
     U, T = problem.scales
     largest = of(whole, "objective").max()
     for limit in range(whole.search.phase_one_iterations + 1, whole.iterations + 1):

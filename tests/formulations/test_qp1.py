@@ -47,7 +47,7 @@ def test_quadratic_is_the_work_of_the_pressure_in_the_gap(k, rows):
     rng = np.random.default_rng(k)
     condensed = random_contact(1, 9, k)
     problem = scaled(condensed)
-    program = qp1.statement(condensed, SolveOptions.of("qp1", rows=rows))
+    program = qp1.program_of(condensed, SolveOptions.of("qp1", rows=rows))
     work = qp3.objective(problem, np.diag(problem.weights))
     for _ in range(5):
         p, a, gap = in_equilibrium(problem, rng)
@@ -66,7 +66,7 @@ def test_hessian_on_the_equations_is_that_of_qp3(k, rows):
     """Along the null space of the equations dδ = M dp + R da with ℓᵀdp = 0, so that dxᵀH dx = dpᵀ(JM + MᵀJᵀ)dp."""
     condensed = random_contact(2, 8, k)
     problem = scaled(condensed)
-    program = qp1.statement(condensed, SolveOptions.of("qp1", rows=rows))
+    program = qp1.program_of(condensed, SolveOptions.of("qp1", rows=rows))
     free = null_space(program.equations.matrix)
     assert free.shape[1] == condensed.size  # n - k pressures in equilibrium and k motions
     p = free[8:16]

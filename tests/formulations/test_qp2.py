@@ -35,8 +35,8 @@ def test_objective_in_the_units_of_the_user(k, length, stress):
     )
     U, T = condensed.scales
     options = SolveOptions.of("qp2", penalty=0.3)
-    program = qp2.statement(condensed, options)
-    raw = 0.3 * qp2.penalty_unit(condensed, options)
+    program = qp2.program_of(condensed, options)
+    raw = 0.3 * qp2.penalty_scale(condensed, options)
     K, B, r = condensed.stiffness_rows
     for _ in range(4):
         u_n, p = rng.standard_normal((2, 8))
@@ -73,7 +73,7 @@ def test_limit_of_convexity(k, rows):
     limit = qp2.convexity_limit(problem, SolveOptions.of("qp2", rows=rows))
     assert limit > 0
     for factor, convex in ((0.999, True), (1.001, False)):
-        program = qp2.statement(problem, SolveOptions.of("qp2", rows=rows, penalty=factor * limit))
+        program = qp2.program_of(problem, SolveOptions.of("qp2", rows=rows, penalty=factor * limit))
         free = null_space(program.equations.matrix) if k else np.eye(len(program.lower))
         values = np.linalg.eigvalsh(free.T @ program.hessian @ free)
         assert (values[0] >= -1e-13 * values[-1]) == convex
@@ -87,7 +87,7 @@ def test_the_penalty_and_its_limit_are_reported():
     penalty = search.penalty
     assert penalty is not None
     assert penalty.value == 0.5
-    assert penalty.raw == 0.5 * qp2.penalty_unit(problem, options)
+    assert penalty.raw == 0.5 * qp2.penalty_scale(problem, options)
     assert penalty.convexity_limit == qp2.convexity_limit(problem, options)
     assert penalty.dimension == "p/L²"
     assert penalty.convexity_limit_raw == pytest.approx(penalty.convexity_limit * penalty.raw / 0.5, rel=1e-15)
@@ -138,17 +138,17 @@ def test_the_ray_of_consistent_weights(rows):
     ray = qp2.two_point_ray(problem, options)
     assert ray is not None
     assert (ray.direction >= 0).all()
-    program = qp2.statement(problem, options)
+    program = qp2.program_of(problem, options)
     assert ray.direction @ program.hessian @ ray.direction < 0
     below = replace(options, penalty=ray.limit * (1 - 1e-9))
     assert qp2.two_point_ray(problem, below) is None
-    hessian = qp2.statement(problem, below).hessian
+    hessian = qp2.program_of(problem, below).hessian
     for i, j in np.ndindex(3, 3):
         opened, pressed, mixed = hessian[i, i], hessian[3 + j, 3 + j], hessian[i, 3 + j]
         assert mixed >= -np.sqrt(opened * pressed) * (1 + 1e-12)
     at = replace(options, penalty=ray.limit * (1 + 1e-6))
     curvature = qp2.two_point_ray(problem, at).direction
-    assert curvature @ qp2.statement(problem, at).hessian @ curvature < 0
+    assert curvature @ qp2.program_of(problem, at).hessian @ curvature < 0
 
 
 def test_consistent_weights_above_their_limit_are_refused():

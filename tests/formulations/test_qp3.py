@@ -213,7 +213,7 @@ def test_closed_rings(refine):
 
 def test_the_point_of_a_failed_solver_is_polished_and_the_outcome_says_so(monkeypatch):
     """Clarabel stops after five steps: the active-set steps lead to the contact state from there."""
-    monkeypatch.setattr(clarabel, "ATTEMPTS", (clarabel.Attempt("", {"max_iter": 5}),))
+    monkeypatch.setattr(clarabel, "ATTEMPTS", (clarabel.ClarabelSettings("", {"max_iter": 5}),))
     problem = random_contact(1, 12, 1)
     solution, direct = qp3.solve(problem), complementarity.solve(problem)
     assert solution.status is Status.SOLVED

@@ -17,7 +17,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import NotConvexError, ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.formulations.clarabel import minimize
+from bemcontact.formulations.clarabel import minimize_convex
 
 GALLERY = Path(__file__).parents[2] / "models" / "gallery"
 CONTACTS = {f"{n} points, {k} motions": random_contact(n + k, n, k) for n, k in ((9, 0), (14, 1), (14, 3))}
@@ -378,7 +378,7 @@ def test_a_multiplier_is_the_price_of_its_constraint():
         for s in (step, -step):
             others = [constraint for key, constraint in model.constraints.items() if key != name]
             shifted = cp.multiply(w, value) >= s * np.eye(contact.size)[i]
-            minimize(problem := cp.Problem(cp.Minimize(model.objective), [shifted, *others, cap]))
+            minimize_convex(problem := cp.Problem(cp.Minimize(model.objective), [shifted, *others, cap]))
             least.append(problem.value)
         assert (least[0] - least[1]) / (2 * step) == pytest.approx(duals[name][i], rel=1e-3)
 

@@ -25,7 +25,7 @@ def scores(problem: bemcontact.Problem) -> dict[tuple[str, str], Score]:
 
 
 def test_hertz_at_a_hundredth_of_the_load_is_judged_and_holds():
-    """Hertz is off by 0.03 % at b/R = 0.034; the mesh leaves 0.1 % of peak and half-width."""
+    """Hertz is off by 0.03 % at b/R = 0.034; the mesh leaves 0.1 % of peak, half-width and pressure."""
     found = scores(bemcontact.loads(hertz()))
     assert all(item.judged and item.holds for item in found.values())
     difference = {quantity: abs(item.difference) for (_, quantity), item in found.items()}
@@ -40,7 +40,7 @@ def test_hertz_at_a_hundredth_of_the_load_is_judged_and_holds():
     assert difference["peak"] < 1e-3
     assert difference["half-width"] < 1e-3
     assert difference["pressure (mean square)"] < 1e-3
-    assert difference["pressure (largest difference)"] < 2e-3
+    assert difference["pressure (largest difference)"] < 1e-3
 
 
 @pytest.mark.parametrize("size", [10.0, 20.0])
@@ -104,10 +104,12 @@ def test_panel_with_a_crack_tends_to_the_infinite_one():
 @pytest.mark.parametrize("state", ["plane_strain", "plane_stress"])
 @pytest.mark.parametrize("rigid", ["pin", "bore"])
 def test_shrink_fit(state: str, rigid: str):
-    """Lamé is exact; twelve quadratic elements on a quarter of the circle leave 0.3 % at their ends."""
-    found = scores(bemcontact.loads(ring(state, rigid)))
-    assert all(item.judged and item.holds for item in found.values())
-    assert found["fit", "pressure (largest difference)"].difference < 3e-3
+    """Lamé is exact; the largest difference falls with the length of the elements, of order one at least."""
+    problem = bemcontact.loads(ring(state, rigid))
+    coarse, fine = (scores(problem.refined(parts)) for parts in (1, 2))
+    assert all(item.judged and item.holds for found in (coarse, fine) for item in found.values())
+    key = "fit", "pressure (largest difference)"
+    assert fine[key].difference < coarse[key].difference / 2
 
 
 @pytest.mark.parametrize("gap", [0.0, 0.5, 0.75])

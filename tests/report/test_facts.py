@@ -9,7 +9,15 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bemcontact.problem import Units
-from bemcontact.report.facts import LEAST_SHOWN, accuracy_rows, error_percent, facts, peak_of, with_bar
+from bemcontact.report.facts import (
+    LEAST_SHOWN,
+    accuracy_rows,
+    error_percent,
+    facts,
+    peak_of,
+    with_bar,
+    without_digits_beyond,
+)
 
 UNITS = Units(length="cm", force="kN")
 
@@ -43,6 +51,15 @@ def test_a_number_has_no_digit_beyond_its_error(value: float, error: float, nega
     assert Decimal(number).as_tuple().exponent == Decimal(shown).as_tuple().exponent
     assert len(shown.replace(".", "").strip("0")) <= 2
     assert abs(float(number) * scale - value) <= 0.5 * float(shown) * scale * (1 + 1e-6)
+
+
+@given(st.floats(1e-9, 1e12), st.none() | st.floats(0, 0.9))
+@example(1.83335e7, 0.01)
+@example(1e-5, 0.3)
+def test_a_number_alone_has_the_digits_that_it_has_beside_its_error(value: float, error: float | None):
+    beside = re.match(r"\(?([\d.e+-]+)( ± [\d.]+\))?(.*)", with_bar(value, error)).groups()  # pyright: ignore
+    power = beside[2] if beside[1] else ""
+    assert without_digits_beyond(value, error) == beside[0] + power
 
 
 @given(st.floats(1e-5, 1e3))
@@ -87,7 +104,7 @@ def test_of_two_zones_one_of_which_is_infinite_the_other_has_its_peak():
     bars = (bar("peak", None, None, note="infinite at a corner"), bar("peak", 12.5, 0.01, zone="wall"))
     record = {
         **lists, "peak": None, "resultant": (0.0, 0.0), "resultant_moment": 0.0,
-        "scales": {"displacement": 1.0}, "motion_names": (), "rigid_amplitudes": (),
+        "scales": {"displacement": 1.0}, "motion_names": (), "rigid_amplitudes": (), "rotations": (),
         "residuals": dict.fromkeys(("penetration", "tension", "complementarity", "equilibrium", "force_balance")),
         "accuracy": accuracy(*bars),
     }  # fmt: skip
@@ -95,7 +112,9 @@ def test_of_two_zones_one_of_which_is_infinite_the_other_has_its_peak():
     assert peaks == ["of foot: infinite at a corner", "of wall: 12.50 ± 0.13 kN/cm²"]
 
 
-def facts_of_forces(infinite: bool, forces: list[float]) -> list[tuple[str, str]]:
+def facts_of_forces(
+    infinite: bool, forces: list[float], rotations: tuple[float, ...] | None = (1e-15, 0.05, 0.0)
+) -> list[tuple[str, str]]:
     """Facts of one zone with these forces along y; its peak is infinite or 1."""
     total = sum(forces)
     record = {
@@ -105,7 +124,7 @@ def facts_of_forces(infinite: bool, forces: list[float]) -> list[tuple[str, str]
         "peak": None if infinite or not any(forces) else {"pressure": 1.0, "at": [0.0, 0.0]},
         "resultant": (1e-14 * total, total), "resultant_moment": 3.0 * total,
         "motion_names": ("rotation about (1, 2)", "rotation about (3, 4)", "translation along (0, 1)"),
-        "rigid_amplitudes": (1e-15, 0.2, 0.3), "scales": {"displacement": 1.0},
+        "rigid_amplitudes": (1e-15, 0.2, 0.3), "rotations": rotations, "scales": {"displacement": 1.0},
         "tools": [{"name": "punch", "point": [0.0, 0.0], "displacement": [0.0, -0.5], "rotation": 0.0,
                    "force_of_body": [0.0, -total], "moment_of_body": 0.0, "free": [False, True, False]}],
         "residuals": dict.fromkeys(("penetration", "tension", "complementarity", "equilibrium", "force_balance")),
@@ -126,8 +145,15 @@ def test_forces_are_the_same_words_whether_or_not_the_peak_is_infinite(forces: l
     assert f"presses on it with (0, -{along})" in infinite["Tool"]
 
 
-def test_a_rotation_has_no_amount_unless_it_is_zero():
-    record = facts_of_forces(False, [1.0])
-    assert [words for name, words in record if name == "Free motion"] == [
-        "rotation about (1, 2): 0", "rotation about (3, 4)", "translation along (0, 1): 0.3 cm",
+def test_a_rotation_has_an_angle_and_a_translation_a_length():
+    assert free_motions_of((1e-15, 0.05, 0.0)) == [
+        "rotation about (1, 2): 0", "rotation about (3, 4): 0.05 rad", "translation along (0, 1): 0.3 cm",
     ]  # fmt: skip
+
+
+def test_a_motion_of_which_nobody_knows_whether_it_turns_has_no_amount_unless_it_is_zero():
+    assert free_motions_of(None) == ["rotation about (1, 2): 0", "rotation about (3, 4)", "translation along (0, 1)"]
+
+
+def free_motions_of(rotations: tuple[float, ...] | None) -> list[str]:
+    return [words for name, words in facts_of_forces(False, [1.0], rotations) if name == "Free motion"]

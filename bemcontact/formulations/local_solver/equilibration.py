@@ -32,7 +32,7 @@ class Scales:
         return scaled * np.concatenate([1.0 / self.variables, self.rows])
 
 
-def unscaled(statement: Statement) -> tuple[Statement, Scales]:
+def unequilibrated(statement: Statement) -> tuple[Statement, Scales]:
     """Return the statement unchanged, with factors of one."""
     m, n = statement.A.shape
     return statement, Scales(variables=np.ones(n), rows=np.ones(m), objective=1.0)

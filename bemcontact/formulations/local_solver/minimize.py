@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from bemcontact.arrays import Array, BoolArray, whole_array
 from bemcontact.checks.arguments import shown
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unscaled
+from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unequilibrated
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, examine, first_order
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
@@ -22,7 +22,7 @@ from bemcontact.formulations.local_solver.statement import (
     Statement,
     largest,
     numbers,
-    read,
+    read_statement,
 )
 from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest, supporting
 
@@ -255,11 +255,11 @@ def minimize_qp(
         options = QPOptions()
     else:
         _check(options)
-    stated = read(H, c, A, cl, cu, bl, bu)
+    stated = read_statement(H, c, A, cl, cu, bl, bu)
     n = stated.c.size
     start = np.zeros(n) if x0 is None else numbers("x0", x0, n)
     start = np.minimum(np.maximum(start, stated.lower[:n]), stated.upper[:n])
-    scaled, scales = equilibrate(stated) if options.scale else unscaled(stated)
+    scaled, scales = equilibrate(stated) if options.scale else unequilibrated(stated)
     progress = Progress(statement=scaled, options=options, unit=scales.objective, x=start / scales.variables)
     sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:

@@ -9,8 +9,8 @@ general (Murty and Kabadi 1987), so the search is bounded and may end undecided.
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.formulations.local_solver.factorizations import is_definite, orthogonal, unit_rows, unit_sizes
@@ -106,7 +106,7 @@ def _projected(weak: Array, d: Array) -> Array:
     if weak.shape[0] == 0:
         return d
     try:
-        y, _ = nnls(weak.T, -d)
+        y, _ = scipy.optimize.nnls(weak.T, -d)
     except RuntimeError:  # SciPy's iteration limit: this start is given up, the faces are still to come
         return np.zeros_like(d)
     return d + weak.T @ y

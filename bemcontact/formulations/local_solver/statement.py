@@ -126,7 +126,7 @@ class Statement:
         return np.maximum(np.maximum(self.lower - values, values - self.upper), 0.0)
 
 
-def read(
+def read_statement(
     H: Any, c: ArrayLike, A: Any, cl: ArrayLike | None, cu: ArrayLike | None, bl: ArrayLike | None, bu: ArrayLike | None
 ) -> Statement:
     """Check the data and put them in one form; `ProblemError` says what is wrong with them."""

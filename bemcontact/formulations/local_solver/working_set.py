@@ -14,8 +14,8 @@ from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.formulations.local_solver.factorizations import (
@@ -282,7 +282,7 @@ def supporting(progress: Progress, sides: Sides) -> Sides:
     equal, upper = sides[active] == EQUALITY, sides[active] == 1
     inwards = np.where(upper, -1.0, 1.0)[:, None] * normals
     try:
-        multipliers, residual = nnls(np.vstack([inwards, -normals[equal]]).T, progress.gradient[others])
+        multipliers, residual = scipy.optimize.nnls(np.vstack([inwards, -normals[equal]]).T, progress.gradient[others])
     except RuntimeError:  # SciPy's iteration limit
         return sides
     if residual > progress.zero:

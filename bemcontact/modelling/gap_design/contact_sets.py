@@ -18,7 +18,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
 from bemcontact.errors import SolverError
 from bemcontact.formulations import qp3
-from bemcontact.formulations.clarabel import minimize
+from bemcontact.formulations.clarabel import minimize_convex
 from bemcontact.formulations.scaling import ScaledContact, scaled
 from bemcontact.modelling.gap_design.designed_gap import Goal
 from bemcontact.modelling.gap_design.relief import Profiles
@@ -134,7 +134,7 @@ class SharedProfile:
         sets = program.with_contact(touching)
         problem = cp.Problem(cp.Minimize(program.top), [*program.constraints, *sets.constraints])
         try:
-            minimize(problem)
+            minimize_convex(problem)
         except SolverError:  # sets that hardly fit together; others will do
             return None
         return None if program.top.value is None else self._piece(program, touching, sets.promise())
@@ -151,7 +151,7 @@ class SharedProfile:
         size = float(np.abs(self.profiles.shapes @ piece.coefficients).max()) / self.scales.displacement
         goal = cp.Minimize(cp.sum_squares(cp.multiply(width / (size or 1.0), program.relief)))
         try:
-            minimize(cp.Problem(goal, [*program.constraints, *sets.constraints, as_good]))
+            minimize_convex(cp.Problem(goal, [*program.constraints, *sets.constraints, as_good]))
         except SolverError:
             return piece
         gentler = None if program.top.value is None else self._piece(program, piece.touching, sets.promise())
@@ -182,9 +182,9 @@ class SharedProfile:
         signs = [sign for p, gap in zip(program.pressures, program.gaps, strict=True) for sign in (p >= 0, gap >= 0)]
         work = self._work_cuts(program, best * (1 + MARGIN))
         try:
-            minimize(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs, *work]))
+            minimize_convex(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs, *work]))
         except SolverError:  # the bound without F3 is a lower one, but a bound
-            minimize(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs]))
+            minimize_convex(cp.Problem(cp.Minimize(program.top), [*program.constraints, *signs]))
         pairs = zip(program.pressures, program.gaps, strict=True)
         return Relaxation(
             float(value_of(program.top)) * T,

@@ -7,8 +7,8 @@ from itertools import combinations
 from typing import NamedTuple, Self
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import linprog
 
 from bemcontact.arrays import Array, IntArray, freeze_arrays, real_array
 from bemcontact.checks.arguments import real_number, shown
@@ -132,7 +132,9 @@ class Profiles:
         rows, limits = self._one_sided(range(len(self.families)))
         matrix = np.vstack([np.hstack([rows, np.zeros((len(rows), 1))]), below])
         cost = np.append(np.zeros(there.shape[1]), 1.0)
-        optimum = linprog(cost, A_ub=matrix, b_ub=np.append(limits, np.zeros(len(below))), bounds=(None, None))
+        optimum = scipy.optimize.linprog(
+            cost, A_ub=matrix, b_ub=np.append(limits, np.zeros(len(below))), bounds=(None, None)
+        )
         return self._unit * optimum.x[:-1]
 
     def kept(self, coefficients: Array) -> Array:
@@ -151,7 +153,7 @@ class Profiles:
         bounded = np.isfinite(np.concatenate([self.high, -self.low]))
         room = np.tile(self.high > self.low, 2)[bounded, None].astype(float)
         cost = np.append(np.zeros(rows.shape[1]), -1.0)
-        optimum = linprog(
+        optimum = scipy.optimize.linprog(
             cost, A_ub=np.hstack([rows, room]), b_ub=limits, bounds=[(None, None)] * rows.shape[1] + [(0, 1)]
         )
         return self._unit * optimum.x[:-1]
@@ -182,7 +184,7 @@ class Profiles:
     def _least(self, cost: Array, families: Iterable[int]) -> Array | None:
         """The c with the least cost·c within some families of bounds; None if they exclude each other."""
         rows, limits = self._one_sided(families)
-        optimum = linprog(cost, A_ub=rows, b_ub=limits, bounds=(None, None))
+        optimum = scipy.optimize.linprog(cost, A_ub=rows, b_ub=limits, bounds=(None, None))
         if optimum.status == UNBOUNDED:
             return np.full(len(cost), np.inf)
         return self._unit * optimum.x if optimum.success else None

@@ -26,7 +26,7 @@ from bemcontact.report.figures.page import (
     legend_below,
     pieces_of,
     plain,
-    shortened,
+    short_label,
     show_decades,
 )
 from bemcontact.report.figures.result import label_closed
@@ -86,11 +86,11 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
     for item in level.expected:
         colour, label = (PURPLE, item.name) if item.in_range else (GREY, f"{item.name}, out of its range")
         if np.isfinite(item.pressure).any():
-            along.line(axes, item.pressure, colour, shortened(label, 40))
+            along.line(axes, item.pressure, colour, short_label(label, 40))
             known.append(float(np.nanmax(item.pressure)))
         elif item.peak is not None and not item.infinite:
             axes.axhline(
-                item.peak, color=colour, linewidth=1.2, linestyle="dotted", label=shortened(f"{label}: peak", 40)
+                item.peak, color=colour, linewidth=1.2, linestyle="dotted", label=short_label(f"{label}: peak", 40)
             )
             known.append(item.peak)
     maxima = {curve.label: float(curve.solution.pressure.max(initial=0.0)) for curve in curves}

@@ -14,6 +14,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.problem import DeflectedContour, Problem
+from bemcontact.report.facts import with_bar, without_digits_beyond
 from bemcontact.report.figures.page import (
     BLACK,
     BODY,
@@ -27,7 +28,7 @@ from bemcontact.report.figures.page import (
 )
 from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
 from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names
-from bemcontact.report.formatting import number, units_of, with_unit
+from bemcontact.report.formatting import units_of, with_unit
 
 VISIBLE = 0.005
 """Largest displacement over the size of the body from which on the undeformed outline is drawn."""
@@ -86,6 +87,12 @@ class Fan:
         return float(1 / (closing / (steps**2).sum(axis=1)).max()) if closing.any() else np.inf
 
 
+def _peak_text(fan: Fan, fans: Sequence[Fan], bar: float | None) -> str:
+    """The largest pressure of a piece of contact, with the error bar of its zone if it is the largest there."""
+    largest = fan.peak == max(other.peak for other in fans if other.zone == fan.zone)
+    return with_bar(fan.peak, bar) if largest else without_digits_beyond(fan.peak, bar)
+
+
 def draw_contact(axes: Axes, result: Result) -> None:
     """Draw the deformed body to scale, its supports and loads, the rigid surfaces, and the pressure as a fan.
 
@@ -117,7 +124,7 @@ def draw_contact(axes: Axes, result: Result) -> None:
         tips.append(fan.feet - length * np.minimum(fan.pressure / scale, 1.0)[:, None] * fan.normals)
         _draw_fan(axes, fan, tips[-1], 0.03 * size)
         if fan.zone not in infinite:
-            text = with_unit(number(fan.peak), plain(units.stress))
+            text = with_unit(_peak_text(fan, fans, result.accuracy.peak_bar(fan.zone)), plain(units.stress))
             names.append(_label(fan, tips[-1], text, cut=fan.peak > scale * (1 + LEVEL)))
         elif fan.peak == max(other.peak for other in fans if other.zone == fan.zone):
             names.append(_label(fan, tips[-1], "infinite", cut=True))
@@ -251,7 +258,7 @@ def draw_deformed(axes: Axes, result: Result) -> None:
     axes.add_patch(PathPatch(outline_of(state, after), facecolor=BODY, edgecolor="none", zorder=0))
     _draw_touching(axes, result, state, after)
     covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
-    size = float(np.hypot(*extent(state)))
+    size = float(np.hypot(*body_extent(state)))
     if factor == 1:
         covered += [draw_ground(axes, *ground, 0.025 * size, GREY) for ground in ground_of(result, NEAR * size)]
     unit = units_of(result.contact).length
@@ -272,7 +279,7 @@ def _draw_touching(axes: Axes, result: Result, state: BoundaryState, after: Arra
     axes.scatter(*after[:, ::4][touching].T, s=10, color=VERMILION, zorder=4)
 
 
-def extent(state: BoundaryState) -> tuple[float, float]:
+def body_extent(state: BoundaryState) -> tuple[float, float]:
     """Width and height of the body."""
     width, height = np.ptp(state.points.reshape(-1, 2), axis=0)
     return float(width), float(height)
@@ -305,7 +312,7 @@ def ground_of(result: Result, near: float) -> Iterator[tuple[Array, Array]]:
 def _magnification(state: BoundaryState) -> float:
     """Choose 1, 2 or 5 times a power of ten so that the largest displacement can be seen."""
     largest = float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
-    size = float(np.hypot(*extent(state)))
+    size = float(np.hypot(*body_extent(state)))
     if largest == 0 or largest >= MAGNIFIED * size / 2:
         return 1.0
     wanted = MAGNIFIED * size / largest

@@ -96,7 +96,7 @@ def wrapped(text: str, columns: int) -> str:
     return plain("\n".join(wrap(text, columns, max_lines=3, placeholder=" …")))
 
 
-def shortened(text: str, columns: int) -> str:
+def short_label(text: str, columns: int) -> str:
     """Cut a user's text to so many letters, and escape mathematics."""
     return plain(text if len(text) <= columns else f"{text[: columns - 1]}…")
 
@@ -139,7 +139,7 @@ def ceiling(contact: CondensedContact, pressure: Array, infinite: Sequence[str])
 
 def cut_off(axes: Axes, top: float, zones: Sequence[str]) -> None:
     """End the frame at a pressure, and write above it that the pressure of zones is infinite."""
-    where = ", ".join(shortened(zone, 24) for zone in zones)
+    where = ", ".join(short_label(zone, 24) for zone in zones)
     axes.set_ylim(-0.05 * top, top)
     axes.set_title(f"infinite in {where}: cut off", loc="right", pad=16, fontsize=8.5, color=BLACK)
 
@@ -171,7 +171,7 @@ def pieces_of(contact: CondensedContact) -> Iterator[Piece]:
     for order, run in enumerate(np.unique(contact.run)):
         index = contact.points_of_run(run)
         zone = int(contact.zone[index[0]])
-        label = shortened(contact.zone_names[zone], 24)
+        label = short_label(contact.zone_names[zone], 24)
         if len(np.unique(contact.run[contact.zone == zone])) > 1:
             label += f" ({contact.points[index[0], 0]:.3g}, {contact.points[index[0], 1]:.3g}) on"
         yield Piece(label=label, order=order, index=index)

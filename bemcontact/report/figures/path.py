@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labelled, new_page, plain, shortened
+from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labelled, new_page, plain, short_label
 from bemcontact.report.formatting import number, per_thickness, units_of
 from bemcontact.report.verdicts import in_short, overall, path_verdicts
 
@@ -29,11 +29,11 @@ def figure_of_path(path: ParameterPath) -> Figure:
         draw_interval_ends(axes, path, zone)
     for axes in (peaks, forces, *ends):
         axes.spines[["top", "right"]].set_visible(False)
-    ends[-1].set_xlabel(shortened(path.key, 60))
+    ends[-1].set_xlabel(short_label(path.key, 60))
     of_it = [*path_verdicts(path)]
     ends = zip((path.start, path.end), of_it[1:], strict=True)
     at = [f"at {number(value)}: {in_short([verdict])}" for value, verdict in ends]
-    title = "\n".join((shortened(path.contact.name, 60), in_short(of_it[:1]), *at))
+    title = "\n".join((short_label(path.contact.name, 60), in_short(of_it[:1]), *at))
     peaks.set_title(title, fontsize=10, color=QUALITY_COLOURS[overall(of_it)])
     return figure
 
@@ -70,7 +70,7 @@ def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
         axes.fill_between(values, starts, ends, color=colour, alpha=SHADE, linewidth=0)
         for edge in (starts, ends):
             axes.plot(values, edge, color=colour, linewidth=1.4)
-    axes.set_ylabel(labelled(f"contact of {shortened(zone, 16)}", units_of(path.contact).length))
+    axes.set_ylabel(labelled(f"contact of {short_label(zone, 16)}", units_of(path.contact).length))
 
 
 def _draw_line(axes: Axes, path: ParameterPath, heights: list[float], colour: str, label: str) -> None:

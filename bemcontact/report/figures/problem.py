@@ -35,7 +35,7 @@ from bemcontact.report.figures.page import (
     VERMILION,
     frame_plan,
     new_page,
-    shortened,
+    short_label,
     without_glyph_warnings,
     wrapped,
 )
@@ -301,7 +301,7 @@ def _name(problem: Problem, edge: Edge) -> Name:
     slanted = (edge.normals(ends) + edge.directions(ends) * np.sign(ends - 0.5)[:, None]) / np.sqrt(2)
     return Name(
         text="\n".join(
-            [wrapped(edge.name, 28), *(_symbols(shortened(line, 40)) for line in prescribed(problem, edge))]
+            [wrapped(edge.name, 28), *(_symbols(short_label(line, 40)) for line in prescribed(problem, edge))]
         ),
         colour=ROLES[role(problem, edge.name)],
         anchors=np.concatenate([anchors, anchors, edge.points(ends)]),

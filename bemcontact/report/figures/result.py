@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.report.figures.contact import draw_contact, draw_deformed, extent
+from bemcontact.report.facts import with_bar
+from bemcontact.report.figures.contact import body_extent, draw_contact, draw_deformed
 from bemcontact.report.figures.page import (
     BLACK,
     GREY,
@@ -22,10 +23,10 @@ from bemcontact.report.figures.page import (
     new_page,
     pieces_of,
     plain,
-    shortened,
+    short_label,
     wrapped,
 )
-from bemcontact.report.formatting import number, units_of, with_unit
+from bemcontact.report.formatting import units_of, with_unit
 from bemcontact.report.verdicts import Verdict, case_verdicts, in_short, overall, result_verdicts
 
 CLOSED = 1e-9
@@ -40,7 +41,7 @@ def figure_of_result(result: Result) -> Figure:
         pressure = figure.add_subplot(2, 1, 1)
         gap = figure.add_subplot(2, 1, 2, sharex=pressure)
     else:
-        width, height = extent(state)
+        width, height = body_extent(state)
         wide = width > 1.6 * height
         inches, figure = 12, new_page(12, 9.5 if wide else 9)
         grid = figure.add_gridspec(3, 2) if wide else figure.add_gridspec(2, 2)
@@ -82,7 +83,8 @@ def draw_pressure(axes: Axes, result: Result) -> None:
         s = float(contact.arc_position[nearest])
         low, high = axes.get_xlim()
         side = "left" if s < low + 0.15 * (high - low) else "right" if s > high - 0.15 * (high - low) else "center"
-        text = f"peak {with_unit(number(peak.pressure), plain(units_of(contact).stress))}"
+        value = with_bar(peak.pressure, result.accuracy.peak_bar())
+        text = f"peak {with_unit(value, plain(units_of(contact).stress))}"
         axes.annotate(text, (s, peak.pressure), xytext=(0, 7), textcoords="offset points", ha=side, color=BLACK)
 
 
@@ -161,7 +163,7 @@ def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
         width = 2.2 if order < len(PIECE_COLOURS) else 1.2
         for piece in pieces_of(contact):
             along, pressure = contact.arc_position[piece.index], result.solution.pressure[piece.index]
-            label, dashes = None if piece.order else shortened(name, 30), DASHES[piece.order % len(DASHES)]
+            label, dashes = None if piece.order else short_label(name, 30), DASHES[piece.order % len(DASHES)]
             axes.plot(along, pressure, color=colour, linestyle=dashes, linewidth=width, label=label)
     labels = [f"{DASHES[piece.order % len(DASHES)]}: {piece.label}" for piece in pieces_of(first.contact)]
     if len(labels) > 1:
@@ -186,9 +188,12 @@ def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
     finite = {name: it.footprint.peak.pressure if it.footprint.peak else 0.0 for name, it in cases.results.items()}
     beyond = 2 * max(finite.values()) or 1.0
     peaks = [beyond if name in cases.infinite else peak for name, peak in finite.items()]
-    labels = ["infinite" if name in cases.infinite else f"{peak:.5g}" for name, peak in finite.items()]
+    bars_of_peaks = {name: it.accuracy.peak_bar() for name, it in cases.results.items()}
+    labels = [
+        "infinite" if name in cases.infinite else with_bar(peak, bars_of_peaks[name]) for name, peak in finite.items()
+    ]
     colours = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
-    bars = axes.barh([shortened(name, 30) for name in cases.results], peaks, color=colours)
+    bars = axes.barh([short_label(name, 30) for name in cases.results], peaks, color=colours)
     axes.bar_label(bars, labels, padding=3)
     for bar, name in zip(bars, cases.results, strict=True):
         bar.set(hatch="//" if name in cases.infinite else None, alpha=0.5 if name in cases.infinite else 1.0)

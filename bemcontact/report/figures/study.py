@@ -16,7 +16,16 @@ from bemcontact.options import Weights
 from bemcontact.problem import Problem
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.contact import draw_deformed
-from bemcontact.report.figures.page import BLACK, COLOURS, CYCLE, legend_below, new_page, plain, shortened, show_decades
+from bemcontact.report.figures.page import (
+    BLACK,
+    COLOURS,
+    CYCLE,
+    legend_below,
+    new_page,
+    plain,
+    short_label,
+    show_decades,
+)
 from bemcontact.report.figures.problem import draw_problem
 
 WIDTH = 5.2
@@ -151,7 +160,7 @@ def draw_convergence(axes: Axes, convergence: Convergence) -> None:
         q = next((q for q in reversed(item.orders) if q is not None), None)
         order_text = "" if q is None else f", order {q:.2g}"
         colour = CYCLE[order % len(CYCLE)]
-        label = shortened(f"{item.name}{order_text}", 48)
+        label = short_label(f"{item.name}{order_text}", 48)
         axes.plot(refine, distance, color=colour, marker="o", markersize=5, linewidth=1.5, label=label)
     axes.set_xscale("log")
     show_decades(axes)

@@ -62,7 +62,10 @@ def test_natural_factors_are_the_least_squares_solution(seed):
 @settings(max_examples=100)
 @given(st.integers(0, 10**9))
 def test_natural_factors_change_with_the_units(seed):
-    """So scaled data do not depend on units, up to the small weight of the factors. No entry is as small as noise."""
+    """So scaled data do not depend on units. No entry is as small as noise.
+
+    Both are within 0.01 of least squares, which change so exactly; see the test above.
+    """
     stated, rng = statement(seed), np.random.default_rng(seed)
     m, n = stated.A.shape
     columns, rows, unit = (10.0 ** rng.integers(-2, 3, size) for size in (n, m, 1))
@@ -76,7 +79,7 @@ def test_natural_factors_change_with_the_units(seed):
     plain = natural_factors(stated, np.array([stated.lower, stated.upper]))
     other = natural_factors(changed, np.array([changed.lower, changed.upper]))
     expected = plain / np.concatenate([columns, rows])
-    assert np.abs(np.log2(other / expected)).max() <= 0.02
+    assert np.abs(np.log2(other / expected)).max() <= 2 * 0.01
 
 
 @settings(max_examples=100)

@@ -14,9 +14,12 @@ from tool_problems import FREE, FREE_CASES, made
 import bemcontact
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.assessment.certificate import CertificateKind
-from bemcontact.problem import Problem
+from bemcontact.problem import Problem, Units
 from bemcontact.report import figures
+from bemcontact.report.facts import peak_of
+from bemcontact.report.figures.result import draw_case_peaks
 from bemcontact.report.verdicts import case_verdicts
 
 
@@ -40,6 +43,37 @@ def test_each_case_has_its_curves_and_its_bar():
         [result.solution.pressure.max() for result in found().results.values()]
     )
     assert [label.get_text() for label in below.get_yticklabels()] == [*found().results]
+
+
+@pytest.mark.parametrize(("of_wind", "of_others"), [(None, 4e-3), (2.3e-3, 0.2), (0.5, 1e-4)])
+def test_pictures_write_peaks_with_the_digits_of_the_table(of_wind: float | None, of_others: float):
+    """Where a peak has an error bar, its number has no digit beyond it, in curves, in the deformed body and in bars."""
+    results = {
+        name: replace(one, accuracy=of_peaks(one, of_wind if name == "wind" else of_others))
+        for name, one in found().results.items()
+    }
+    cases = replace(found(), results=results)
+    axes = Figure().add_subplot()
+    draw_case_peaks(axes, cases)
+    written = [text.get_text() for text in axes.texts]
+    assert written == [peak_of(one.to_dict(), NO_UNITS) for one in results.values()]
+    axes = Figure().add_subplot()
+    figures.draw_pressure(axes, results["wind"])
+    assert [text.get_text() for text in axes.texts] == [f"peak {written[[*results].index('wind')]}"]
+    axes = Figure().add_subplot()
+    figures.draw_contact(axes, results["wind"])
+    assert written[[*results].index("wind")] in [text.get_text().split(",")[0] for text in axes.texts]
+
+
+NO_UNITS = Units()
+
+
+def of_peaks(result: bemcontact.Result, error: float | None) -> Accuracy:
+    """The accuracy of a result whose peaks, by zone, all have this error."""
+    contact, pressure = result.contact, result.solution.pressure
+    peaks = {name: pressure[contact.zone == number].max() for number, name in enumerate(contact.zone_names)}
+    bars = (ErrorBar(quantity="peak", zone=name, value=float(value), bar=error) for name, value in peaks.items())
+    return Accuracy(asked=None, bars=tuple(bars))
 
 
 def test_title_states_both_verdicts():
