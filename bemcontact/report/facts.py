@@ -1,6 +1,5 @@
 """Facts of a result in words, from its JSON, for the terminal and for pages."""
 
-import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -8,7 +7,15 @@ from typing import Any
 import numpy as np
 
 from bemcontact.problem import Units
-from bemcontact.report.formatting import number, per_thickness, sentence_case, vector, with_unit, zero_if_negligible
+from bemcontact.report.formatting import (
+    NEGLIGIBLE,
+    number,
+    per_thickness,
+    sentence_case,
+    vector,
+    with_unit,
+    zero_if_negligible,
+)
 
 Record = Mapping[str, Any]
 """A JSON object of a result."""
@@ -22,6 +29,8 @@ PLAIN = 0.01, 1000.0
 """Range of numbers that are written without a power of ten."""
 ROUND_OFF = 1e-9
 """Relative difference that is written as zero."""
+UNRESOLVED = 1e-3
+"""Share of the length of contact below which no place in it is resolved."""
 
 
 QUANTITIES = {
@@ -82,23 +91,36 @@ def with_bar(value: float, bar: float | None) -> str:
 
 def without_digits_beyond(value: float, bar: float | None) -> str:
     """Write a number alone, with the digits that a relative error leaves: 183.3."""
-    return re.sub(r"\(?([^ (]+) ± [^ )e]+\)?", r"\1", with_bar(value, bar))
+    if bar is None or not value:
+        return number(value)
+    (written,), _, power = _rounded((value,), abs(value) * bar)
+    return f"{written}{_exponent(power)}"
 
 
 def with_error(value: float, error: float) -> str:
     """Write a number and its error: 183.3 ± 0.4; the error is rounded up, and the number has no digit beyond it."""
-    power = int(np.floor(np.log10(abs(value)))) if value else 0
-    error = max(error, LEAST_SHOWN * abs(value))
-    if not error:
+    if not value and not error:
         return number(value)
-    if not -4 <= power < 6:
-        mantissa = with_error(value / 10.0**power, error / 10.0**power)
-        return f"({mantissa})e{power:+03d}"
+    (written,), shown, power = _rounded((value,), error)
+    return f"({written} ± {shown}){_exponent(power)}" if power else f"{written} ± {shown}"
+
+
+def _rounded(values: Sequence[float], error: float) -> tuple[list[str], str, int]:
+    """Numbers and their error over a power of ten: the error rounded up, and no number with a digit beyond it."""
+    largest = max(map(abs, values))
+    power = int(np.floor(np.log10(largest))) if largest else 0
+    power = 0 if -4 <= power < 6 else power
+    error = max(error, LEAST_SHOWN * largest) / 10.0**power
     first = int(np.floor(np.log10(error) + ROUND_OFF))
     place = first - 1 if error < 2 * 10.0**first else first  # 0.14 keeps two figures, 0.4 one
     shown = np.ceil(error / 10.0**place * (1 - ROUND_OFF)) * 10.0**place
     digits = max(0, -place)
-    return f"{round(value, -place):.{digits}f} ± {shown:.{digits}f}"
+    rounded = (round(value / 10.0**power, -place) for value in values)
+    return [f"{value:.{digits}f}" if value else "0" for value in rounded], f"{shown:.{digits}f}", power
+
+
+def _exponent(power: int) -> str:
+    return f"e{power:+03d}" if power else ""
 
 
 def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
@@ -179,12 +201,13 @@ def peak_bar(record: Record) -> float | None:
     return max(bars, key=lambda item: item["value"], default={"bar": None})["bar"]
 
 
-def _peaks(record: Record, size: float, units: Units) -> Iterator[tuple[str, str]]:
+def _peaks(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     """Write the largest pressure; where that of a zone is infinite, each zone by itself."""
     infinite = infinite_peaks(record)
     if not infinite and (peak := record["peak"]):
-        words = peak_in_words(peak, size, units, peak_bar(record))
-        yield "Peak pressure", f"{words}{_unknown_error(record)}; per UNDEFORMED length"
+        value = with_unit(with_bar(peak["pressure"], peak_bar(record)), units.stress)
+        words = f"{value} at {peak_place(record, units)}{_unknown_error(record)}"
+        yield "Peak pressure", f"{words}; per UNDEFORMED length"
     if infinite:
         for bar in bars_of(record, "peak"):
             written = (
@@ -205,18 +228,19 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     for zone in dict.fromkeys(record["zone"]):
         if record["intervals"] and zone not in [interval["zone"] for interval in record["intervals"]]:
             yield "Contact", f"{zone}: nowhere"
-    yield from _peaks(record, size, units)
+    yield from _peaks(record, units)
     for bar in bars_of(record, "intensity"):
         if bar["value"] is not None:
             value = with_unit(with_bar(bar["value"], bar["bar"]), _unit_of_bar(bar, units))
             yield "Intensity", f"of {bar['zone']}: K = {value} in {bar['note']}"
     for bar in bars_of(record, "displacement"):
         yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most"
-    force = vector(record["resultant"], per_thickness(units), scale=pressed)
+    force = _force(record["resultant"], record, None, units)
     moment = with_unit(number(zero_if_negligible(record["resultant_moment"], pressed * size)), units.force)
     yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
-    for zone in zone_forces(record, units):
-        yield "Resultant", f"of {zone}"
+    forces = zone_forces(record, units)
+    for zone, written in forces.items() if len(forces) > 1 else ():
+        yield "Resultant", f"of {zone}: {written}"
     for j, name in enumerate(record["motion_names"]):
         if " of the tool " not in name:  # the line of a tool tells where it is
             yield "Free motion", f"{name}{_amount(record, j, units)}"
@@ -274,10 +298,13 @@ def pressed_by(record: Record) -> float:
     return sum(w * abs(p) for w, p in zip(record["tributary_lengths"], record["pressure"], strict=True))
 
 
-def peak_in_words(peak: Record, size: float, units: Units, bar: float | None = None) -> str:
-    """Write the largest pressure, its error, and where it acts."""
-    value = with_unit(with_bar(peak["pressure"], bar), units.stress)
-    return f"{value} at {vector(peak['at'], units.length, scale=size)}"
+def peak_place(record: Record, units: Units) -> str:
+    """Write where the largest pressure acts, if any; what is small beside the shortest contact is zero."""
+    if not record["peak"]:
+        return ""
+    lengths = [last - first for first, last in (interval["arc"] for interval in record["intervals"]) if last > first]
+    unresolved = UNRESOLVED * min(lengths, default=0.0) / NEGLIGIBLE
+    return vector(record["peak"]["at"], units.length, scale=max(coordinate_size(record), unresolved))
 
 
 def span(interval: Record, size: float, units: Units) -> str:
@@ -292,16 +319,27 @@ def span(interval: Record, size: float, units: Units) -> str:
     return f"all round, {along}" if all_round else f"{start} to {end}, {along} long"
 
 
-def zone_forces(record: Record, units: Units) -> Iterator[str]:
-    """Write the force of each rigid surface on the body, where there are several: ``foot: (0, 3) N/mm``."""
-    zones = [*dict.fromkeys(record["zone"])]
-    if len(zones) < 2:
-        return
+def zone_forces(record: Record, units: Units) -> dict[str, str]:
+    """Write the force of each rigid surface on the body with its error: ``{"foot": "(0, 3.00) ± 0.02 N/mm"}``."""
     forces = np.multiply(record["tributary_lengths"], record["pressure"])[:, None] * np.array(record["normals"])
-    scale = float(np.abs(forces).sum())
-    for zone in zones:
-        x, y = forces[np.array(record["zone"]) == zone].sum(axis=0).tolist()
-        yield f"{zone}: {vector((x, y), per_thickness(units), scale=scale)}"
+    zones = np.array(record["zone"])
+    return {
+        zone: _force(forces[zones == zone].sum(axis=0).tolist(), record, zone, units)
+        for zone in dict.fromkeys(record["zone"])
+    }
+
+
+def _force(components: tuple[float, float], record: Record, zone: str | None, units: Units) -> str:
+    """Write a force with the error of that of a zone; that of the only zone if none is named."""
+    unit, pressed = per_thickness(units), pressed_by(record)
+    bars = [bar for bar in bars_of(record, "force") if zone in (bar["zone"], None)]
+    errors = [abs(bar["value"]) * bar["bar"] for bar in bars if bar["value"] and bar["bar"] is not None]
+    x, y = (zero_if_negligible(value, pressed) for value in components)
+    if len(errors) != 1 or len(bars) != 1 or not (x or y):
+        return vector((x, y), unit, scale=pressed)
+    (x_written, y_written), shown, power = _rounded((x, y), errors[0])
+    written = f"({x_written}, {y_written}) ± {shown}"
+    return with_unit(f"({written}){_exponent(power)}" if power else written, unit)
 
 
 def scores_in_words(scores: Sequence[Record], references: Sequence[Record], units: Units) -> Iterator[dict[str, str]]:

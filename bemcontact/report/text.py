@@ -25,7 +25,7 @@ from bemcontact.report.facts import (
     facts,
     mesh_in_short,
     peak_of,
-    pressed_by,
+    peak_place,
     scores_in_words,
     span,
     zone_forces,
@@ -134,24 +134,23 @@ def condensed_summary(contact: CondensedContact, path: Path) -> RenderableType:
 
 
 def cases_summary(cases: CaseResults) -> RenderableType:
-    """List peak, resultant, contact and certificate of each load case and combination."""
-    table, shown = table_of("load case", "equations", "mesh", "peak", "at", "resultant", "contact"), list_of_facts()
+    """List certificate and peak of each load case and combination, then force and contact of each zone."""
+    table, shown = table_of("load case", "equations", "mesh", "peak", "at"), list_of_facts()
+    zones = table_of("load case", "zone", "force on the body", "contact")
     for name, result in cases.results.items():
         record, units = result.to_dict(), units_of(result.contact)
-        peak, at = record["peak"], ""
-        if peak:
-            at = vector(peak["at"], units.length, scale=coordinate_size(record))
-        force = vector(record["resultant"], per_thickness(units), scale=pressed_by(record))
+        style = "" if result.holds else "yellow" if result.certified else "red"
         cells = [
             name,
             result_verdicts(result)[0].word,
             mesh_in_short(result.accuracy.to_dict()),
             peak_of(record, units) if record["intervals"] else "",
-            at,
-            "\n".join(zone_forces(record, units)) or force,
-            "\n".join(_places(record, result.contact)) or "nowhere",
+            peak_place(record, units),
         ]
-        table.add_row(*map(Text, cells), style="" if result.holds else "yellow" if result.certified else "red")
+        table.add_row(*map(Text, cells), style=style)
+        for i, (zone, force) in enumerate(zone_forces(record, units).items()):
+            touching = "\n".join(_places(record, zone, units)) or "nowhere"
+            zones.add_row(*map(Text, (name if i == 0 else "", zone, force, touching)), style=style)
     for note in dict.fromkeys(note for result in cases.results.values() for note in result.notes):
         names = [name for name, result in cases.results.items() if note in result.notes]
         add(shown, "Note", note if len(names) == len(cases.results) else f"{', '.join(names)}: {note}")
@@ -161,17 +160,17 @@ def cases_summary(cases: CaseResults) -> RenderableType:
         add(shown, "Largest peak", f"infinite in {', '.join(cases.infinite)}")
     for verdict in case_verdicts(cases):
         add_verdict(shown, verdict)
-    return Group(Text(cases.name, "bold"), "", table, "", shown)
+    return Group(Text(cases.name, "bold"), "", table, "", zones, "", shown)
 
 
-def _places(record: Record, contact: CondensedContact) -> Iterator[str]:
-    """Intervals of contact; only their lengths for several zones, so that the table is no wider than a page."""
-    units = units_of(contact)
+def _places(record: Record, zone: str, units: Units) -> Iterator[str]:
+    """Intervals of contact of a zone; only their lengths if there are several zones, so that lines stay short."""
+    alone = len({*record["zone"]}) == 1
     for interval in record["intervals"]:
-        start, end = interval["arc"]
-        alone = len(contact.zone_names) == 1
-        length = with_unit(number(end - start), units.length)
-        yield f"{interval['zone']}: {span(interval, coordinate_size(record), units) if alone else length}"
+        if interval["zone"] == zone:
+            start, end = interval["arc"]
+            length = with_unit(number(end - start), units.length)
+            yield span(interval, coordinate_size(record), units) if alone else length
 
 
 def _edge_table(problem: Problem) -> Table:

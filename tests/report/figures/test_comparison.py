@@ -72,7 +72,9 @@ def test_gaps_are_drawn_beside_the_initial_gap():
 
 def test_closed_gaps_are_reported_and_their_round_off_is_not_magnified():
     """A block in a corner under uniform pressure touches both planes with all of its edges."""
-    problem = spec.load(Path(__file__).parents[3] / "models" / "gallery" / "block_in_corner.yaml", variant="stated mesh")
+    problem = spec.load(
+        Path(__file__).parents[3] / "models" / "gallery" / "block_in_corner.yaml", variant="stated mesh"
+    )
     level, axes = comparing.study(ComparisonOptions.of(["qp3"]), problem).finest, Figure().add_subplot()
     figures.draw_gaps(axes, level)
     assert "closed everywhere" in [text.get_text() for text in axes.texts]

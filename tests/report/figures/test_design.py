@@ -49,7 +49,9 @@ def test_a_singular_pressure_runs_out_of_the_picture_and_is_reported(design: Gap
 
 def test_the_designed_surface_is_drawn_on_the_plan(design: GapDesign):
     """The spline goes through its points and on straight, its hatching on the side away from the body."""
-    problem = spec.load(FLAT_PUNCH, variant="stated mesh").with_value("contact_zones.punch.surface", design.surface("spline").model_dump())
+    problem = spec.load(FLAT_PUNCH, variant="stated mesh").with_value(
+        "contact_zones.punch.surface", design.surface("spline").model_dump()
+    )
     axes = figures.figure_of_problem(problem, mesh.build(problem)).axes[0]
     points = np.array(design.surface("spline").points)
     lines = [np.asarray(line.get_xydata()) for line in axes.lines]
