@@ -57,9 +57,12 @@ def mesh_in_short(accuracy: Record) -> str:
 
 
 def worst_bar(accuracy: Record) -> Record | None:
-    """The largest error bar of those to which the accuracy applies, an unknown one first; None if there is none."""
+    """The largest error bar of those to which the accuracy applies, an unknown one first; None if there is none.
+
+    The first of those that are too small to be written, so that round-off does not choose.
+    """
     judged = [bar for bar in accuracy["bars"] if bar["promised"]]
-    return max(judged, key=lambda bar: np.inf if bar["bar"] is None else bar["bar"], default=None)
+    return max(judged, key=lambda bar: np.inf if bar["bar"] is None else max(bar["bar"], LEAST_SHOWN), default=None)
 
 
 def error_percent(error: float | None) -> str:

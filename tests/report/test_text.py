@@ -1,10 +1,14 @@
 """Words and tables: the numbers in them are those of the result, and a user's text stays what it is."""
 
 import dataclasses
+import re
 from functools import cache
 from io import StringIO
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from messages import assert_states
 from rich.console import Console, RenderableType
 from tool_problems import BETWEEN, FREE, FREE_CASES, HELD, HELD_CASES, made
@@ -16,8 +20,9 @@ from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import LocalSearch, Penalty, Status
-from bemcontact.problem import Problem
+from bemcontact.problem import Problem, Units
 from bemcontact.report import formatting, text
+from bemcontact.report.facts import zone_forces
 from bemcontact.report.verdicts import shortfall
 
 
@@ -62,7 +67,7 @@ def test_result_summary_states_the_facts(result: analysis.Result):
     assert "foot: (0, 0) to (40, 0) mm, 40 mm long" in answer
     assert "3.00000 ± 0.00003 N/mm² at" in answer
     assert "per UNDEFORMED length" in answer
-    assert "(0, 120) N/mm, of the rigid surfaces on the body" in answer
+    assert "(0, 120.0000) ± 0.0012 N/mm, of the rigid surfaces on the body" in answer
     assert "Equations      unique solution proved." in answer
     assert "Mesh           error at most 0.001 % (asked 1 %)." in answer
     assert "certified" not in answer
@@ -213,15 +218,14 @@ def shown(renderable: RenderableType, width: int = 160) -> str:
 
 
 def rows_of(text: str) -> dict[str, str]:
-    """Lines that begin with the name of a case."""
-    return {
-        line.split()[0]: line for line in text.splitlines() if line.split() and line.split()[0] in all_cases().results
-    }
+    """First lines that begin with the name of a case: those of the upper table."""
+    lines = [line for line in text.splitlines() if line.split() and line.split()[0] in all_cases().results]
+    return {line.split()[0]: line for line in reversed(lines)}
 
 
 def test_each_case_has_a_row_with_its_own_numbers():
     lines = rows_of(shown(text.cases_summary(all_cases())))
-    assert [*lines] == ["wind", "heat", "push", "all"]
+    assert {*lines} == {"wind", "heat", "push", "all"}
     for name, result in all_cases().results.items():
         peak = result.footprint.peak
         assert peak is not None
@@ -262,9 +266,24 @@ def test_of_several_zones_the_force_of_each_is_reported():
     told = shown(text.result_summary(bemcontact.solve(problem.with_case("more")))).split()
     assert "Resultant (0, 0) N/mm, of the rigid surfaces" in " ".join(told)
     assert "Resultant of table: (0, 50) N/mm Resultant of press: (0, -50) N/mm" in " ".join(told)
-    listed = shown(text.cases_summary(bemcontact.solve_cases(problem)))
-    assert "table: (0, 50) N/mm" in listed
-    assert "press: (0, -50) N/mm" in listed
+    listed = " ".join(shown(text.cases_summary(bemcontact.solve_cases(problem))).split())
+    assert_states(listed, "more table (0, 50) N/mm … press (0, -50) N/mm")
+
+
+@given(st.floats(1e-3, 0.3), st.floats(-1e5, 1e5), st.floats(1e-3, 1e5))
+def test_a_force_has_no_digit_beyond_its_error(bar: float, x: float, y: float):
+    """The error that is written is not smaller than the bar, and twice it at most; the force is within half a digit."""
+    record = {
+        "zone": ["foot"], "tributary_lengths": [1.0], "pressure": [np.hypot(x, y)], "intervals": [{"zone": "foot"}],
+        "normals": [[x / np.hypot(x, y), y / np.hypot(x, y)]],
+        "accuracy": {"bars": [{"quantity": "force", "zone": "foot", "value": np.hypot(x, y), "bar": bar}]},
+    }  # fmt: skip
+    written = zone_forces(record, Units())["foot"]
+    x_written, y_written, error = map(float, re.findall(r"-?[\d.]+(?:e-\d+)?", written.split(")e")[0]))
+    power = 10.0 ** int(written.rpartition(")e")[2] or 0) if ")e" in written else 1.0
+    size = np.hypot(x, y)
+    assert bar * size * (1 - 1e-6) <= error * power <= 2 * bar * size
+    assert max(abs(x_written * power - x), abs(y_written * power - y)) <= 0.5001 * error * power
 
 
 def test_without_contact_no_case_is_the_worst():
