@@ -40,7 +40,7 @@ def path(
     the parameter, so the path is exact and has no steps. Only gaps and loads may depend on the parameter, and only
     linearly. Examples are a pressure, a traction, a prescribed displacement, gravity, the position of a rigid surface,
     the force on a tool, the factor of a load case (load_cases.NAME). The exit status is 0 only if the path reaches its
-    end and each state on it is proved to be the only one.
+    end, each state on it is proved to be the only one, and the accuracy asked is met at both ends.
 
     FOLDER gets a picture of peak, resultants and ends of contact over the parameter (path.svg), a table of them with
     three rows between two breakpoints (path.csv), and all results (path.json). An earlier path is replaced.
@@ -57,7 +57,7 @@ def path(
     def work(report: Report) -> CommandOutput:
         from bemcontact.analysis.follow import follow
         from bemcontact.report import text
-        from bemcontact.report.verdicts import path_sentence
+        from bemcontact.report.verdicts import path_shortfall
 
         followed = follow(source.problem(refine), vary, to, start)
         if out:
@@ -68,8 +68,8 @@ def path(
         return CommandOutput(
             summary=lambda: text.path_summary(followed),
             json=followed.to_json,
-            holds=followed.certified,
-            verdict=path_sentence(followed),
+            holds=followed.holds,
+            verdict=path_shortfall(followed),
         )
 
     run("following", work, source=source, folder=out, kind="path", json_file=json_file)

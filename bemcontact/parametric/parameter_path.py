@@ -113,6 +113,11 @@ class ParameterPath(Leaf):
         proved = self.path.complete and self.path.unique and self.path.residual <= RESIDUAL
         return proved and self.penetration is None
 
+    @property
+    def holds(self) -> bool:
+        """Whether it is certified, and no end has errors above the accuracy asked."""
+        return self.certified and False not in (self.start_accuracy.met, self.end_accuracy.met)
+
     def value(self, t: float) -> float:
         """The parameter at t of the path; round-off of its ends counts as zero."""
         value = (1 - t) * self.start + t * self.end

@@ -1,6 +1,6 @@
 """Verdicts on the equations and on the mesh: of results, load cases, paths and studies."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from bemcontact.analysis.load_cases import CaseResults
@@ -130,15 +130,21 @@ def _together(every: Verdict, short: Mapping[str, Verdict]) -> Verdict:
 
 def shortfall(results: Result | CaseResults) -> str:
     """Why a result, or each load case that falls short, does not hold."""
-    both = result_verdicts(results) if isinstance(results, Result) else case_verdicts(results)
-    return " ".join(f"{item.of}: {item.word}. {item.words}" for item in both if not item.good)
+    return _shortfall(result_verdicts(results) if isinstance(results, Result) else case_verdicts(results))
 
 
 def study_shortfall(study: Study) -> str:
     """Why a comparison does not hold."""
-    return " ".join(
-        f"{item.of}: {item.word}. {item.words}" for item in study_verdicts(study.to_dict()) if not item.good
-    )
+    return _shortfall(study_verdicts(study.to_dict()))
+
+
+def path_shortfall(path: ParameterPath) -> str:
+    """Why a path does not hold."""
+    return _shortfall(path_verdicts(path))
+
+
+def _shortfall(verdicts: Iterable[Verdict]) -> str:
+    return " ".join(f"{item.of}: {item.word}. {item.words}" for item in verdicts if not item.good)
 
 
 def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
