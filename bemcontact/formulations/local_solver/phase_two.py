@@ -232,11 +232,12 @@ class Descent:
         for _ in range(2 if hessian.size else 1):
             x = working.onto(x)
             if hessian.size:
-                x = x + hessian.newton(progress.statement.H.dot(x) + progress.statement.c)
+                x = x + hessian.newton(working.reduced(progress.statement.H.dot(x) + progress.statement.c))
         progress.correct(x)
-        self.multipliers = working.multipliers(progress.gradient, refined=True)
+        once = working.multipliers(progress.gradient, refined=True)
+        self.multipliers = working.refined(once)
         zero = self._fine_zero(self.multipliers)
-        self.zeros = np.concatenate([zero, zero.dot(np.abs(working.N))])
+        self.zeros = np.concatenate([zero, zero.dot(np.abs(working.N))]) + np.abs(self.multipliers - once)
 
     def _allowed(self, multipliers: Array) -> Array:
         """Multipliers (n + r,) with zeros for refused constraints."""
