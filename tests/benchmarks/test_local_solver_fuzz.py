@@ -108,6 +108,7 @@ def test_no_claim_is_false_in_any_units_and_a_restart_at_an_answer_moves_nothing
 @example(1014709)
 @example(1019846)
 @example(1005738)
+@example(1067815)
 @example(2136)
 def test_no_claim_is_false_at_degenerate_points_at_the_edge_of_copositivity(seed):
     assert not [name for name in outcomes(seed, degenerate=True) if any(bad in name for bad in BAD)]

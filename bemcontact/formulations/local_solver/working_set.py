@@ -232,8 +232,7 @@ class WorkingSet:
             self._signs[place], self.free[place] = 0.0, 1.0
         else:
             direction, constraint = self._N[:, place - n].copy(), self._forget(place - n)
-        if not self.sharp:
-            direction = self.within(direction)
+        direction = self.within(direction)
         if constraint >= 0:
             self.sides[constraint], self.held[constraint] = 0, False
         self.number -= 1

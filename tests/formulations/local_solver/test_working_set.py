@@ -119,6 +119,20 @@ def test_inaccurate_factors_are_corrected_or_computed_again():
     assert_allclose(working.W @ working.N, np.eye(3), atol=1e-14)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_a_direction_that_becomes_free_changes_nothing_held_by_more_than_its_own_rounding(seed):
+    """Rows at angles down to 1e-5 cost N five digits, and the direction none."""
+    rng = np.random.default_rng(seed)
+    data = statement(seed, n=8, m=6, definite=True)
+    near = data.A[:3] + 10.0 ** -rng.uniform(2.0, 5.0, (3, 1)) * data.A[3:]
+    data.A[3:] = near / np.linalg.norm(near, axis=1)[:, None]
+    working, _ = start(data, np.zeros(14))
+    for row in rng.permutation(6)[:5]:
+        working.add(8 + int(row), -1)
+    _, direction = working.drop(8 + int(rng.integers(5)))
+    assert np.abs(working.W @ direction).max() <= 8 * np.finfo(float).eps
+
+
 def test_dependent_rows_stay_out_of_the_working_set():
     """Two variables fixed and a row in their span; then two rows of which one is twice the other."""
     fixed = Statement(
