@@ -99,6 +99,29 @@ def degenerate_program(rng: np.random.Generator) -> IntegerProgram:
     return IntegerProgram(H=H.astype(float), c=c.astype(float), A=A.astype(float), lower=lower, upper=upper)
 
 
+def endless_program(rng: np.random.Generator) -> IntegerProgram:
+    """A convex program that is unbounded: on a ray v that all constraints allow the form is flat and c falls."""
+    n, m = int(rng.integers(2, 7)), int(rng.integers(1, 6))
+    v, j = rng.integers(-2, 3, n), int(rng.integers(n))
+    v[j] = 1
+    level = np.eye(n, dtype=int) - np.outer(v, np.eye(n, dtype=int)[j])  # rows times this vanish on v
+    B = rng.integers(-2, 3, (int(rng.integers(1, n + 1)), n)) @ level
+    A = rng.integers(-2, 3, (m, n)) * (rng.random((m, n)) < 0.7)
+    A = np.where((rng.random(m) < 0.5)[:, None], A @ level, A)
+    c = rng.integers(-2, 3, n) @ level
+    c[j] -= int(rng.integers(1, 4))
+    normals = np.vstack([np.eye(n, dtype=int), A])
+    values, room = normals @ rng.integers(-2, 3, n), rng.integers(0, 4, (2, n + m))
+    absent, along = rng.random((2, n + m)) < np.array([[0.4], [0.5]]), normals @ v
+    return IntegerProgram(
+        H=(B.T @ B).astype(float),
+        c=c.astype(float),
+        A=A.astype(float),
+        lower=np.where(absent[0] | (along < 0), -INF, values - room[0]),
+        upper=np.where(absent[1] | (along > 0), INF, values + room[1]),
+    )
+
+
 def _edge_of_copositive(
     inwards: NDArray[np.int64], strong: NDArray[np.bool_], rng: np.random.Generator
 ) -> NDArray[np.int64]:
