@@ -16,7 +16,7 @@ CLOSE = 1e-9
 """A product of unit vectors below this may be zero."""
 DENOMINATOR = 10**6
 FAR = 1e6
-"""Terms of H x and A x beyond this have lost too many digits to be judged."""
+"""Terms of the gradient and of constraints near their bounds beyond this have lost too many digits to be judged."""
 
 Row = list[Fraction]
 
@@ -61,7 +61,7 @@ def _of_minimizer(program: IntegerProgram, x: Array) -> Verdict:
     """A local minimizer: quickly where strict multipliers and curvatures are clear, else exactly."""
     if violation(program, x) > CLEAR:
         return Verdict.FALSE_MINIMIZER
-    if max(float((np.abs(rows) @ np.abs(x)).max(initial=0.0)) for rows in (program.H, program.A)) > FAR:
+    if _too_far(program, x):
         return Verdict.UNSETTLED
     equal, inwards, _ = _active(program, x)
     gradient = program.H @ x + program.c
@@ -74,6 +74,13 @@ def _of_minimizer(program: IntegerProgram, x: Array) -> Verdict:
     if N.shape[1] == 0 or np.linalg.eigvalsh(N.T @ program.H @ N)[0] > -CLOSE:
         return Verdict.RIGHT
     return _exactly(program, x)
+
+
+def _too_far(program: IntegerProgram, x: Array) -> bool:
+    """Whether digits are lost in the gradient or in a constraint that is not clearly inside its bounds."""
+    values, terms = program.normals @ x, np.abs(program.normals) @ np.abs(x)
+    doubtful = np.minimum(values - program.lower, program.upper - values) <= CLEAR * terms
+    return max(float((np.abs(program.H) @ np.abs(x)).max()), float(terms[doubtful].max(initial=0.0))) > FAR
 
 
 def _active(program: IntegerProgram, x: Array, close: float = CLEAR) -> tuple[Array, Array, list[tuple[int, float]]]:
@@ -239,9 +246,11 @@ def _of_ray(program: IntegerProgram, x: Array, ray: Array) -> Verdict:
     if curvature < -CLEAR * product:  # the nearest direction that meets the rows exactly has it too
         return Verdict.RIGHT
     held = (falls | rises) & (np.abs(along) <= rounding)
-    exact = np.array([float(v) for v in _snapped(_exact(G[held]), d)])
-    if np.abs(exact - d).max() > 1e-6:
+    exact = _snapped(_exact(G[held]), d)
+    if np.abs(np.array([float(v) for v in exact]) - d).max() > 1e-6:
         return Verdict.UNSETTLED
+    if curvature < -CLOSE * product and _product([_product(row, exact) for row in _exact(H)], exact) < 0:
+        return Verdict.RIGHT
     gradient = H @ x + program.c
     terms = float((np.abs(H) @ np.abs(x) + np.abs(program.c)) @ np.abs(d))
     if abs(curvature) <= CLOSE * product and gradient @ d < -CLEAR * terms:

@@ -74,6 +74,66 @@ def random_program(rng: np.random.Generator) -> IntegerProgram:
     )
 
 
+def degenerate_program(rng: np.random.Generator) -> IntegerProgram:
+    """A first-order point, often 0, with many active constraints, few of them with a multiplier.
+
+    The form is copositive on the critical cone of this point, or copositive less a square, so that a multiplier or a
+    curvature taken for more than it is makes the difference.
+    """
+    n, m = int(rng.integers(2, 7)), int(rng.integers(1, 6))
+    A = rng.integers(-2, 3, (m, n)) * (rng.random((m, n)) < rng.choice([0.4, 0.8, 1.0]))
+    if m > 1 and rng.random() < 0.3:
+        A[-1] = A[0] * rng.choice([-2, -1, 1, 2]) + (A[1] if rng.random() < 0.5 else 0)
+    base = rng.integers(-3, 4, n) * (rng.random() < 0.3)
+    normals, size = np.vstack([np.eye(n, dtype=int), A]), n + m
+    active = rng.random(size) < np.where(np.arange(size) < n, rng.choice([0.2, 0.6]), 0.8)
+    inwards = rng.choice([-1, 1], size) * active
+    multipliers = rng.integers(1, 4, size) * (rng.random(size) < rng.choice([0.1, 0.3, 0.6])) * inwards
+    H = _edge_of_copositive(inwards[:, None] * normals, multipliers != 0, rng)
+    values, far = normals @ base, rng.integers(0, 5, (2, size)).astype(float)
+    far[rng.random((2, size)) < 0.6] = INF
+    lower, upper = np.where(inwards > 0, values, values - far[0]), np.where(inwards < 0, values, values + far[1])
+    equal = (inwards > 0) & (rng.random(size) < 0.1)
+    upper[equal] = lower[equal]
+    c = normals.T @ multipliers - H @ base
+    return IntegerProgram(H=H.astype(float), c=c.astype(float), A=A.astype(float), lower=lower, upper=upper)
+
+
+def endless_program(rng: np.random.Generator) -> IntegerProgram:
+    """A convex program that is unbounded: on a ray v that all constraints allow the form is flat and c falls."""
+    n, m = int(rng.integers(2, 7)), int(rng.integers(1, 6))
+    v, j = rng.integers(-2, 3, n), int(rng.integers(n))
+    v[j] = 1
+    level = np.eye(n, dtype=int) - np.outer(v, np.eye(n, dtype=int)[j])  # rows times this vanish on v
+    B = rng.integers(-2, 3, (int(rng.integers(1, n + 1)), n)) @ level
+    A = rng.integers(-2, 3, (m, n)) * (rng.random((m, n)) < 0.7)
+    A = np.where((rng.random(m) < 0.5)[:, None], A @ level, A)
+    c = rng.integers(-2, 3, n) @ level
+    c[j] -= int(rng.integers(1, 4))
+    normals = np.vstack([np.eye(n, dtype=int), A])
+    values, room = normals @ rng.integers(-2, 3, n), rng.integers(0, 4, (2, n + m))
+    absent, along = rng.random((2, n + m)) < np.array([[0.4], [0.5]]), normals @ v
+    return IntegerProgram(
+        H=(B.T @ B).astype(float),
+        c=c.astype(float),
+        A=A.astype(float),
+        lower=np.where(absent[0] | (along < 0), -INF, values - room[0]),
+        upper=np.where(absent[1] | (along > 0), INF, values + room[1]),
+    )
+
+
+def _edge_of_copositive(
+    inwards: NDArray[np.int64], strong: NDArray[np.bool_], rng: np.random.Generator
+) -> NDArray[np.int64]:
+    """Products of inward normals, any products with the strong ones, a square, and often less another square."""
+    size, n = inwards.shape
+    of_weak = inwards * ~strong[:, None]
+    products = rng.integers(0, 2, (size, size)) * (rng.random((size, size)) < 0.3)
+    H = of_weak.T @ products @ of_weak + (inwards * strong[:, None]).T @ rng.integers(-2, 3, (size, n))
+    b, e = rng.integers(-2, 3, (2, n)) * (rng.random((2, 1)) < 0.6)
+    return H + H.T + np.outer(b, b) - np.outer(e, e)
+
+
 def _hessian(n: int, rng: np.random.Generator) -> NDArray[np.int64]:
     """A symmetric matrix: zero, of rank one or two, semidefinite, bilinear, or any."""
     kind = int(rng.integers(7))

@@ -1,11 +1,12 @@
 """Random small integer programs in random units: every claim of the local solver judged in exact arithmetic.
 
-    python tests/benchmarks/local_solver_fuzz.py [--cases 1000000] [--first 0] [--keep FILE]
+    python tests/benchmarks/local_solver_fuzz.py [--cases 1000000] [--first 0] [--degenerate] [--keep FILE]
 
 Each seed makes a program of whole numbers, multiplies its rows, columns and objective by powers of ten, and solves it
 from a random start. A claim that rounding could have decided is judged with fractions on the whole numbers. Each
-minimizer is solved again from itself, and a part of the programs also in the units of the whole numbers. Seeds of false
-and of missing answers are written to the file. Set OPENBLAS_NUM_THREADS=1.
+minimizer is solved again from itself, and a part of the programs also in the units of the whole numbers. With
+--degenerate the programs have a point with many active constraints and few multipliers, at the edge of copositivity.
+Seeds of false and of missing answers are written to the file. Set OPENBLAS_NUM_THREADS=1.
 """
 
 import argparse
@@ -15,7 +16,14 @@ from pathlib import Path
 
 import numpy as np
 from exact_judge import Verdict, judge
-from integer_program import IntegerProgram, Units, plain_units, random_program, random_units
+from integer_program import (
+    IntegerProgram,
+    Units,
+    degenerate_program,
+    plain_units,
+    random_program,
+    random_units,
+)
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
@@ -26,10 +34,10 @@ MISSING = (QPStatus.NUMERICAL_FAILURE, QPStatus.UNDECIDED, QPStatus.ITERATION_LI
 ENDS = (QPStatus.LOCAL_MINIMIZER, QPStatus.UNDECIDED)
 
 
-def case(seed: int) -> tuple[IntegerProgram, Units, Array | None, Sides | None]:
+def case(seed: int, *, degenerate: bool = False) -> tuple[IntegerProgram, Units, Array | None, Sides | None]:
     """A program, its units, a start in the units of the whole numbers or None, and a working set or None."""
     rng = np.random.default_rng(seed)
-    program = random_program(rng)
+    program = degenerate_program(rng) if degenerate else random_program(rng)
     units = random_units(program, rng)
     start = rng.integers(-4, 5, program.c.size).astype(float) if rng.random() < 0.5 else None
     working_set = rng.integers(-1, 2, program.lower.size) if rng.random() < 0.2 else None
@@ -42,9 +50,9 @@ def solved(program: IntegerProgram, units: Units, start: Array | None, working_s
     return minimize_qp(*program.stated(units), x0=x0, working_set=working_set)
 
 
-def outcomes(seed: int) -> list[str]:
+def outcomes(seed: int, *, degenerate: bool = False) -> list[str]:
     """What is to be counted of a seed."""
-    program, units, start, working_set = case(seed)
+    program, units, start, working_set = case(seed, degenerate=degenerate)
     result = solved(program, units, start, working_set)
     verdict = judge(program, units, result)
     counted = [f"status: {result.status}"] if verdict in (Verdict.RIGHT, Verdict.NO_CLAIM) else [f"judge: {verdict}"]
@@ -72,12 +80,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--cases", type=int, default=1_000_000)
     parser.add_argument("--first", type=int, default=0, help="the first seed")
+    parser.add_argument("--degenerate", action="store_true", help="programs with degenerate first-order points")
     parser.add_argument("--keep", type=Path, help="file for the seeds of false and missing answers")
     given = parser.parse_args()
     begin, counts = time.perf_counter(), Counter[str]()
     kept = given.keep.open("w") if given.keep else None
     for seed in range(given.first, given.first + given.cases):
-        for name in outcomes(seed):
+        for name in outcomes(seed, degenerate=given.degenerate):
             counts[name] += 1
             if kept and worth_keeping(name):
                 kept.write(f"{seed} {name}\n")

@@ -8,7 +8,7 @@ import pytest
 from exact_judge import Verdict, judge, solved_exactly
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from integer_program import IntegerProgram, Units, plain_units
+from integer_program import IntegerProgram, Units, endless_program, plain_units, random_units
 from local_solver_fuzz import case, outcomes, solved
 
 from bemcontact.formulations.local_solver import QPResult, QPStatus
@@ -94,9 +94,38 @@ def test_equations_are_solved_in_fractions():
 @example(100054992)
 @example(100384487)
 @example(100533185)
+@example(300356280)
+@example(300739627)
+@example(300745930)
+@example(300306888)
 def test_no_claim_is_false_in_any_units_and_a_restart_at_an_answer_moves_nothing(seed):
     """Powers of ten from 1e-8 to 1e8 on rows, columns and the objective; random starts and working sets."""
     assert not [name for name in outcomes(seed) if any(bad in name for bad in BAD)]
+
+
+@settings(max_examples=150)
+@given(st.integers(0, 10**9))
+@example(1014709)
+@example(1019846)
+@example(1005738)
+@example(1067815)
+@example(2136)
+def test_no_claim_is_false_at_degenerate_points_at_the_edge_of_copositivity(seed):
+    assert not [name for name in outcomes(seed, degenerate=True) if any(bad in name for bad in BAD)]
+
+
+@settings(max_examples=200)
+@given(st.integers(0, 10**9))
+@example(215)
+@example(226)
+@example(1129)
+def test_a_flat_ray_that_falls_has_no_end_in_any_units(seed):
+    rng = np.random.default_rng(seed)
+    program = endless_program(rng)
+    units = random_units(program, rng)
+    working_set = rng.integers(-1, 2, program.lower.size) if rng.random() < 0.3 else None
+    result = solved(program, units, None, working_set)
+    assert result.status in (QPStatus.UNBOUNDED, QPStatus.NUMERICAL_FAILURE)
 
 
 @settings(max_examples=200)

@@ -120,7 +120,7 @@ def _second_order(
     progress: Progress, descent: Descent, conditions: FirstOrder, multipliers: Array
 ) -> Finding | Restart:
     """Claim a minimizer if H is copositive on the critical cone; else move along a direction of negative curvature."""
-    if _strict(descent, conditions):
+    if not conditions.doubtful and _strict(descent, conditions):
         return _minimizer(descent, conditions, multipliers, QPStatus.LOCAL_MINIMIZER)
     curvature = examine(progress.statement.H, conditions.cone(progress.statement), faces=progress.options.search)
     if curvature.direction is None:

@@ -202,14 +202,15 @@ class FirstOrder:
         """Conditions of a smaller cone, without a direction on which the objective does not fall.
 
         Small multipliers that make the objective rise are taken as strong. If there are none, the constraint that
-        blocks the step is taken as active. The result is doubtful, except if an inactive constraint is `near`.
+        blocks the step is taken as active. The result is doubtful, except if a bound that is not active is `near`.
         """
         leaving = self.weak & (self.sides * along < 0.0) & (self.size > 0.0)
         sides, weak, doubtful = self.sides.copy(), self.weak & ~leaving, True
         if not leaving.any():
-            doubtful = not near or bool(weak[blocking])
+            reached = -1 if along[blocking] < 0.0 else 1
+            doubtful = not near or bool(weak[blocking] and sides[blocking] == reached)
             leaving[blocking], weak[blocking] = weak[blocking], not weak[blocking]
-            sides[blocking] = -1 if along[blocking] < 0.0 else 1
+            sides[blocking] = reached
         doubtful = self.doubtful or doubtful
         return replace(self, strong=self.strong | leaving, weak=weak, sides=sides, doubtful=doubtful)
 

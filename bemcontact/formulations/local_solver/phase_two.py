@@ -122,6 +122,11 @@ class ReducedHessian:
         self._resize(self.size - 1)
         return sign * self._columns[:, self.size]
 
+    def rounding(self, direction: Array) -> Array:
+        """Rounding of each component of a direction that was made conjugate to Z (n,)."""
+        size, Z = np.abs(direction), np.abs(self.Z)
+        return EPS * (size + Z.dot(self.statement.absolute[0].dot(size).dot(Z)))
+
     def clear(self, variable: int) -> None:
         """Set the component of a fixed variable to zero in all directions."""
         self.Z[variable] = 0.0
@@ -232,11 +237,12 @@ class Descent:
         for _ in range(2 if hessian.size else 1):
             x = working.onto(x)
             if hessian.size:
-                x = x + hessian.newton(progress.statement.H.dot(x) + progress.statement.c)
+                x = x + hessian.newton(working.reduced(progress.statement.H.dot(x) + progress.statement.c))
         progress.correct(x)
-        self.multipliers = working.multipliers(progress.gradient, refined=True)
+        once = working.multipliers(progress.gradient, refined=True)
+        self.multipliers = working.refined(once)
         zero = self._fine_zero(self.multipliers)
-        self.zeros = np.concatenate([zero, zero.dot(np.abs(working.N))])
+        self.zeros = np.concatenate([zero, zero.dot(np.abs(working.N))]) + np.abs(self.multipliers - once)
 
     def _allowed(self, multipliers: Array) -> Array:
         """Multipliers (n + r,) with zeros for refused constraints."""
@@ -260,25 +266,35 @@ class Descent:
 
     def _follow_curvature(self, direction: Array) -> PhaseTwoEnd | None:
         """Step along the pending direction downhill to the next constraint; None if phase two goes on."""
-        progress, working = self.progress, self.working
+        progress = self.progress
         slope, curvature = float(progress.gradient.dot(direction)), self.hessian.curvature
         level = abs(slope) <= progress.zero and abs(slope) <= self._fine_slope(direction)
         if level and curvature == 0.0:
-            working.fix(direction, FLAT)
+            self.working.fix(direction, FLAT)
             self.hessian.leave(direction)
             return None
         if slope > 0.0:
             direction, slope = -direction, -slope
         along = progress.statement.values(direction)
-        block = nearest(progress, along, 1.0, working.held, working)
+        block = self._met(direction, along)
         if level and block is not None:
-            back = nearest(progress, -along, 1.0, working.held, working)
+            back = self._met(direction, -along)
             if back is None or _change(back, -slope, curvature) < _change(block, slope, curvature):
                 direction, along, slope, block = -direction, -along, -slope, back
         if block is None:
             return PhaseTwoEnd(ending=Ending.UNBOUNDED, ray=direction)
         self._advance(along, 1.0, block.step, _change(block, slope, curvature), block)
         return None
+
+    def _met(self, direction: Array, along: Array) -> BlockingConstraint | None:
+        """The constraint met along the pending direction; a far one only if more than rounding of this moves it."""
+        progress, working = self.progress, self.working
+        block = nearest(progress, along, 1.0, working.held, working)
+        if block is None or block.step <= progress.long:
+            return block
+        rounding = self.hessian.rounding(direction)
+        speed = np.concatenate([rounding, progress.statement.absolute[2].dot(rounding)])
+        return nearest(progress, along, 1.0, working.held | (np.abs(along) <= speed), working)
 
     def _refuse(self, block: BlockingConstraint | None, step: float) -> None:
         """Refuse a constraint that blocks the step of its own release, until the point moves."""

@@ -90,9 +90,12 @@ class Progress:
         return 0.5 * float(self.x.dot(self.gradient + self.statement.c))
 
     def terms(self, of_rows: Array, rows: Array) -> Array:
-        """Sum of the sizes of the terms of each component of the gradient (n,), multipliers of the rows included."""
+        """Sum of the sizes of the terms of each component of the gradient (n,), multipliers of the rows included.
+
+        A component that is zero in truth is rounding of the points before it, and counts with its size.
+        """
         H, c, _ = self.statement.absolute
-        terms = H.dot(np.abs(self.x)) + c
+        terms = H.dot(np.maximum(np.abs(self.x), EPS * self.travelled)) + c
         return terms + np.abs(of_rows).dot(np.abs(rows)) if of_rows.size else terms
 
     def fine_zero(self, terms: Array, rows: Array, inverse: Array, reach: Array) -> Array:

@@ -131,6 +131,16 @@ class WorkingSet:
         multipliers[n:] = of_rows
         return multipliers
 
+    def refined(self, multipliers: Array) -> Array:
+        """Multipliers (n + r,) after one more refinement; the change shows the rounding that they had."""
+        n = self.free.size
+        correction = multipliers[:n].dot(self.N)
+        return multipliers + np.concatenate([-correction.dot(self.W), correction])
+
+    def reduced(self, gradient: Array) -> Array:
+        """The gradient (n,) without its part along the normals held, which rounding of a null space would let pass."""
+        return self.multipliers(gradient)[: gradient.size] * self.free
+
     def of_all(self, multipliers: Array) -> Array:
         """Multipliers of all constraints (n + m,) from those of the working set, as `multipliers` has them."""
         n, real = self.free.size, self.ids >= 0
@@ -222,8 +232,7 @@ class WorkingSet:
             self._signs[place], self.free[place] = 0.0, 1.0
         else:
             direction, constraint = self._N[:, place - n].copy(), self._forget(place - n)
-        if not self.sharp:
-            direction = self.within(direction)
+        direction = self.within(direction)
         if constraint >= 0:
             self.sides[constraint], self.held[constraint] = 0, False
         self.number -= 1

@@ -119,6 +119,23 @@ def test_inaccurate_factors_are_corrected_or_computed_again():
     assert_allclose(working.W @ working.N, np.eye(3), atol=1e-14)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_a_direction_that_becomes_free_changes_nothing_held_by_more_than_its_own_rounding(seed):
+    """Rows at small angles cost N digits, and the direction none."""
+    rng = np.random.default_rng(seed)
+    data = statement(seed, n=8, m=6, definite=True)
+    near = data.A[:3] + 10.0 ** -rng.uniform(1.0, 4.0, (3, 1)) * data.A[3:]
+    data.A[3:] = near / np.linalg.norm(near, axis=1)[:, None]
+    working, _ = start(data, np.zeros(14))
+    for _ in range(100):
+        outside = np.flatnonzero(~working.held[8:])
+        working.add(8 + int(rng.choice(outside)), -1)
+        if working.size == 6 or (working.size > 1 and rng.random() < 0.5):
+            working.multipliers(data.c)  # as pricing does before a drop
+            _, direction = working.drop(8 + int(rng.integers(working.size)))
+            assert np.abs(working.W @ direction).max() <= 8 * np.finfo(float).eps
+
+
 def test_dependent_rows_stay_out_of_the_working_set():
     """Two variables fixed and a row in their span; then two rows of which one is twice the other."""
     fixed = Statement(

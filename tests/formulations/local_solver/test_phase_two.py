@@ -1,0 +1,66 @@
+"""What phase two takes for zero: rounding of the point and of the multipliers never counts as more."""
+
+import numpy as np
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from bemcontact.formulations.local_solver import QPOptions, QPStatus, minimize_qp
+from bemcontact.formulations.local_solver.phase_two import Descent, Ending
+from bemcontact.formulations.local_solver.progress import Progress
+from bemcontact.formulations.local_solver.statement import read
+from bemcontact.formulations.local_solver.working_set import WorkingSet
+
+INF = np.inf
+
+
+@settings(max_examples=200)
+@given(st.integers(0, 10**9))
+@example(2)
+@example(4)
+def test_the_rounding_of_a_strong_multiplier_closes_no_way_down(seed):
+    """0 with E z = 0, c = (Eᵀy, 0) and aᵀv >= 0: no minimizer, since the form falls along v = a."""
+    rng = np.random.default_rng(seed)
+    k, n = int(rng.integers(1, 4)), int(rng.integers(2, 5))
+    E, a = rng.standard_normal((k, k)), rng.standard_normal(n)
+    basis = np.linalg.qr(np.column_stack([a, rng.standard_normal((n, n - 1))]))[0]
+    B, M = rng.standard_normal((n, n)), rng.standard_normal((n - 1, n - 1))
+    form = B + B.T
+    form[1:, 1:], form[0, 0] = M @ M.T + 0.1 * np.eye(n - 1), -rng.uniform(0.1, 2.0)
+    H = rng.standard_normal((k + n, k + n))
+    H[k:, k:] = 0.5 * basis @ form @ basis.T
+    A, c = np.zeros((k + 1, k + n)), np.zeros(k + n)
+    A[:k, :k], A[k, k:], c[:k] = E, a, E.T @ rng.standard_normal(k)
+    result = minimize_qp(H + H.T, c, A, np.zeros(k + 1), np.append(np.zeros(k), INF))
+    assert result.status is QPStatus.UNBOUNDED
+
+
+@settings(max_examples=200)
+@given(st.integers(0, 10**9))
+@example(416)
+@example(428)
+@example(713)
+def test_multipliers_at_a_vertex_are_right_within_what_counts_as_zero(seed):
+    """At 0, held by whole rows W with c = Wᵀy: y, and nothing else, stands out from its rounding."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(2, 13))
+    lower = np.tril(rng.integers(-3, 4, (n, n)) * (rng.random((n, n)) < 0.3), -1)
+    triangle = lower + np.diag(rng.integers(1, 4, n) * rng.choice([-1, 1], n))
+    W = triangle[rng.permutation(n)][:, rng.permutation(n)].astype(float)
+    y = (rng.integers(1, 4, n) * (rng.random(n) < 0.4)).astype(float)
+    statement = read(np.zeros((n, n)), W.T @ y, W, np.zeros(n), np.full(n, INF), None, None)
+    progress = Progress(statement=statement, options=QPOptions(), unit=1.0, x=np.zeros(n))
+    sides = np.append(np.zeros(n), -np.ones(n)).astype(np.int8)
+    descent = Descent(progress, WorkingSet(statement, sides))
+    assert descent.run().ending is Ending.STATIONARY
+    found, zeros = (descent.working.of_all(values)[n:] for values in (descent.multipliers, descent.zeros))
+    assert np.all(np.abs(found - y) <= zeros)
+    assert (found > 10.0 * zeros).tolist() == (y > 0.0).tolist()
+
+
+def test_a_direction_refused_by_rounding_leaves_no_minimizer():
+    """Along (0, -1) the form -9 v² falls without end; H has entries of rounding, and the first row hardly stops it."""
+    H = [[-3e-34, -6.3e-17], [-6.3e-17, -18.0]]
+    result = minimize_qp(
+        H, [-0.27, 0.0], [[-6.0, -4.0], [-0.27, 0.0]], np.zeros(2), np.full(2, INF), working_set=[0, 0, -1, -1]
+    )
+    assert result.status in (QPStatus.UNBOUNDED, QPStatus.UNDECIDED)
