@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 from bemcontact import cli
 
 PAGE = Path(__file__).with_name("refused_inputs.md")
-GOOD = BLOCK + "load_cases:\n  more: {conditions: {top: {pressure: 1}}}\n"
+GOOD = BLOCK.replace("accuracy: null\n", "") + "load_cases:\n  more: {conditions: {top: {pressure: 1}}}\n"
 TOP, PLANE = "start: [40, 20], elements: 4", "{kind: plane, point: [0, 0], normal: [0, 1]}"
 RIM = "{name: h, kind: arc, center: [20, 10], radius: 5, angles: [360, 0]}"
 HOLE = "  holes: [[{{name: h, kind: arc, center: [20, 10], {}, elements: 16}}]]\nconditions:\n"
