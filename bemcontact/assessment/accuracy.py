@@ -25,8 +25,9 @@ class ErrorBar(Leaf):
     interval: int | None = None
     """Number of the contact interval of a start or an end, from 0 on; null for others."""
     value: float | None
-    """Value: pressure [p], force per thickness [p L], position along the run of the zone [L], root of the mean square
-    of the pressure [p], displacement [L], or intensity K of p = K s^-α [p L^α]; null if there is none."""
+    """Value: pressure [p], sum of the magnitudes of the contact forces per thickness [p L], position along the run of
+    the zone [L], root of the mean square of the pressure [p], displacement [L], or intensity K of p = K s^-α [p L^α];
+    null if there is none."""
     bar: float | None
     """Estimated error, relative to the value; of a start or an end, to the length of its interval. Null if unknown."""
     note: str = ""

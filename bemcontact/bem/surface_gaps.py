@@ -40,6 +40,8 @@ SAME_FACE = 0.98
 """Cosine of the angle between two normals of a surface up to which they belong to the same face."""
 DIP = 1 / 8
 """Largest dip of a quadratic below zero between three nodes, over the largest of its values there, if none is below."""
+TOUCHES = 1e-6
+"""Gap of a node, over the largest one of its element, up to which it touches: pressure keeps such nodes at zero."""
 
 
 class FaceEnd(NamedTuple):
@@ -188,7 +190,11 @@ class SurfaceGaps:
         """Depth (k, q) [L] of elements (k,) of the zone."""
         at, displacement = self.outline.sampled(elements), self._displacement(elements)
         here, there = self.linear(zone, elements), self.exact(zone, at.points + displacement)
-        dip = DIP * np.where(self._same(zone, here), np.maximum(here.gap[:, None, NODES], 0.0), 0.0).max(axis=2)
+        nodes = np.maximum(here.gap[:, None, NODES], 0.0)
+        touching = nodes.min(axis=2) <= TOUCHES * nodes.max(
+            axis=2
+        )  # elsewhere what dips was not seen, and is no contact
+        dip = DIP * np.where(self._same(zone, here), nodes, 0.0).max(axis=2) * touching
         other = np.sum(here.normals * there.normals, axis=-1) < SAME_FACE
         beyond = other & (-there.gap > self._second_order(zone))
         return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import field, fields
 from enum import StrEnum
+from inspect import cleandoc
 from textwrap import fill
 from typing import Any, TypeVar, cast
 
@@ -41,10 +42,10 @@ def declared(
 
 def documented(options: type[Options]) -> type[Options]:
     """Write the meanings of options into the docstring of their class, for `help` and documentation."""
-    head, rule, rest = (options.__doc__ or "").partition("\n\n    Raises\n")
+    head, rule, rest = cleandoc(options.__doc__ or "").partition("\n\nRaises\n")  # Python 3.13 has no indent there
     about = (f"{item.name} : {item.metadata['meaning']}" for item in fields(cast(Any, options)))
-    lines = "\n".join(fill(text, 100, initial_indent="    ", subsequent_indent=" " * 8) for text in about)
-    options.__doc__ = f"{head}\n\n    Parameters\n    ----------\n{lines}{rule}{rest}"
+    lines = "\n".join(fill(text, 96, subsequent_indent="    ") for text in about)
+    options.__doc__ = f"{head}\n\nParameters\n----------\n{lines}{rule}{rest}"
     return options
 
 

@@ -115,8 +115,9 @@ class ParameterPath(Leaf):
 
     @property
     def holds(self) -> bool:
-        """Whether it is certified, and no end has errors above the accuracy asked."""
-        return self.certified and False not in (self.start_accuracy.met, self.end_accuracy.met)
+        """Whether it is certified, and the accuracy asked is met at both ends, but where nothing presses."""
+        ends = ((self.start_accuracy, self.path.pressure[0]), (self.end_accuracy, self.path.pressure[-1]))
+        return self.certified and all(accuracy.holds or not pressure.any() for accuracy, pressure in ends)
 
     def value(self, t: float) -> float:
         """The parameter at t of the path; round-off of its ends counts as zero."""

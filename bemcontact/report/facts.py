@@ -34,7 +34,7 @@ UNRESOLVED = 1e-3
 
 
 QUANTITIES = {
-    "peak": "peak pressure", "force": "force", "start": "start of contact", "end": "end of contact",
+    "peak": "peak pressure", "force": "sum of contact forces", "start": "start of contact", "end": "end of contact",
     "pressure": "pressure as a whole", "displacement": "largest displacement",
     "intensity": "intensity of the infinite pressure",
 }  # fmt: skip

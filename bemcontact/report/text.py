@@ -157,7 +157,7 @@ def cases_summary(cases: CaseResults) -> RenderableType:
     if cases.worst is not None:
         add(shown, "Largest peak", f"in {cases.worst}; pressures are per UNDEFORMED length")
     if cases.infinite:
-        add(shown, "Largest peak", f"infinite in {', '.join(cases.infinite)}")
+        add(shown, "Largest peak", f"infinite in {', '.join(repr(name) for name in cases.infinite)}")
     for verdict in case_verdicts(cases):
         add_verdict(shown, verdict)
     return Group(Text(cases.name, "bold"), "", table, "", zones, "", shown)

@@ -402,3 +402,25 @@ def test_nodes_have_the_faces_of_contact_points(shift, power):
     for normals, gap in zip(seen.normals[:, NODES].reshape(-1, 2), seen.gap[:, NODES].ravel(), strict=True):
         alike = (np.hypot(*(result.contact.normals - normals).T) < 1e-9) & (abs(delta - gap) < 1e-9)
         assert alike.any()
+
+
+def test_a_spot_where_no_node_touches_is_seen_however_far_the_nodes_are():
+    """A strip of three long elements bends on a small circle between two nodes: what dips is no contact's own error.
+
+    Beam theory: the tip of a strip held at one end sinks by q L⁴/8EI, more than the gap of the circle.
+    """
+    E, L, h, q = 210e3, 100.0, 4.0, 0.5
+    drop = q * L**4 / (8 * E * h**3 / 12)
+    corners = {"under": [0, 0], "end": [L, 0], "top": [L, h], "wall": [0, h]}
+    problem = Problem(
+        name="strip", accuracy=None, material={"young_modulus": E, "poisson_ratio": 0.0},
+        boundary={"outer": [{"name": name, "start": at, "elements": 3} for name, at in corners.items()]},
+        conditions={"wall": {"displacement": {"x": 0, "y": 0}}, "top": {"pressure": q}},
+        contact_zones={"stop": {"edges": "under", "surface": {
+            "kind": "circle", "center": [0.92 * L, -5.0 - drop / 4], "radius": 5.0, "body": "outside"}}},
+    )  # pyright: ignore  # fmt: skip
+    result = solve(problem)
+    assert not result.solution.pressure.any()
+    assert not result.certified
+    assert result.penetration is not None
+    assert result.penetration.zone == "stop"

@@ -52,6 +52,24 @@ def test_a_mesh_that_is_too_coarse_has_a_status():
     assert_states(piped.stderr, "Mesh: not met … At conditions.top.pressure = 40.")
 
 
+def test_a_mesh_that_is_not_assessed_though_asked_has_a_status(tmp_path: Path):
+    """More than 4000 unknowns with every element in two: nothing is known of errors."""
+    stated = (
+        CYLINDER.read_text(encoding="utf-8")
+        .partition("\nvariants:")[0]
+        .replace("{name: top}", "{name: top, elements: 1100}")
+    )
+    stated = stated.replace("angles: [-90, 0]}", "angles: [-90, 0], elements: 3}").replace(
+        "end: [0, 0]}", "end: [0, 0], elements: 2}"
+    )
+    (tmp_path / "big.yaml").write_text(stated, encoding="utf-8")
+    told = CliRunner().invoke(
+        cli.app, ["path", str(tmp_path / "big.yaml"), "--vary", PRESSURE, "--from", "40", "--to", "50"]
+    )
+    assert told.exit_code == 1
+    assert_states(" ".join(told.stdout.split()), "Equations unique solution proved. … Mesh not assessed")
+
+
 def test_folder_gets_picture_table_and_numbers(tmp_path: Path):
     place = tmp_path / "path"
     for _ in range(2):  # the second one replaces the first
