@@ -30,6 +30,7 @@ LONGEST = 5.0
 """Seconds of processor time for one spec."""
 LARGEST = 500
 """Megabytes of the whole process."""
+LARGEST_FLOAT = sys.float_info.max
 NUMBERS = (0, -1, 1, 2, 0.5, 1e-300, 1e-30, 1e-12, 1e12, 1e30, 1e100, 1e308, -1e-320, 360, 10**6, 10**400)
 SCALARS: tuple[Any, ...] = (
     *NUMBERS, None, True, "", " ", "x", "a.b", "[0]", "=", "\x1b[31m", "\u202e", "\u2028", "\N{GRINNING FACE}", "1e3",
@@ -83,7 +84,8 @@ def change_data(data: Any, others: list[Any], rng: random.Random) -> None:
         case _:
             value = above[key]
             number = isinstance(value, int | float) and not isinstance(value, bool)
-            above[key] = value * rng.choice([-1, 1e-9, 1e9, 1 + 1e-9, 2]) if number else rng.choice(NUMBERS)
+            factors = [-1, 1e-9, 1e9, 1 + 1e-9, 2] if number and abs(value) < LARGEST_FLOAT else [-1, 2]
+            above[key] = value * rng.choice(factors) if number else rng.choice(NUMBERS)
 
 
 def change_text(text: str, others: list[str], rng: random.Random) -> str:
