@@ -104,10 +104,9 @@ def _case(path: Path, problem: bemcontact.Problem) -> str:
 def _errors(problem: bemcontact.Problem) -> Iterator[str]:
     """For each source the largest error of each quantity over all load cases and references, in percent."""
     names, errors = dict[str, dict[str, None]](), dict[str, dict[str, float]]()
-    for case in problem.case_names or (None,):
-        stated = problem if case is None else problem.with_case(case)
-        result = bemcontact.solve(stated)
-        known = expected(stated, result.contact)
+    results = bemcontact.solve_cases(problem).results.values() if problem.case_names else [bemcontact.solve(problem)]
+    for result in results:
+        known = expected(result.problem, result.contact)
         sources = {item.name: item.source for item in known}
         for item in known:
             names.setdefault(item.source, {})[item.name] = None

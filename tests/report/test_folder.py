@@ -143,7 +143,7 @@ def test_a_killed_run_leaves_the_old_report_or_the_new_one(tmp_path: Path):
     """Killed at random moments of endless saving, each time page, numbers and spec are of one and the same run."""
     paths = os.pathsep.join([str(Path(__file__).parent), *filter(None, [os.environ.get("PYTHONPATH")])])
     done = subprocess.run(
-        [sys.executable, "-c", KILLED, str(tmp_path / "report"), "5"],
+        [sys.executable, "-c", KILLED, str(tmp_path / "report"), "2"],
         env={**os.environ, "PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1"},
         capture_output=True,
         text=True,

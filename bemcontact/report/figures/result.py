@@ -89,8 +89,9 @@ def draw_pressure(axes: Axes, result: Result) -> None:
 
 
 def draw_gap(axes: Axes, result: Result) -> None:
-    """Draw the gap over the distance along each contact zone; round-off is not blown up to a curve."""
-    gap, scale = _gap(result), result.contact.scales.displacement
+    """Draw the gap over the distance along each contact zone; round-off is drawn as closed."""
+    scale = result.contact.scales.displacement
+    gap = np.where(np.abs(gap := _gap(result)) <= CLOSED * scale, 0.0, gap)
     _draw_along(axes, result, gap)
     axes.set_ylabel(labelled("gap", units_of(result.contact).length))
     label_closed(axes, float(np.abs(gap).max(initial=0.0)), scale)
