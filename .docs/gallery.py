@@ -8,6 +8,7 @@ Solves all problems anew. A second run changes nothing.
 import os
 import re
 from collections.abc import Iterable, Iterator
+from functools import cache
 from pathlib import Path
 
 for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -17,6 +18,7 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.patches import Rectangle  # noqa: E402
 
 import bemcontact  # noqa: E402
+from bemcontact import Result  # noqa: E402
 from bemcontact.reference import expected, score  # noqa: E402
 from bemcontact.report import figures  # noqa: E402
 from bemcontact.report.figures.page import new_page  # noqa: E402
@@ -76,6 +78,13 @@ def page() -> str:
     )
 
 
+@cache
+def results(path: Path) -> dict[str | None, Result]:
+    """Results of a problem under each load case, on one mesh; under None without cases."""
+    problem = bemcontact.load(path)
+    return dict(bemcontact.solve_cases(problem).results) if problem.case_names else {None: bemcontact.solve(problem)}
+
+
 def _table(paths: Iterable[Path]) -> Iterator[str]:
     """One row a problem."""
     yield "| picture | problem | closed form or source: measured error |"
@@ -83,11 +92,11 @@ def _table(paths: Iterable[Path]) -> Iterator[str]:
     for path in paths:
         problem = bemcontact.load(path)
         picture, file = ROOT / PICTURES / f"{path.stem}.svg", path.relative_to(ROOT / PAGE.parent)
-        shown = f" The picture shows the load case '{_case(path, problem)}'." if problem.case_names else ""
+        shown = f" The picture shows the load case '{_case(path)}'." if problem.case_names else ""
         yield (
             f'| <img src="../{picture.relative_to(ROOT).as_posix()}" width="320" alt="{problem.name}"> '
             f"| [{problem.name}]({file.as_posix()}): {_first_sentence(problem.description)}{shown} "
-            f"| {'<br>'.join(_errors(problem))} |"
+            f"| {'<br>'.join(_errors(results(path).values()))} |"
         )
 
 
@@ -97,15 +106,14 @@ def _first_sentence(description: str) -> str:
     return re.split(r"(?<=[.:]) (?=[A-Z])", text)[0]
 
 
-def _case(path: Path, problem: bemcontact.Problem) -> str:
-    return CASES.get(path.stem, problem.case_names[0])
+def _case(path: Path) -> str | None:
+    return CASES.get(path.stem, next(iter(results(path))))
 
 
-def _errors(problem: bemcontact.Problem) -> Iterator[str]:
+def _errors(answers: Iterable[Result]) -> Iterator[str]:
     """For each source the largest error of each quantity over all load cases and references, in percent."""
     names, errors = dict[str, dict[str, None]](), dict[str, dict[str, float]]()
-    results = bemcontact.solve_cases(problem).results.values() if problem.case_names else [bemcontact.solve(problem)]
-    for result in results:
+    for result in answers:
         known = expected(result.problem, result.contact)
         sources = {item.name: item.source for item in known}
         for item in known:
@@ -133,21 +141,20 @@ def pictures() -> Iterator[tuple[Path, bytes]]:
     """Draw each problem, and two of them side by side for the README."""
     readme = new_page(8.3, 3.0)
     for axes, name in zip(readme.subplots(1, 2, width_ratios=(1, 2.2)), README, strict=True):
-        problem = bemcontact.load(ROOT / "models" / f"{name}.yaml")
-        _draw(axes, problem)
-        axes.set_title(problem.name, fontsize=10)
+        path = ROOT / "models" / f"{name}.yaml"
+        _draw(axes, path)
+        axes.set_title(results(path)[None].contact.name, fontsize=10)
     yield PICTURES / "contact.svg", figures.vector_graphic(readme)
     for path in models():
-        problem = bemcontact.load(path)
         figure = new_page(4.2, 3.0)
         figure.add_artist(Rectangle((0, 0.5), 1, 0, facecolor="none", edgecolor="none"))  # all are equally wide
-        _draw(figure.add_subplot(), problem.with_case(_case(path, problem)) if problem.case_names else problem)
+        _draw(figure.add_subplot(), path)
         yield PICTURES / f"{path.stem}.svg", figures.vector_graphic(figure)
 
 
-def _draw(axes: Axes, problem: bemcontact.Problem) -> None:
-    """Solve a problem, and draw its contact."""
-    figures.draw_contact(axes, bemcontact.solve(problem))
+def _draw(axes: Axes, path: Path) -> None:
+    """Draw the contact of a problem."""
+    figures.draw_contact(axes, results(path)[_case(path)])
     axes.set_axis_off()
 
 

@@ -8,6 +8,8 @@ import os
 for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(threads, "1")  # before the first import of NumPy
 
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the many processes that tests start compile each module once
+
 from hypothesis import settings  # noqa: E402
 
 settings.register_profile("repeatable", derandomize=True, deadline=None, max_examples=50)

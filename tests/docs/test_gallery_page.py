@@ -8,6 +8,9 @@ from xml.etree import ElementTree
 
 import pytest
 
+import bemcontact
+from bemcontact.reference import expected, score
+
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "models" / "README.md").read_text(encoding="utf-8")
 MODELS = sorted(path.relative_to(ROOT / "models").as_posix() for path in (ROOT / "models").rglob("*.yaml"))
@@ -48,6 +51,20 @@ def test_page_is_what_the_command_writes(gallery: ModuleType):
     assert re.sub(PERCENT, "#", written) == re.sub(PERCENT, "#", PAGE), "run python .docs/gallery.py"
     errors = [[float(error) for error in re.findall(PERCENT, text)] for text in (written, PAGE)]
     assert errors[0] == pytest.approx(errors[1], rel=0.1)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_accuracy_is_met_and_so_are_the_references(gallery: ModuleType, model: str):
+    """On the mesh that is found, one for all load cases: no edge states elements."""
+    path = ROOT / "models" / model
+    assert not any(edge.elements for edge in bemcontact.load(path).boundary.edges)
+    for answer in gallery.results(path).values():
+        assert answer.holds
+        assert answer.accuracy.asked <= 0.01
+        known = expected(answer.problem, answer.contact)
+        scores = score(known, answer.contact, answer.footprint, answer.solution.pressure)
+        assert any(item.judged for item in scores)
+        assert [item for item in scores if item.judged and not item.holds] == []
 
 
 def test_picture_is_the_same_each_time(gallery: ModuleType):
