@@ -66,13 +66,13 @@ class SizedOutline:
     @cached_property
     def thickness(self) -> tuple[Array, ...]:
         """Distance [L] from each sample through the body to the boundary that faces it; infinite without one."""
-        points = np.vstack([edge.points(at) for _, edge, at in self._samples])
+        x, y = np.vstack([edge.points(at) for _, edge, at in self._samples]).T
         normals = np.vstack([edge.normals(at) for _, edge, at in self._samples])
-        away = points[None] - points[:, None]
-        distance = np.hypot(away[..., 0], away[..., 1])
-        inward = -np.einsum("ijx,ix->ij", away, normals)
-        faces = (inward >= ACROSS * distance) & (normals @ normals.T < OPPOSED) & (distance > 0)
-        least = np.where(faces, distance, np.inf).min(axis=1)
+        right, up = np.subtract.outer(x, x), np.subtract.outer(y, y)
+        inward = right * normals[:, :1] + up * normals[:, 1:]
+        squared = right**2 + up**2
+        faces = (inward > 0) & (inward**2 >= ACROSS**2 * squared) & (normals @ normals.T < OPPOSED)
+        least = np.sqrt(np.where(faces, squared, np.inf).min(axis=1))
         return tuple(np.split(least, np.cumsum([len(own) for own in self.positions])[:-1]))
 
     def thickness_at(self, loop: int, position: float) -> float:

@@ -103,11 +103,28 @@ class Loop:
         """The limits (l, 3) without those that others make idle, the smallest first, of equal ones the first."""
         rounded = np.round(np.log(limits[:, 2] / self.length) / SAME)
         order = limits[np.lexsort((limits[:, 0], rounded))]
-        kept = order[:1]
-        for limit in order[1:]:
-            if not self._idle(limit, kept):
-                kept = np.vstack([kept, limit])
-        return kept
+        others = self._least_of_others(order)
+        kept = others > (1 + SAME) * order[:, 2]
+        for i in np.flatnonzero(~kept & ~(others < (1 - SAME) * order[:, 2])):
+            kept[i] = not self._idle(order[i], order[:i][kept[:i]])
+        return order[kept]
+
+    def _least_of_others(self, limits: Array) -> Array:
+        """Size (l,) that all other limits allow where a limit of a single position is; of a wider one not known."""
+        low, high, size = limits.T
+        wide = high > low
+        position = np.mod(np.append(low, high[wide]), self.length)
+        order = np.argsort(position)
+        at, value = position[order], np.append(size, size[wide])[order]
+        turns = np.concatenate([at - self.length, at, at + self.length])
+        before = np.minimum.accumulate(np.tile(value, 3) - GROWTH * turns)
+        after = np.minimum.accumulate((np.tile(value, 3) + GROWTH * turns)[::-1])[::-1]
+        here = np.arange(len(at), 2 * len(at))
+        least = np.empty(len(at))
+        least[order] = np.minimum(before[here - 1] + GROWTH * at, after[here + 1] - GROWTH * at)
+        least = np.where(wide, np.nan, least[: len(limits)])
+        inside = np.mod(low[:, None] - low[wide], self.length) <= (high - low)[wide]
+        return np.minimum(least, np.where(inside, size[wide], np.inf).min(axis=1, initial=np.inf))
 
     def _idle(self, limit: Array, others: Array) -> bool:
         """Whether others (l, 3) allow no larger size than a limit (3,) anywhere on it: together they cover it."""

@@ -120,7 +120,7 @@ class Body:
         Contact does not determine its amplitude. A linear program finds it.
         """
         R, load = self.relative_load
-        if not load.size:
+        if not load.size or (load.size == 1 and load.any()):
             return None
         optimum = scipy.optimize.linprog(
             -R.sum(axis=0), A_ub=-R, b_ub=np.zeros(len(R)), A_eq=load[None, :], b_eq=[0.0], bounds=(-1.0, 1.0),

@@ -16,6 +16,7 @@ off exactly and what is left is smooth (`near_singular`, `singular`). The idea o
 continuation of the map: Helsing and Ojala (2008), af Klinteberg and Barnett (2021); the closed forms are ours.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -112,8 +113,9 @@ class GaussRule(NamedTuple):
     U_cross: Array
 
 
+@lru_cache(maxsize=64)
 def gauss_rule(order: int, factor: Factors) -> GaussRule:
-    """Prepare a rule of so many points."""
+    """Prepare a rule of so many points; its arrays are shared and must not be changed."""
     xi, weights = gauss_legendre(order)
     shapes = values(xi).T
     S = shapes * weights

@@ -315,6 +315,8 @@ class System:
         return displacement, traction
 
 
+LARGEST_COPY = 2.5e8
+"""Largest matrix in bytes of which a copy is kept for the refinement; of larger ones the rows are computed anew."""
 SINGULAR = 1e-15
 """Reciprocal condition number below which the system counts as singular."""
 
@@ -341,11 +343,12 @@ def assemble(system: System) -> tuple[Array, Array]:
 
 
 def solve_system(system: System) -> Array:
-    """Solve (size, s + n) for loads and unit pressures: LU in place, then one refinement with rows computed anew.
+    """Solve (size, s + n) for loads and unit pressures: LU in place, then one refinement.
 
     `SingularSystemError` if the equations have no unique solution.
     """
     matrix, right = assemble(system)
+    kept = matrix.copy(order="F") if matrix.nbytes <= LARGEST_COPY else None
     lu = LU.of(matrix, overwrite=True)
     if lu.reciprocal_condition < SINGULAR:
         raise SingularSystemError(
@@ -353,7 +356,7 @@ def solve_system(system: System) -> Array:
             f"{lu.reciprocal_condition:.1e}); look for coincident edges, or for neighboring elements of very different "
             "length"
         )
-    return lu.solve(right, partial(residual, system))
+    return lu.solve(right, partial(residual, system) if kept is None else lambda x: right - kept @ x)
 
 
 def residual(system: System, response: Array) -> Array:
