@@ -28,6 +28,8 @@ SAMPLES = 800
 """Samples of the whole boundary, and of an edge under a rigid surface."""
 LEAST_SAMPLES = 24
 """Samples of an edge."""
+IN_CACHE = 64
+"""Samples that are compared with all others at once."""
 NARROW = 0.01
 """Least element over its edge where a surface comes near."""
 AT_CORNER = 0.1
@@ -68,12 +70,15 @@ class SizedOutline:
         """Distance [L] from each sample through the body to the boundary that faces it; infinite without one."""
         x, y = np.vstack([edge.points(at) for _, edge, at in self._samples]).T
         normals = np.vstack([edge.normals(at) for _, edge, at in self._samples])
-        right, up = np.subtract.outer(x, x), np.subtract.outer(y, y)
-        inward = right * normals[:, :1] + up * normals[:, 1:]
-        squared = right**2 + up**2
-        faces = (inward > 0) & (inward**2 >= ACROSS**2 * squared) & (normals @ normals.T < OPPOSED)
-        least = np.sqrt(np.where(faces, squared, np.inf).min(axis=1))
-        return tuple(np.split(least, np.cumsum([len(own) for own in self.positions])[:-1]))
+        least = []
+        for few in range(0, len(x), IN_CACHE):
+            rows = slice(few, few + IN_CACHE)
+            right, up = x[rows, None] - x, y[rows, None] - y
+            inward = right * normals[rows, :1] + up * normals[rows, 1:]
+            squared = right**2 + up**2
+            faces = (inward > 0) & (inward**2 >= ACROSS**2 * squared) & (normals[rows] @ normals.T < OPPOSED)
+            least.append(np.sqrt(np.where(faces, squared, np.inf).min(axis=1)))
+        return tuple(np.split(np.concatenate(least), np.cumsum([len(own) for own in self.positions])[:-1]))
 
     def thickness_at(self, loop: int, position: float) -> float:
         """Thickness [L] at a position of a loop."""
@@ -140,22 +145,22 @@ def surface_sizes(problem: Problem, outline: SizedOutline) -> tuple[dict[int, li
 
 def _near(edge: Edge, start: float, surface: Shape) -> Iterator[Limit]:
     """Limits at each local least of the initial gap: half of the radius of the relative curvature."""
+
+    def gaps(fractions: Array) -> Array:
+        return surface.closest(edge.points(fractions.ravel())).gap.reshape(fractions.shape)
+
     at = np.linspace(0, 1, SAMPLES + 1)
-    gap = surface.closest(edge.points(at)).gap
-    inner = np.flatnonzero((gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])) + 1
-    for i in inner:
-        middle, step = at[i], at[1]
-        for _ in range(FOCUS):
-            fine = np.clip(middle + step * np.linspace(-1, 1, 21), 0, 1)
-            values = surface.closest(edge.points(fine)).gap
-            middle, step = fine[np.argmin(values)], step / 5
-        step = max(step, 1e-4)
-        three = np.clip(middle + step * np.array([-1.0, 0.0, 1.0]), 0, 1)
-        values = surface.closest(edge.points(three)).gap
-        curvature = (values[0] - 2 * values[1] + values[2]) / (step * edge.length) ** 2
-        if curvature > 0:
-            place = start + middle * edge.length
-            yield Limit(low=place, high=place, size=float(max(0.5 / curvature, NARROW * edge.length)))
+    gap, step = gaps(at), at[1]
+    middle = at[1:-1][(gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])]
+    for _ in range(FOCUS):
+        fine = np.clip(middle[:, None] + step * np.linspace(-1, 1, 21), 0, 1)
+        middle, step = fine[np.arange(len(fine)), gaps(fine).argmin(axis=1)], step / 5
+    step = max(step, 1e-4)
+    values = gaps(np.clip(middle[:, None] + step * np.array([-1.0, 0.0, 1.0]), 0, 1))
+    curvature = (values[:, 0] - 2 * values[:, 1] + values[:, 2]) / (step * edge.length) ** 2
+    for place, bend in zip(start + middle * edge.length, curvature, strict=True):
+        if bend > 0:
+            yield Limit(low=place, high=place, size=float(max(0.5 / bend, NARROW * edge.length)))
 
 
 def surface_corners(edge: Edge, surface: RigidSurface) -> Iterator[float]:
