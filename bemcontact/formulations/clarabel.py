@@ -12,8 +12,11 @@ from the data of the program, and so are violations of the constraints as the us
 They alone decide whether it is an answer.
 """
 
+import signal
+import threading
 import warnings
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -270,16 +273,35 @@ def _solve(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations: int)
     solver = DefaultSolver(P, data["c"], data["A"], data["b"], dims_to_solver_cones(data["dims"]), settings)
     rows: list[tuple[float, float]] = []
 
-    def look(info: Any) -> bool:
-        rows.append((info.cost_primal, info.res_primal))
-        return False  # go on
+    with interrupts() as interrupted:
 
-    solver.set_termination_callback(look)
-    solution = solver.solve()
+        def look(info: Any) -> bool:
+            rows.append((info.cost_primal, info.res_primal))
+            return bool(interrupted)
+
+        solver.set_termination_callback(look)
+        solution = solver.solve()
     if rows and np.isfinite(solution.obj_val):
         rows[-1] = solution.obj_val, solution.r_prim  # Clarabel may have withdrawn its last step
     progress = np.array(rows).reshape(-1, 2)
     return solution, progress[np.logical_and.accumulate(np.isfinite(progress).all(axis=1))]
+
+
+@contextmanager
+def interrupts() -> Iterator[list[int]]:
+    """Collect interrupts (Ctrl-C) in a list, and raise them at the end: what Clarabel calls cannot raise them."""
+    came: list[int] = []
+    ours = threading.current_thread() is threading.main_thread()
+    if not ours or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield came
+        return
+    signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        yield came
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    if came:
+        raise KeyboardInterrupt
 
 
 def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], _Scaling]:

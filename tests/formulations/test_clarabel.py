@@ -1,5 +1,9 @@
 """Clarabel on equilibrated data: optimum, multipliers and status of small programs of each cone, in any unit."""
 
+import os
+import signal
+import threading
+
 import cvxpy as cp
 import numpy as np
 import pytest
@@ -154,3 +158,17 @@ def test_what_is_hardly_feasible_is_not_called_infeasible_or_unbounded(gap):
     minimize_convex(problem := cp.Problem(cp.Minimize(gap * x - y), [x >= -1, y <= 1]), equilibrate=False)
     assert problem.status.startswith("optimal")
     assert problem.value == pytest.approx(-gap - 1, rel=1e-7)
+
+
+def test_an_interrupt_ends_a_solve_that_runs():
+    """Clarabel prints what its callback raises, and goes on: so an interrupt is raised when the solve has ended."""
+    data = np.random.default_rng(0).standard_normal((300, 300))
+    x = cp.Variable(300)
+    problem = cp.Problem(cp.Minimize(cp.sum_squares(data @ x - 1)), [x >= 0])
+    timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        any(minimize_convex(problem) for _ in range(100))
+    with pytest.raises(KeyboardInterrupt), clarabel.interrupts():
+        os.kill(os.getpid(), signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
