@@ -132,6 +132,29 @@ def test_a_block_on_a_floor_is_exact():
     assert judged.worst < 1e-9
 
 
+@pytest.mark.parametrize("size", [1e-6, 1.0])
+def test_contact_that_narrows_without_end_has_an_answer_that_does_not_hold(size: float):
+    """A frame turns by 0.001 until a face is flush with a wall, and a corner of it is held where it just touches."""
+    names = {"b": (1, 0), "r": (4, 0), "t": (4, 4), "l": (0, 4), "i1": (0, 1), "i2": (1, 1)}
+    wall = {"kind": "plane", "point": [4.000004 * size, 0], "normal": [-1, 0.001]}
+    problem = Problem.model_validate(
+        {
+            "name": "frame",
+            "material": {"young_modulus": 1e7, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": k, "start": [x * size, y * size]} for k, (x, y) in names.items()]},
+            "conditions": {
+                "b": {"displacement": {"x": 0}},
+                "l": {"displacement": {"y": 0}},
+                "t": {"pressure": 1.0},
+            },
+            "contact_zones": {"wall": {"edges": "r", "surface": wall}},
+        }
+    )
+    result = solve(problem)
+    assert not result.holds
+    assert result.accuracy.reason
+
+
 def test_without_contact_displacements_are_still_judged():
     """A clamped strip that bends above the floor."""
     (judged,) = found(no_contact()[0]).accuracies
