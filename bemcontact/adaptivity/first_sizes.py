@@ -140,15 +140,7 @@ def surface_sizes(problem: Problem, outline: SizedOutline) -> tuple[dict[int, li
 
 def _near(edge: Edge, start: float, surface: Shape) -> Iterator[Limit]:
     """Limits at each local least of the initial gap: half of the radius of the relative curvature."""
-    at = np.linspace(0, 1, SAMPLES + 1)
-    gap = surface.closest(edge.points(at)).gap
-    inner = np.flatnonzero((gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])) + 1
-    for i in inner:
-        middle, step = at[i], at[1]
-        for _ in range(FOCUS):
-            fine = np.clip(middle + step * np.linspace(-1, 1, 21), 0, 1)
-            values = surface.closest(edge.points(fine)).gap
-            middle, step = fine[np.argmin(values)], step / 5
+    for middle, step in nearest_places(edge, surface):
         step = max(step, 1e-4)
         three = np.clip(middle + step * np.array([-1.0, 0.0, 1.0]), 0, 1)
         values = surface.closest(edge.points(three)).gap
@@ -156,6 +148,20 @@ def _near(edge: Edge, start: float, surface: Shape) -> Iterator[Limit]:
         if curvature > 0:
             place = start + middle * edge.length
             yield Limit(low=place, high=place, size=float(max(0.5 / curvature, NARROW * edge.length)))
+
+
+def nearest_places(edge: Edge, surface: Shape) -> Iterator[tuple[float, float]]:
+    """Fractions of the length inside an edge where the initial gap is locally least, with their accuracy."""
+    at = np.linspace(0, 1, SAMPLES + 1)
+    gap = surface.closest(edge.points(at)).gap
+    inner = np.flatnonzero((gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])) + 1
+    for i in inner:
+        middle, step = float(at[i]), float(at[1])
+        for _ in range(FOCUS):
+            fine = np.clip(middle + step * np.linspace(-1, 1, 21), 0, 1)
+            values = surface.closest(edge.points(fine)).gap
+            middle, step = float(fine[np.argmin(values)]), step / 5
+        yield middle, step
 
 
 def surface_corners(edge: Edge, surface: RigidSurface) -> Iterator[float]:
