@@ -222,15 +222,24 @@ def _spacing(run: ZoneRun, position: float) -> float:
 
 def _intensity_bar(difference: MeshDifference, item: Singularity, m: float) -> ErrorBar:
     """Error bar of the intensity K of an infinite pressure K s^-α."""
-    one, two = difference.pair
-    coarse = _intensity(difference.coarse, one, item, 4)
-    fine, cubic = _intensity(difference.fine, two, item, 4), _intensity(difference.fine, two, item, 3)
-    least = 0.0 if item.exponent in (1 / 2, 2 / 3) else UNKNOWN_EXPONENT
-    note = f"p = K s^-{item.exponent:.3g}"
-    if coarse is None or fine is None or cubic is None:
+    least = 0.0 if item.exact else UNKNOWN_EXPONENT
+    note = f"p = K s^-{item.exponent:.4g}"
+    fits = [fit for part in FITTED if (fit := _fitted(difference, item, part))]
+    if not fits:
         return ErrorBar(quantity="intensity", zone=item.place.zone, value=None, bar=None, note=note)
-    change = max(INTENSITY * _change(coarse, fine), _change(cubic, fine), INTENSITY_FLOOR * m, least)
-    return ErrorBar(quantity="intensity", zone=item.place.zone, value=fine, bar=SAFETY * change, note=note)
+    value, change = min(fits, key=lambda fit: fit[1])
+    change = max(change, INTENSITY_FLOOR * m, least, *(_change(other, value) for other, _ in fits))
+    return ErrorBar(quantity="intensity", zone=item.place.zone, value=value, bar=SAFETY * change, note=note)
+
+
+def _fitted(difference: MeshDifference, item: Singularity, part: tuple[float, float]) -> tuple[float, float] | None:
+    """K on a part of the contact, and its relative change from mesh to mesh and by the degree; None without points."""
+    one, two = difference.pair
+    coarse = _intensity(difference.coarse, one, item, 4, part)
+    fine, cubic = (_intensity(difference.fine, two, item, degree, part) for degree in (4, 3))
+    if coarse is None or fine is None or cubic is None:
+        return None
+    return fine, max(INTENSITY * _change(coarse, fine), _change(cubic, fine))
 
 
 def elements_beside(run: ZoneRun, position: float) -> IntArray:
@@ -240,7 +249,9 @@ def elements_beside(run: ZoneRun, position: float) -> IntArray:
     return near % count if run.closed else near[(near >= 0) & (near < count)]
 
 
-def _intensity(solved: Solved, answer: CaseAnswer, item: Singularity, degree: int) -> float | None:
+def _intensity(
+    solved: Solved, answer: CaseAnswer, item: Singularity, degree: int, part: tuple[float, float]
+) -> float | None:
     """K from a polynomial through p s^α at Gauss points beside the place."""
     run = solved.runs[item.place.run]
     side, length = contact_beside(run, answer.stretches[run.number], item.place.position)
@@ -252,7 +263,7 @@ def _intensity(solved: Solved, answer: CaseAnswer, item: Singularity, degree: in
         [np.where(side * (at - image) > 0, side * (at - image), np.inf) for image in _images(run, item.place.position)],
         axis=0,
     )
-    low, high = max(FITTED[0] * length, float(s[elements_beside(run, item.place.position)].max())), FITTED[1] * length
+    low, high = max(part[0] * length, float(s[elements_beside(run, item.place.position)].max())), part[1] * length
     used = (s > low) & (s <= high) & (pressure > 0)
     if used.sum() < 2 * degree:
         return None

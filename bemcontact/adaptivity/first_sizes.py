@@ -145,22 +145,29 @@ def surface_sizes(problem: Problem, outline: SizedOutline) -> tuple[dict[int, li
 
 def _near(edge: Edge, start: float, surface: Shape) -> Iterator[Limit]:
     """Limits at each local least of the initial gap: half of the radius of the relative curvature."""
-
-    def gaps(fractions: Array) -> Array:
-        return surface.closest(edge.points(fractions.ravel())).gap.reshape(fractions.shape)
-
-    at = np.linspace(0, 1, SAMPLES + 1)
-    gap, step = gaps(at), at[1]
-    middle = at[1:-1][(gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])]
-    for _ in range(FOCUS):
-        fine = np.clip(middle[:, None] + step * np.linspace(-1, 1, 21), 0, 1)
-        middle, step = fine[np.arange(len(fine)), gaps(fine).argmin(axis=1)], step / 5
+    middle, step = nearest_places(edge, surface)
     step = max(step, 1e-4)
-    values = gaps(np.clip(middle[:, None] + step * np.array([-1.0, 0.0, 1.0]), 0, 1))
-    curvature = (values[:, 0] - 2 * values[:, 1] + values[:, 2]) / (step * edge.length) ** 2
+    three = _gaps(edge, surface, middle[:, None] + step * np.array([-1.0, 0.0, 1.0]))
+    curvature = (three[:, 0] - 2 * three[:, 1] + three[:, 2]) / (step * edge.length) ** 2
     for place, bend in zip(start + middle * edge.length, curvature, strict=True):
         if bend > 0:
             yield Limit(low=place, high=place, size=float(max(0.5 / bend, NARROW * edge.length)))
+
+
+def nearest_places(edge: Edge, surface: Shape) -> tuple[Array, float]:
+    """Fractions (k,) of the length inside an edge where the initial gap is locally least, and their accuracy."""
+    at = np.linspace(0, 1, SAMPLES + 1)
+    gap, step = _gaps(edge, surface, at), float(at[1])
+    middle = at[1:-1][(gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])]
+    for _ in range(FOCUS):
+        fine = np.clip(middle[:, None] + step * np.linspace(-1, 1, 21), 0, 1)
+        middle, step = fine[np.arange(len(fine)), _gaps(edge, surface, fine).argmin(axis=1)], step / 5
+    return middle, step
+
+
+def _gaps(edge: Edge, surface: Shape, fractions: Array) -> Array:
+    """Initial gap at fractions of the length of an edge, of any shape; beyond its ends that of the ends."""
+    return surface.closest(edge.points(np.clip(fractions, 0, 1).ravel())).gap.reshape(fractions.shape)
 
 
 def surface_corners(edge: Edge, surface: RigidSurface) -> Iterator[float]:

@@ -1,12 +1,13 @@
 """Places where the pressure is infinite: ends of contact that are not free, corners and kinks under pressure."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from bemcontact.adaptivity.fields import MeshDifference, Solved
+from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved
 from bemcontact.adaptivity.first_sizes import surface_corners
+from bemcontact.adaptivity.wedge_exponents import Face, contact_face, wedge_exponents
 from bemcontact.adaptivity.zone_runs import ZoneRun
 from bemcontact.arrays import IntArray
 
@@ -20,13 +21,15 @@ HIGH = 1.2
 """Least pressure at a place over the mean pressure of the contact in its zone."""
 KINK = 0.25
 """Exponent below which the pressure is infinite like a logarithm, as at a kink of the surface."""
-KNOWN_EXPONENTS = 1 / 2, 2 / 3
-SNAP = 0.03
-"""Difference of a measured exponent from a known one that is taken for this."""
+SNAP = 0.05
+"""Difference of a measured exponent from one of the wedge there that is taken for this."""
 BESIDE = 0.05
 """Part of the contact beside an infinite pressure on which the pressure is not compared."""
-FITTED = 0.02, 0.4
-"""Parts of the contact between which the intensity is fitted."""
+FITTED = (0.005, 0.1), (0.02, 0.4)
+"""Parts of the contact between which the intensity is fitted: nearer, where elements are short enough, and farther.
+
+On a half-plane p s^α is a polynomial in s; beside other corners it has other powers, and the difference tells them.
+"""
 SAME = 1e-6
 """Distance of two places over the length of their run up to which they are one."""
 
@@ -52,6 +55,8 @@ class Singularity:
     place: ContactPlace
     exponent: float
     """α."""
+    exact: bool = True
+    """Whether α is that of the elastic wedge there, and not measured."""
 
     @property
     def like_a_kink(self) -> bool:
@@ -68,6 +73,7 @@ class _History:
     growth: list[float] = field(default_factory=list)
     element: list[float] = field(default_factory=list)
     exponent: float | None = None
+    exact: bool = False
 
     def grows(self) -> bool:
         """Whether the pressure grew twice running, and no slower, on smaller elements."""
@@ -100,9 +106,10 @@ class Watch:
             history.growth.append(high / low if low * pressed.sum() > HIGH * force > 0 else 1.0)
             history.element.append(float(coarse.weights[elements].sum(axis=1).min()))
             if history.grows() or (history.exponent is not None and GROWING[0] < history.growth[-1] < GROWING[1]):
-                history.exponent = _snapped(float(np.log2(history.growth[-1])))
+                known = exponents_at(coarse, one, coarse.runs[place.run], place.position)
+                history.exponent, history.exact = _nearest(float(np.log2(history.growth[-1])), known)
         return tuple(
-            Singularity(place=item.place, exponent=item.exponent)
+            Singularity(place=item.place, exponent=item.exponent, exact=item.exact)
             for item in self.histories
             if item.case == case and item.exponent is not None
         )
@@ -116,10 +123,37 @@ class Watch:
         return self.histories[-1]
 
 
-def _snapped(exponent: float) -> float:
-    """The known exponent if it is near."""
-    nearest = min(KNOWN_EXPONENTS, key=lambda known: abs(known - exponent))
-    return nearest if abs(nearest - exponent) <= SNAP else exponent
+def _nearest(measured: float, known: Sequence[float]) -> tuple[float, bool]:
+    """The known exponent nearest to a measured one, if it is near; and whether it is."""
+    nearest = min(known, key=lambda exponent: abs(exponent - measured), default=np.inf)
+    near = abs(nearest - measured) <= SNAP
+    return (float(nearest) if near else measured), bool(near)
+
+
+def exponents_at(solved: Solved, answer: CaseAnswer, run: ZoneRun, position: float) -> tuple[float, ...]:
+    """Exponents of infinite pressures at a position of a run, by the angle of the body and what holds its faces."""
+    mesh, problem, elements = solved.mesh, solved.body.problem, run_elements(solved, run)
+    at = int(np.argmin(np.abs(run.ends - position))) % (len(elements) if run.closed else len(elements) + 1)
+    after = int(elements[at] if at < len(elements) else np.argmax(mesh.before == elements[-1]))
+    before = int(mesh.before[after])
+    leaves, arrives = mesh.tangents[after, 0], mesh.tangents[before, 2]
+    if mesh.edge[after] == mesh.edge[before]:
+        arrives = leaves  # edges are smooth
+    else:
+        leaves = problem.edge(mesh.edge_names[mesh.edge[after]]).directions(np.array([0.0]))[0]
+        arrives = problem.edge(mesh.edge_names[mesh.edge[before]]).directions(np.array([1.0]))[0]
+    start, end = (float(np.arctan2(y, x)) for x, y in (leaves, arrives))
+    faces = _face(answer, after, start), _face(answer, before, end)
+    ratio = problem.material.effective_poisson_ratio
+    return wedge_exponents(start, float(np.mod(end + np.pi - start, 2 * np.pi)), faces, ratio)
+
+
+def _face(answer: CaseAnswer, element: int, direction: float) -> Face:
+    """What holds the face of a wedge with an element, from the direction of the boundary there."""
+    if answer.pressure[:, element, 1].any():
+        return contact_face(np.exp(1j * (direction - np.pi / 2)))
+    x, y = answer.condensation.body.acting.values.traction_unknown[element].tolist()
+    return Face(1.0, (x, y))
 
 
 def _places(difference: MeshDifference) -> Iterator[ContactPlace]:

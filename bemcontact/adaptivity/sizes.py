@@ -27,6 +27,9 @@ RESOLUTION = 0.5
 SAME = 1e-9
 """Relative difference of two lengths below which round-off decides which one is longer."""
 
+NEAREST = 1e-9
+"""Least element over its edge: ten times the least that an edge can be divided into."""
+
 
 class Limit(NamedTuple):
     """A limit of the element size between two positions [L]; beyond them it grows with the distance."""
@@ -154,9 +157,7 @@ class Loop:
             same = SAME * (stop - start)
             own = np.unique(inside[(inside > start + same) & (inside < stop - same)])
             own = own[np.diff(own, prepend=start) > same]
-            ends[edge.name] = tuple(
-                ((self._divided(start, stop, own, limits, layers) - start) / (stop - start)).tolist()
-            )
+            ends[edge.name] = _apart((self._divided(start, stop, own, limits, layers) - start) / (stop - start))
         return ends
 
     def _divided(self, start: float, stop: float, marks: Array, limits: Array, layers: Sequence[Layers]) -> Array:
@@ -183,3 +184,12 @@ class Loop:
             inner[-1] = corners[number + 1]
             pieces.append(inner)
         return np.concatenate(pieces)[:-1]
+
+
+def _apart(fractions: Array) -> tuple[float, ...]:
+    """Fractions of the length of an edge without those that leave no room for an element."""
+    kept = [0.0]
+    for fraction in fractions.tolist():
+        if fraction - kept[-1] >= NEAREST and 1 - fraction >= NEAREST:
+            kept.append(fraction)
+    return tuple(kept[1:])

@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from bemcontact.adaptivity.adapt import first_mesh
+from bemcontact.adaptivity.first_sizes import nearest_places, surface_corners
 from bemcontact.arrays import Array
-from bemcontact.bem.body import body_of, deflections, each_case, ensure_held
+from bemcontact.bem.body import Body, body_of, deflections, each_case, ensure_held
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.problem import DeflectedContour, Problem
@@ -20,6 +23,8 @@ class CheckedProblem:
     """Boundary elements."""
     gaps: dict[str, Array]
     """Initial gap of the contact points of each contact zone [L]."""
+    smallest_gaps: dict[str, float]
+    """Smallest initial gap of each contact zone, on the curves of its edges [L]."""
     free_motions: int
     """Number of rigid motions of the body that the conditions leave free."""
     held_by_contact: tuple[str, ...]
@@ -42,12 +47,29 @@ def check(problem: Problem) -> CheckedProblem:
         problem=body.problem,
         mesh=body.mesh,
         gaps={name: body.points.gap[body.points.zone == i] for i, name in enumerate(body.problem.contact_zones)},
+        smallest_gaps={name: _smallest_gap(body, i) for i, name in enumerate(body.problem.contact_zones)},
         free_motions=len(body.motions),
         held_by_contact=tuple(body.seen.describe()),
         total_load=(float(x), float(y)),
         load_magnitude=float(body.pinned.total(body.factors, body.forces)),
         notes=tuple(body.notes),
     )
+
+
+def _smallest_gap(body: Body, zone: int) -> float:
+    """Smallest initial gap [L] of a zone at contact points and between them, on the curves of its elements."""
+    problem, points, mesh = body.problem, body.points, body.mesh
+    name, surface = [*problem.contact_zones][zone], [*problem.contact_zones.values()][zone].surface
+    least = float(points.gap[points.zone == zone].min())
+    if isinstance(surface, DeflectedContour):
+        return least
+    own = np.unique(points.element[points.zone[points.point] == zone])
+    for edge in map(problem.edge, problem.edges_of(name)):
+        ends, first = edge.breakpoints(problem.mesh.refine), np.argmax(mesh.edge == mesh.edge_names.index(edge.name))
+        nearest = [*nearest_places(edge, surface)[0], *surface_corners(edge, surface)]
+        if inside := [at for at in nearest if first + np.searchsorted(ends, at) - 1 in own]:
+            least = float(surface.closest(edge.points(np.array(inside))).gap.min(initial=least))
+    return least
 
 
 def drawable(problem: Problem) -> tuple[Problem, Mesh]:

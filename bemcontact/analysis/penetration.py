@@ -4,14 +4,14 @@ Contact conditions hold at contact points. Nothing keeps the body out of a surfa
 in no zone of it.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from bemcontact.analysis.placement import placement
+from bemcontact.analysis.placement import noted, placement
 from bemcontact.analysis.variation import Variation
-from bemcontact.arrays import BoolArray
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.condense import boundary_state
 from bemcontact.bem.contact_points import ContactPoints
@@ -24,9 +24,17 @@ from bemcontact.parametric.path import LoadPath
 
 
 def penetration(
-    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution
+    gaps: SurfaceGaps,
+    points: ContactPoints,
+    contact: CondensedContact,
+    solution: ContactSolution,
+    nearby: Array | None = None,
 ) -> tuple[Penetration | None, tuple[str, ...]]:
-    """Find the deepest penetration that is not tolerated, or else contact that is misplaced; note the rest."""
+    """Find the deepest penetration that is not tolerated, or else contact that is misplaced; note the rest.
+
+    Of a state on a path, `nearby` (2, zones) is the least and the largest peak [p] of each zone a little before and
+    after it.
+    """
     state, worst, notes = gaps.state, None, list[str]()
     largest = float(np.hypot(*np.moveaxis(state.displacement, 2, 0)).max())
     allowed = tolerated(contact, largest, gaps.problem.boundary.size)
@@ -39,24 +47,38 @@ def penetration(
             worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
         notes += _behind(gaps, zone, found.behind)
         notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
-    misplaced, said = (None, ()) if worst else placement(gaps, points, contact, solution)
+    misplaced, said = (None, ()) if worst else placement(gaps, points, contact, solution, nearby)
     return worst or misplaced, (*notes, *said)
 
 
 def penetration_on_path(
     varied: Variation, path: LoadPath, start: float, end: float
-) -> tuple[Penetration | None, float | None]:
-    """Find the deepest penetration at the breakpoints of a path between two values, and the value there."""
-    outline, worst, at = Outline(problem=varied.problem), None, None
+) -> tuple[Penetration | None, float | None, tuple[str, ...]]:
+    """Find the deepest penetration at the breakpoints of a path between two values, and the value there; note the rest.
+
+    A state at an end of the path is judged as a solution is.
+    """
+    outline, worst, at, notes = Outline(problem=varied.problem), None, None, dict[str, list[float]]()
+    last, reach = len(path.parameter) - 1, noted(varied.problem)
     for i, t in enumerate(path.parameter.tolist()):
         value, contact, solution = (1 - t) * start + t * end, path.contact(t), path.breakpoint(i)
         problem = varied.at(value) if varied.path[0] == "contact_zones" else varied.problem
         state = _state_at(varied, value, contact, solution)
         points = next(iter(varied.condensed.values())).body.points
-        found, _ = penetration(surface_gaps(problem, state, contact, solution, outline), points, contact, solution)
+        gaps = surface_gaps(problem, state, contact, solution, outline)
+        nearby = path.peaks_within(t - reach, t + reach) if 0 < i < last else None
+        found, said = penetration(gaps, points, contact, solution, nearby)
         if found is not None and (worst is None or found.depth > worst.depth):
             worst, at = found, value
-    return worst, at
+        for note in said:
+            notes.setdefault(note, []).append(value)
+    return worst, at, tuple(f"{_where(varied.key, values)}, {note}" for note, values in notes.items())
+
+
+def _where(key: str, values: Sequence[float]) -> str:
+    """Say at which values of a key something holds."""
+    ends = dict.fromkeys(f"{value:.6g}" for value in (values[0], values[-1]))
+    return f"at {key} = {' to '.join(ends)}"
 
 
 def _state_at(varied: Variation, value: float, contact: CondensedContact, solution: ContactSolution) -> BoundaryState:

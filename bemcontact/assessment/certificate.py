@@ -30,11 +30,11 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigvalsh
 
 from bemcontact.arrays import Array
+from bemcontact.assessment.definiteness import EPS, Definiteness
 from bemcontact.assessment.residual import Residuals
-from bemcontact.assessment.uniqueness import EPS, NearState, effective_eigenvalue
+from bemcontact.assessment.uniqueness import NearState, effective_eigenvalue
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.options import FormulationName
@@ -45,8 +45,6 @@ TOLERANCE = 1e-10
 LARGEST_BOUND = 1e-3
 """Error bound, relative to the peak pressure, above which round-off alone leaves the answer open."""
 NEWTON_STEPS = 20
-LEAST_COMPLIANCE = 1e-10
-"""Fraction of ‖M‖∞ below which the compliance of a point may be what round-off leaves of zero."""
 LOCAL = (FormulationName.QP1, FormulationName.QP2)
 """Formulations whose solver starts somewhere and may end in a local minimum."""
 DIRECT = "--formulation complementarity"
@@ -97,7 +95,7 @@ def certify(
     The tolerance is on penetration, tension, complementarity, equilibrium (12) and balance. Where the peak pressure is
     above T, gaps are judged relative to the displacement that goes with it, and never below their round-off.
     """
-    stiff = _Definiteness.of(contact)
+    stiff = Definiteness.of(*_scaled_compliance(contact), contact.equilibrium)
     eigenvalue, definite = stiff.eigenvalue, stiff.definite
     bound = _error_bound(contact, solution, stiff)
     unique = definite or bound is not None
@@ -125,46 +123,7 @@ def _scaled_compliance(contact: CondensedContact) -> tuple[Array, Array]:
     return contact.weights / contact.weights.max(), contact.compliance * (T / U)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Definiteness:
-    """λ of S sym(DM) S on the equilibrium space, None if there is none, and what is left of it less round-off."""
-
-    scales: Array
-    reach: Array
-    """Norms (n,) of the rows of an orthonormal basis of the space: zero where equilibrium fixes the pressure."""
-    eigenvalue: float | None
-    certain: float
-
-    @property
-    def definite(self) -> bool:
-        """Whether λ is positive beyond round-off."""
-        return self.eigenvalue is None or self.certain > 0
-
-    @classmethod
-    def of(cls, contact: CondensedContact) -> "_Definiteness":
-        """S makes the diagonal one, except where a compliance is round-off or negative."""
-        D, M = _scaled_compliance(contact)
-        S = 1 / np.sqrt(D * np.maximum(M.diagonal(), LEAST_COMPLIANCE))
-        ell, n = S[:, None] * contact.equilibrium, contact.size
-        if ell.shape[1] >= n:
-            return cls(scales=S, reach=np.zeros(n), eigenvalue=None, certain=np.inf)
-        A, spread, reach = S[:, None] * (D[:, None] * M) * S, 1.0, np.ones(n)
-        K, terms = (A + A.T) / 2, (np.abs(A) + np.abs(A).T) / 2
-        if ell.shape[1]:
-            ell = ell / np.linalg.norm(ell, axis=0)
-            Z, spread = np.linalg.qr(ell, mode="complete")[0][:, ell.shape[1] :], float(np.linalg.cond(ell))
-            K, reach = Z.T @ K @ Z, np.minimum(np.linalg.norm(Z, axis=1) + n * EPS * spread, 1.0)
-        smallest = float(eigvalsh(K, subset_by_index=(0, 0))[0])
-        round_off = n * EPS * spread * float(terms.sum(axis=1).max())
-        return cls(scales=S, reach=reach, eigenvalue=smallest, certain=smallest - round_off)
-
-    def largest_change(self, s: Array) -> float:
-        """Largest change of a pressure by forces up to s (n,), of either sign: max Sᵢ|Zᵢ||ZᵀSs|/λ."""
-        part = min(np.linalg.norm(self.scales * s), self.reach @ (self.scales * s))
-        return float((self.scales * self.reach).max() * part / self.certain)
-
-
-def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: _Definiteness) -> float | None:
+def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: Definiteness) -> float | None:
     """|p - y| + max Sᵢ |Ss|/λ, as in the module's docstring, in units of pressure; s includes the round-off of δ.
 
     If the compliance is not definite, λ is that of `uniqueness`; None if there is none.

@@ -31,7 +31,6 @@ from scipy.linalg import eigh
 
 from bemcontact.arrays import Array, BoolArray
 
-EPS = float(np.finfo(float).eps)
 MOST = 8
 """Eigenvectors with which a proof is tried."""
 PASSES = 4

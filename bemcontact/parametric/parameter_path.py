@@ -80,6 +80,8 @@ class ParameterPath(Leaf):
     """Deepest penetration of the boundary at a breakpoint that is not tolerated; null if there is none."""
     penetrates_at: float | None = None
     """Value of the parameter there; null if there is none."""
+    said: Internal[tuple[str, ...]] = ()
+    """Notes on the states."""
 
     def __repr__(self) -> str:
         """One line: key, values, the path."""
@@ -145,9 +147,9 @@ class ParameterPath(Leaf):
     @computed_field
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the path, one sentence each."""
+        """Notes on the path and its states, one sentence each."""
         begin, end = self.reaches
-        return self.path.notes_between(f"{begin:.6g}", f"{end:.6g}")
+        return (*self.path.notes_between(f"{begin:.6g}", f"{end:.6g}"), *self.said)
 
     @computed_field
     @property

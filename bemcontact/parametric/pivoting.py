@@ -27,6 +27,7 @@ import scipy
 from scipy.linalg import eigvalsh, null_space, qr
 
 from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.assessment.definiteness import Definiteness
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
@@ -36,7 +37,10 @@ from bemcontact.formulations.open_position import farthest
 from bemcontact.formulations.scaling import ScaledContact
 
 WEAK = 1e-10
-"""Pressure and gap, over the size of the numbers in them, up to which both count as zero."""
+"""Pressure over the size of the numbers in it, and gap over the gap of the point under this size, that count as zero.
+
+A point of a short element closes a small gap by a large pressure only.
+"""
 RANK = 1e-9
 """Fraction of a motion by which it must move a point, so that the point holds it."""
 UNCARRIED = 1e-12
@@ -87,8 +91,8 @@ class Tangent:
         before: ContactBlock | None = None,
     ) -> Self:
         """Classify the points of a state: p (n,), δ (n,) and a (k,), dimensionless."""
-        small = WEAK * (1.0 + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
-        loaded, closed = pressure > small, gap <= small
+        least, near = negligible(contact, pressure, amplitudes)
+        loaded, closed = pressure > least, gap <= near
         return cls(
             contact=contact,
             strong=np.array(np.flatnonzero(loaded & closed), np.int64),
@@ -219,14 +223,15 @@ def size_of_terms(change: Change, pressure: Array, amplitudes: Array) -> float:
     return float(np.abs(change.offset).max(initial=0.0) + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
 
 
+def negligible(contact: ScaledContact, pressure: Array, amplitudes: Array) -> tuple[float, Array]:
+    """Pressure, and gap (n,) of each point, that count as zero at a state."""
+    size = float(1.0 + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
+    return WEAK * size, np.maximum(WEAK * np.abs(contact.compliance.diagonal()), STILL) * size
+
+
 def is_monotone(contact: ScaledContact) -> bool:
     """Whether sym(JM) is positive definite on the equilibrium space, so that each contact state is the only one."""
-    Z = contact.equilibrium_space
-    if not Z.shape[1]:
-        return True
-    weighted = contact.weights[:, None] * contact.compliance
-    smallest = eigvalsh(Z.T @ (weighted + weighted.T) @ Z / 2, subset_by_index=(0, 0))[0]
-    return bool(smallest > len(weighted) * EPS)
+    return Definiteness.of(contact.weights, contact.compliance, contact.equilibrium).definite
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -328,8 +333,8 @@ def _next(line: LinearChange, s: float, block: ContactBlock) -> State:
     pressures, gaps, amplitudes = block.solve(line.at(s), rate)
     values, rates = np.where(touching, pressures, gaps)
     step, blocking = first_zero(values, rates, STILL * size_of_terms(rate, pressures[1], amplitudes[1]))
-    small = WEAK * (1.0 + np.abs(pressures[0]).max(initial=0.0) + np.abs(amplitudes[0]).sum())
-    if s + step >= 1.0 or (values + (1.0 - s) * rates).min() >= -small:  # at the end all pressures may vanish
+    small = np.where(touching, *negligible(block.contact, pressures[0], amplitudes[0]))
+    if s + step >= 1.0 or (values + (1.0 - s) * rates >= -small).all():  # at the end all pressures may vanish
         step, blocking = 1.0 - s, np.zeros_like(touching)
     reached = np.where(blocking, 0.0, np.maximum(values + step * rates, 0.0))
     return State(
@@ -361,7 +366,7 @@ def _drifted(line: LinearChange, state: State, tangent: Tangent) -> tuple[State,
     if step <= WEAK * (1.0 - state.s):
         raise ProblemError(NOT_HELD)
     reached = np.maximum(values + step * rates + np.where(touching, 0.0, seen @ moved), 0.0)
-    small = WEAK * (1.0 + np.abs(pressures[0]).max(initial=0.0) + np.abs(amplitudes[0]).sum())
+    small = np.where(touching, *negligible(fixed, pressures[0], amplitudes[0]))
     reached[reached <= small] = 0.0
     following = State(
         s=1.0 if step >= 1.0 - state.s else state.s + step,

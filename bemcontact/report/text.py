@@ -193,7 +193,7 @@ def _zone_table(checked: CheckedProblem) -> Table:
     table = table_of("contact zone", "edges", "points", "smallest gap", "rigid surface")
     for name, zone in checked.problem.contact_zones.items():
         gap = checked.gaps[name]
-        smallest = with_unit(number(float(gap.min())), checked.problem.units.length)
+        smallest = with_unit(number(checked.smallest_gaps[name]), checked.problem.units.length)
         edges, surface = ", ".join(checked.problem.edges_of(name)), surface_in_words(zone.surface)
         table.add_row(*map(Text, (name, edges, f"{len(gap)}", smallest, surface)))
     return table

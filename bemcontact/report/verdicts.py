@@ -160,8 +160,10 @@ def path_sentence(path: ParameterPath) -> str:
     """Certificate of a path in sentences."""
     first, last = map(number, path.reaches)
     exact = f"The largest natural residual at a breakpoint is {path.residual:.0e}."
+    notes = (f"{sentence_case(note)}." for note in path.notes)
     if path.certified:
-        return f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
+        proved = f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
+        return " ".join((proved, *notes))
     deepest = () if path.penetration is None else (path.penetration.words,)
     where = () if path.penetrates_at is None else (f"This is at {path.key} = {number(path.penetrates_at)}.",)
-    return " ".join((*deepest, *where, *(f"{sentence_case(note)}." for note in path.notes), exact))
+    return " ".join((*deepest, *where, *notes, exact))

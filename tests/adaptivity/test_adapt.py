@@ -1,7 +1,7 @@
 """Meshes that nobody makes: true errors are below their bars, in any unit and from any side."""
 
 from collections.abc import Sequence
-from math import cos, pi, radians, sin, sqrt
+from math import cos, pi, radians, sin, sqrt, tan
 
 import numpy as np
 import pytest
@@ -82,7 +82,7 @@ def test_the_pressure_of_a_flat_punch_is_infinite_with_the_intensity_of_the_half
     assert judged.met
     assert judged.infinite == ("punch",)
     ((singular,),) = result.singular
-    assert singular.exponent == 1 / 2
+    assert singular.exponent == pytest.approx(1 / 2, abs=1e-12)
     assert singular.place.position == pytest.approx(0.0, abs=1e-12)
     intensity = entry(result, "intensity")
     truth = 600 / (pi * sqrt(2))
@@ -94,7 +94,32 @@ def test_the_pressure_of_a_flat_punch_is_infinite_with_the_intensity_of_the_half
 def test_no_peak_is_promised_at_a_punch_whose_end_is_a_corner_of_the_body():
     """At the end on the free face the pressure is infinite with α = 1/2; at the corner of a quarter it is finite."""
     result = found(flat_punch_at_corner()[0])
-    assert {item.exponent for item in result.singular[0]} == {1 / 2}
+    assert [item.exponent for item in result.singular[0]] == pytest.approx([1 / 2], abs=1e-12)
+
+
+@pytest.mark.parametrize("angle", [120.0, 145.0])
+def test_the_exponent_at_a_corner_is_that_of_the_wedge(angle: float):
+    """A face on a floor beside free faces at an angle ω: 1 - λ with sin 2λω + λ sin 2ω = 0 at both corners."""
+    top = 2 + 4 * tan(radians(angle - 90))
+    corners = {"face": (-2.0, 0.0), "right": (2.0, 0.0), "top": (top, 4.0), "left": (-top, 4.0)}
+    floor = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    result = found(
+        Problem.model_validate(
+            {
+                "name": "wedge",
+                "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+                "boundary": {"outer": [{"name": name, "start": start} for name, start in corners.items()]},
+                "conditions": {"top": {"pressure": 10.0}},
+                "contact_zones": {"floor": {"edges": "face", "surface": floor}},
+            }
+        ),
+        3e-3,
+    )
+    power, twice = 1 - result.singular[0][0].exponent, 2 * radians(angle)
+    assert len(result.singular[0]) == 2
+    assert {item.exact for item in result.singular[0]} == {True}
+    assert sin(power * twice) + power * sin(twice) == pytest.approx(0, abs=1e-9)
+    assert entry(result, "intensity").note == f"p = K s^-{1 - power:.4g}"
 
 
 def test_a_block_on_a_floor_is_exact():
@@ -105,6 +130,29 @@ def test_a_block_on_a_floor_is_exact():
     assert entry(result, "peak").value == pytest.approx(7.0, rel=1e-10)
     assert entry(result, "force").value == pytest.approx(280.0, rel=1e-10)
     assert judged.worst < 1e-9
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0])
+def test_contact_that_narrows_without_end_has_an_answer_that_does_not_hold(size: float):
+    """A frame turns by 0.001 until a face is flush with a wall, and a corner of it is held where it just touches."""
+    names = {"b": (1, 0), "r": (4, 0), "t": (4, 4), "l": (0, 4), "i1": (0, 1), "i2": (1, 1)}
+    wall = {"kind": "plane", "point": [4.000004 * size, 0], "normal": [-1, 0.001]}
+    problem = Problem.model_validate(
+        {
+            "name": "frame",
+            "material": {"young_modulus": 1e7, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": k, "start": [x * size, y * size]} for k, (x, y) in names.items()]},
+            "conditions": {
+                "b": {"displacement": {"x": 0}},
+                "l": {"displacement": {"y": 0}},
+                "t": {"pressure": 1.0},
+            },
+            "contact_zones": {"wall": {"edges": "r", "surface": wall}},
+        }
+    )
+    result = solve(problem)
+    assert not result.holds
+    assert result.accuracy.reason
 
 
 def test_without_contact_displacements_are_still_judged():

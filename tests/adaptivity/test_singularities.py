@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import pytest
 
-from bemcontact.adaptivity.singularities import ContactPlace, Singularity, Watch, _History, _snapped
+from bemcontact.adaptivity.singularities import ContactPlace, Singularity, Watch, _History, _nearest
 
 PLACE = ContactPlace(run=0, zone="z", position=0.0)
 
@@ -46,10 +46,11 @@ def test_growth_out_of_range_is_no_power(growth: float):
 
 
 @pytest.mark.parametrize(
-    ("measured", "taken"), [(0.49, 1 / 2), (0.525, 1 / 2), (0.68, 2 / 3), (0.4, 0.4), (0.6, 0.6), (0.05, 0.05)]
+    ("measured", "known", "taken"),
+    [(0.49, (1 / 2,), 1 / 2), (0.5, (0.48, 0.3), 0.48), (0.4, (1 / 2,), 0.4), (0.6, (), 0.6)],
 )
-def test_a_known_exponent_is_taken_if_it_is_near(measured: float, taken: float):
-    assert _snapped(measured) == pytest.approx(taken)
+def test_the_exponent_of_the_wedge_is_taken_if_it_is_near(measured: float, known: tuple[float, ...], taken: float):
+    assert _nearest(measured, known) == (pytest.approx(taken), taken in known)
 
 
 def test_a_logarithm_is_like_a_kink():

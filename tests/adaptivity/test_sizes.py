@@ -12,6 +12,7 @@ from bemcontact.adaptivity import sizes
 from bemcontact.adaptivity.sizes import (
     GROWTH,
     LEAST,
+    NEAREST,
     OUTSIDE,
     RESOLUTION,
     ROUNDING,
@@ -121,6 +122,24 @@ def test_marks_are_ends_of_elements(rows: list, marks: list[float]):
     ends = positions(loop, loop.element_ends(np.array([whole(loop, 2.0), *rows]), (), marks))
     for mark in marks:
         assert np.abs(ends - mark).min() <= 2e-9 * loop.length
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0, AROUND), st.floats(-14, 0), st.floats(-14, 0), st.sampled_from([1e-6, 1.0, 1e6]))
+def test_an_edge_can_be_divided_however_narrow_contact_is(at: float, away: float, width: float, unit: float):
+    """A search that runs after contact narrower than round-off must not ask for elements that do not fit."""
+    loop = rectangle(unit=unit)
+    at, near = at * unit, (at + 10**away) * unit
+    layers = [Layers(position=near, width=10**width * unit, count=5.0, after=True)]
+    limits = [whole(loop, unit), Limit(low=at, high=at + 10**width * unit, size=10**width / 8 * unit)]
+    ends = loop.element_ends(np.array(limits), layers, [at, near])
+    outer = [
+        {"name": edge.name, "start": list(edge.start), "elements": len(ends[edge.name]) + 1, "ends_at": ends[edge.name]}
+        for edge in loop.edges
+    ]
+    Boundary.model_validate({"outer": outer})
+    for inner in ends.values():
+        assert np.diff([0.0, *inner, 1.0]).min() >= 0.99 * NEAREST
 
 
 @pytest.mark.parametrize("after", [True, False])

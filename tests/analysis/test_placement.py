@@ -69,6 +69,25 @@ def test_the_change_of_a_peak_is_that_of_hertz(clearance, turn, size):
         assert result.penetration.kind is Misfit.MOVED
 
 
+@settings(max_examples=4, deadline=None, phases=QUICK)
+@given(st.floats(0.01, 0.5), st.sampled_from([1e-3, 3e-3, None]))
+@example(0.1, 1e-3)
+def test_the_accuracy_asked_is_the_change_that_is_noted(clearance, asked):
+    """The error bars are those of the gaps as drawn: what the motion changes beyond the accuracy must be said.
+
+    With a load like the clearance the width of the contact, √(load R²/clearance), is the same.
+    """
+    problem = shaft(clearance, sinks=clearance).with_value("loads.gravity.density", clearance)
+    problem = problem.model_copy(update={"accuracy": asked})
+    result, least = solve(problem), asked or NOTED
+    expected = np.sqrt(R / (R + clearance)) - 1
+    if abs(expected) > 1.3 * least:
+        assert stated_change(result) == pytest.approx(expected, rel=0.25)
+        assert any("error bars" in note for note in result.notes)
+    elif abs(expected) < 0.7 * least:
+        assert stated_change(result) == 0.0
+
+
 @pytest.mark.parametrize("clearance", [0.2, 2.0])
 def test_the_body_drawn_where_it_touches_has_no_note(clearance):
     result = solve(shaft(clearance))
@@ -145,3 +164,51 @@ def test_a_corner_of_the_surface_under_a_smooth_edge_is_no_alarm():
     }
     result = solve(Problem(**data))  # pyright: ignore[reportArgumentType]
     assert result.penetration is None
+
+
+def strip(distance, size=1.0, radius=3.0):
+    """A cantilever above a round stop, on a mesh that is found: elements are short at the ends of contact."""
+    corners = {"bottom": (0, 0), "tip": (20, 0), "top": (20, 2), "wall": (0, 2)}
+    outer = [{"name": name, "start": (x * size, y * size)} for name, (x, y) in corners.items()]
+    center = (17.0 * size, -(distance + radius) * size)
+    data = {
+        "name": "strip",
+        "material": STEEL,
+        "boundary": {"outer": outer},
+        "conditions": {"wall": {"displacement": {"x": 0, "y": 0}}, "top": {"pressure": 10.0}},
+        "contact_zones": {"stop": {"edges": "bottom", "surface": {
+            "kind": "circle", "center": center, "radius": radius * size, "body": "outside"}}},
+        "accuracy": 0.03,
+    }  # fmt: skip
+    return Problem(**data)  # pyright: ignore[reportArgumentType]
+
+
+@settings(max_examples=3, deadline=None, phases=QUICK)
+@given(st.floats(0.02, 0.2), st.sampled_from([1e-3, 1.0, 1e3]))
+@example(0.1, 1.0)
+def test_a_path_through_first_touch_is_proved(distance, size):
+    """The peak rises from zero like a root: at first touch the gaps after the motion change it by more than itself.
+
+    Each state is that of a solve, and the end of the path is certified if and only if the solution there is.
+    """
+    problem = solve(strip(distance, size)).problem.model_copy(update={"accuracy": None})
+    path = follow(problem, "conditions.top.pressure", 10.0, 0.0)
+    last = solve(problem)
+    assert last.certified
+    assert path.certified
+    assert path.residual < 1e-12
+    assert not path.path.pressure[0].any()
+    assert path.path.pressure[-1] == pytest.approx(last.solution.pressure, abs=1e-9 * last.footprint.peak.pressure)
+
+
+@settings(max_examples=3, deadline=None, phases=QUICK)
+@given(st.floats(0.3, 4))
+@example(3.0)
+def test_a_path_with_wrong_curvature_is_proved_nowhere(clearance):
+    """The peak of each state is off by the same part, whatever the load: no end hides it."""
+    expected = 1 - np.sqrt(R / (R + clearance))
+    path = follow(shaft(clearance, sinks=clearance), "loads.gravity.density", 1.0, 0.1)
+    if abs(expected - WITHHELD) > 0.005:
+        assert path.certified == (expected < WITHHELD)
+    if expected > NOTED + 0.005:
+        assert path.notes or not path.certified

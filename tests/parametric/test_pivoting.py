@@ -48,6 +48,16 @@ def test_derivative_is_the_difference_to_a_state_a_step_further(seed: int):
     np.testing.assert_allclose(rate, (then - now) / step, atol=1e-8 * np.abs(rate).max())
 
 
+@pytest.mark.parametrize("size", [1.0, 1e-2, 1e-3])
+def test_a_gap_is_closed_if_next_to_no_pressure_closes_it(size: float):
+    """Short elements have little compliance: it takes a large pressure to close a small gap there."""
+    contact = scaled(CondensedContact.from_compliance(np.diag([1.0, size]), [-1.0, 0.0], [1.0, 1.0]))
+    pressure = np.array([1.0, 0.0])
+    for part, weak in ((1e-9, False), (1e-11, True)):
+        tangent = Tangent.at(contact, pressure, np.array([0.0, 2 * part * size]), np.zeros(0), True)
+        assert tangent.weak.tolist() == [1] * weak
+
+
 def test_weak_points_join_where_strong_ones_do_not_hold_the_body():
     """All of a unit load on the middle support, the outer ones level with it as it sinks by 0.1.
 

@@ -1,0 +1,123 @@
+"""Exponents of infinite pressures at a corner, from the angle of the elastic wedge and what holds its faces.
+
+Near a corner the displacement is of the form r^λ f(θ), and stresses are infinite like r^(λ-1) if 0 < λ < 1. With
+φ = A z^λ, ψ = B z^λ (Muskhelishvili) two conditions on each face are four real equations for A and B; λ is where they
+are singular (Williams 1952). Frictionless contact with a straight rigid face, u_n = 0 = τ, mirrors the wedge: with a
+free face, sin 2λω + λ sin 2ω = 0, which is λ = 1/2 on a half-plane, ω = π.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bemcontact.arrays import Array
+
+GRID = np.arange(0.01, 0.995, 0.005)
+"""Values of λ between which roots are looked for."""
+ROOT = 1e-9
+"""Smallest singular value, over the largest, of equations that are singular."""
+EXACT = 1e-13
+"""Accuracy of a root λ."""
+UNPRESSED = 1e-6
+"""Pressure on a face in contact, over the largest stress of a state, that is none."""
+
+
+class Face(NamedTuple):
+    """What a face of a wedge is held by: in each of two directions at right angles, displacement or nothing.
+
+    Parameters
+    ----------
+    direction : complex number of the first direction; the second is it times i
+    held : whether the displacement in each direction is prescribed, else the traction
+    contact : whether pressure acts on it
+    """
+
+    direction: complex
+    held: tuple[bool, bool]
+    contact: bool = False
+
+
+def contact_face(normal: complex) -> Face:
+    """A face in frictionless contact, with its normal."""
+    return Face(normal, (True, False), contact=True)
+
+
+FREE = Face(1.0, (False, False))
+
+
+def wedge_exponents(start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float) -> tuple[float, ...]:
+    """Exponents α = 1 - λ of pressures that are infinite like r^-α, the largest first.
+
+    Parameters
+    ----------
+    start, angle : direction of the first face from the tip, and the angle inside the body from there [rad]
+    faces : the first and the second one
+    poisson_ratio : of plane strain
+    """
+    if not any(face.contact for face in faces):
+        return ()
+    wedge = (start, angle, faces, poisson_ratio)
+    sizes = np.array([_singular(wedge, power) for power in GRID])
+    low = 1 + np.flatnonzero((sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] < sizes[2:]))
+    powers = (_least(wedge, float(GRID[i - 1]), float(GRID[i + 1])) for i in low)
+    return tuple(1 - power for power in powers if _singular(wedge, power) <= ROOT and _presses(wedge, power))
+
+
+Wedge = tuple[float, float, tuple[Face, Face], float]
+
+
+def _least(wedge: Wedge, low: float, high: float) -> float:
+    """Where the equations are most nearly singular between two λ; the smallest singular value is like |λ - λ0|."""
+    ratio = (np.sqrt(5) - 1) / 2
+    while high - low > EXACT:
+        one, other = high - ratio * (high - low), low + ratio * (high - low)
+        if _singular(wedge, one) <= _singular(wedge, other):
+            high = other
+        else:
+            low = one
+    return (low + high) / 2
+
+
+def _singular(wedge: Wedge, power: float) -> float:
+    """Smallest singular value of the conditions on both faces, over the largest."""
+    sizes = np.linalg.svd(_conditions(wedge, power), compute_uv=False)
+    return float(sizes[-1] / sizes[0])
+
+
+def _presses(wedge: Wedge, power: float) -> bool:
+    """Whether a state r^λ has pressure on a face in contact."""
+    start, angle, faces, poisson_ratio = wedge
+    _, sizes, states = np.linalg.svd(_conditions(wedge, power))
+    states = states[sizes <= 10 * ROOT * sizes[0]]
+    for face, at in zip(faces, (start, start + angle), strict=True):
+        if face.contact:
+            _, traction = _field(at, power, poisson_ratio)
+            if np.abs(states @ (traction * np.conj(face.direction)).real).max() > UNPRESSED:
+                return True
+    return False
+
+
+def _conditions(wedge: Wedge, power: float) -> Array:
+    """Matrix (4, 4) of the conditions on both faces, on (Re A, Im A, Re B, Im B)."""
+    start, angle, faces, poisson_ratio = wedge
+    rows = list[Array]()
+    for face, at in zip(faces, (start, start + angle), strict=True):
+        displacement, traction = _field(at, power, poisson_ratio)
+        for direction, held in zip((face.direction, 1j * face.direction), face.held, strict=True):
+            rows.append(((displacement if held else traction) * np.conj(direction)).real)
+    return np.array(rows)
+
+
+def _field(theta: float, power: float, poisson_ratio: float) -> tuple[Array, Array]:
+    """2 G u and the traction on a ray (4,), as complex numbers, at r = 1 for each of (Re A, Im A, Re B, Im B)."""
+    A, B = np.array([1, 1j, 0, 0]), np.array([0, 0, 1, 1j])
+    z = np.exp(1j * theta)
+    phi, slope, bent = A * _power(theta, power), power * A * _power(theta, power - 1), power * (power - 1) * A
+    displacement = (3 - 4 * poisson_ratio) * phi - z * np.conj(slope) - np.conj(B * _power(theta, power))
+    stress = slope + np.conj(slope) + bent * _power(theta, power - 1) + power * B * _power(theta, power + 1)
+    return displacement, 1j * z * np.conj(stress)
+
+
+def _power(theta: float, power: float) -> complex:
+    """Power of z = e^(iθ), continuous in θ."""
+    return complex(np.exp(1j * theta * power))

@@ -1,0 +1,54 @@
+"""Definiteness of S sym(DM) S on the equilibrium space, S diagonal; `certificate` says what follows from it."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from scipy.linalg import eigvalsh
+
+from bemcontact.arrays import Array
+
+EPS = float(np.finfo(float).eps)
+LEAST_COMPLIANCE = 1e-10
+"""Fraction of ‖M‖∞ below which the compliance of a point may be what round-off leaves of zero."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Definiteness:
+    """λ of S sym(DM) S on the equilibrium space, None if there is none, and what is left of it less round-off."""
+
+    scales: Array
+    reach: Array
+    """Norms (n,) of the rows of an orthonormal basis of the space: zero where equilibrium fixes the pressure."""
+    eigenvalue: float | None
+    certain: float
+
+    @property
+    def definite(self) -> bool:
+        """Whether λ is positive beyond round-off, so that each contact state is the only one."""
+        return self.eigenvalue is None or self.certain > 0
+
+    @classmethod
+    def of(cls, D: Array, M: Array, ell: Array) -> Self:
+        """Take D (n,) of largest entry one, M (n, n) of ‖M‖∞ = 1 and ℓ (n, k).
+
+        S makes the diagonal one, except where a compliance is round-off or negative.
+        """
+        S, n = 1 / np.sqrt(D * np.maximum(M.diagonal(), LEAST_COMPLIANCE)), len(D)
+        ell = S[:, None] * ell
+        if ell.shape[1] >= n:
+            return cls(scales=S, reach=np.zeros(n), eigenvalue=None, certain=np.inf)
+        A, spread, reach = S[:, None] * (D[:, None] * M) * S, 1.0, np.ones(n)
+        K, terms = (A + A.T) / 2, (np.abs(A) + np.abs(A).T) / 2
+        if ell.shape[1]:
+            ell = ell / np.linalg.norm(ell, axis=0)
+            Z, spread = np.linalg.qr(ell, mode="complete")[0][:, ell.shape[1] :], float(np.linalg.cond(ell))
+            K, reach = Z.T @ K @ Z, np.minimum(np.linalg.norm(Z, axis=1) + n * EPS * spread, 1.0)
+        smallest = float(eigvalsh(K, subset_by_index=(0, 0))[0])
+        round_off = n * EPS * spread * float(terms.sum(axis=1).max())
+        return cls(scales=S, reach=reach, eigenvalue=smallest, certain=smallest - round_off)
+
+    def largest_change(self, s: Array) -> float:
+        """Largest change of a pressure by forces up to s (n,), of either sign: max Sᵢ|Zᵢ||ZᵀSs|/λ."""
+        part = min(np.linalg.norm(self.scales * s), self.reach @ (self.scales * s))
+        return float((self.scales * self.reach).max() * part / self.certain)

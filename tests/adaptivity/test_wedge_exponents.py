@@ -1,0 +1,73 @@
+"""Exponents at corners against the characteristic equations of Williams, and in limits."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, wedge_exponents
+
+FIXED = Face(1.0, (True, True))
+ANGLES, RATIOS = st.floats(0.2, 2 * pi - 0.05), st.floats(-0.9, 0.49)
+NEAR = 1e-9
+"""Accuracy of a simple root: what is left of the smallest singular value over its slope."""
+
+
+def faces(start, angle):
+    """Both faces in contact; the normals point out of the body."""
+    return contact_face(np.exp(1j * (start - pi / 2))), contact_face(np.exp(1j * (start + angle + pi / 2)))
+
+
+@settings(max_examples=25, deadline=None)
+@given(ANGLES, st.floats(-pi, pi), RATIOS)
+def test_contact_beside_a_free_face_mirrors_the_wedge(angle, start, ratio):
+    """Of the wedge 2 ω the symmetric states: sin 2λω + λ sin 2ω = 0 (Williams 1952), for any ν and any direction."""
+    first, last = faces(start, angle)
+    found = wedge_exponents(start, angle, (first, FREE), ratio)
+    assert found == pytest.approx(wedge_exponents(start, angle, (FREE, last), ratio), abs=NEAR)
+
+    def equation(power):
+        return np.sin(2 * power * angle) + power * np.sin(2 * angle)
+
+    powers = np.linspace(0.02, 0.98, 4000)
+    signs = np.sign(equation(powers))
+    assert len(found) >= np.count_nonzero(signs[1:] != signs[:-1])
+    for exponent in found:
+        assert abs(equation(1 - exponent)) < NEAR * 2 * angle
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(pi / 2 + 0.05, 2 * pi - 0.05), RATIOS)
+def test_contact_on_both_faces(angle, ratio):
+    """Sin (λ ± 1) ω = 0: λ = |1 - π m / ω|, of which all below one are states with pressure."""
+    expected = {abs(1 - m * pi / angle) for m in range(1, 5)}
+    found = wedge_exponents(0.0, angle, faces(0.0, angle), ratio)
+    expected = sorted(power for power in expected if 0.02 < power < 0.98)
+    distinct = [power for i, power in enumerate(expected) if i == 0 or power - expected[i - 1] > 0.03]
+    for power in distinct:
+        assert min(abs(1 - exponent - power) for exponent in found) < 0.03
+    for exponent in found:
+        assert abs(np.sin((2 - exponent) * angle) * np.sin(exponent * angle)) < 1e-7
+
+
+@settings(max_examples=10, deadline=None)
+@given(ANGLES, st.floats(0.0, 0.45))
+def test_contact_beside_a_fixed_face_mirrors_the_wedge(angle, ratio):
+    """κ sin 2λω = λ sin 2ω with κ = 3 - 4 ν: the symmetric states of a wedge 2 ω with both faces fixed."""
+    first, _ = faces(0.0, angle)
+    for exponent in wedge_exponents(0.0, angle, (first, FIXED), ratio):
+        power = 1 - exponent
+        left = (3 - 4 * ratio) * np.sin(2 * power * angle)
+        assert min(abs(left - power * np.sin(2 * angle)), abs(left + power * np.sin(2 * angle))) < 1e-7
+
+
+def test_limits():
+    """A half-plane has 1/2, a quarter none, a crack face 3/4, and nothing without contact."""
+    half, quarter, full = ((faces(0.0, angle)[0], FREE) for angle in (pi, pi / 2, 2 * pi))
+    assert wedge_exponents(0.0, pi, half, 0.3) == pytest.approx((1 / 2,), abs=NEAR)
+    assert wedge_exponents(0.0, pi / 2, quarter, 0.3) == ()
+    assert wedge_exponents(0.0, 2 * pi, full, 0.3)[0] == pytest.approx(3 / 4, abs=NEAR)
+    assert wedge_exponents(0.0, 3 * pi / 2, (faces(0.0, 3 * pi / 2)[0], FREE), 0.3)[0] == pytest.approx(2 / 3, abs=NEAR)
+    assert wedge_exponents(0.0, pi, (FREE, FREE), 0.3) == ()
