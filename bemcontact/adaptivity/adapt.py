@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from bemcontact.adaptivity.error_bars import error_bars
 from bemcontact.adaptivity.fields import MeshDifference, solved
 from bemcontact.adaptivity.mesh_search import cut, mesh_search
-from bemcontact.adaptivity.singularities import Singularity
+from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import Condensation, condense
@@ -91,10 +91,9 @@ def _stated(
             raise ProblemError(f"with every element in two the mesh has {unknowns} unknowns, more than {MOST_UNKNOWNS}")
         progress("every element in two")
         fine = solved(cut(problem, 2 * refine))
-        bars = [
-            error_bars(MeshDifference(coarse=coarse, fine=fine, number=i), its, of_fine=False)
-            for i, its in enumerate(singular or [()] * len(fine.answers))
-        ]
+        differences = [MeshDifference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
+        singular = singular or tuple(map(recognized, differences))
+        bars = [error_bars(item, its, of_fine=False) for item, its in zip(differences, singular, strict=True)]
         accuracies = [Accuracy.of(asked, 1, its) for its in bars]
     except (ProblemError, SingularSystemError, SolverError) as error:
         accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(coarse.answers)

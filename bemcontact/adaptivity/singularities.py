@@ -94,16 +94,11 @@ class Watch:
     def look(self, difference: MeshDifference) -> tuple[Singularity, ...]:
         """Look at all places of one load case on a mesh; list those where the pressure is infinite."""
         coarse, case = difference.coarse, difference.number
-        one, two = difference.pair
+        one, _ = difference.pair
         for place in _places(difference):
             history = self._history(place, case, SAME * coarse.runs[place.run].length)
+            history.growth.append(_growth(difference, place))
             elements = elements_at(coarse, coarse.runs[place.run], place.position)
-            zone = [*coarse.body.problem.contact_zones].index(place.zone)
-            low = float(one.pressure[zone, elements].max())
-            high = float(two.pressure[zone, np.concatenate([2 * elements, 2 * elements + 1])].max())
-            pressed = coarse.weights * (one.pressure[zone] > 0)
-            force = float((pressed * one.pressure[zone]).sum())
-            history.growth.append(high / low if low * pressed.sum() > HIGH * force > 0 else 1.0)
             history.element.append(float(coarse.weights[elements].sum(axis=1).min()))
             if history.grows() or (history.exponent is not None and GROWING[0] < history.growth[-1] < GROWING[1]):
                 known = exponents_at(coarse, one, coarse.runs[place.run], place.position)
@@ -121,6 +116,30 @@ class Watch:
                 return item
         self.histories.append(_History(place=place, case=case))
         return self.histories[-1]
+
+
+def recognized(difference: MeshDifference) -> tuple[Singularity, ...]:
+    """Infinite pressures that two meshes show: the pressure grows as beside the elastic wedge at the place."""
+    coarse, (one, _) = difference.coarse, difference.pair
+    found: list[Singularity] = []
+    for place in _places(difference):
+        known = exponents_at(coarse, one, coarse.runs[place.run], place.position)
+        exponent, near = _nearest(float(np.log2(_growth(difference, place))), known)
+        if near:
+            found.append(Singularity(place=place, exponent=exponent))
+    return tuple(found)
+
+
+def _growth(difference: MeshDifference, place: ContactPlace) -> float:
+    """Largest pressure beside a place on the fine mesh over that on the coarse one; 1 where it is not high."""
+    coarse, (one, two) = difference.coarse, difference.pair
+    elements = elements_at(coarse, coarse.runs[place.run], place.position)
+    zone = [*coarse.body.problem.contact_zones].index(place.zone)
+    low = float(one.pressure[zone, elements].max())
+    high = float(two.pressure[zone, np.concatenate([2 * elements, 2 * elements + 1])].max())
+    pressed = coarse.weights * (one.pressure[zone] > 0)
+    force = float((pressed * one.pressure[zone]).sum())
+    return high / low if low * pressed.sum() > HIGH * force > 0 < high else 1.0
 
 
 def _nearest(measured: float, known: Sequence[float]) -> tuple[float, bool]:

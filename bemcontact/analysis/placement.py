@@ -3,7 +3,8 @@
 Contact sees gaps along the normals of the undeformed body, ε + n·(u - w). This is exact on a plane. Elsewhere the gap
 of the displaced places differs from it by squares of displacements. These are small in linear theory, but not where a
 body moves far before it is held. The contact problem is then solved once more with the gaps of the displaced places;
-the change of the pressure is the error of the first solution, to first order.
+the change of the pressure is the error of the first solution, to first order. The normals have another direction there
+too, which turns the force on the surface.
 """
 
 from collections.abc import Iterator
@@ -43,12 +44,14 @@ class _Displaced(NamedTuple):
     change : (n,) of the gap beside the linear one [L]
     distance : (n,) from the surface [L]
     other : (n,) whether another face of the surface is nearest
+    turn : (n, 2) change of the normal
     """
 
     motion: Array
     change: Array
     distance: Array
     other: BoolArray
+    turn: Array
 
 
 def placement(
@@ -73,10 +76,11 @@ def placement(
         return _off_the_surface(gaps, points, contact, farthest, moved), ()
     overhangs = tuple(_overhangs(gaps, points, contact, beside, pressed, moved))
     moved.change[beside] = 0.0
-    if abs(moved.change).max() <= NO_CHANGE * contact.scales.displacement:
-        return None, overhangs
+    misfit, turned = _turned(gaps, points, contact, solution, moved)
+    if misfit is not None or abs(moved.change).max() <= NO_CHANGE * contact.scales.displacement:
+        return misfit, (*overhangs, *turned)
     misfit, said = _changed(gaps, points, contact, solution, moved, nearby)
-    return misfit, (*overhangs, *said)
+    return misfit, (*overhangs, *turned, *said)
 
 
 def noted(problem: Problem) -> float:
@@ -90,7 +94,8 @@ def _displaced(
     """Compare the gap of contact with the distance after the motion; on another, nearer face the former counts."""
     at, displacement = contact.points, _at_points(gaps, points)
     linear = contact.initial_gap + solution.displacement
-    found = _Displaced(displacement.copy(), np.zeros(len(at)), linear.copy(), np.zeros(len(at), bool))
+    still = np.zeros_like(displacement)
+    found = _Displaced(displacement.copy(), np.zeros(len(at)), linear.copy(), np.zeros(len(at), bool), still)
     for number, zone in enumerate(contact.zone_names):
         if zone not in gaps.surfaces:
             continue
@@ -100,6 +105,8 @@ def _displaced(
         beyond = there.gap - linear[own]
         grooved = other & (beyond < 0) & isinstance(gaps.surfaces[zone], Polyline)
         found.motion[own] -= gaps.tool_motion(zone, at[own])
+        turned = there.normals + gaps.tool_motion(zone, there.normals) - gaps.tool_motion(zone, np.zeros((1, 2)))
+        found.turn[own] = np.where(other[:, None], 0.0, turned - contact.normals[own])
         found.change[own] = np.where(grooved, 0.0, beyond)
         found.distance[own], found.other[own] = there.gap, other
     return found
@@ -209,6 +216,29 @@ def _changed(
     words = f"{words[0].upper()}{words[1:]}."
     off, allowed = float(abs(moved.change[own]).max()), 0.0
     return _misfit(gaps, points, contact, i, Misfit.MOVED, off, allowed, words), ()
+
+
+def _turned(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution, moved: _Displaced
+) -> tuple[Penetration | None, tuple[str, ...]]:
+    """Judge how much the force on each surface turns with the normals of the displaced places."""
+    own = contact.zone == np.arange(len(contact.zone_names))[:, None]
+    forces = own * contact.weights * solution.pressure
+    part = np.hypot(*(forces @ moved.turn).T) / np.where(forces.any(axis=1), forces.sum(axis=1), 1.0)
+    number = int(np.argmax(part))
+    if part[number] < noted(gaps.problem):
+        return None, ()
+    i = int(np.argmax(forces[number]))
+    motion = moved.motion[i]
+    words = (
+        f"the body moves by {_vector(motion, gaps.problem.units.length)} against the surface of "
+        f"'{contact.zone_names[number]}', which is not small beside its shape: where the body then is, the surface has "
+        f"another direction, and the force there turns by {100 * part[number]:.2g} %; {_remedy(gaps, motion)}"
+    )
+    if part[number] < WITHHELD:
+        return None, (f"{words}; error bars do not include this",)
+    words = f"{words[0].upper()}{words[1:]}."
+    return _misfit(gaps, points, contact, i, Misfit.MOVED, float(part[number]), noted(gaps.problem), words), ()
 
 
 def _peak_change(

@@ -1,11 +1,16 @@
 """Infinite pressures are told from finite ones by how they grow from mesh to mesh."""
 
 from itertools import pairwise
+from pathlib import Path
 
+import numpy as np
 import pytest
 
+from bemcontact.adaptivity.adapt import meshed
 from bemcontact.adaptivity.singularities import ContactPlace, Singularity, Watch, _History, _nearest
+from bemcontact.spec import load
 
+GALLERY = Path(__file__).parents[2] / "models" / "gallery"
 PLACE = ContactPlace(run=0, zone="z", position=0.0)
 
 
@@ -66,3 +71,21 @@ def test_histories_are_kept_by_place_and_case():
     assert watch._history(near, 1, 1e-6) is not first
     assert watch._history(ContactPlace(run=1, zone="z", position=0.0), 0, 1e-6) is not first
     assert watch._history(ContactPlace(run=0, zone="z", position=1e-3), 0, 1e-6) is not first
+
+
+@pytest.mark.parametrize("refine", [1, 2])
+def test_two_meshes_tell_the_infinite_pressure_of_a_punch_on_a_stated_mesh(refine: int):
+    """K = P/(π √(2a)) at the edge of a punch of half-width a on a half-plane (Johnson 1985, section 2.8)."""
+    punch = load(GALLERY / "flat_punch.yaml", variant="stated mesh").refined(refine)
+    (accuracy,) = meshed(punch.model_copy(update={"accuracy": 0.01})).accuracies
+    (peak,) = (bar for bar in accuracy.bars if bar.quantity == "peak")
+    assert peak.value is None
+    (intensity,) = (bar for bar in accuracy.bars if bar.quantity == "intensity")
+    assert intensity.value == pytest.approx(2000 / (np.pi * np.sqrt(10)), rel=intensity.bar)
+    assert accuracy.met
+
+
+@pytest.mark.parametrize("name", ["hertz_small", "three_zones", "beam_on_two_supports"])
+def test_no_pressure_of_smooth_contact_is_infinite_on_a_stated_mesh(name: str):
+    stated = load(GALLERY / f"{name}.yaml", variant="stated mesh").model_copy(update={"accuracy": 0.01})
+    assert not any(accuracy.infinite for accuracy in meshed(stated).accuracies)

@@ -212,3 +212,25 @@ def test_a_path_with_wrong_curvature_is_proved_nowhere(clearance):
         assert path.certified == (expected < WITHHELD)
     if expected > NOTED + 0.005:
         assert path.notes or not path.certified
+
+
+@pytest.mark.parametrize("share", [0.004, -0.02, 0.09])
+def test_a_force_turns_with_the_normal_of_the_place_that_the_body_moves_to(share):
+    """A roller that rises into a wide block and moves aside by d presses straight up there; its normals turn by d/R."""
+    edges = [("bottom", -6, 0), ("right", 6, 0), ("top", 6, 6), ("left", -6, 6)]
+    result = solve(
+        Problem(
+            name="roller moved aside",
+            material=STEEL,
+            boundary={"outer": [{"name": name, "start": (x, y)} for name, x, y in edges]},
+            conditions={"top": {"displacement": {"x": 0, "y": 0}}},
+            contact_zones={"roll": {"edges": "bottom", "surface": {
+                "kind": "circle", "center": (0, -3), "radius": 3, "body": "outside"}}},
+            tools={"roller": {
+                "zones": "roll", "point": (0, -3), "displacement": {"x": 3 * share}, "force": {"y": 200}}},
+        )  # pyright: ignore[reportArgumentType]
+    )  # fmt: skip
+    texts = [*result.notes, *([result.penetration.words] if result.penetration else [])]
+    told = [float(found[1]) / 100 for text in texts if (found := re.search(r"turns by ([\d.e-]+) %", text))]
+    assert told == ([] if abs(share) < NOTED else [pytest.approx(abs(share), abs=0.05 * abs(share) + 0.0005)])
+    assert result.certified == (abs(share) < WITHHELD)
