@@ -280,7 +280,15 @@ def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTool
     together = _null_vectors(basis @ both.T)
     apart = _null_vectors(together[: len(body)].T)
     seen, unseen = np.vstack([echelon(apart.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
-    return replace(every, coefficients=seen), replace(every, coefficients=unseen)
+    return replace(every, coefficients=_counterclockwise(seen)), replace(every, coefficients=_counterclockwise(unseen))
+
+
+def _counterclockwise(motions: Array) -> Array:
+    """Motions (k, 3 + 3 t) with the sense in which the first part that turns does so counterclockwise."""
+    turns = motions[:, 2::3]
+    turning = abs(turns) > UNSEEN * abs(motions).max(axis=1, initial=UNSEEN, keepdims=True)
+    first = turns[np.arange(len(turns)), turning.argmax(axis=1)]
+    return np.where(turning.any(axis=1) & (first < 0), -1.0, 1.0)[:, None] * motions
 
 
 def _to_points(levers: Array, radius: float) -> Array:

@@ -369,10 +369,11 @@ class CondensedContact(MotionAlgebra):
     def rotations(self, rigid_amplitudes: Array) -> Array | None:
         """Angle (k,) [rad] of each free motion, for amplitudes a (k,) [L]; zero in a translation; None if not known.
 
-        The sense is that of the name. It is the angle of the linear theory, displacement over distance.
+        The sense is that of the name, counterclockwise for a body or a tool that turns alone. It is the angle of the
+        linear theory, displacement over distance.
         """
         a = real_array(rigid_amplitudes, "rigid_amplitudes", (self.free_motions,), finite=False)
-        return None if self.motion_arms is None else a / self.motion_arms
+        return None if self.motion_arms is None else a / self.motion_arms + 0.0
 
     def resultants(self, pressure: Array) -> Array:
         """Σ w p n (..., zones, 2) [p L]: the force of each zone's rigid surface on the body, from p (..., n) [p]."""

@@ -103,7 +103,8 @@ class SolutionRecord(Record):
     """Amplitude of each free rigid motion, those of the body first, then those of tools [L]: the displacement along a
     translation; for a rotation, the displacement at a reference distance from its center; `rotations` has its angle."""
     rotations: Vector | None
-    """Angle of each free rigid motion, in radians and in the sense of its name; zero in a translation; null if unknown.
+    """Angle of each free rigid motion, in radians and in the sense of its name, which is counterclockwise for a body or
+    a tool that turns alone, so that clockwise is negative; zero in a translation; null if unknown.
     Displacements are small in linear elasticity: the angle is the displacement over the distance from the center."""
     pressure: Vector
     """Normal traction per undeformed length, positive in compression [p]."""

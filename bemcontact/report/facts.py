@@ -1,5 +1,6 @@
 """Facts of a result in words, from its JSON, for the terminal and for pages."""
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -246,7 +247,7 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
         yield "Resultant", f"of {zone}: {written}"
     for j, name in enumerate(record["motion_names"]):
         if " of the tool " not in name:  # the line of a tool tells where it is
-            yield "Free motion", f"{name}{_amount(record, j, units)}"
+            yield "Free motion", f"{_in_sense(name, record, j)}{_amount(record, j, units)}"
     for tool in record["tools"]:
         yield "Tool", _tool(tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
@@ -273,7 +274,15 @@ def _amount(record: Record, motion: int, units: Units) -> str:
     if angles is None:
         return ""
     angle = angles[motion]
-    return f": {with_unit(number(angle), 'rad') if angle else with_unit(number(moved), units.length)}"
+    return f": {with_unit(number(abs(angle)), 'rad') if angle else with_unit(number(moved), units.length)}"
+
+
+def _in_sense(name: str, record: Record, motion: int) -> str:
+    """Name of a free motion, with the sense in which it turns."""
+    angles = record["rotations"]
+    if angles is None or not angles[motion] < 0:
+        return name
+    return re.sub(r"(counter)?clockwise", lambda sense: "clockwise" if sense[1] else "counterclockwise", name)
 
 
 def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units) -> str:
