@@ -10,8 +10,8 @@ from typing import Literal
 import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved, norm_squared, penetrations
-from bemcontact.adaptivity.singularities import BESIDE, FITTED, Singularity, run_elements
-from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun
+from bemcontact.adaptivity.singularities import BESIDE, FITTED, Singularity, logarithmic_rise, run_elements
+from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside, images
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.bem import reference_element
@@ -131,24 +131,9 @@ def near_singularities(solved: Solved, answer: CaseAnswer, singularities: Sequen
         reach = BESIDE * contact_beside(run, answer.stretches[run.number], item.place.position)[1]
         elements = run_elements(solved, run)
         low, high = run.ends[:-1], run.ends[1:]
-        away = [np.maximum(low - at, at - high) for at in _images(run, item.place.position)]
+        away = [np.maximum(low - at, at - high) for at in images(run, item.place.position)]
         near[elements[np.min(away, axis=0) < reach * (1 - 1e-9)]] = True
     return near
-
-
-def _images(run: ZoneRun, position: float) -> list[float]:
-    """The position, and on a closed run the same one a turn before and after."""
-    return [position, position - run.length, position + run.length] if run.closed else [position]
-
-
-def contact_beside(run: ZoneRun, stretches: Sequence[Stretch], position: float) -> tuple[int, float]:
-    """Side (-1 before, 1 after) and length of the longer contact beside a position of a run; 1 and 0 without."""
-    best = (1, 0.0)
-    for item in stretches:
-        for at in _images(run, position):
-            if item.start - 1e-9 * run.length <= at <= item.end + 1e-9 * run.length:
-                best = max(best, (-1, at - item.start), (1, item.end - at), key=lambda pair: pair[1])
-    return best
 
 
 def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Sequence[Singularity]) -> Iterator[ErrorBar]:
@@ -158,7 +143,7 @@ def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Seque
     if its:
         yield ErrorBar(quantity="peak", zone=name, value=None, bar=None, note=_infinite(its))
     else:
-        bar = estimate.bar(max(_change(*peaks), PEAK * m), smooth=True)
+        bar = estimate.bar(max(_change(*peaks), PEAK * m), smooth=True) + logarithmic_rise(estimate.difference, name)
         yield ErrorBar(quantity="peak", zone=name, value=estimate.value(*peaks), bar=bar)
     forces = [float((solved.mesh.tributary * answer.pressure[number]).sum()) for solved, answer in both]
     bar = estimate.bar(max(_change(*forces), FORCE * m))
@@ -175,8 +160,13 @@ def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Seque
 
 def _infinite(its: Sequence[Singularity]) -> str:
     """Say why a peak is infinite."""
-    if any(item.place.end for item in its):
+    if any(item.place.end and not item.like_a_kink for item in its):
         return "infinite where contact reaches the end of its zone: a corner of the surface, or else a zone too short"
+    if any(item.exponent == 0 for item in its):
+        return (
+            "infinite like a logarithm, or nearly so, at a corner of the body, because of a shear load beside the "
+            "contact or of a surface at an angle to the edge"
+        )
     return "infinite at a corner or a kink"
 
 
@@ -260,7 +250,7 @@ def _intensity(
     pressure = (reference_element.values(xi) @ own[run_elements(solved, run), :, None])[..., 0]
     at = (run.ends[:-1, None] + run.ends[1:, None]) / 2 + np.diff(run.ends)[:, None] / 2 * xi
     s: Array = np.min(
-        [np.where(side * (at - image) > 0, side * (at - image), np.inf) for image in _images(run, item.place.position)],
+        [np.where(side * (at - image) > 0, side * (at - image), np.inf) for image in images(run, item.place.position)],
         axis=0,
     )
     low, high = max(part[0] * length, float(s[elements_beside(run, item.place.position)].max())), part[1] * length

@@ -6,12 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from bemcontact.adaptivity.error_bars import contact_beside, near_singularities
+from bemcontact.adaptivity.error_bars import near_singularities
 from bemcontact.adaptivity.fields import MeshDifference, Solved, norm_squared, penetrations, solved
 from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
 from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
 from bemcontact.adaptivity.sizes import Layers, Limit, Loop
-from bemcontact.adaptivity.zone_runs import ZoneRun
+from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.problem import Problem
 

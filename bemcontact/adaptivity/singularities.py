@@ -7,8 +7,8 @@ import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved
 from bemcontact.adaptivity.first_sizes import surface_corners
-from bemcontact.adaptivity.wedge_exponents import Face, contact_face, wedge_exponents
-from bemcontact.adaptivity.zone_runs import ZoneRun
+from bemcontact.adaptivity.wedge_exponents import Face, contact_face, logarithm, wedge_exponents
+from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 
 GROWING = 1.04, 1.9
@@ -30,6 +30,8 @@ FITTED = (0.005, 0.1), (0.02, 0.4)
 
 On a half-plane p s^α is a polynomial in s; beside other corners it has other powers, and the difference tells them.
 """
+SHARP, LOGARITHM = 1e-4, 1e-9
+"""Rounding of a corner over the contact up to which its pressure must be right; rate of a logarithm."""
 SAME = 1e-6
 """Distance of two places over the length of their run up to which they are one."""
 
@@ -103,6 +105,8 @@ class Watch:
             if history.grows() or (history.exponent is not None and GROWING[0] < history.growth[-1] < GROWING[1]):
                 known = exponents_at(coarse, one, coarse.runs[place.run], place.position)
                 history.exponent, history.exact = _nearest(float(np.log2(history.growth[-1])), known)
+            elif history.exponent is None and _is_logarithmic(difference, place):
+                history.exponent, history.exact = 0.0, True
         return tuple(
             Singularity(place=item.place, exponent=item.exponent, exact=item.exact)
             for item in self.histories
@@ -125,8 +129,8 @@ def recognized(difference: MeshDifference) -> tuple[Singularity, ...]:
     for place in _places(difference):
         known = exponents_at(coarse, one, coarse.runs[place.run], place.position)
         exponent, near = _nearest(float(np.log2(_growth(difference, place))), known)
-        if near:
-            found.append(Singularity(place=place, exponent=exponent))
+        if near or _is_logarithmic(difference, place):
+            found.append(Singularity(place=place, exponent=exponent if near else 0.0))
     return tuple(found)
 
 
@@ -151,6 +155,41 @@ def _nearest(measured: float, known: Sequence[float]) -> tuple[float, bool]:
 
 def exponents_at(solved: Solved, answer: CaseAnswer, run: ZoneRun, position: float) -> tuple[float, ...]:
     """Exponents of infinite pressures at a position of a run, by the angle of the body and what holds its faces."""
+    wedge, _ = _wedge_at(solved, answer, run, position)
+    return wedge_exponents(*wedge)
+
+
+def _is_logarithmic(difference: MeshDifference, place: ContactPlace) -> bool:
+    """Whether a corner raises the peak like ln r, or nearly so, beyond the accuracy asked."""
+    return _rise(difference, place) > (difference.fine.body.problem.asked_accuracy or 0.0)
+
+
+def logarithmic_rise(difference: MeshDifference, zone: str) -> float:
+    """What corners of the body add to the peak of a zone on the fine mesh, over it, like ln r or nearly so."""
+    return max((_rise(difference, place) for place in _places(difference) if place.zone == zone), default=0.0)
+
+
+def _rise(difference: MeshDifference, place: ContactPlace) -> float:
+    """What tractions or a tilted surface add to the peak between the fine mesh and a corner that is `SHARP`."""
+    fine, answer = difference.fine, difference.pair[1]
+    run = fine.runs[place.run]
+    zone = [*fine.body.problem.contact_zones].index(place.zone)
+    elements = elements_at(fine, run, place.position)
+    at, peak = float(answer.pressure[zone, elements].max()), float(answer.pressure[zone].max())
+    if not at > 0:
+        return 0.0
+    wedge, loads = _wedge_at(fine, answer, run, place.position)
+    slopes, rate = logarithm(*wedge, loads)
+    _, length = contact_beside(run, answer.stretches[run.number], place.position)
+    size = max(float(fine.weights[elements].sum(axis=1).min()) / (length or run.length), SHARP)
+    beyond = float((size**rate - SHARP**rate) / rate if abs(rate) > LOGARITHM else np.log(size / SHARP))
+    return max(0.0, (at - min(slopes) * beyond) / peak - 1)
+
+
+def _wedge_at(
+    solved: Solved, answer: CaseAnswer, run: ZoneRun, position: float
+) -> tuple[tuple[float, float, tuple[Face, Face], float], tuple[complex, complex]]:
+    """The elastic wedge at a position of a run, for `wedge_exponents`, and the tractions on its faces [p]."""
     mesh, problem, elements = solved.mesh, solved.body.problem, run_elements(solved, run)
     at = int(np.argmin(np.abs(run.ends - position))) % (len(elements) if run.closed else len(elements) + 1)
     after = int(elements[at] if at < len(elements) else np.argmax(mesh.before == elements[-1]))
@@ -163,8 +202,9 @@ def exponents_at(solved: Solved, answer: CaseAnswer, run: ZoneRun, position: flo
         arrives = problem.edge(mesh.edge_names[mesh.edge[before]]).directions(np.array([1.0]))[0]
     start, end = (float(np.arctan2(y, x)) for x, y in (leaves, arrives))
     faces = _face(answer, after, start), _face(answer, before, end)
-    ratio = problem.material.effective_poisson_ratio
-    return wedge_exponents(start, float(np.mod(end + np.pi - start, 2 * np.pi)), faces, ratio)
+    angle = float(np.mod(end + np.pi - start, 2 * np.pi))
+    loads = complex(*answer.traction[after, 0]), complex(*answer.traction[before, 2])
+    return (start, angle, faces, problem.material.effective_poisson_ratio), loads
 
 
 def _face(answer: CaseAnswer, element: int, direction: float) -> Face:

@@ -4,8 +4,12 @@ Near a corner the displacement is of the form r^λ f(θ), and stresses are infin
 φ = A z^λ, ψ = B z^λ (Muskhelishvili) two conditions on each face are four real equations for A and B; λ is where they
 are singular (Williams 1952). Frictionless contact with a straight rigid face, u_n = 0 = τ, mirrors the wedge: with a
 free face, sin 2λω + λ sin 2ω = 0, which is λ = 1/2 on a half-plane, ω = π.
+
+Constant tractions on the faces make λ = 1. Where that is singular too, as in contact beside a free face at a right
+angle, the pressure changes like ln r; near to it, hardly less slowly.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +22,10 @@ ROOT = 1e-9
 """Smallest singular value, over the largest, of equations that are singular."""
 EXACT = 1e-13
 """Accuracy of a root λ."""
+NEAR_ONE = 0.1
+"""Difference of λ from 1 up to which tractions change the pressure so slowly that it is like a logarithm."""
+STEP = 1e-6
+"""Step of λ for a derivative of the equations."""
 UNPRESSED = 1e-6
 """Pressure on a face in contact, over the largest stress of a state, that is none."""
 
@@ -45,6 +53,7 @@ def contact_face(normal: complex) -> Face:
 FREE = Face(1.0, (False, False))
 
 
+@lru_cache(maxsize=256)
 def wedge_exponents(start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float) -> tuple[float, ...]:
     """Exponents α = 1 - λ of pressures that are infinite like r^-α, the largest first.
 
@@ -61,6 +70,48 @@ def wedge_exponents(start: float, angle: float, faces: tuple[Face, Face], poisso
     low = 1 + np.flatnonzero((sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] < sizes[2:]))
     powers = (_least(wedge, float(GRID[i - 1]), float(GRID[i + 1])) for i in low)
     return tuple(1 - power for power in powers if _singular(wedge, power) <= ROOT and _presses(wedge, power))
+
+
+class Logarithm(NamedTuple):
+    """Pressures on both faces that change by slope (r/R)^rate for each unit of ln r; infinite at r = 0 if rate <= 0."""
+
+    slopes: tuple[float, float]
+    rate: float
+
+
+@lru_cache(maxsize=256)
+def logarithm(
+    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, loads: tuple[complex, complex]
+) -> Logarithm:
+    """How slowly tractions change the pressure at the tip of a wedge; slopes of zero if they do not.
+
+    Parameters
+    ----------
+    start, angle, faces, poisson_ratio : see `wedge_exponents`
+    loads : traction [p] on each face, of which counts what the face does not hold: on one in contact the shear
+    """
+    wedge = (start, angle, faces, poisson_ratio)
+    power = _least(wedge, 1 - NEAR_ONE, 1 + NEAR_ONE)
+    left, sizes, right = np.linalg.svd(_conditions(wedge, power))
+    null = sizes <= 10 * ROOT * sizes[0]
+    if not null.any():
+        return Logarithm((0.0, 0.0), 0.0)
+    outward = -1.0, 1.0  # the field has tractions on rays, towards larger angles
+    given = [
+        0.0 if held else sign * (load * np.conj(direction)).real
+        for face, load, sign in zip(faces, loads, outward, strict=True)
+        for direction, held in zip((face.direction, 1j * face.direction), face.held, strict=True)
+    ]
+    derivative = (_conditions(wedge, power + STEP) - _conditions(wedge, power - STEP)) / (2 * STEP)
+    left, right = left[:, null], right[null]
+    amount = np.linalg.lstsq(left.T @ derivative @ right.T, left.T @ np.array(given), rcond=None)[0]
+    slopes = [
+        -sign * float((_field(at, power, poisson_ratio)[1] * np.conj(face.direction)).real @ (amount @ right))
+        if face.contact
+        else 0.0
+        for face, at, sign in zip(faces, (start, start + angle), outward, strict=True)
+    ]
+    return Logarithm((slopes[0], slopes[1]), power - 1)
 
 
 Wedge = tuple[float, float, tuple[Face, Face], float]

@@ -174,3 +174,18 @@ def _end(run: ZoneRun, arc: float, outermost: float, limit: float | None, at_cor
     if at_corners and corners.size and np.abs(corners - turned).min() <= SAME * 100 * run.length:
         return position, False
     return run.position(arc), True
+
+
+def images(run: ZoneRun, position: float) -> list[float]:
+    """The position, and on a closed run the same one a turn before and after."""
+    return [position, position - run.length, position + run.length] if run.closed else [position]
+
+
+def contact_beside(run: ZoneRun, stretches: Sequence[Stretch], position: float) -> tuple[int, float]:
+    """Side (-1 before, 1 after) and length of the longer contact beside a position of a run; 1 and 0 without."""
+    best = (1, 0.0)
+    for item in stretches:
+        for at in images(run, position):
+            if item.start - 1e-9 * run.length <= at <= item.end + 1e-9 * run.length:
+                best = max(best, (-1, at - item.start), (1, item.end - at), key=lambda pair: pair[1])
+    return best

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from bemcontact.adaptivity.adapt import meshed
+from bemcontact.adaptivity.fields import solved
 from bemcontact.adaptivity.singularities import ContactPlace, Singularity, Watch, _History, _nearest
+from bemcontact.problem import Problem
 from bemcontact.spec import load
 
 GALLERY = Path(__file__).parents[2] / "models" / "gallery"
@@ -89,3 +91,41 @@ def test_two_meshes_tell_the_infinite_pressure_of_a_punch_on_a_stated_mesh(refin
 def test_no_pressure_of_smooth_contact_is_infinite_on_a_stated_mesh(name: str):
     stated = load(GALLERY / f"{name}.yaml", variant="stated mesh").model_copy(update={"accuracy": 0.01})
     assert not any(accuracy.infinite for accuracy in meshed(stated).accuracies)
+
+
+def foot(shear: float, ratio: float | None = None) -> Problem:
+    """A block on a floor, drawn down its right side, which ends at a corner that is pressed; graded towards it."""
+    starts = {"bottom": (0, 0), "right": (60, 0), "top": (60, 30), "left": (0, 30)}
+    edges: dict[str, dict[str, object]] = {name: {"name": name, "start": start} for name, start in starts.items()}
+    if ratio is not None:
+        for name, towards in (("bottom", "end"), ("right", "start")):
+            edges[name] |= {"elements": 40, "grading": {"ratio": ratio, "towards": towards}}
+        edges["top"]["elements"] = edges["left"]["elements"] = 10
+    return Problem(
+        name="foot",
+        material={"young_modulus": 210e3, "poisson_ratio": 0.3},
+        boundary={"outer": [*edges.values()]},
+        conditions={"right": {"traction": {"y": -shear}}, "top": {"traction": {"y": -5}},
+                    "left": {"displacement": {"x": 0}}},
+        contact_zones={"floor": {"edges": "bottom", "surface": {"kind": "plane", "point": (0, 0), "normal": (0, 1)}}},
+    )  # pyright: ignore[reportArgumentType] # fmt: skip
+
+
+def test_a_shear_beside_contact_raises_the_peak_like_a_logarithm():
+    """By 4τ/π for each unit of ln h, on meshes whose element h at the corner is shorter and shorter."""
+    on_meshes = [solved(foot(0.5, ratio)) for ratio in (1e3, 1e4)]
+    one, other = (float(np.log(item.weights.sum(axis=1).min())) for item in on_meshes)
+    low, high = (float(item.answers[0].solution.pressure.max()) for item in on_meshes)
+    assert (high - low) / (one - other) == pytest.approx(2 / np.pi, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("shear", "accuracy", "infinite"), [(0.5, 0.01, True), (0.004, 0.01, False), (0.004, 1e-3, True)]
+)
+def test_a_logarithm_is_told_or_in_the_error_bar(shear: float, accuracy: float, infinite: bool):
+    """What a corner of 1e-4 of the contact would add is over the accuracy, or else in the bar of the peak."""
+    (found,) = meshed(foot(shear).model_copy(update={"accuracy": accuracy})).accuracies
+    assert found.met
+    (peak,) = (bar for bar in found.bars if bar.quantity == "peak")
+    assert (peak.value is None) == infinite
+    assert peak.bar is None or peak.bar * peak.value >= 4 * shear / np.pi * np.log(10)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, wedge_exponents
+from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, logarithm, wedge_exponents
 
 FIXED = Face(1.0, (True, True))
 ANGLES, RATIOS = st.floats(0.2, 2 * pi - 0.05), st.floats(-0.9, 0.49)
@@ -71,3 +71,22 @@ def test_limits():
     assert wedge_exponents(0.0, 2 * pi, full, 0.3)[0] == pytest.approx(3 / 4, abs=NEAR)
     assert wedge_exponents(0.0, 3 * pi / 2, (faces(0.0, 3 * pi / 2)[0], FREE), 0.3)[0] == pytest.approx(2 / 3, abs=NEAR)
     assert wedge_exponents(0.0, pi, (FREE, FREE), 0.3) == ()
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(-pi, pi), RATIOS, st.floats(-2, 2), st.floats(-2, 2))
+def test_shear_beside_contact_at_a_right_angle_raises_the_pressure_like_a_logarithm(start, ratio, shear, normal):
+    """In its mirror the contact is the axis below a half-plane with shear ±τ to both sides, a step of 2τ.
+
+    A tangential force Q has σ_xx = -2Q x³/(π r⁴) (Flamant), whose integral over the step is (4τ/π) ln y.
+    """
+    first, _ = faces(start, pi / 2)
+    along = np.exp(1j * (start + pi / 2))  # of the free face, from the tip
+    slopes, rate = logarithm(start, pi / 2, (first, FREE), ratio, (0j, complex((shear + 1j * normal) * along)))
+    assert rate == pytest.approx(0, abs=1e-9)
+    assert slopes == pytest.approx((4 * shear / pi, 0.0), abs=1e-7)
+
+
+def test_tractions_change_nothing_slowly_at_other_angles():
+    for angle in (pi / 3, 2 * pi / 3, pi):
+        assert logarithm(0.0, angle, (faces(0.0, angle)[0], FREE), 0.3, (0j, 1 + 1j)).slopes == pytest.approx((0, 0))
