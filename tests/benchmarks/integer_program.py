@@ -122,6 +122,23 @@ def endless_program(rng: np.random.Generator) -> IntegerProgram:
     )
 
 
+def resting_program(rng: np.random.Generator) -> tuple[IntegerProgram, Array, NDArray[np.bool_]]:
+    """A program with a point of zero gradient and active constraints; the point, and which of its zeros are free."""
+    n, m = int(rng.integers(2, 5)), int(rng.integers(1, 4))
+    A, free = rng.integers(-2, 3, (m, n)), rng.random(n) < 0.8
+    x, B = rng.integers(-3, 4, n) * ~free, rng.integers(-2, 3, (n, n))
+    values, side = np.concatenate([x, A @ x]).astype(float), rng.integers(-1, 3, n + m)
+    side[:n] *= ~free
+    program = IntegerProgram(
+        H=(np.outer(free, free) * (B + B.T)).astype(float),
+        c=np.zeros(n),
+        A=A.astype(float),
+        lower=np.where(side > 0, values, -INF),
+        upper=np.where(np.isin(side, (-1, 2)), values, INF),
+    )
+    return program, x.astype(float), free
+
+
 def _edge_of_copositive(
     inwards: NDArray[np.int64], strong: NDArray[np.bool_], rng: np.random.Generator
 ) -> NDArray[np.int64]:

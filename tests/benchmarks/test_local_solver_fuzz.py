@@ -8,7 +8,7 @@ import pytest
 from exact_judge import Verdict, judge, solved_exactly
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from integer_program import IntegerProgram, Units, endless_program, plain_units, random_units
+from integer_program import IntegerProgram, Units, endless_program, plain_units, random_units, resting_program
 from local_solver_fuzz import case, outcomes, solved
 
 from bemcontact.formulations.local_solver import QPResult, QPStatus
@@ -98,6 +98,9 @@ def test_equations_are_solved_in_fractions():
 @example(300739627)
 @example(300745930)
 @example(300306888)
+@example(400575139)
+@example(400348856)
+@example(400871184)
 def test_no_claim_is_false_in_any_units_and_a_restart_at_an_answer_moves_nothing(seed):
     """Powers of ten from 1e-8 to 1e8 on rows, columns and the objective; random starts and working sets."""
     assert not [name for name in outcomes(seed) if any(bad in name for bad in BAD)]
@@ -112,6 +115,20 @@ def test_no_claim_is_false_in_any_units_and_a_restart_at_an_answer_moves_nothing
 @example(2136)
 def test_no_claim_is_false_at_degenerate_points_at_the_edge_of_copositivity(seed):
     assert not [name for name in outcomes(seed, degenerate=True) if any(bad in name for bad in BAD)]
+
+
+@settings(max_examples=300)
+@given(st.integers(0, 10**9))
+@example(124)
+@example(141)
+@example(356)
+def test_rounding_in_place_of_zeros_makes_no_minimizer(seed):
+    """A start whose zeros are numbers from 1e-16 to 1e-60, at a point of zero gradient that is often a saddle."""
+    rng = np.random.default_rng(seed)
+    program, x, zeros = resting_program(rng)
+    units = random_units(program, rng)
+    start = x + zeros * rng.choice([-1, 1], x.size) * 10.0 ** -rng.uniform(16, 60, x.size)
+    assert judge(program, units, solved(program, units, start, None)) is not Verdict.FALSE_MINIMIZER
 
 
 @settings(max_examples=200)

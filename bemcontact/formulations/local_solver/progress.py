@@ -15,6 +15,9 @@ FINE = 1e-3
 PARALLEL = 1e-10
 """A unit direction whose product with a normal is below this does not meet the constraint, except on a long step."""
 
+LOST = 100.0 * EPS
+"""A component that was never larger than this, relative to the point or to one, is the rounding of directions."""
+
 MANY = 100
 """Largest number of points that are stored before `travelled` is updated."""
 
@@ -103,9 +106,11 @@ class Progress:
 
         The variables may differ in size by many orders, so each component has its own tolerance. Rounding in one
         component changes others through the multipliers of the rows (r, n), which have the right inverse (n, r). The
-        components of the point have the rounding of numbers of the size `reach` (n,).
+        components of the point have the rounding of numbers of the size `reach` (n,); faint ones have no digit.
         """
-        lost = EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(self.travelled, reach)))
+        size = self.travelled
+        size = np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
+        lost = EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(size, reach)))
         if rows.size:
             lost += lost.dot(np.abs(inverse)).dot(np.abs(rows))
         return np.maximum(FINE * self.options.optimality_tolerance * terms, 100.0 * lost)
