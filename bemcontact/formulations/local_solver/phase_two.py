@@ -29,7 +29,6 @@ from bemcontact.formulations.local_solver.working_set import (
     wrong_sign,
 )
 
-
 CLEAR = 1e3
 """A multiplier of the wrong sign is released without refinement if it exceeds the zero of all by this factor."""
 
