@@ -19,7 +19,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, pivoted_cholesky
 from bemcontact.formulations.local_solver.progress import Progress
-from bemcontact.formulations.local_solver.statement import EPS, Statement
+from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 from bemcontact.formulations.local_solver.working_set import (
     FLAT,
     TEMPORARY,
@@ -223,7 +223,8 @@ class Descent:
         loose = self.whole < 3 and working.number < n
         if loose:
             reduced = multipliers[:n] * working.free
-            if reduced.dot(reduced) > (0.1 * progress.zero) ** 2:
+            rounding = 10.0 * EPS * largest(multipliers[n:])
+            if reduced.dot(reduced) > max(0.1 * progress.zero, rounding) ** 2:
                 return True, None
         place = wrong_sign(working, self._allowed(multipliers), CLEAR * progress.zero, least_index=least)
         if place is not None:
