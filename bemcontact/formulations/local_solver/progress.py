@@ -15,7 +15,7 @@ FINE = 1e-3
 PARALLEL = 1e-10
 """A unit direction whose product with a normal is below this does not meet the constraint, except on a long step."""
 
-LOST = 100.0 * EPS
+LOST = EPS
 """A component that was never larger than this, relative to the point or to one, is the rounding of directions."""
 
 MANY = 100
