@@ -62,11 +62,12 @@ LARGEST_COUNT = 2**32 - 1
 
 
 class ClarabelSettings(NamedTuple):
-    """Settings of Clarabel, and whether the program is scaled the other way."""
+    """Settings of Clarabel; whether the program is scaled the other way; whether large right-hand sides become one."""
 
     words: str
     settings: Mapping[str, Any]
     rescaled: bool = False
+    shrunk: bool = False
 
 
 ATTEMPTS = (
@@ -74,6 +75,7 @@ ATTEMPTS = (
     ClarabelSettings("with less regularization", {"static_regularization_constant": 1e-8}),
     ClarabelSettings("in another scaling", {"static_regularization_constant": 1e-7, **REFINEMENT}, rescaled=True),
     ClarabelSettings("with more regularization", {"static_regularization_constant": 1e-6, **REFINEMENT}),
+    ClarabelSettings("in a larger unit", {"static_regularization_constant": 1e-7, **REFINEMENT}, shrunk=True),
 )
 """Made one after the other until one gives an answer."""
 
@@ -102,6 +104,7 @@ class _Scaling(NamedTuple):
     s: float = 1.0
 
 
+@np.errstate(over="ignore", invalid="ignore")  # an attempt may diverge: what is not finite is no answer
 def minimize_convex(
     problem: Any,
     max_iterations: int | None = None,
@@ -137,7 +140,7 @@ def minimize_convex(
             "Clarabel found no solution of this model; look for terms of very different size, or loosen what was added"
         )
     put(end)
-    return Answer(end.progress / np.array([end.scaling.s, 1.0]), failed, end.note)
+    return Answer(_finite(end.progress / np.array([end.scaling.s, 1.0])), failed, end.note)
 
 
 LIMIT = "MaxIterations"
@@ -198,7 +201,9 @@ def _terms(part: Any) -> float:
 def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> Iterator[_End]:
     """Make the attempts."""
     for attempt in ATTEMPTS:
-        scaled, scaling = _equilibrated(data) if equilibrate is not attempt.rescaled else (data, _Scaling())
+        scaled, scaling = data, _Scaling()
+        if attempt.shrunk or equilibrate is not attempt.rescaled:
+            scaled, scaling = _equilibrated(data, shrunk=attempt.shrunk)
         solution, progress = _solve(scaled, attempt.settings, max_iterations or ITERATIONS)
         status, residual = _judged(scaled, solution)
         if status not in RAYS and residual > GOOD and solution.iterations >= (max_iterations or np.inf):
@@ -220,9 +225,11 @@ def _judged(data: dict[str, Any], solution: Any) -> tuple[str, float]:
     A, b, c = data["A"], data["b"], data["c"]
     curved = _symmetric(data) @ x
     status = str(solution.status).removeprefix("Almost")
-    if status in RAYS:
-        proved = _is_ray(b, z, A.T @ z) if status == RAYS[0] else _is_ray(c, x, np.append(curved, A @ x + s))
-        return (status, 0.0) if proved else ("Unsolved", np.inf)
+    if status == RAYS[0]:
+        z = _balanced(csc_array(A), z, data["dims"])
+        return (status, 0.0) if _is_ray(b, z, A.T @ z) else ("Unsolved", np.inf)
+    if status == RAYS[1]:
+        return (status, 0.0) if _is_ray(c, x, np.append(curved, A @ x + s)) else ("Unsolved", np.inf)
     primal, dual = c @ x + x @ curved / 2, -(b @ z) - x @ curved / 2
     residuals = (
         _size(A @ x + s - b) / max(1.0, _size(b) + _size(x) + _size(s)),
@@ -240,6 +247,15 @@ def _symmetric(data: dict[str, Any]) -> Any:
     """P, of which cvxpy gives all entries."""
     n = len(data["c"])
     return csc_array(data["P"]) if "P" in data else csc_array((n, n))
+
+
+def _balanced(A: csc_array, z: Array, dims: Any) -> Array:
+    """Multipliers for which Aᵀz is zero up to rounding: the least change of equations and of inequalities in use."""
+    row = np.arange(len(z))
+    signed = (row >= dims.zero) & (row < dims.zero + dims.nonneg) & (z > PROOF * _size(z))
+    used, changed = signed | (row < dims.zero), z.copy()
+    changed[used] -= np.linalg.lstsq(A[used].T.toarray(), A.T @ z)[0]
+    return changed if (changed[signed] >= 0.0).all() else z
 
 
 def _is_ray(slope: Array, ray: Array, rest: Array) -> bool:
@@ -283,8 +299,7 @@ def _solve(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations: int)
         solution = solver.solve()
     if rows and np.isfinite(solution.obj_val):
         rows[-1] = solution.obj_val, solution.r_prim  # Clarabel may have withdrawn its last step
-    progress = np.array(rows).reshape(-1, 2)
-    return solution, progress[np.logical_and.accumulate(np.isfinite(progress).all(axis=1))]
+    return solution, _finite(np.array(rows).reshape(-1, 2))
 
 
 @contextmanager
@@ -304,10 +319,16 @@ def interrupts() -> Iterator[list[int]]:
         raise KeyboardInterrupt
 
 
-def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], _Scaling]:
+def _finite(progress: Array) -> Array:
+    """The rows before the first that is not finite."""
+    return progress[np.logical_and.accumulate(np.isfinite(progress).all(axis=1))]
+
+
+def _equilibrated(data: dict[str, Any], *, shrunk: bool = False) -> tuple[dict[str, Any], _Scaling]:
     """Bring min ½xᵀP x + cᵀx, b - A x in cones, to size one."""
     # By the constraints alone: costs have a unit of their own, which would scale the columns too. D contains the size
-    # of b if that is below one, the least that Clarabel compares with.
+    # of b if that is below one, the least that Clarabel compares with. Beside a large b, small numbers count as zero,
+    # so that rays are seen where there are none; a `shrunk` b costs digits of what is large.
     A, c, b = csc_array(data["A"]), data["c"], data["b"]
     P = _symmetric(data)
     cone, work = _cone_of_rows(data["dims"]), A.tocoo()
@@ -317,7 +338,8 @@ def _equilibrated(data: dict[str, Any]) -> tuple[dict[str, Any], _Scaling]:
         column = _largest(entries, work.col, len(c))
         row = _largest(entries, cone[work.row], len(b))[cone]
         D, E = D / np.sqrt(np.where(column > 0, column, 1.0)), E / np.sqrt(np.where(row > 0, row, 1.0))
-    size = min(float(np.abs(E * b).max(initial=0.0)), 1.0) or 1.0
+    size = _size(E * b) or 1.0
+    size = size if shrunk else min(size, 1.0)
     D, E = size * D, E / size
     P, c = diags_array(D) @ P @ diags_array(D), D * c
     s = 1.0 / (max(float(np.abs(P.data).max(initial=0.0)), float(np.abs(c).max(initial=0.0))) or 1.0)

@@ -14,6 +14,7 @@ from scipy.linalg import null_space
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.formulations.local_solver.factorizations import unit_rows
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
 
 VANISHED = 1e-12
@@ -45,7 +46,7 @@ def with_chosen_position(
     if not motions.size or not (ways := _open_ways(limits, motions)).any():
         return solution
     a = _nearest(body, a, limits, motions)
-    if body.residual(p, a) > ACCEPTED:
+    if not body.residual(p, a) <= ACCEPTED:
         return solution
     p, u_n, a = unscaled(contact, p, a)
     named = [name for name, way in zip(contact.motion_names, ways, strict=True) if way]
@@ -93,14 +94,16 @@ def _nearest(body: ScaledContact, amplitudes: Array, limits: tuple[Array, Array]
 
 
 def _least(G: Array, h: Array) -> Array:
-    """The smallest z (j,) with G z >= h, if there is one."""
+    """The smallest z (j,) with G z >= h; zero if there is none."""
     # Lawson and Hanson, "Solving Least Squares Problems" (1974), chapter 23, by NNLS
-    if (h <= 0).all():
-        return np.zeros(G.shape[1])
-    E = np.vstack([G.T, h])
-    right = np.append(np.zeros(G.shape[1]), 1.0)
+    G, length = unit_rows(G)
+    h, none = h / length, np.zeros(G.shape[1])
+    size = h.max(initial=0.0)  # z is no smaller; in this unit it keeps its digits
+    if size == 0.0:
+        return none
+    E, right = np.vstack([G.T, h / size]), np.append(none, 1.0)
     r = E @ scipy.optimize.nnls(E, right)[0] - right
-    return -r[:-1] / r[-1]
+    return -size * r[:-1] / r[-1] if r[-1] < 0.0 else none
 
 
 def farthest(values: Array, rates: Array, seen: Array, most: float) -> tuple[float, Array]:

@@ -6,6 +6,7 @@ from itertools import combinations
 
 import numpy as np
 from integer_program import Array, IntegerProgram, Units
+from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
 from bemcontact.formulations.local_solver import QPResult, QPStatus
@@ -37,7 +38,8 @@ def judge(program: IntegerProgram, units: Units, result: QPResult) -> Verdict:
     """Whether the claim holds for the whole numbers."""
     x = units.columns * result.x
     if result.status is QPStatus.LOCAL_MINIMIZER:
-        return _of_minimizer(program, x)
+        verdict = _of_minimizer(program, x)
+        return Verdict.RIGHT if verdict is not Verdict.RIGHT and _proved(program, x, result.working_set) else verdict
     if result.status is QPStatus.UNBOUNDED and result.ray is not None:
         return _of_ray(program, x, units.columns * result.ray)
     if result.status is QPStatus.INFEASIBLE and result.certificate is not None:
@@ -169,16 +171,36 @@ def _falls_exactly(H: Array, inwards: Array, d: Row) -> bool:
 
 def _exact_point(program: IntegerProgram, x: Array) -> Row | None:
     """Where the active constraints hold and the gradient is a combination of their normals, next to x."""
-    n, G = x.size, program.normals
-    _, _, named = _active(program, x)
-    numbers = [number for number, _ in named]
-    k = len(numbers)
-    rows = [[*[Fraction(0)] * k, *row, Fraction(int(b))] for row, (_, b) in zip(_exact(G[numbers]), named, strict=True)]
+    solution = _stationary(program, [_rational(v) for v in x], _active(program, x)[2])
+    return None if solution is None else solution[1]
+
+
+def _stationary(program: IntegerProgram, guess: Row, held: list[tuple[int, float]]) -> tuple[Row, Row] | None:
+    """Multipliers and a point where the constraints are at these bounds and the gradient is that of the multipliers."""
+    numbers, G, k = [number for number, _ in held], program.normals, len(held)
+    rows = [[*[Fraction(0)] * k, *row, Fraction(int(b))] for row, (_, b) in zip(_exact(G[numbers]), held, strict=True)]
     for i, row in enumerate(_exact(program.H)):
         of_rows = [-Fraction(int(G[number, i])) for number in numbers]
         rows.append([*of_rows, *row, -Fraction(int(program.c[i]))])
-    solution = solved_exactly(rows, k + n, [Fraction(0)] * k + [_rational(v) for v in x])
-    return None if solution is None else solution[k:]
+    solution = solved_exactly(rows, k + len(guess), [Fraction(0)] * k + guess)
+    return None if solution is None else (solution[:k], solution[k:])
+
+
+def _proved(program: IntegerProgram, x: Array, sides: NDArray[np.int8]) -> bool:
+    """Whether a strict minimizer of the working set, exact and feasible, is next to x: closer than `CLEAR` can tell."""
+    numbers, lower, upper = np.flatnonzero(sides), program.lower, program.upper
+    held = [(int(i), float(upper[i] if sides[i] == 1 else lower[i])) for i in numbers]
+    solution = _stationary(program, [Fraction(float(v)) for v in x], held)
+    if solution is None:
+        return False
+    multipliers, point = solution
+    if max(abs(float(v) - w) for v, w in zip(point, x, strict=True)) > CLOSE * max(1.0, float(np.abs(x).max())):
+        return False
+    values = [_product(row, point) for row in _exact(program.normals)]
+    feasible = all(low <= value <= high for low, value, high in zip(lower, values, upper, strict=True))
+    strict = all(y * int(sides[i]) < 0 or lower[i] == upper[i] for y, i in zip(multipliers, numbers, strict=True))
+    N = _null_space(program.normals[numbers])
+    return feasible and strict and bool(N.shape[1] == 0 or np.linalg.eigvalsh(N.T @ program.H @ N)[0] > CLOSE)
 
 
 def _snapped(rows: list[Row], d: Array) -> Row:
@@ -251,6 +273,8 @@ def _of_ray(program: IntegerProgram, x: Array, ray: Array) -> Verdict:
         return Verdict.UNSETTLED
     if curvature < -CLOSE * product and _product([_product(row, exact) for row in _exact(H)], exact) < 0:
         return Verdict.RIGHT
+    if not any(_product(row, exact) for row in _exact(H)) and _product(_exact(program.c[None])[0], exact) < 0:
+        return Verdict.RIGHT  # on a direction that H does not see, the slope is that of c
     gradient = H @ x + program.c
     terms = float((np.abs(H) @ np.abs(x) + np.abs(program.c)) @ np.abs(d))
     if abs(curvature) <= CLOSE * product and gradient @ d < -CLEAR * terms:

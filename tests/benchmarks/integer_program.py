@@ -122,6 +122,39 @@ def endless_program(rng: np.random.Generator) -> IntegerProgram:
     )
 
 
+def resting_program(rng: np.random.Generator) -> tuple[IntegerProgram, Array, NDArray[np.bool_]]:
+    """A program with a point of zero gradient and active constraints; the point, and which of its zeros are free."""
+    n, m = int(rng.integers(2, 5)), int(rng.integers(1, 4))
+    A, free = rng.integers(-2, 3, (m, n)), rng.random(n) < 0.8
+    x, B = rng.integers(-3, 4, n) * ~free, rng.integers(-2, 3, (n, n))
+    values, side = np.concatenate([x, A @ x]).astype(float), rng.integers(-1, 3, n + m)
+    side[:n] *= ~free
+    program = IntegerProgram(
+        H=(np.outer(free, free) * (B + B.T)).astype(float),
+        c=np.zeros(n),
+        A=A.astype(float),
+        lower=np.where(side > 0, values, -INF),
+        upper=np.where(np.isin(side, (-1, 2)), values, INF),
+    )
+    return program, x.astype(float), free
+
+
+def narrow_program(rng: np.random.Generator) -> IntegerProgram:
+    """A program whose rows are in part parallel to others up to a thousandth, most of them active at one point."""
+    n, m = int(rng.integers(2, 6)), int(rng.integers(2, 7))
+    A = rng.integers(-2, 3, (m, n)) * (rng.random((m, n)) < rng.choice([0.4, 0.8, 1.0]))
+    alike, other, changed = rng.random(m) < 0.5, rng.integers(0, m, m), rng.integers(0, n, m)
+    A = np.where(alike[:, None], 1000 * A[other], A)
+    A[np.arange(m), changed] += alike * rng.integers(-1, 2, m)
+    x, H = rng.integers(-3, 4, n), _hessian(n, rng)
+    values, room = np.concatenate([x, A @ x]), rng.integers(0, 5, (2, n + m)) * (rng.random((2, n + m)) < 0.2)
+    lower, upper = (values - room[0]).astype(float), (values + room[1]).astype(float)
+    absent = rng.random((2, n + m)) < 0.4
+    lower[absent[0]], upper[absent[1]] = -INF, INF
+    c = rng.integers(-2, 3, n) if rng.random() < 0.5 else -H @ x
+    return IntegerProgram(H=H.astype(float), c=c.astype(float), A=A.astype(float), lower=lower, upper=upper)
+
+
 def _edge_of_copositive(
     inwards: NDArray[np.int64], strong: NDArray[np.bool_], rng: np.random.Generator
 ) -> NDArray[np.int64]:

@@ -8,10 +8,18 @@ import pytest
 from exact_judge import Verdict, judge, solved_exactly
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from integer_program import IntegerProgram, Units, endless_program, plain_units, random_units
+from integer_program import (
+    IntegerProgram,
+    Units,
+    endless_program,
+    narrow_program,
+    plain_units,
+    random_units,
+    resting_program,
+)
 from local_solver_fuzz import case, outcomes, solved
 
-from bemcontact.formulations.local_solver import QPResult, QPStatus
+from bemcontact.formulations.local_solver import QPResult, QPStatus, minimize_qp
 
 INF = np.inf
 BAD = ("judge", "numerical", "restart")
@@ -49,6 +57,16 @@ def claimed(program: IntegerProgram, x: list[float], status: QPStatus, **evidenc
 )
 def test_the_judge_distinguishes_minimizers_from_other_points(program, x, verdict):
     assert judge(program, plain_units(program), claimed(program, x, QPStatus.LOCAL_MINIMIZER)) is verdict
+
+
+@pytest.mark.parametrize("seed", [1234, 9424, 18878])
+def test_the_judge_tells_a_strict_minimizer_from_the_corner_next_to_it(seed):
+    """A minimizer that is 4e-10 to 5e-7 away from a bound that does not hold it."""
+    rng = np.random.default_rng(seed)
+    program = narrow_program(rng)
+    units = random_units(program, rng)
+    start = rng.integers(-4, 5, program.c.size).astype(float) if rng.random() < 0.5 else None
+    assert judge(program, units, solved(program, units, start, None)) is Verdict.RIGHT
 
 
 def test_the_judge_refuses_rays_that_leave_or_rise():
@@ -98,6 +116,9 @@ def test_equations_are_solved_in_fractions():
 @example(300739627)
 @example(300745930)
 @example(300306888)
+@example(400575139)
+@example(400348856)
+@example(400871184)
 def test_no_claim_is_false_in_any_units_and_a_restart_at_an_answer_moves_nothing(seed):
     """Powers of ten from 1e-8 to 1e8 on rows, columns and the objective; random starts and working sets."""
     assert not [name for name in outcomes(seed) if any(bad in name for bad in BAD)]
@@ -114,18 +135,56 @@ def test_no_claim_is_false_at_degenerate_points_at_the_edge_of_copositivity(seed
     assert not [name for name in outcomes(seed, degenerate=True) if any(bad in name for bad in BAD)]
 
 
+@settings(max_examples=300)
+@given(st.integers(0, 10**9))
+@example(124)
+@example(141)
+@example(356)
+def test_rounding_in_place_of_zeros_makes_no_minimizer(seed):
+    """A start whose zeros are numbers from 1e-16 to 1e-60, at a point of zero gradient that is often a saddle."""
+    rng = np.random.default_rng(seed)
+    program, x, zeros = resting_program(rng)
+    units = random_units(program, rng)
+    start = x + zeros * rng.choice([-1, 1], x.size) * 10.0 ** -rng.uniform(16, 60, x.size)
+    assert judge(program, units, solved(program, units, start, None)) is not Verdict.FALSE_MINIMIZER
+
+
 @settings(max_examples=200)
 @given(st.integers(0, 10**9))
 @example(215)
 @example(226)
 @example(1129)
+@example(13713)
 def test_a_flat_ray_that_falls_has_no_end_in_any_units(seed):
     rng = np.random.default_rng(seed)
     program = endless_program(rng)
     units = random_units(program, rng)
     working_set = rng.integers(-1, 2, program.lower.size) if rng.random() < 0.3 else None
     result = solved(program, units, None, working_set)
-    assert result.status in (QPStatus.UNBOUNDED, QPStatus.NUMERICAL_FAILURE)
+    assert result.status is QPStatus.UNBOUNDED
+    assert judge(program, units, result) is not Verdict.FALSE_UNBOUNDED
+
+
+@settings(max_examples=150)
+@given(st.integers(0, 10**9))
+@example(1107)
+@example(6173)
+@example(1109)
+@example(18827)
+@example(11668)
+def test_rows_that_are_parallel_up_to_a_thousandth_have_answers_that_stay(seed):
+    """Their multipliers lose three digits; a restart, from x alone or with the working set, moves nothing."""
+    rng = np.random.default_rng(seed)
+    program = narrow_program(rng)
+    units = random_units(program, rng)
+    start = rng.integers(-4, 5, program.c.size).astype(float) if rng.random() < 0.5 else None
+    result = solved(program, units, start, None)
+    assert judge(program, units, result) in (Verdict.RIGHT, Verdict.NO_CLAIM, Verdict.UNSETTLED)
+    assert result.status is not QPStatus.NUMERICAL_FAILURE
+    if result.status is QPStatus.LOCAL_MINIMIZER:
+        sides = result.working_set if seed % 2 else None
+        again = minimize_qp(*program.stated(units), x0=result.x, working_set=sides)
+        assert (again.status, again.iterations) == (result.status, 0)
 
 
 @settings(max_examples=200)

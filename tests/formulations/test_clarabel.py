@@ -3,11 +3,12 @@
 import os
 import signal
 import threading
+from contextlib import suppress
 
 import cvxpy as cp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bemcontact.errors import SolverError
@@ -172,3 +173,24 @@ def test_an_interrupt_ends_a_solve_that_runs():
     with pytest.raises(KeyboardInterrupt), clarabel.interrupts():
         os.kill(os.getpid(), signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6), decades=st.integers(6, 11))
+@example(0, 9)
+@example(7, 9)
+@example(50, 9)
+@example(135, 8)
+def test_what_is_hardly_infeasible_is_proved_or_refused_in_a_sentence(seed, decades):
+    """Of positive numbers x <= 1 - d a mean cannot be one: this is proved while d is more than a part in 1e8."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(2, 9))
+    a, B, c = rng.random(n) + 0.1, rng.standard_normal((n, n)), rng.standard_normal(n)
+    x = cp.Variable(n)
+    goal = cp.quad_form(x, cp.psd_wrap(B @ B.T)) + c @ x
+    problem = cp.Problem(cp.Minimize(goal), [x >= 0, x <= 1 - 10.0**-decades, a @ x == a.sum()])
+    outcome = "refused"
+    with suppress(SolverError):
+        minimize_convex(problem)
+        outcome = problem.status
+    assert outcome == "infeasible" or (decades > 8 and outcome.startswith(("refused", "optimal")))

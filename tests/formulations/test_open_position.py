@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from bemcontact import CondensedContact, Problem, condense, solve
 from bemcontact.assessment.certificate import CertificateKind
+from bemcontact.formulations.open_position import farthest
 
 NOTE = "contact leaves the"
 
@@ -136,3 +137,18 @@ def test_units_do_not_decide_a_sliding_tool_whose_corners_stand_over_nodes():
             found.append(result.solution.pressure / stress)
     for pressure in found[2::2]:
         np.testing.assert_allclose(pressure, found[0], rtol=0, atol=1e-9 * found[0].max())
+
+
+@settings(max_examples=100)
+@given(seed=st.integers(0, 10**6), decades=st.integers(-8, 7))
+def test_motion_far_beyond_one_is_found(seed: int, decades: int):
+    """A known motion of any size keeps all gaps open up to the end of the step: so does the one that is found."""
+    rng = np.random.default_rng(seed)
+    rows, known = rng.standard_normal((rng.integers(1, 8), rng.integers(1, 4))), 10.0**decades * rng.standard_normal(4)
+    known = known[: rows.shape[1]]
+    values = np.zeros(len(rows))
+    rates = -(rows @ known) + 10.0**decades * rng.random(len(rows)) * rng.integers(0, 2, len(rows))
+    step, moved = farthest(values, rates, rows, 1.0)
+    left = values + step * rates + rows @ moved
+    assert step == pytest.approx(1.0)
+    assert left.min() >= -1e-9 * 10.0**decades

@@ -173,6 +173,14 @@ def test_an_addition_that_breaks_contact_is_reported():
     np.testing.assert_allclose(idle.pressure, free.pressure, atol=1e-5 * p_max)
 
 
+@pytest.mark.parametrize(("seed", "motions"), [(5, 3), (21, 3), (24, 1)])
+def test_a_load_that_is_small_beside_the_gaps_is_carried(seed, motions):
+    """A millionth of the pressure that would close the gaps: not infeasible, as a solver may call it."""
+    contact = random_contact(seed, 6, motions)
+    light = replace(contact, motion_load=1e-6 * contact.motion_load)
+    assert bemcontact.model(light).solve().status is Status.SOLVED
+
+
 def test_a_model_without_an_optimum_is_a_status_in_words():
     model = bemcontact.model(random_contact(4, 12, 1))
     too_much = model.solve(extra_constraints=[model.pressure <= -1])

@@ -102,7 +102,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
     if outcome.ending is Ending.LIMIT:
         return _finding(progress, QPStatus.ITERATION_LIMIT, descent.working.sides)
     if outcome.ending is Ending.UNBOUNDED and outcome.ray is not None:
-        progress.correct(descent.working.onto(progress.x))  # the rounding of the steps has a slope too
+        progress.place(descent.working.onto(progress.x))  # the rounding of the steps has a slope too
         ray = cleaned_ray(progress, outcome.ray)
         if ray is None:
             return Restart(sides=descent.working.sides, failed=True)

@@ -22,6 +22,8 @@ ZERO = 1e-11
 """A curvature below -ZERO is negative, in units in which the rows of |H| have size one."""
 ROUNDING = 1e-14
 """A curvature above -ROUNDING max(10, n) is not negative. Between the two limits it stays undecided."""
+OF_RAY = (1e-13, 1e-12, 1e-11, 1e-10)
+"""Sizes of the components of a ray that may be rounding, relative to the largest; tried one after the other."""
 FEW = 100
 PROBES = 8
 DESCENTS = 30
@@ -242,24 +244,35 @@ def first_order(progress: Progress, multipliers: Array, zeros: Array) -> FirstOr
 
 def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
     """The ray without rounding, if it is a recession direction on which the objective is unbounded; else None."""
-    statement, values = progress.statement, progress.values
-    if (values < progress.lowest).any() or (values > progress.highest).any():
+    if (progress.values < progress.lowest).any() or (progress.values > progress.highest).any():
         return None
-    d = np.where(np.abs(ray) > 1e-13 * np.abs(ray).max(initial=0.0), ray, 0.0)
-    d = d / np.linalg.norm(d)
+    size = np.abs(ray) / largest(ray)
+    for rounding in OF_RAY:  # what is left is judged from the data, whatever was taken away
+        d = np.where(size > rounding, ray, 0.0)
+        d = d / np.linalg.norm(d)
+        if _stays(progress.statement, d) and _has_no_end(progress, d):
+            return d
+    return None
+
+
+def _stays(statement: Statement, d: Array) -> bool:
+    """Whether the unit direction leaves no constraint, variables exactly."""
     along = statement.values(d)
     within = np.concatenate([np.zeros(d.size), 1e-10 * (statement.absolute[2] @ np.abs(d))])
     falls = np.isfinite(statement.lower) & (along < -within)
     rises = np.isfinite(statement.upper) & (along > within)
-    if falls.any() or rises.any():
-        return None
-    curvature = float(d @ statement.H @ d)
-    slope = float(progress.gradient @ d)
+    return not (falls.any() or rises.any())
+
+
+def _has_no_end(progress: Progress, d: Array) -> bool:
+    """Whether the objective falls without end on the unit direction."""
+    statement = progress.statement
+    curvature, slope = float(d @ statement.H @ d), float(progress.gradient @ d)
     zero = statement.rounding(d)
     no_rows = statement.A[:0]
     terms = progress.terms(d[:0], no_rows)
     level = progress.level(d, progress.fine_zero(terms, no_rows, no_rows.T, 0.0 * d))
-    return d if curvature < -zero or (curvature <= zero and slope < -level) else None
+    return curvature < -zero or (curvature <= zero and slope < -level)
 
 
 def separates(statement: Statement, certificate: Array) -> bool:

@@ -32,7 +32,7 @@ def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tupl
     if not np.count_nonzero(violated_signs(progress)):
         return _with_equalities(statement, sides), None
     working = WorkingSet(statement, sides)
-    progress.correct(working.onto(progress.x))
+    progress.place(working.onto(progress.x))
     while violated := (signs := _signs_of_others(progress, working)).dot(signs):
         gradient = statement.transposed(signs)
         zero = fineness * progress.options.optimality_tolerance * sqrt(violated)

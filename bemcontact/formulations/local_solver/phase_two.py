@@ -19,7 +19,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, pivoted_cholesky
 from bemcontact.formulations.local_solver.progress import Progress
-from bemcontact.formulations.local_solver.statement import EPS, Statement
+from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 from bemcontact.formulations.local_solver.working_set import (
     FLAT,
     TEMPORARY,
@@ -28,6 +28,9 @@ from bemcontact.formulations.local_solver.working_set import (
     nearest,
     wrong_sign,
 )
+
+CLEAR = 1e3
+"""A multiplier of the wrong sign is released without refinement if it exceeds the zero of all by this factor."""
 
 
 class ReducedHessian:
@@ -177,7 +180,7 @@ class Descent:
         self.hessian = ReducedHessian(progress.statement, working.null_space)
         for direction in self.hessian.left_over.T:
             working.fix(direction, TEMPORARY)
-        progress.correct(working.onto(progress.x))
+        progress.place(working.onto(progress.x))
         progress.forget()
         self.value = progress.objective
 
@@ -213,16 +216,17 @@ class Descent:
 
     def _next(self, multipliers: Array) -> tuple[bool, int | None]:
         """Whether to take a Newton step, and if not, the place of a constraint to drop, if there is one."""
-        # A quick test uses one tolerance for all components. If it finds nothing, the point is refined and each
+        # A quick test uses one tolerance for all components. If it finds nothing clear, the point is refined and each
         # component has its own tolerance. After three full Newton steps the remaining reduced gradient is rounding.
         progress, working = self.progress, self.working
         n, least = working.free.size, progress.least_index
         loose = self.whole < 3 and working.number < n
         if loose:
             reduced = multipliers[:n] * working.free
-            if reduced.dot(reduced) > (0.1 * progress.zero) ** 2:
+            rounding = 10.0 * EPS * largest(multipliers[n:])
+            if reduced.dot(reduced) > max(0.1 * progress.zero, rounding) ** 2:
                 return True, None
-        place = wrong_sign(working, self._allowed(multipliers), progress.zero, least_index=least)
+        place = wrong_sign(working, self._allowed(multipliers), CLEAR * progress.zero, least_index=least)
         if place is not None:
             return False, place
         self._refine()
@@ -238,11 +242,10 @@ class Descent:
             x = working.onto(x)
             if hessian.size:
                 x = x + hessian.newton(working.reduced(progress.statement.H.dot(x) + progress.statement.c))
-        progress.correct(x)
+        progress.place(x)
         once = working.multipliers(progress.gradient, refined=True)
         self.multipliers = working.refined(once)
-        zero = self._fine_zero(self.multipliers)
-        self.zeros = np.concatenate([zero, zero.dot(np.abs(working.N))]) + np.abs(self.multipliers - once)
+        self.zeros = self._fine_zero(self.multipliers) + np.abs(self.multipliers - once)
 
     def _allowed(self, multipliers: Array) -> Array:
         """Multipliers (n + r,) with zeros for refused constraints."""
@@ -306,10 +309,10 @@ class Descent:
     def _fine_slope(self, direction: Array) -> float:
         """The slope along a direction that counts as zero."""
         multipliers = self.working.multipliers(self.progress.gradient)
-        return self.progress.level(direction, self._fine_zero(multipliers))
+        return self.progress.level(direction, self._fine_zero(multipliers)[: direction.size])
 
     def _fine_zero(self, multipliers: Array) -> Array:
-        """Size of each component of the gradient that counts as zero (n,), with multipliers (n + r,)."""
+        """Size of each component of the gradient and of each multiplier of rows that counts as zero (n + r,)."""
         working, of_rows = self.working, multipliers[self.progress.x.size :]
         terms = self.progress.terms(of_rows, working.W)
         return self.progress.fine_zero(terms, working.W, working.N, self._reach(terms))

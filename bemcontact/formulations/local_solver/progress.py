@@ -15,6 +15,9 @@ FINE = 1e-3
 PARALLEL = 1e-10
 """A unit direction whose product with a normal is below this does not meet the constraint, except on a long step."""
 
+LOST = EPS
+"""A component that was never larger than this, relative to the point or to one, is the rounding of directions."""
+
 MANY = 100
 """Largest number of points that are stored before `travelled` is updated."""
 
@@ -99,16 +102,23 @@ class Progress:
         return terms + np.abs(of_rows).dot(np.abs(rows)) if of_rows.size else terms
 
     def fine_zero(self, terms: Array, rows: Array, inverse: Array, reach: Array) -> Array:
-        """Size of each component of the gradient that counts as zero, relative to its own terms (n,).
+        """Size of each component of the gradient that counts as zero, then of each multiplier of rows (n + r,).
 
-        The variables may differ in size by many orders, so each component has its own tolerance. Rounding in one
-        component changes others through the multipliers of the rows (r, n), which have the right inverse (n, r). The
-        components of the point have the rounding of numbers of the size `reach` (n,).
+        The variables may differ in size by many orders, so each component has its own tolerance, relative to its own
+        terms. Rounding in one component changes the multipliers of the rows (r, n) by their right inverse (n, r), and
+        so other components. The components of the point have the rounding of numbers of the size `reach` (n,); faint
+        ones have no digit.
         """
-        lost = EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(self.travelled, reach)))
-        if rows.size:
-            lost += lost.dot(np.abs(inverse)).dot(np.abs(rows))
-        return np.maximum(FINE * self.options.optimality_tolerance * terms, 100.0 * lost)
+        size = self.travelled
+        size = np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
+        lost = EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(size, reach)))
+        fine = FINE * self.options.optimality_tolerance * terms
+        if not rows.size:
+            return np.maximum(fine, 100.0 * lost)
+        N = np.abs(inverse)
+        of_rows = lost.dot(N)
+        lost += of_rows.dot(np.abs(rows))
+        return np.maximum(np.concatenate([fine, fine.dot(N)]), 100.0 * np.concatenate([lost, of_rows]))
 
     def level(self, direction: Array, zero: Array) -> float:
         """Size of a slope along a direction that counts as zero, from that of each component of the gradient (n,)."""
@@ -125,13 +135,6 @@ class Progress:
     def least_index(self) -> bool:
         """Whether the run has stalled at a degenerate vertex, so that Bland's rules decide."""
         return self.stalled > STALLED
-
-    def correct(self, x: Array) -> None:
-        """Replace the point by a corrected one, and compute the gradient there."""
-        if np.count_nonzero(x != self.x):
-            self.place(x)
-        else:
-            self.look()
 
     def place(self, x: Array) -> None:
         """Move to a point, and compute values, slacks and gradient there."""

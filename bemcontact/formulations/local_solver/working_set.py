@@ -26,7 +26,7 @@ from bemcontact.formulations.local_solver.factorizations import (
     unit_rows,
 )
 from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, Progress
-from bemcontact.formulations.local_solver.statement import Sides, Statement
+from bemcontact.formulations.local_solver.statement import EPS, Sides, Statement, largest
 
 EQUALITY = 2
 TEMPORARY, FLAT = -1, -2
@@ -36,7 +36,7 @@ DEPENDENT = 1e-9
 """A normal counts as dependent if its relative distance from the span of the others is smaller."""
 
 ALIKE = 1e-12
-"""Limit, in place of `DEPENDENT`, for a constraint that enters after it blocked a step."""
+"""Limit, in place of `DEPENDENT`, for a constraint that enters after it blocked a step, if N has all its digits."""
 
 SHARP, WEAR = 1e-12, 1e-8
 """Relative size of a refinement above which refinements are needed, and above which N is computed again."""
@@ -191,7 +191,13 @@ class WorkingSet:
         outside = normal
         for _ in range(2):
             outside = (outside - outside.dot(self.N).dot(self.W)) * self.free
-        return float(outside.dot(outside)) <= ALIKE**2 * float(normal.dot(normal))
+        return self._is_rounding(float(outside.dot(outside)), float(normal.dot(normal)))
+
+    def _is_rounding(self, outside: float, whole: float = 1.0) -> bool:
+        """Whether the squared length of a normal outside the span is none, beside that of the whole normal."""
+        if outside > DEPENDENT**2 * whole:
+            return False
+        return outside <= max(ALIKE, 10.0 * EPS * largest(self.N)) ** 2 * whole
 
     def fix(self, direction: Array, kind: int) -> None:
         """Add a temporary row, with a direction of the null space as its normal."""
@@ -209,7 +215,7 @@ class WorkingSet:
             self.sharp = False
             outside -= again.dot(self.W) * self.free
             size = float(outside.dot(normal))
-        if size <= ALIKE**2:
+        if self._is_rounding(size):
             return None
         inverse = outside / size
         add_rank_one(self.N, -1.0, inverse, along)
