@@ -5,7 +5,7 @@ A single quantity may change little by accident, where its error passes through 
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -24,6 +24,8 @@ INTENSITY, INTENSITY_FLOOR = 3.0, 5.0
 """Factors of the change of the intensity of an infinite pressure, and of that of the pressure, before `SAFETY`."""
 UNKNOWN_EXPONENT = 0.01
 """Least error of the intensity if its exponent is measured."""
+NOTHING = 1e-9
+"""Motion over the largest displacement that is round-off."""
 
 LEAST_POINTS = 5
 """Points in contact in an interval, those of two elements, below which bisecting elements does not tell the error."""
@@ -87,6 +89,7 @@ def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_f
     sizes = [float(np.hypot(*np.moveaxis(answer.displacement, 2, 0)).max()) for answer in difference.pair]
     bar = estimate.bar(max(_change(*sizes), *changes))
     yield ErrorBar(quantity="displacement", zone=None, value=estimate.value(*sizes), bar=bar)
+    yield from _motion_bars(estimate, max(changes), max(sizes))
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +113,52 @@ class _Estimate:
         """Mesh and answer that are reported."""
         one, two = self.difference.pair
         return (self.difference.fine, two) if self.of_fine else (self.difference.coarse, one)
+
+
+def _motion_bars(estimate: _Estimate, m: float, largest: float) -> Iterator[ErrorBar]:
+    """Error bars of the free motions of the body, and of the places and rotations of tools that are free to move.
+
+    Of what is round-off beside the largest displacement [L] there is none.
+    """
+    size = estimate.difference.fine.mesh.size
+    for one, two in zip(*map(_motions, estimate.difference.pair), strict=True):
+        value = estimate.value(one.size, two.size)
+        if abs(value) * (size if one.quantity == "rotation" else 1.0) > NOTHING * largest:
+            change = float(np.linalg.norm(two.amount - one.amount)) / abs(value)
+            bar = estimate.bar(max(change, m))
+            yield ErrorBar(quantity=one.quantity, zone=None, mover=one.mover, value=value, bar=bar)
+
+
+class _Motion(NamedTuple):
+    """An amplitude or an angle, or the displacement of the point of a tool."""
+
+    quantity: Literal["motion", "rotation"]
+    mover: str
+    amount: Array
+
+    @property
+    def size(self) -> float:
+        """The number, or the length of the displacement."""
+        return float(self.amount[0] if len(self.amount) == 1 else np.hypot(*self.amount))
+
+
+def _motions(answer: CaseAnswer) -> Iterator[_Motion]:
+    """Motions along the free ways of the body, and of tools that are free."""
+    contact, amplitudes = answer.condensation.contact, answer.solution.rigid_amplitudes
+    angles, arms = contact.rotations(amplitudes), contact.motion_arms
+    for j, name in enumerate(contact.motion_names):
+        if " of the tool " in name:
+            continue  # told with the tool
+        if angles is not None and arms is not None and np.isfinite(arms[j]):
+            yield _Motion("rotation", name, angles[j : j + 1])
+        else:
+            yield _Motion("motion", name, amplitudes[j : j + 1])
+    moved = contact.tools.displacement(amplitudes)
+    for name, place, free in zip(contact.tools.names, moved, contact.tools.free.reshape(-1, 3), strict=True):
+        if free[:2].any():
+            yield _Motion("motion", name, place[:2])
+        if free[2]:
+            yield _Motion("rotation", name, place[2:])
 
 
 def pressure_change(difference: MeshDifference, zone: int, singularities: Sequence[Singularity]) -> float | None:

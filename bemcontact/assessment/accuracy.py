@@ -9,8 +9,10 @@ from pydantic import computed_field
 
 from bemcontact.serialization import Leaf
 
-Quantity = Literal["peak", "force", "start", "end", "pressure", "displacement", "intensity"]
+Quantity = Literal["peak", "force", "start", "end", "pressure", "displacement", "intensity", "motion", "rotation"]
 """What an error bar is of."""
+TOLD: tuple[Quantity, ...] = ("intensity", "motion", "rotation")
+"""Quantities that are told with their error bars, and to which the accuracy asked for does not apply."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,15 +21,17 @@ class ErrorBar(Leaf):
 
     quantity: Quantity
     """What it is: peak pressure, force on a zone, start or end of a contact interval, the pressure as a whole, largest
-    displacement, or intensity of an infinite pressure."""
+    displacement, intensity of an infinite pressure, or motion or rotation of a tool or along a free motion."""
     zone: str | None
-    """Name of the contact zone; null for the displacement."""
+    """Name of the contact zone; null for displacements and motions."""
     interval: int | None = None
     """Number of the contact interval of a start or an end, from 0 on; null for others."""
+    mover: str | None = None
+    """Name of the tool or of the free motion of a motion or a rotation; null for others."""
     value: float | None
     """Value: pressure [p], sum of the magnitudes of the contact forces per thickness [p L], position along the run of
-    the zone [L], root of the mean square of the pressure [p], displacement [L], or intensity K of p = K s^-α [p L^α];
-    null if there is none."""
+    the zone [L], root of the mean square of the pressure [p], displacement or motion [L], rotation [rad], or intensity
+    K of p = K s^-α [p L^α]; null if there is none."""
     bar: float | None
     """Estimated error, relative to the value; of a start or an end, to the length of its interval. Null if unknown."""
     note: str = ""
@@ -36,9 +40,9 @@ class ErrorBar(Leaf):
     @computed_field
     @property
     def promised(self) -> bool:
-        """Whether the accuracy asked for applies to it: not to intensities, nor where there is nothing to estimate."""
+        """Whether the accuracy asked for applies to it: not to `TOLD`, nor where there is nothing to estimate."""
         nothing = self.value is None or (self.quantity == "force" and self.value == 0)
-        return self.quantity != "intensity" and not (self.bar is None and nothing)
+        return self.quantity not in TOLD and not (self.bar is None and nothing)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +52,7 @@ class Accuracy(Leaf):
     asked: float | None
     """Relative accuracy asked for; null if none is."""
     met: bool | None = None
-    """Whether all error bars are below it but those of intensities; null if errors were not estimated."""
+    """Whether all error bars are below it but those of intensities and motions; null if errors were not estimated."""
     passes: int = 0
     """Number of meshes whose errors were estimated; 1 for a mesh that was stated."""
     bars: tuple[ErrorBar, ...] = ()

@@ -37,7 +37,7 @@ UNRESOLVED = 1e-3
 QUANTITIES = {
     "peak": "peak pressure", "force": "sum of contact forces", "start": "start of contact", "end": "end of contact",
     "pressure": "pressure as a whole", "displacement": "largest displacement",
-    "intensity": "intensity of the infinite pressure",
+    "intensity": "intensity of the infinite pressure", "motion": "motion", "rotation": "rotation",
 }  # fmt: skip
 """Name of a quantity with an error bar -> the same in words."""
 LEAST_SHOWN = 1e-5
@@ -75,7 +75,7 @@ def error_percent(error: float | None) -> str:
 
 def bar_in_words(bar: Record) -> str:
     """Name a quantity and its zone: ``peak pressure of foot``."""
-    return QUANTITIES[bar["quantity"]] + (f" of {bar['zone']}" if bar["zone"] else "")
+    return QUANTITIES[bar["quantity"]] + (f" of {bar['zone'] or bar['mover']}" if bar["zone"] or bar["mover"] else "")
 
 
 def bars_of(record: Record, quantity: str) -> Iterator[Record]:
@@ -139,7 +139,7 @@ def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
         share = "not known" if error is None else f"{100 * error / (asked or 1.0):.2g} %"
         yield {
             "quantity": sentence_case(QUANTITIES[bar["quantity"]]) + interval,
-            "zone": bar["zone"] or NOTHING,
+            "zone": bar["zone"] or bar["mover"] or NOTHING,
             "value": _bar_value(bar, size, units),
             "share": share if asked and bar["promised"] else NOTHING,
             "colour": "bad" if over else "",
@@ -181,6 +181,8 @@ def _unit_of_bar(bar: Record, units: Units) -> str:
             return per_thickness(units)
         case "intensity":
             return f"{units.stress}·{units.length}^{bar['note'].rpartition('s^-')[2]}" if units.stress else ""
+        case "rotation":
+            return "rad"
     return units.length
 
 
@@ -249,7 +251,7 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
         if " of the tool " not in name:  # the line of a tool tells where it is
             yield "Free motion", f"{_in_sense(name, record, j)}{_amount(record, j, units)}"
     for tool in record["tools"]:
-        yield "Tool", _tool(tool, size, pressed, moves, units)
+        yield "Tool", _tool(record, tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
     written = (f"{name.replace('_', ' ')} {value + 0.0:.1e}" for name, value in residuals if value is not None)
     yield "Residuals", ", ".join(written)
@@ -274,7 +276,14 @@ def _amount(record: Record, motion: int, units: Units) -> str:
     if angles is None:
         return ""
     angle = angles[motion]
-    return f": {with_unit(number(abs(angle)), 'rad') if angle else with_unit(number(moved), units.length)}"
+    bar = _bar_of_motion(record, "rotation" if angle else "motion", record["motion_names"][motion])
+    unit = "rad" if angle else units.length
+    return f": {with_unit(with_bar(abs(angle) if angle else moved, bar), unit)}"
+
+
+def _bar_of_motion(record: Record, quantity: str, mover: str) -> float | None:
+    """Error bar of a motion or a rotation; None if it is not known."""
+    return next((bar["bar"] for bar in bars_of(record, quantity) if bar["mover"] == mover), None)
 
 
 def _in_sense(name: str, record: Record, motion: int) -> str:
@@ -285,10 +294,13 @@ def _in_sense(name: str, record: Record, motion: int) -> str:
     return re.sub(r"(counter)?clockwise", lambda sense: "clockwise" if sense[1] else "counterclockwise", name)
 
 
-def _tool(tool: Record, size: float, pressed: float, moves: float, units: Units) -> str:
+def _tool(record: Record, tool: Record, size: float, pressed: float, moves: float, units: Units) -> str:
     """Displacement of a tool, and the force and moment of the body on it."""
-    moved = vector(tool["displacement"], units.length, scale=moves)
-    turned = with_unit(number(zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)), "rad")
+    bar = _bar_of_motion(record, "motion", tool["name"])
+    error = None if bar is None else bar * float(np.hypot(*tool["displacement"]))
+    moved = _with_error(tool["displacement"], error, units.length, moves)
+    turn = zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)
+    turned = with_unit(with_bar(turn, _bar_of_motion(record, "rotation", tool["name"])), "rad")
     force = vector(tool["force_of_body"], per_thickness(units), scale=pressed)
     moment = with_unit(number(zero_if_negligible(tool["moment_of_body"], pressed * size)), units.force)
     about = vector(tool["point"])
@@ -346,10 +358,15 @@ def _force(components: tuple[float, float], record: Record, zone: str | None, un
     unit, pressed = per_thickness(units), pressed_by(record)
     bars = [bar for bar in bars_of(record, "force") if zone in (bar["zone"], None)]
     errors = [abs(bar["value"]) * bar["bar"] for bar in bars if bar["value"] and bar["bar"] is not None]
-    x, y = (zero_if_negligible(value, pressed) for value in components)
-    if len(errors) != 1 or len(bars) != 1 or not (x or y):
-        return vector((x, y), unit, scale=pressed)
-    (x_written, y_written), shown, power = _rounded((x, y), errors[0])
+    return _with_error(components, errors[0] if len(errors) == len(bars) == 1 else None, unit, pressed)
+
+
+def _with_error(components: tuple[float, float], error: float | None, unit: str, scale: float) -> str:
+    """Write a vector and its error: (0.090, 16.211) ± 0.014 N/mm; what is negligible beside the scale is zero."""
+    x, y = (zero_if_negligible(value, scale) for value in components)
+    if error is None or not (x or y):
+        return vector((x, y), unit, scale=scale)
+    (x_written, y_written), shown, power = _rounded((x, y), error)
     written = f"({x_written}, {y_written}) ± {shown}"
     return with_unit(f"({written}){_exponent(power)}" if power else written, unit)
 

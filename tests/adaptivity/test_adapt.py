@@ -155,6 +155,46 @@ def test_contact_that_narrows_without_end_has_an_answer_that_does_not_hold(size:
     assert result.accuracy.reason
 
 
+@pytest.mark.parametrize(("x", "turns"), [(0.0, False), (1.0, True)])
+def test_tools_that_are_free_have_error_bars_of_where_they_are(x: float, turns: bool):
+    """A roller or a punch on a pad: where it goes and how it turns at 1 % and 0.1 % differ by less than both bars."""
+    corners = {
+        "bottom": (-10, 0),
+        "right": (10, 0),
+        "free": (10, 8),
+        "top": (3, 8),
+        "beside": (-3, 8),
+        "left": (-10, 8),
+    }
+    round_, flat = (
+        {"kind": "circle", "center": [0, 68], "radius": 60, "body": "outside"},
+        {"kind": "plane", "point": [0, 8], "normal": [0, -1]},
+    )
+    force = {"y": -300.0, **({"moment": -300.0 * x} if turns else {})}
+    problem = Problem.model_validate(
+        {
+            "name": "pad",
+            "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": name, "start": start} for name, start in corners.items()]},
+            "conditions": {"bottom": {"displacement": {"x": 0, "y": 0}}},
+            "contact_zones": {"top": {"edges": "top", "surface": flat if turns else round_}},
+            "tools": {"tool": {"zones": "top", "point": [0, 8], "force": force}},
+        }
+    )
+    coarse, fine = (
+        {item.quantity: item for item in found(problem, accuracy).accuracies[0].bars if item.mover == "tool"}
+        for accuracy in (1e-2, 1e-3)
+    )
+    assert set(coarse) == set(fine) == {"motion", *(["rotation"] if turns else [])}
+    for quantity, one in coarse.items():
+        other = fine[quantity]
+        assert not one.promised
+        assert one.value is not None
+        assert other.value is not None
+        assert 0 < (other.bar or 0) < (one.bar or 0) < 0.1
+        assert abs(one.value / other.value - 1) <= (one.bar or 0) + (other.bar or 0)
+
+
 def test_without_contact_displacements_are_still_judged():
     """A clamped strip that bends above the floor."""
     (judged,) = found(no_contact()[0]).accuracies

@@ -236,7 +236,7 @@ def test_solve_with_case_solves_one():
     assert answer.exit_code == 0, answer.stderr
     assert "block between a press and a table, off the middle" in answer.stdout
     assert_states(answer.stdout, "Peak pressure … 150.0")
-    assert "press: moves by (0, -0.017333) mm" in answer.stdout
+    assert "press: moves by (0, -0.01733" in answer.stdout
 
 
 def test_json_of_all_cases_and_of_one():
