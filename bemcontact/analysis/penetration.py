@@ -66,13 +66,25 @@ def penetration_on_path(
         state = _state_at(varied, value, contact, solution)
         points = next(iter(varied.condensed.values())).body.points
         gaps = surface_gaps(problem, state, contact, solution, outline)
-        nearby = path.peaks_within(t - reach, t + reach) if 0 < i < last else None
+        nearby = _peaks_within(path, t - reach, t + reach) if 0 < i < last else None
         found, said = penetration(gaps, points, contact, solution, nearby)
         if found is not None and (worst is None or found.depth > worst.depth):
             worst, at = found, value
         for note in said:
             notes.setdefault(note, []).append(value)
     return worst, at, tuple(f"{_where(varied.key, values)}, {note}" for note, values in notes.items())
+
+
+def _peaks_within(path: LoadPath, low: float, high: float) -> Array:
+    """Least and largest peak (2, zones) of each zone between two t, by the breakpoints between them and the ends.
+
+    Ends beyond those of the path are those of the path.
+    """
+    ends = [path.at(min(max(t, path.begins_at), path.ends_at)).pressure for t in (low, high)]
+    pressure = np.array([*ends, *path.pressure[(low <= path.parameter) & (path.parameter <= high)]])
+    own = path.start.zone == np.arange(len(path.zones))[:, None]
+    peaks = np.where(own, pressure[:, None, :], 0.0).max(axis=2, initial=0.0)
+    return np.array([peaks.min(axis=0), peaks.max(axis=0)])
 
 
 def _where(key: str, values: Sequence[float]) -> str:

@@ -151,17 +151,6 @@ class LoadPath(Leaf):
         """Largest pressure (b,) at the breakpoints [p]; convex in t between two of them."""
         return self.pressure.max(axis=1, initial=0.0)
 
-    def peaks_within(self, low: float, high: float) -> Array:
-        """Least and largest peak (2, zones) of each zone between two t, by the breakpoints between them and the ends.
-
-        Ends beyond those of the path are those of the path.
-        """
-        ends = [self.at(min(max(t, self.begins_at), self.ends_at)).pressure for t in (low, high)]
-        pressure = np.array([*ends, *self.pressure[(low <= self.parameter) & (self.parameter <= high)]])
-        own = self.start.zone == np.arange(len(self.zones))[:, None]
-        peaks = np.where(own, pressure[:, None, :], 0.0).max(axis=2, initial=0.0)
-        return np.array([peaks.min(axis=0), peaks.max(axis=0)])
-
     @computed_field
     @property
     def resultant(self) -> PairTables:

@@ -9,12 +9,11 @@ import pytest
 from drawings import block_in_a_corner
 from matplotlib.figure import Figure
 from studies import punch
-from tool_problems import FREE, FREE_CASES, made
+from tool_problems import FREE, FREE_CASES, made, not_met, of_peaks
 
 import bemcontact
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.load_cases import CaseResults
-from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.problem import Problem, Units
 from bemcontact.report import figures
@@ -25,7 +24,7 @@ from bemcontact.report.verdicts import case_verdicts
 
 @cache
 def found() -> CaseResults:
-    return bemcontact.solve_cases(made(FREE, **FREE_CASES, accuracy=0.01, mesh={"adapt": False}))
+    return not_met(bemcontact.solve_cases(made(FREE, **FREE_CASES)))
 
 
 def test_each_case_has_its_curves_and_its_bar():
@@ -66,14 +65,6 @@ def test_pictures_write_peaks_with_the_digits_of_the_table(of_wind: float | None
 
 
 NO_UNITS = Units()
-
-
-def of_peaks(result: bemcontact.Result, error: float | None) -> Accuracy:
-    """The accuracy of a result whose peaks, by zone, all have this error."""
-    contact, pressure = result.contact, result.solution.pressure
-    peaks = {name: pressure[contact.zone == number].max() for number, name in enumerate(contact.zone_names)}
-    bars = (ErrorBar(quantity="peak", zone=name, value=float(value), bar=error) for name, value in peaks.items())
-    return Accuracy(asked=None, bars=tuple(bars))
 
 
 def test_title_states_both_verdicts():
