@@ -20,7 +20,6 @@ from adaptive_problems import Case, problems
 import bemcontact
 from bemcontact import Problem
 from bemcontact.adaptivity.adapt import Meshed, meshed
-from bemcontact.adaptivity.fields import solved
 from bemcontact.assessment.accuracy import ErrorBar
 
 ACCURACIES = 1e-2, 3e-3, 1e-3
@@ -57,8 +56,8 @@ def errors(found: Meshed, truth: Meshed | None, case: Case) -> Iterator[tuple[Er
                 continue
             alike = [
                 other for other in reference
-                if (other.quantity, other.zone, other.interval) == (bar.quantity, bar.zone, bar.interval)
-                and other.value is not None and other.bar is not None
+                if (other.quantity, other.zone, other.interval, other.mover)
+                == (bar.quantity, bar.zone, bar.interval, bar.mover) and other.value is not None and other.bar is not None
             ]  # fmt: skip
             if bar.quantity == "intensity":
                 alike = alike[:1] if len(alike) == 1 else []
@@ -120,8 +119,9 @@ def main(patterns: Sequence[str]) -> None:
             begin = time.process_time()
             found = meshed(case[0].with_value("accuracy", asked))
             seconds = time.process_time() - begin
+            alone = found.problem.model_copy(update={"accuracy": None})
             begin = time.process_time()
-            solved(found.problem)
+            bemcontact.solve_cases(alone) if alone.case_names else bemcontact.solve(alone)
             one = time.process_time() - begin
             unknowns = found.condensation.body.mesh.degrees_of_freedom
             met, passes = all(item.met for item in found.accuracies), found.accuracies[0].passes
