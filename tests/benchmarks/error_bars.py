@@ -57,7 +57,8 @@ def errors(found: Meshed, truth: Meshed | None, case: Case) -> Iterator[tuple[Er
             alike = [
                 other for other in reference
                 if (other.quantity, other.zone, other.interval, other.mover)
-                == (bar.quantity, bar.zone, bar.interval, bar.mover) and other.value is not None and other.bar is not None
+                == (bar.quantity, bar.zone, bar.interval, bar.mover)
+                and other.value is not None and other.bar is not None
             ]  # fmt: skip
             if bar.quantity == "intensity":
                 alike = alike[:1] if len(alike) == 1 else []
