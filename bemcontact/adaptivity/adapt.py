@@ -48,11 +48,13 @@ def meshed(
     *,
     errors: bool = True,
     singular: Sequence[Sequence[Singularity]] = (),
+    halved: bool = False,
 ) -> Meshed:
     """Condense a problem on the mesh that it states, or on one that is found for the accuracy asked.
 
     A found mesh is cut as `problem.mesh.refine` says. The errors of a stated mesh and of a cut one are estimated,
-    unless no accuracy is asked for or `errors` is false. `singular` are infinite pressures under each load case that
+    unless no accuracy is asked for or `errors` is false: from its elements halved, or if those of a stated mesh are
+    `halved` ones, as on a mesh that was found, from these. `singular` are infinite pressures under each load case that
     the search for another mesh of the problem recognized.
 
     Raises
@@ -64,40 +66,42 @@ def meshed(
     """
     progress = progress or (lambda _: None)
     if not problem.adapts:
-        return _stated(problem, progress, errors, singular)
+        return _stated(problem, progress, errors, singular, halved)
     found = _found(cut(problem, 1), progress)
     if problem.mesh.refine == 1:
         return found
-    finer = _stated(found.problem.refined(problem.mesh.refine), progress, errors, found.singular)
+    finer = _stated(found.problem.refined(problem.mesh.refine), progress, errors, found.singular, False)
     known = tuple(mine.knowing(its) for mine, its in zip(finer.accuracies, found.accuracies, strict=True))
     return replace(finer, accuracies=known, singular=found.singular)
 
 
 def _stated(
-    problem: Problem, progress: Callable[[str], object], errors: bool, singular: Sequence[Sequence[Singularity]]
-) -> Meshed:
-    """Condense a problem on its mesh, and estimate the errors by bisecting every element."""
+    problem: Problem, progress: Callable[[str], object], errors: bool, singular: Sequence[Sequence[Singularity]],
+    halved: bool,
+) -> Meshed:  # fmt: skip
+    """Condense a problem on its mesh, and estimate the errors from a mesh with elements twice or half as long."""
     asked, refine = problem.asked_accuracy, problem.mesh.refine
     if asked is None or not errors:
         return _unsolved(problem, asked, NONE_ASKED if asked is None else NOT_ESTIMATED)
     progress("mesh as stated")
     try:
-        coarse = solved(problem)
+        own = solved(problem)
     except SolverError as error:
         return _unsolved(problem, asked, str(error))
     try:
-        unknowns = 2 * coarse.degrees_of_freedom
-        if unknowns > MOST_UNKNOWNS:
+        unknowns = 2 * own.degrees_of_freedom
+        if not halved and unknowns > MOST_UNKNOWNS:
             raise ProblemError(f"with every element in two the mesh has {unknowns} unknowns, more than {MOST_UNKNOWNS}")
-        progress("every element in two")
-        fine = solved(cut(problem, 2 * refine))
-        differences = [MeshDifference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
+        progress("every two elements in one" if halved else "every element in two")
+        other = solved(cut(problem, refine // 2 if halved else 2 * refine))
+        coarse, fine = (other, own) if halved else (own, other)
+        differences = [MeshDifference(coarse=coarse, fine=fine, number=i) for i in range(len(own.answers))]
         singular = singular or tuple(map(recognized, differences))
-        bars = [error_bars(item, its, of_fine=False) for item, its in zip(differences, singular, strict=True)]
+        bars = [error_bars(item, its, of_fine=halved) for item, its in zip(differences, singular, strict=True)]
         accuracies = [Accuracy.of(asked, 1, its) for its in bars]
     except (ProblemError, SingularSystemError, SolverError) as error:
-        accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(coarse.answers)
-    return Meshed(problem=problem, condensation=coarse.condensation, accuracies=tuple(accuracies))
+        accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(own.answers)
+    return Meshed(problem=problem, condensation=own.condensation, accuracies=tuple(accuracies))
 
 
 def first_mesh(problem: Problem) -> Problem:

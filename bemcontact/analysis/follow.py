@@ -68,7 +68,7 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     varied = Variation(on_mesh, key)
     path = load_path(*(replace(contact, name=problem.title) for contact in between(varied, begin, end)))
     deepest, at, said = penetration_on_path(varied, path, begin, end)
-    first, last = (_accuracy(varied, value, found.get(value)) for value in (begin, end))
+    first, last = (_accuracy(varied, value, found.get(value), bool(found)) for value in (begin, end))
     return ParameterPath(
         key=key, start=begin, end=end, path=path, start_accuracy=first, end_accuracy=last,
         penetration=deepest, penetrates_at=at, said=said,
@@ -155,11 +155,13 @@ def _no_coarser(problem: Problem, on_mesh: Problem) -> Problem:
     return problem.model_copy(update={"boundary": on_mesh.boundary.with_element_ends(ends), "mesh": mesh})
 
 
-def _accuracy(varied: Variation, value: float, found: Meshed | None) -> Accuracy:
+def _accuracy(varied: Variation, value: float, found: Meshed | None, halved: bool) -> Accuracy:
     """Accuracy of the mesh at one value of a key; a load that presses nothing has no errors to estimate."""
+    if found and found.problem.boundary is varied.problem.boundary:
+        return found.accuracies[0]
     try:
         singular = found.singular if found else ()
-        (accuracy,) = meshed(varied.at(value), singular=singular).accuracies
+        (accuracy,) = meshed(varied.at(value), singular=singular, halved=halved).accuracies
     except ProblemError as error:
         return Accuracy(asked=varied.problem.asked_accuracy, reason=str(error).splitlines()[0])
     return accuracy.knowing(*found.accuracies) if found else accuracy

@@ -69,7 +69,7 @@ def test_the_change_of_a_peak_is_that_of_hertz(clearance, turn, size):
         assert result.penetration.kind is Misfit.MOVED
 
 
-@settings(max_examples=4, deadline=None, phases=QUICK)
+@settings(max_examples=2, deadline=None, phases=QUICK)
 @given(st.floats(0.01, 0.5), st.sampled_from([1e-3, 3e-3, None]))
 @example(0.1, 1e-3)
 def test_the_accuracy_asked_is_the_change_that_is_noted(clearance, asked):
@@ -183,7 +183,7 @@ def strip(distance, size=1.0, radius=3.0):
     return Problem(**data)  # pyright: ignore[reportArgumentType]
 
 
-@settings(max_examples=3, deadline=None, phases=QUICK)
+@settings(max_examples=2, deadline=None, phases=QUICK)
 @given(st.floats(0.02, 0.2), st.sampled_from([1e-3, 1.0, 1e3]))
 @example(0.1, 1.0)
 def test_a_path_through_first_touch_is_proved(distance, size):
@@ -201,7 +201,7 @@ def test_a_path_through_first_touch_is_proved(distance, size):
     assert path.path.pressure[-1] == pytest.approx(last.solution.pressure, abs=1e-9 * last.footprint.peak.pressure)
 
 
-@settings(max_examples=3, deadline=None, phases=QUICK)
+@settings(max_examples=2, deadline=None, phases=QUICK)
 @given(st.floats(0.3, 4))
 @example(3.0)
 def test_a_path_with_wrong_curvature_is_proved_nowhere(clearance):
