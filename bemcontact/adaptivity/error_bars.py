@@ -213,8 +213,8 @@ def _infinite(its: Sequence[Singularity]) -> str:
         return "infinite where contact reaches the end of its zone: a corner of the surface, or else a zone too short"
     if any(item.exponent == 0 for item in its):
         return (
-            "infinite like a logarithm, or nearly so, at a corner of the body, because of a shear load beside the "
-            "contact or of a surface at an angle to the edge"
+            "infinite like a logarithm, or nearly so: at a kink of the surface, or at a corner of the body because of "
+            "a shear load beside the contact or of a surface at an angle to the edge"
         )
     return "infinite at a corner or a kink"
 

@@ -104,7 +104,8 @@ class Watch:
             history.element.append(float(coarse.weights[elements].sum(axis=1).min()))
             if history.grows() or (history.exponent is not None and GROWING[0] < history.growth[-1] < GROWING[1]):
                 known = exponents_at(coarse, one, coarse.runs[place.run], place.position)
-                history.exponent, history.exact = _nearest(float(np.log2(history.growth[-1])), known)
+                measured = float(np.log2(history.growth[-1]))
+                history.exponent, history.exact = _nearest(measured, known) if known else (0.0, True)  # a logarithm
             elif history.exponent is None and _is_logarithmic(difference, place):
                 history.exponent, history.exact = 0.0, True
         return tuple(
