@@ -169,7 +169,7 @@ def test_an_interrupt_ends_a_solve_that_runs():
     timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        all([minimize_convex(problem) for _ in range(100)])
+        sum(minimize_convex(problem) is not problem for _ in range(100))
     with pytest.raises(KeyboardInterrupt), clarabel.interrupts():
         os.kill(os.getpid(), signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
