@@ -18,7 +18,7 @@ from bemcontact.bem import reference_element
 
 SAFETY = 1.5
 """Error bar over the change."""
-PEAK, FORCE, END = 0.5, 0.1, 0.1
+PEAK, FORCE, END = 1.0, 0.25, 0.1
 """Least changes of a peak, a force and the ends of contact, over that of the pressure as a whole."""
 INTENSITY, INTENSITY_FLOOR = 3.0, 5.0
 """Factors of the change of the intensity of an infinite pressure, and of that of the pressure, before `SAFETY`."""

@@ -64,8 +64,9 @@ def errors(found: Meshed, truth: Meshed | None, case: Case) -> Iterator[tuple[Er
                 alike = alike[:1] if len(alike) == 1 else []
             if not alike or not alike[0].value:
                 continue
-            scale = lengths.get((bar.zone, bar.interval), abs(alike[0].value))
-            yield bar, max(0.0, abs(bar.value - alike[0].value) / scale - alike[0].bar)
+            scale = lengths.get((bar.zone, bar.interval), abs(bar.value))
+            allowed = alike[0].bar * lengths.get((bar.zone, bar.interval), abs(alike[0].value))
+            yield bar, max(0.0, abs(bar.value - alike[0].value) - allowed) / scale
 
 
 def stated(problem: Problem, elements: int) -> Problem:
