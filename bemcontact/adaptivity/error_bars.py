@@ -199,7 +199,9 @@ def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Seque
     yield ErrorBar(quantity="force", zone=name, value=estimate.value(*forces), bar=bar)
     yield from _end_bars(estimate, name, m)
     solved, answer = estimate.reported
-    square = norm_squared(solved, answer.pressure[number]).sum() / solved.weights[solved.in_zone[number]].sum()
+    problem = solved.body.problem
+    length = sum(problem.edge(edge).length for edge in problem.edges_of(name))  # of which contact may see a part
+    square = norm_squared(solved, answer.pressure[number]).sum() / length
     value, note = (None, "away from infinite pressures") if its else (float(np.sqrt(square)), "")
     yield ErrorBar(quantity="pressure", zone=name, value=value, bar=estimate.bar(m), note=note)
     for item in its:
@@ -214,7 +216,7 @@ def _infinite(its: Sequence[Singularity]) -> str:
     if any(item.exponent == 0 for item in its):
         return (
             "infinite like a logarithm, or nearly so: at a kink of the surface, or at a corner of the body because of "
-            "a shear load beside the contact or of a surface at an angle to the edge"
+            "its angle, a shear load beside the contact, or a surface at an angle to the edge"
         )
     return "infinite at a corner or a kink"
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved
 from bemcontact.adaptivity.first_sizes import surface_corners
-from bemcontact.adaptivity.wedge_exponents import Face, contact_face, logarithm, wedge_exponents
+from bemcontact.adaptivity.wedge_exponents import Face, contact_face, slow_change, wedge_exponents
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 
@@ -30,8 +30,8 @@ FITTED = (0.005, 0.1), (0.02, 0.4)
 
 On a half-plane p s^α is a polynomial in s; beside other corners it has other powers, and the difference tells them.
 """
-SHARP, LOGARITHM = 1e-4, 1e-9
-"""Rounding of a corner over the contact up to which its pressure must be right; rate of a logarithm."""
+SHARP = 1e-4
+"""Rounding of a corner over the contact up to which its pressure must be right."""
 SAME = 1e-6
 """Distance of two places over the length of their run up to which they are one."""
 
@@ -180,11 +180,13 @@ def _rise(difference: MeshDifference, place: ContactPlace) -> float:
     if not at > 0:
         return 0.0
     wedge, loads = _wedge_at(fine, answer, run, place.position)
-    slopes, rate = logarithm(*wedge, loads)
+    change = slow_change(*wedge, loads)
+    if change is None:
+        return 0.0
     _, length = contact_beside(run, answer.stretches[run.number], place.position)
     size = max(float(fine.weights[elements].sum(axis=1).min()) / (length or run.length), SHARP)
-    beyond = float((size**rate - SHARP**rate) / rate if abs(rate) > LOGARITHM else np.log(size / SHARP))
-    return max(0.0, (at - min(slopes) * beyond) / peak - 1)
+    sharp = max(change.at(face, at, SHARP / size) for face in range(2) if wedge[2][face].contact)
+    return max(0.0, sharp / peak - 1)
 
 
 def _wedge_at(

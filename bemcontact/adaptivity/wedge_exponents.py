@@ -22,8 +22,10 @@ ROOT = 1e-9
 """Smallest singular value, over the largest, of equations that are singular."""
 EXACT = 1e-13
 """Accuracy of a root λ."""
-NEAR_ONE = 0.1
-"""Difference of λ from 1 up to which tractions change the pressure so slowly that it is like a logarithm."""
+NEAR_ONE = np.arange(0.7, 1.305, 0.005)
+"""Values of λ between which roots change the pressure so slowly that meshes do not tell where it ends."""
+RESONANT = 1e-6
+"""Largest |λ - 1| at which the pressure is computed as that of a logarithm."""
 STEP = 1e-6
 """Step of λ for a derivative of the equations."""
 UNPRESSED = 1e-6
@@ -66,24 +68,45 @@ def wedge_exponents(start: float, angle: float, faces: tuple[Face, Face], poisso
     if not any(face.contact for face in faces):
         return ()
     wedge = (start, angle, faces, poisson_ratio)
-    sizes = np.array([_singular(wedge, power) for power in GRID])
+    return tuple(1 - power for power in _roots(wedge, GRID) if _presses(wedge, power))
+
+
+def _roots(wedge: "Wedge", grid: Array) -> list[float]:
+    """Values of λ, between those of a grid, where the equations are singular."""
+    sizes = np.array([_singular(wedge, power) for power in grid])
     low = 1 + np.flatnonzero((sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] < sizes[2:]))
-    powers = (_least(wedge, float(GRID[i - 1]), float(GRID[i + 1])) for i in low)
-    return tuple(1 - power for power in powers if _singular(wedge, power) <= ROOT and _presses(wedge, power))
+    powers = [_least(wedge, float(grid[i - 1]), float(grid[i + 1])) for i in low]
+    return [power for power in powers if _singular(wedge, power) <= ROOT]
 
 
-class Logarithm(NamedTuple):
-    """Pressures on both faces that change by slope (r/R)^rate for each unit of ln r; infinite at r = 0 if rate <= 0."""
+class SlowChange(NamedTuple):
+    """Pressures on both faces that hardly change with the distance r from the tip: c + (p - c) (r/R)^rate if p at R.
 
+    With rate = 0 they are p + slope ln(r/R).
+
+    Parameters
+    ----------
+    constants : c [p], by tractions alone; not known if rate = 0
+    slopes : [p] of the logarithm
+    rate : power λ - 1, as of `NEAR_ONE`
+    """
+
+    constants: tuple[float, float]
     slopes: tuple[float, float]
     rate: float
 
+    def at(self, face: int, pressure: float, ratio: float) -> float:
+        """Pressure on a face at r = ratio R from that at R."""
+        if abs(self.rate) <= RESONANT:
+            return pressure + self.slopes[face] * float(np.log(ratio))
+        return self.constants[face] + (pressure - self.constants[face]) * ratio**self.rate
+
 
 @lru_cache(maxsize=256)
-def logarithm(
+def slow_change(
     start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, loads: tuple[complex, complex]
-) -> Logarithm:
-    """How slowly tractions change the pressure at the tip of a wedge; slopes of zero if they do not.
+) -> SlowChange | None:
+    """How slowly the pressure changes at the tip of a wedge; None if no λ is near to one.
 
     Parameters
     ----------
@@ -91,27 +114,33 @@ def logarithm(
     loads : traction [p] on each face, of which counts what the face does not hold: on one in contact the shear
     """
     wedge = (start, angle, faces, poisson_ratio)
-    power = _least(wedge, 1 - NEAR_ONE, 1 + NEAR_ONE)
+    roots = [power for power in _roots(wedge, NEAR_ONE) if _presses(wedge, power)]
+    if not roots:
+        return None
+    power = min(roots, key=lambda root: abs(root - 1))
     left, sizes, right = np.linalg.svd(_conditions(wedge, power))
     null = sizes <= 10 * ROOT * sizes[0]
-    if not null.any():
-        return Logarithm((0.0, 0.0), 0.0)
     outward = -1.0, 1.0  # the field has tractions on rays, towards larger angles
-    given = [
+    given = np.array([
         0.0 if held else sign * (load * np.conj(direction)).real
         for face, load, sign in zip(faces, loads, outward, strict=True)
         for direction, held in zip((face.direction, 1j * face.direction), face.held, strict=True)
-    ]
+    ])  # fmt: skip
+
+    def pressures(state: Array) -> tuple[float, float]:
+        one, other = (
+            -sign * float((_field(at, 1.0, poisson_ratio)[1] * np.conj(face.direction)).real @ state)
+            if face.contact
+            else 0.0
+            for face, at, sign in zip(faces, (start, start + angle), outward, strict=True)
+        )
+        return one, other
+
     derivative = (_conditions(wedge, power + STEP) - _conditions(wedge, power - STEP)) / (2 * STEP)
     left, right = left[:, null], right[null]
-    amount = np.linalg.lstsq(left.T @ derivative @ right.T, left.T @ np.array(given), rcond=None)[0]
-    slopes = [
-        -sign * float((_field(at, power, poisson_ratio)[1] * np.conj(face.direction)).real @ (amount @ right))
-        if face.contact
-        else 0.0
-        for face, at, sign in zip(faces, (start, start + angle), outward, strict=True)
-    ]
-    return Logarithm((slopes[0], slopes[1]), power - 1)
+    amount = np.asarray(np.linalg.lstsq(left.T @ derivative @ right.T, left.T @ given, rcond=None)[0], float)
+    constant = np.asarray(np.linalg.lstsq(_conditions(wedge, 1.0), given, rcond=None)[0], float)
+    return SlowChange(pressures(constant), pressures(amount @ right), float(power - 1))
 
 
 Wedge = tuple[float, float, tuple[Face, Face], float]

@@ -31,6 +31,8 @@ WITHHELD = 0.05
 """Change from which a result is not certified: the curvature is off by a tenth."""
 NO_CHANGE = 1e-7
 """Difference of the gaps, over the displacement scale of contact, that changes nothing."""
+UNDETERMINED = 1e-9
+"""Size of a motion of a zone, over the largest, that its gaps do not tell."""
 ALIKE = 0.1
 """Difference of displacements on the boundary, over one of them, up to which the body moves as a whole."""
 
@@ -76,10 +78,19 @@ def placement(
         return _off_the_surface(gaps, points, contact, farthest, moved), ()
     overhangs = tuple(_overhangs(gaps, points, contact, beside, pressed, moved))
     moved.change[beside] = 0.0
-    misfit, turned = _turned(gaps, points, contact, solution, moved)
-    if misfit is not None or abs(moved.change).max() <= NO_CHANGE * contact.scales.displacement:
+    if max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max()) <= NO_CHANGE:
+        return None, overhangs
+    again = complementarity.solve(
+        replace(
+            contact,
+            initial_gap=contact.initial_gap + moved.change,
+            motion_load=contact.motion_load + _turned_load(contact, solution, moved),
+        )
+    )
+    misfit, turned = _forces_changed(gaps, points, contact, solution, again, moved) if nearby is None else (None, ())
+    if misfit is not None:
         return misfit, (*overhangs, *turned)
-    misfit, said = _changed(gaps, points, contact, solution, moved, nearby)
+    misfit, said = _changed(gaps, points, contact, solution, again, moved, nearby)
     return misfit, (*overhangs, *turned, *said)
 
 
@@ -184,11 +195,10 @@ def _off_the_surface(
 
 
 def _changed(
-    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution, moved: _Displaced,
-    nearby: Array | None,
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
+    again: ContactSolution, moved: _Displaced, nearby: Array | None,
 ) -> tuple[Penetration | None, tuple[str, ...]]:  # fmt: skip
-    """Solve with the gaps of the displaced places, and judge how the peak of each zone changes."""
-    again = complementarity.solve(replace(contact, initial_gap=contact.initial_gap + moved.change))
+    """Judge how the peak of each zone changes with the gaps and normals of the displaced places."""
     solved = again.status is Status.SOLVED
     number, change = _peak_change(contact, solution.pressure, again.pressure)
     if solved and abs(change) < noted(gaps.problem):
@@ -218,22 +228,43 @@ def _changed(
     return _misfit(gaps, points, contact, i, Misfit.MOVED, off, allowed, words), ()
 
 
-def _turned(
-    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution, moved: _Displaced
-) -> tuple[Penetration | None, tuple[str, ...]]:
-    """Judge how much the force on each surface turns with the normals of the displaced places."""
-    own = contact.zone == np.arange(len(contact.zone_names))[:, None]
-    forces = own * contact.weights * solution.pressure
-    part = np.hypot(*(forces @ moved.turn).T) / np.where(forces.any(axis=1), forces.sum(axis=1), 1.0)
+def _turned_load(contact: CondensedContact, solution: ContactSolution, moved: _Displaced) -> Array:
+    """Work (k,) in the free motions of what the pressure gains along the normals of the displaced places."""
+    forces = (contact.weights * solution.pressure)[:, None] * moved.turn
+    x, y = (contact.points - contact.points.mean(axis=0)).T
+    n = contact.normals
+    work = np.zeros(contact.free_motions)
+    for number in range(len(contact.zone_names)):
+        own = contact.zone == number
+        # in each free motion a zone moves against its surface as a whole: two translations and a rotation
+        rows = np.column_stack([n[own], n[own, 1] * x[own] - n[own, 0] * y[own]])
+        motions = np.linalg.lstsq(rows, contact.rigid_motions[own], rcond=UNDETERMINED)[0]
+        fx, fy = forces[own].T
+        work += np.array([fx.sum(), fy.sum(), (fy * x[own] - fx * y[own]).sum()]) @ motions
+    return work
+
+
+def _forces_changed(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
+    again: ContactSolution, moved: _Displaced,
+) -> tuple[Penetration | None, tuple[str, ...]]:  # fmt: skip
+    """Judge how the force on each surface changes with the gaps and normals of the displaced places."""
+    if again.status is not Status.SOLVED:
+        return None, ()  # as is said of the peak
+    own = (contact.zone == np.arange(len(contact.zone_names))[:, None]) * contact.weights
+    was = (own * solution.pressure) @ contact.normals
+    is_now = (own * again.pressure) @ (contact.normals + moved.turn)
+    total = own @ solution.pressure
+    part = np.hypot(*(is_now - was).T) / np.where(total > 0, total, np.inf)
     number = int(np.argmax(part))
     if part[number] < noted(gaps.problem):
         return None, ()
-    i = int(np.argmax(forces[number]))
-    motion = moved.motion[i]
+    i = int(np.argmax(own[number] * solution.pressure))
+    zone, motion = contact.zone_names[number], moved.motion[int(np.argmax(np.hypot(*moved.turn.T)))]
     words = (
-        f"the body moves by {_vector(motion, gaps.problem.units.length)} against the surface of "
-        f"'{contact.zone_names[number]}', which is not small beside its shape: where the body then is, the surface has "
-        f"another direction, and the force there turns by {100 * part[number]:.2g} %; {_remedy(gaps, motion)}"
+        f"the body moves by {_vector(motion, gaps.problem.units.length)} against a surface, which is not small beside "
+        f"its shape: with the gaps and the directions of the surfaces where the body then is, the force of the surface "
+        f"of '{zone}' changes by {100 * part[number]:.2g} %; {_remedy(gaps, motion)}"
     )
     if part[number] < WITHHELD:
         return None, (f"{words}; error bars do not include this",)

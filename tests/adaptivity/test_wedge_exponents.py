@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, logarithm, wedge_exponents
+from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, slow_change, wedge_exponents
 
 FIXED = Face(1.0, (True, True))
 ANGLES, RATIOS = st.floats(0.2, 2 * pi - 0.05), st.floats(-0.9, 0.49)
@@ -82,11 +82,28 @@ def test_shear_beside_contact_at_a_right_angle_raises_the_pressure_like_a_logari
     """
     first, _ = faces(start, pi / 2)
     along = np.exp(1j * (start + pi / 2))  # of the free face, from the tip
-    slopes, rate = logarithm(start, pi / 2, (first, FREE), ratio, (0j, complex((shear + 1j * normal) * along)))
+    _, slopes, rate = slow_change(start, pi / 2, (first, FREE), ratio, (0j, complex((shear + 1j * normal) * along)))
     assert rate == pytest.approx(0, abs=1e-9)
     assert slopes == pytest.approx((4 * shear / pi, 0.0), abs=1e-7)
 
 
-def test_tractions_change_nothing_slowly_at_other_angles():
+def test_nothing_changes_slowly_at_other_angles():
     for angle in (pi / 3, 2 * pi / 3, pi):
-        assert logarithm(0.0, angle, (faces(0.0, angle)[0], FREE), 0.3, (0j, 1 + 1j)).slopes == pytest.approx((0, 0))
+        assert slow_change(0.0, angle, (faces(0.0, angle)[0], FREE), 0.3, (0j, 1 + 1j)) is None
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(-5, 5).filter(lambda degrees: abs(degrees) > 0.01), RATIOS, st.floats(-2, 2))
+def test_near_a_right_angle_the_pressure_is_a_constant_and_a_slow_power(degrees, ratio, shear):
+    """The power is that of Williams; the constant of no load is zero, and without the power nothing changes."""
+    angle = pi / 2 + np.radians(degrees)
+    wedge = 0.0, angle, (faces(0.0, angle)[0], FREE), ratio
+    change = slow_change(*wedge, (0j, complex(shear * np.exp(1j * angle))))
+    power = 1 + change.rate
+    assert np.sin(2 * power * angle) + power * np.sin(2 * angle) == pytest.approx(0, abs=1e-8)
+    assert change.at(0, change.constants[0], 1e-4) == pytest.approx(change.constants[0])
+    assert slow_change(*wedge, (0j, 0j)).at(0, 10.0, 1e-4) == pytest.approx(10.0 * 1e-4**change.rate, rel=1e-9)
+    # close to the right angle, the change over a distance is that of the logarithm
+    if abs(degrees) < 0.1 and abs(shear) > 0.1:
+        slope = slow_change(0.0, pi / 2, (faces(0.0, pi / 2)[0], FREE), ratio, (0j, complex(shear * 1j))).slopes[0]
+        assert change.at(0, 0.0, 0.5) == pytest.approx(slope * np.log(0.5), rel=0.01)

@@ -231,6 +231,6 @@ def test_a_force_turns_with_the_normal_of_the_place_that_the_body_moves_to(share
         )  # pyright: ignore[reportArgumentType]
     )  # fmt: skip
     texts = [*result.notes, *([result.penetration.words] if result.penetration else [])]
-    told = [float(found[1]) / 100 for text in texts if (found := re.search(r"turns by ([\d.e-]+) %", text))]
+    told = [float(found[1]) / 100 for text in texts if (found := re.search(r"force .* changes by ([\d.e-]+) %", text))]
     assert told == ([] if abs(share) < NOTED else [pytest.approx(abs(share), abs=0.05 * abs(share) + 0.0005)])
     assert result.certified == (abs(share) < WITHHELD)
