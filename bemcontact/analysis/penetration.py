@@ -13,8 +13,8 @@ from bemcontact.analysis.placement import noted, placement
 from bemcontact.analysis.variation import Variation
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
+from bemcontact.bem.body import Body
 from bemcontact.bem.condense import boundary_state
-from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
@@ -25,7 +25,7 @@ from bemcontact.parametric.path import LoadPath
 
 def penetration(
     gaps: SurfaceGaps,
-    points: ContactPoints,
+    body: Body,
     contact: CondensedContact,
     solution: ContactSolution,
     nearby: Array | None = None,
@@ -47,7 +47,7 @@ def penetration(
             worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
         notes += _behind(gaps, zone, found.behind)
         notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
-    misplaced, said = (None, ()) if worst else placement(gaps, points, contact, solution, nearby)
+    misplaced, said = (None, ()) if worst else placement(gaps, body, contact, solution, nearby)
     return worst or misplaced, (*notes, *said)
 
 
@@ -64,10 +64,10 @@ def penetration_on_path(
         value, contact, solution = (1 - t) * start + t * end, path.contact(t), path.breakpoint(i)
         problem = varied.at(value) if varied.path[0] == "contact_zones" else varied.problem
         state = _state_at(varied, value, contact, solution)
-        points = next(iter(varied.condensed.values())).body.points
+        body = next(iter(varied.condensed.values())).body
         gaps = surface_gaps(problem, state, contact, solution, outline)
         nearby = _peaks_within(path, t - reach, t + reach) if 0 < i < last else None
-        found, said = penetration(gaps, points, contact, solution, nearby)
+        found, said = penetration(gaps, body, contact, solution, nearby)
         if found is not None and (worst is None or found.depth > worst.depth):
             worst, at = found, value
         for note in said:

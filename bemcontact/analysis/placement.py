@@ -15,6 +15,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.penetration import Misfit, Penetration, tolerated
+from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -31,8 +32,6 @@ WITHHELD = 0.05
 """Change from which a result is not certified: the curvature is off by a tenth."""
 NO_CHANGE = 1e-7
 """Difference of the gaps, over the displacement scale of contact, that changes nothing."""
-UNDETERMINED = 1e-9
-"""Size of a motion of a zone, over the largest, that its gaps do not tell."""
 ALIKE = 0.1
 """Difference of displacements on the boundary, over one of them, up to which the body moves as a whole."""
 
@@ -58,7 +57,7 @@ class _Displaced(NamedTuple):
 
 def placement(
     gaps: SurfaceGaps,
-    points: ContactPoints,
+    body: Body,
     contact: CondensedContact,
     solution: ContactSolution,
     nearby: Array | None = None,
@@ -68,6 +67,7 @@ def placement(
     Of a state on a path, `nearby` (2, zones) is the least and the largest peak [p] of each zone a little before and
     after it. A peak between them is that of a parameter a little off: at first touch no peak is sure to any part of it.
     """
+    points = body.points
     moved = _displaced(gaps, points, contact, solution)
     pressed = contact.pressed(solution.pressure, solution.displacement)
     if not pressed.any():
@@ -84,7 +84,7 @@ def placement(
         replace(
             contact,
             initial_gap=contact.initial_gap + moved.change,
-            motion_load=contact.motion_load + _turned_load(contact, solution, moved),
+            motion_load=contact.motion_load + _turned_load(gaps, body, contact, solution, moved),
         )
     )
     misfit, turned = _forces_changed(gaps, points, contact, solution, again, moved) if nearby is None else (None, ())
@@ -228,19 +228,19 @@ def _changed(
     return _misfit(gaps, points, contact, i, Misfit.MOVED, off, allowed, words), ()
 
 
-def _turned_load(contact: CondensedContact, solution: ContactSolution, moved: _Displaced) -> Array:
+def _turned_load(
+    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: _Displaced
+) -> Array:
     """Work (k,) in the free motions of what the pressure gains along the normals of the displaced places."""
     forces = (contact.weights * solution.pressure)[:, None] * moved.turn
-    x, y = (contact.points - contact.points.mean(axis=0)).T
-    n = contact.normals
-    work = np.zeros(contact.free_motions)
-    for number in range(len(contact.zone_names)):
-        own = contact.zone == number
-        # in each free motion a zone moves against its surface as a whole: two translations and a rotation
-        rows = np.column_stack([n[own], n[own, 1] * x[own] - n[own, 0] * y[own]])
-        motions = np.linalg.lstsq(rows, contact.rigid_motions[own], rcond=UNDETERMINED)[0]
+    work = body.seen.body.work(contact.points, forces)
+    for number, name in enumerate(contact.tools.names):
+        zones = [contact.zone_names.index(zone) for zone in gaps.problem.tools[name].zones]
+        own = np.isin(contact.zone, zones)
+        x, y = (contact.points[own] - contact.tools.point[number]).T
         fx, fy = forces[own].T
-        work += np.array([fx.sum(), fy.sum(), (fy * x[own] - fx * y[own]).sum()]) @ motions
+        load = np.array([fx.sum(), fy.sum(), (x * fy - y * fx).sum()])
+        work = work - load @ contact.tools.amplitudes[3 * number : 3 * number + 3]
     return work
 
 

@@ -239,7 +239,7 @@ def assessed(
         where, deepest, unseen = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
         if boundary is not None and condensation is not None:
             gaps = surface_gaps(condensation.body.problem, boundary, contact, solution)
-            deepest, unseen = penetration(gaps, condensation.body.points, contact, solution)
+            deepest, unseen = penetration(gaps, condensation.body, contact, solution)
         notes = (
             *contact.notes,
             *solution.notes,

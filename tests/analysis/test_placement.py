@@ -234,3 +234,33 @@ def test_a_force_turns_with_the_normal_of_the_place_that_the_body_moves_to(share
     told = [float(found[1]) / 100 for text in texts if (found := re.search(r"force .* changes by ([\d.e-]+) %", text))]
     assert told == ([] if abs(share) < NOTED else [pytest.approx(abs(share), abs=0.05 * abs(share) + 0.0005)])
     assert result.certified == (abs(share) < WITHHELD)
+
+
+def test_a_small_force_is_judged_by_itself_and_by_statics():
+    """A block slides on two round supports to a wall, which must hold all of the side load when they press straight up.
+
+    Where it is drawn, the normals of the supports hold a part: half a per cent of their forces, a third of the wall's.
+    """
+    corners = {"low": (-20, 0), "right": (20, 0), "top right": (20, 10), "load": (15, 10), "top": (13, 10)}
+    zones = {
+        name: {"edges": edge, "surface": {"kind": "circle", "center": center, "radius": radius, "body": "outside"}}
+        for name, edge, center, radius in (
+            ("left support", "low", (-15, -20), 20), ("right support", "low", (15, -20), 20),
+            ("wall", "right", (70.1, 5), 50),
+        )
+    }  # fmt: skip
+    result = solve(
+        Problem(
+            name="block that slides to a wall",
+            material=STEEL,
+            boundary={"outer": [{"name": k, "start": at} for k, at in {**corners, "left": (-20, 10)}.items()]},
+            conditions={"load": {"pressure": 500}, "left": {"traction": {"x": 2}}},
+            contact_zones=zones,
+            accuracy=0.03,
+        )  # pyright: ignore[reportArgumentType]
+    )
+    assert result.penetration is not None
+    assert result.penetration.kind is Misfit.MOVED
+    (told,) = re.findall(r"'wall' changes by ([\d.e-]+) %", result.penetration.words)
+    wall = -result.contact.resultants(result.solution.pressure)[2, 0]
+    assert float(told) / 100 == pytest.approx((20 - wall) / wall, rel=0.05)
