@@ -275,7 +275,8 @@ def _certificate_sentence(
         case CertificateKind.OPEN:
             return (
                 "All contact conditions hold to their tolerance, but round-off leaves open whether other pressures, "
-                f"far from this one, satisfy them too ({sure}).{error} Look in the mesh for very short elements."
+                f"far from this one, satisfy them too ({sure}).{error} Look in the mesh for very short elements; "
+                "if no elements are stated, units may be mixed: check loads, lengths and Young's modulus."
             )
         case CertificateKind.NOT_A_SOLUTION:
             return f"This is not the contact state: {violation}.{error} {way_out}"
