@@ -25,8 +25,8 @@ LONG_NEIGHBOR = 4.0
 SMALL_NET_LOAD = 1e-3
 """Net load over the sum of the magnitudes of all loads below which it may be due to rounded numbers in the input."""
 LARGE = 0.25
-"""Change of the displacement over the length along which it changes, and peak pressure over Young's modulus, that are
-not small. Linear theory leaves out half the square of this change, here 3 % of the length and an eighth of a strain; a
+"""Change of the displacement over the length along which it changes, and strain at the peak pressure, that are not
+small. Linear theory leaves out half the square of this change, here 3 % of the length and an eighth of a strain; a
 cantilever whose end has this slope deflects 3 % less than linear theory says (Bisshopp and Drucker 1945)."""
 LARGE_TURN = 0.1
 """Rotation of the whole body in radians from which it is named as the cause."""
@@ -50,9 +50,12 @@ def diagnostics(
         yield from reached_zone_ends(body, touching)
         yield from long_neighbors(body, touching)
         yield from beyond_ends(body, touching)
-        yield from large_pressure(body, where)
+        if boundary is not None:
+            yield from large_pressure(body, where, boundary)
     if boundary is not None:
-        yield from large_displacements(boundary)
+        turns = any("rotation" in name for name in contact.motion_names)
+        modulus = None if body is None else body.problem.material.young_modulus
+        yield from large_displacements(boundary, turns, modulus)
 
 
 def floating(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator[str]:
@@ -146,18 +149,40 @@ def beyond_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
             )
 
 
-def large_pressure(body: Body, where: Footprint) -> Iterator[str]:
-    """Note a pressure that is too large for small displacements."""
-    modulus = body.problem.material.young_modulus
-    if where.peak is not None and where.peak.pressure > LARGE * modulus:
+def large_pressure(body: Body, where: Footprint, boundary: BoundaryState) -> Iterator[str]:
+    """Note a peak pressure that goes with large strains.
+
+    The strain along the normal follows from the pressure and from the strain along the boundary. Shear below the
+    surface is measured by the difference of the pressure from the least on the boundary: a pressure that acts all round
+    shears nothing, however large it is.
+    """
+    if where.peak is None:
+        return
+    material, pressure = body.problem.material, where.peak.pressure
+    E, nu = material.young_modulus, material.poisson_ratio
+    at_peak = (boundary.points == np.array(where.peak.at)).all(axis=2).any(axis=1)
+    along, change = (values[:, 2] - values[:, 0] for values in (boundary.points, boundary.displacement))
+    length = np.hypot(*along.T)
+    tangential = float(((along * change).sum(axis=1) / length**2)[at_peak].mean())
+    if material.state == "plane_strain":
+        normal = -(pressure * (1 + nu) * (1 - 2 * nu) / E + nu * tangential) / (1 - nu)
+    else:
+        normal = -(pressure * (1 - nu**2) / E + nu * tangential)
+    outward = along[:, ::-1] * (1, -1) / length[:, None]
+    least = float(-(boundary.traction.mean(axis=1) * outward).sum(axis=1).max())
+    sheared = (pressure - least) / E
+    if (strain := max(abs(normal), sheared)) > LARGE:
         yield (
-            f"the peak pressure is {where.peak.pressure / modulus:.2g} times Young's modulus: displacements are "
-            "not small, so that the linear theory does not hold"
+            f"the peak pressure is {pressure / E:.2g} times Young's modulus, and strains there are about {strain:.2g}: "
+            "displacements are not small, so that the linear theory does not hold"
         )
 
 
-def large_displacements(boundary: BoundaryState) -> Iterator[str]:
-    """Note strains, slopes or rotations that are not small on a part of the boundary; translations do not count."""
+def large_displacements(boundary: BoundaryState, turns: bool = True, modulus: float | None = None) -> Iterator[str]:
+    """Note strains, slopes or rotations that are not small on a part of the boundary; translations do not count.
+
+    `turns` is whether contact alone holds the body against rotation.
+    """
     along, change = (values[:, 2] - values[:, 0] for values in (boundary.points, boundary.displacement))
     length = np.hypot(*along.T)
     gradient = np.hypot(*change.T) / length
@@ -166,19 +191,23 @@ def large_displacements(boundary: BoundaryState) -> Iterator[str]:
         yield (
             f"displacements are not small: on {100 * share:.0f} % of the boundary they change by more than {LARGE:g} "
             f"of the length along it, by strain or rotation, and up to {gradient.max():.2g}; the linear theory does "
-            f"not hold; {_cause(boundary)}"
+            f"not hold; {_cause(boundary, turns, modulus)}"
         )
 
 
-def _cause(boundary: BoundaryState) -> str:
+def _cause(boundary: BoundaryState, turns: bool, modulus: float | None) -> str:
     """What to do about large displacements: hold a body that turns as a whole, else check the numbers."""
     x, u = (
         values.reshape(-1, 2) - values.reshape(-1, 2).mean(axis=0)
         for values in (boundary.points, boundary.displacement)
     )
     turn = float(np.sum(x[:, 0] * u[:, 1] - x[:, 1] * u[:, 0]) / np.sum(x**2))
-    if abs(turn) <= LARGE_TURN:
-        return "check units, loads and Young's modulus"
+    if not turns or abs(turn) <= LARGE_TURN:
+        found = "" if modulus is None else f", which is {modulus:.4g}"
+        return (
+            f"units may be mixed: check loads, lengths and Young's modulus{found}; in mm and N it is in N/mm², "
+            "210e3 for steel, and in m and N it is in N/m², 210e9"
+        )
     return (
         f"the body turns by {turn:.2g} rad ({np.degrees(turn):.0f} degrees): hold it against rotation by a condition "
         "or by another contact zone, or draw it as it is after most of this rotation"

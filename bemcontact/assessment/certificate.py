@@ -44,6 +44,10 @@ TOLERANCE = 1e-10
 """Residuals allowed: a thousand times above the round-off of the gap, a thousand below what shows in a result."""
 LARGEST_BOUND = 1e-3
 """Error bound, relative to the peak pressure, above which round-off alone leaves the answer open."""
+POSITION_OPEN = (
+    " This is proved of the pressures, which are zero; nothing determines the position of what is free: "
+    "the one given is one of many."
+)
 NEWTON_STEPS = 20
 LOCAL = (FormulationName.QP1, FormulationName.QP2)
 """Formulations whose solver starts somewhere and may end in a local minimum."""
@@ -113,7 +117,8 @@ def certify(
         error_bound=bound,
         relative_error_bound=relative,
         violation=violation,
-        words=_certificate_sentence(kind, violation, eigenvalue, definite, relative, advice(solution)),
+        words=_certificate_sentence(kind, violation, eigenvalue, definite, relative, advice(solution))
+        + POSITION_OPEN * (kind is CertificateKind.UNIQUE and contact.free_motions > 0 and peak == 0),
     )
 
 
@@ -275,7 +280,8 @@ def _certificate_sentence(
         case CertificateKind.OPEN:
             return (
                 "All contact conditions hold to their tolerance, but round-off leaves open whether other pressures, "
-                f"far from this one, satisfy them too ({sure}).{error} Look in the mesh for very short elements."
+                f"far from this one, satisfy them too ({sure}).{error} Look in the mesh for very short elements; "
+                "if no elements are stated, units may be mixed: check loads, lengths and Young's modulus."
             )
         case CertificateKind.NOT_A_SOLUTION:
             return f"This is not the contact state: {violation}.{error} {way_out}"

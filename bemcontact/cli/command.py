@@ -61,6 +61,28 @@ RefineOption = Annotated[
     int, typer.Option(parser=reader(int, 1), metavar="K", help="Split each element into K equal parts.")
 ]
 read_number = reader(float)
+PERCENT = re.compile(r"\s*(\d+(\.\d*)?|\.\d+)\s*%?\s*")
+
+
+def read_accuracy(text: Any) -> float:
+    """Read a relative accuracy; one in percent is refused with what to write."""
+    if isinstance(text, str) and (percent := PERCENT.fullmatch(text)):
+        value = float(percent[1])
+        if 0 < value < 1 and "%" not in text:
+            return value
+        if 0 < value < 100:
+            raise typer.BadParameter(
+                f"expected a relative accuracy between 0 and 1, found '{text.strip()[:40]}'; "
+                f"write {value / 100:.12g} for {value:.12g} %"
+            )
+    value = read_number(text)
+    if not 0 < value < 1:
+        raise typer.BadParameter(
+            f"expected a relative accuracy between 0 and 1, such as 0.01 for 1 %, found '{str(text)[:40]}'"
+        )
+    return value
+
+
 FigureOption = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Draw a picture; FILE ends in .png, .svg or .pdf.", show_default=False),
@@ -110,6 +132,7 @@ class Source:
         float | None,
         typer.Option(
             metavar="X",
+            parser=read_accuracy,
             help=with_default(
                 "Find a mesh on which no error bar is larger than X, relative: 0.003 is 0.3 percent.", "as in the spec"
             ),

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import field, fields
+from difflib import get_close_matches
 from enum import StrEnum
 from inspect import cleandoc
 from textwrap import fill
@@ -89,6 +90,7 @@ def ensure_known(options: Iterable[str], known: Iterable[str]) -> None:
     known = [*known]
     for name in options:
         if name not in known:
-            known_words = f"choose from {', '.join(known)}"
+            meant = get_close_matches(str(name), [*known, *OF_PROBLEM], n=1)
+            known_words = f"did you mean '{meant[0]}'?" if meant else f"choose from {', '.join(known)}"
             belongs = f"it belongs to the problem; write problem.{OF_PROBLEM[name]}" if name in OF_PROBLEM else ""
             raise OptionError(f"there is no option '{name}'; {belongs or known_words}")

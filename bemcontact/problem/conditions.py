@@ -76,6 +76,11 @@ class Condition(SpecModel):
     """The condition on an edge. Along an axis without a condition, the edge is free of traction."""
 
     example: ClassVar[str] = "{displacement: {x: 0}}"
+    other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("force", "forces", "load", "loads"),
+        "an edge takes traction: {x: …, y: …}, which is force per area; divide the force per thickness by the length "
+        "of the edge",
+    )
 
     displacement: AxisFields = AxisFields()
     """The prescribed displacement. A symmetry line has displacement 0 along its normal."""

@@ -1,7 +1,7 @@
 """Examples of values of a type, as YAML has them, for errors about values of another kind."""
 
-from collections.abc import Mapping
-from typing import Annotated, Any, get_args, get_origin
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -50,6 +50,32 @@ def annotation_at(cls: type[BaseModel], path: KeyPath) -> Any:
             break
         kind = parts[-1] if origin is dict else parts[0]
     return kind
+
+
+def homes(root: type[BaseModel], key: str) -> list[str]:
+    """Key paths of the mappings that may have a key, from the top of the problem, each by its shortest path."""
+    found, waiting, seen = list[str](), [(root, "")], {root}
+    for cls, path in waiting:
+        if key in cls.model_fields and path not in found:
+            found.append(path)
+        for name, field in cls.model_fields.items():
+            for part, below in _models_in(annotation_of(field), f"{path}.{name}" if path else name):
+                if part not in seen:
+                    seen.add(part)
+                    waiting.append((part, below))
+    return found
+
+
+def _models_in(kind: Any, path: str) -> Iterator[tuple[type[BaseModel], str]]:
+    """Mappings that a value of a type may be or contain, with their key paths."""
+    origin, parts = types_in(kind)
+    if isinstance(origin, type) and issubclass(origin, BaseModel):
+        yield origin, path
+    elif origin is dict:
+        yield from _models_in(parts[1], f"{path}.NAME")
+    elif origin is not Literal:
+        for part in parts:
+            yield from _models_in(part, f"{path}[N]" if origin is tuple else path)
 
 
 def likely_mapping(cls: type[BaseModel], value: Any) -> str:

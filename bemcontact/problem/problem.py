@@ -112,6 +112,8 @@ class Problem(SpecModel):
         With an issue and its key path for each mistake. `bemcontact.condense` checks whether the body is held.
     """
 
+    root: ClassVar[bool] = True
+
     name: Title
     """A short name of the problem."""
     description: Text = ""

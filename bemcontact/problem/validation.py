@@ -22,6 +22,7 @@ from bemcontact.problem.examples import (
     annotation_at,
     annotation_of,
     example_of,
+    homes,
     likely_mapping,
     list_hint,
     text_hint,
@@ -61,6 +62,10 @@ class SpecModel(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
     example: ClassVar[str]
     """A value as YAML has it, for error messages."""
+    root: ClassVar[bool] = False
+    """Whether this is the whole problem."""
+    other_words: ClassVar[Mapping[str, str]] = {}
+    """Words that are not keys -> what to write instead."""
 
     def __init__(self, /, **data: Any) -> None:
         try:
@@ -245,13 +250,30 @@ def _translated(cls: type[BaseModel], details: ErrorDetails) -> Issue:
         name = str(path[-2])
         return KeyIssue(path=path[:-1], message=f"a name must be a text; write it in quotes: '{name}'")
     if details["type"] == "extra_forbidden":
-        return KeyIssue(path=path, message=unknown_word("key", str(path[-1]), cls.model_fields))
+        return KeyIssue(path=path, message=_unknown_key(cls, str(path[-1])))
     if details["type"] == "missing":
         return Issue(path=path, message=_missing(cls, str(path[-1])))
     if details["type"] == "model_type":
         found = f"such as {likely_mapping(cls, details['input'])}; found {described(details['input'])}"
         return Issue(path=path, message=f"expected a mapping with the keys {', '.join(cls.model_fields)}, {found}")
     return Issue(path=path, message=_wrong_value(details, example_of(annotation_at(cls, path))))
+
+
+FEW_HOMES = 2
+"""Most places of a key that are named where it stands in a wrong one."""
+
+
+def _unknown_key(cls: type[BaseModel], key: str) -> str:
+    """Say that a mapping has no such key, and where the key belongs or which one was meant."""
+    if isinstance(cls, type) and issubclass(cls, SpecModel) and key in cls.other_words:
+        return f"unknown key '{key}'; {cls.other_words[key]}"
+    tops = [model for model in SpecModel.__subclasses__() if model.root]
+    places = [f"under {place}" if place else "at the top level" for top in tops for place in homes(top, key)]
+    if 0 < len(places) <= FEW_HOMES:
+        meant = near_by(key, cls.model_fields)
+        here = f"did you mean '{meant}'? " if meant else ""
+        return f"unknown key '{key}'; {here}'{key}' belongs {' or '.join(places)}"
+    return unknown_word("key", key, cls.model_fields)
 
 
 def _missing(cls: type[BaseModel], key: str) -> str:

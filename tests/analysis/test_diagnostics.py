@@ -327,3 +327,42 @@ def test_a_block_under_a_large_pressure_has_notes(load: float, notes: int):
     )
     found = [note for note in bemcontact.solve(problem, "complementarity").notes if "not small" in note]
     assert len(found) == notes
+
+
+@pytest.mark.parametrize(("nu", "notes"), [(0.4999, 0), (0.3, 1)])
+def test_a_large_pressure_all_round_is_noted_only_if_it_strains(nu: float, notes: int):
+    """Uniaxial strain e = p (1 + nu) (1 - 2 nu) / (E (1 - nu)) by statics and Hooke's law; here p = E."""
+    edges = [{"name": name, "start": start, "elements": 4} for name, start in
+             (("bottom", [0, 0]), ("right", [2, 0]), ("top", [2, 1]), ("left", [0, 1]))]  # fmt: skip
+    problem = Problem(
+        name="block in a groove",
+        material={"young_modulus": 7.0, "poisson_ratio": nu},
+        boundary={"outer": edges},
+        conditions={
+            "left": {"displacement": {"x": 0}}, "right": {"displacement": {"x": 0}}, "top": {"pressure": 7.0}
+        },
+        contact_zones={"foot": {"edges": "bottom", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
+    )  # fmt: skip
+    found = [note for note in bemcontact.solve(problem, "complementarity").notes if "peak pressure" in note]
+    assert len(found) == notes
+
+
+def test_a_body_that_a_condition_holds_is_not_told_to_be_held():
+    """Young's modulus in other units than the load: the message states it, and asks for no other condition."""
+    edges = [{"name": name, "start": start, "elements": 8} for name, start in
+             (("bottom", [0, 0]), ("right", [9, 0]), ("top", [9, 1]), ("left", [0, 1]))]  # fmt: skip
+    problem = Problem(
+        name="beam",
+        material={"young_modulus": 210.0, "poisson_ratio": 0.3},
+        boundary={"outer": edges},
+        conditions={"left": {"displacement": {"x": 0, "y": 0}}, "top": {"pressure": 1.0}},
+        contact_zones={"foot": {"edges": "bottom", "surface": {"kind": "plane", "point": [0, -40], "normal": [0, 1]}}},
+    )
+    (note,) = [
+        note
+        for note in bemcontact.solve(problem, "complementarity").notes
+        if note.startswith("displacements are not small")
+    ]
+    assert "units may be mixed" in note
+    assert "210" in note
+    assert "hold it" not in note

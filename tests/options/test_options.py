@@ -46,6 +46,7 @@ def test_keywords_are_the_fields_of_the_options_with_their_types(keywords, optio
         (bemcontact.compare, {"method": "qp1"}, "there is no option 'method'; choose from formulations"),
         (bemcontact.random_starts, {"polish": True}, "there is no option 'polish'; choose from penalty, rows"),
         (bemcontact.random_starts, {"start": "null"}, "there is no option 'start'"),
+        (bemcontact.solve, {"acuracy": 0.01}, "there is no option 'acuracy'; did you mean 'accuracy'"),
         (bemcontact.solve, {"polish": "no"}, "polish must be True or False; found 'no'"),
         (bemcontact.solve, {"starts": 3}, "complementarity has no use for the option 'starts'"),
     ],

@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -106,6 +106,11 @@ def labelled(quantity: str, unit: str) -> str:
     return f"{quantity} [{plain(unit)}]" if unit else quantity
 
 
+def round_ticks(most: int) -> MaxNLocator:
+    """Place at most so many intervals between ticks, with long labels in mind, at round numbers."""
+    return MaxNLocator(most, steps=[1, 2, 2.5, 5, 10])
+
+
 def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
     """Set limits, aspect and labels of a plan so that it shows all drawn points (k, 2) with a margin."""
     low, high = drawn.min(axis=0), drawn.max(axis=0)
@@ -114,6 +119,8 @@ def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
     axes.set_xlim(low[0] - air, high[0] + air)
     axes.set_ylim(low[1] - air, high[1] + air)
     axes.set_aspect("equal")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(round_ticks(6))
     axes.set_xlabel(labelled("x", unit))
     axes.set_ylabel(labelled("y", unit))
     axes.spines[["top", "right"]].set_visible(False)

@@ -9,49 +9,64 @@ from matplotlib.figure import Figure
 
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
+from bemcontact.assessment.footprint import ContactInterval
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report.facts import with_bar
-from bemcontact.report.figures.contact import body_extent, draw_contact, draw_deformed
+from bemcontact.report.figures.contact import LEVEL, body_extent, draw_contact, draw_deformed
 from bemcontact.report.figures.page import (
     BLACK,
     GREY,
     PIECE_COLOURS,
     QUALITY_COLOURS,
+    Piece,
     ceiling,
     cut_off,
     labelled,
     new_page,
     pieces_of,
     plain,
+    round_ticks,
     short_label,
     wrapped,
 )
-from bemcontact.report.formatting import units_of, with_unit
+from bemcontact.report.formatting import number, units_of, with_unit
 from bemcontact.report.verdicts import Verdict, case_verdicts, in_short, overall, result_verdicts
 
+PANELS = 4
+"""Most contact zones that have panels of their own."""
+NARROW = 0.15
+"""Extent of the contact over that of its zone below which only the part around it is shown."""
+WIDTHS = 1.0
+"""Widths of the contact that are shown to either side of it, where it is small beside the zone."""
 CLOSED = 1e-9
 """Gap over the displacement scale that is round-off."""
 
 
 def figure_of_result(result: Result) -> Figure:
-    """Compose a page with pressure and gap and, where the body is known, its contact and its deformed shape."""
-    state = result.boundary
+    """Compose a page with pressure and gap and, where the body is known, its contact and its deformed shape.
+
+    Each of a few zones has its own panels, so that small pressures are seen.
+    """
+    state, zones = result.boundary, result.contact.zone_names
+    panels, plans = zones if 1 < len(zones) <= PANELS else (None,), 0
     if state is None:
-        inches, figure, contact = 7, new_page(7, 7), None
-        pressure = figure.add_subplot(2, 1, 1)
-        gap = figure.add_subplot(2, 1, 2, sharex=pressure)
+        inches, figure, contact = 12, new_page(12, 1.0 + 3.2 * len(panels)), None
+        grid = figure.add_gridspec(len(panels), 2)
+        places = [(figure.add_subplot(grid[row, 0]), grid[row, 1]) for row in range(len(panels))]
     else:
         width, height = body_extent(state)
-        wide = width > 1.6 * height
-        inches, figure = 12, new_page(12, 9.5 if wide else 9)
-        grid = figure.add_gridspec(3, 2) if wide else figure.add_gridspec(2, 2)
-        contact = figure.add_subplot(grid[0, :] if wide else grid[0, 0])
-        contact.set_title("contact pressure, displacements to scale", loc="left", fontsize=10)
-        pressure = figure.add_subplot(grid[1, 0] if wide else grid[0, 1])
-        gap = figure.add_subplot(grid[1, 1], sharex=pressure)
-        draw_deformed(figure.add_subplot(grid[2, :] if wide else grid[1, 0]), result)
-    draw_pressure(pressure, result)
-    draw_gap(gap, result)
+        plans = 2 if width > 1.6 * height else 1
+        inches, figure = 12, new_page(12, (6.3 if plans == 2 else 4.8) + 3.2 * len(panels))
+        ratios = [*(plans * [1.0 if plans == 2 else 1.5]), *(len(panels) * [1.0])]
+        grid = figure.add_gridspec(plans + len(panels), 2, height_ratios=ratios)
+        contact = figure.add_subplot(grid[0, :] if plans == 2 else grid[0, 0])
+        places = [(figure.add_subplot(grid[row, 0]), grid[row, 1]) for row in range(plans, plans + len(panels))]
+    for (pressure, beside), zone in zip(places, panels, strict=True):
+        draw_pressure(pressure, result, zone)
+        draw_gap(figure.add_subplot(beside, sharex=pressure), result, zone)
+    if state is not None:
+        draw_deformed(figure.add_subplot(grid[1, :] if plans == 2 else grid[0, 1]), result)
     title = f"{wrapped(result.contact.name, 6 * inches)}: {result.solution.formulation}"
     _entitle(figure, title, result_verdicts(result), 9 * inches)
     if contact is not None:
@@ -66,33 +81,34 @@ def _entitle(figure: Figure, title: str, of_it: Sequence[Verdict], columns: int)
     figure.suptitle(f"{title}; {short}", x=0.01, ha="left", fontweight="bold", color=colour, wrap=True)
 
 
-def draw_pressure(axes: Axes, result: Result) -> None:
-    """Draw the contact pressure, per undeformed length, over the distance along each contact zone.
+def draw_pressure(axes: Axes, result: Result, zone: str | None = None) -> None:
+    """Draw the contact pressure, per undeformed length, over the distance along one contact zone, or along each.
 
     An infinite pressure is cut off at three times the mean one.
     """
-    pressure, contact, infinite = result.solution.pressure, result.contact, result.accuracy.infinite
-    _draw_along(axes, result, pressure)
+    contact, infinite = result.contact, [name for name in result.accuracy.infinite if zone in (None, name)]
+    pressure = np.where(_of_zone(contact, zone), result.solution.pressure, 0.0)
+    _draw_along(axes, result, pressure, zone)
     axes.set_ylabel(labelled("pressure", units_of(contact).stress) + "\nper undeformed length")
     axes.set_ylim(top=1.18 * float(pressure.max(initial=0.0)) or 1.0)
     if (top := ceiling(contact, pressure, infinite)) is not None:
         cut_off(axes, top, infinite)
-    peak = result.footprint.peak
-    if peak is not None:
-        nearest = int(np.argmin(np.hypot(*(contact.points - np.array(peak.at)).T)))
-        s = float(contact.arc_position[nearest])
-        low, high = axes.get_xlim()
-        side = "left" if s < low + 0.15 * (high - low) else "right" if s > high - 0.15 * (high - low) else "center"
-        value = with_bar(peak.pressure, result.accuracy.peak_bar())
-        text = f"peak {with_unit(value, plain(units_of(contact).stress))}"
-        axes.annotate(text, (s, peak.pressure), xytext=(0, 7), textcoords="offset points", ha=side, color=BLACK)
+    if infinite or not pressure.any():
+        return
+    highest = np.flatnonzero(pressure >= (1 - LEVEL) * pressure.max())
+    peak = int(highest[len(highest) // 2])
+    s, (low, high) = float(contact.arc_position[peak]), axes.get_xlim()
+    side = "left" if s < low + 0.3 * (high - low) else "right" if s > high - 0.3 * (high - low) else "center"
+    value = with_unit(with_bar(float(pressure.max()), result.accuracy.peak_bar(zone)), plain(units_of(contact).stress))
+    axes.annotate(f"peak {value}", (s, pressure[peak]), xytext=(0, 7), textcoords="offset points", ha=side, color=BLACK)
 
 
-def draw_gap(axes: Axes, result: Result) -> None:
-    """Draw the gap over the distance along each contact zone; round-off is drawn as closed."""
+def draw_gap(axes: Axes, result: Result, zone: str | None = None) -> None:
+    """Draw the gap over the distance along one contact zone, or along each; round-off is drawn as closed."""
     scale = result.contact.scales.displacement
     gap = np.where(np.abs(gap := _gap(result)) <= CLOSED * scale, 0.0, gap)
-    _draw_along(axes, result, gap)
+    gap = np.where(_of_zone(result.contact, zone), gap, 0.0)
+    _draw_along(axes, result, gap, zone)
     axes.set_ylabel(labelled("gap", units_of(result.contact).length))
     label_closed(axes, float(np.abs(gap).max(initial=0.0)), scale)
 
@@ -104,29 +120,76 @@ def label_closed(axes: Axes, widest: float, scale: float) -> None:
         axes.text(0.5, 0.5, "closed everywhere", transform=axes.transAxes, ha="center", color=BLACK)
 
 
-def _draw_along(axes: Axes, result: Result, values: Array) -> None:
-    """Draw values (n,) along each piece, with full dots where there is contact and empty ones where it is open.
+def _of_zone(contact: CondensedContact, zone: str | None) -> BoolArray:
+    """Which points (n,) belong to a zone; all if there is none."""
+    return np.isin(contact.zone, [i for i, name in enumerate(contact.zone_names) if zone in (None, name)])
+
+
+def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> None:
+    """Draw values (n,) along each piece of a zone, with dots: full where there is contact, empty where it is open.
 
     The later of two equal curves is the thinner one and interrupted, so that both are seen.
     """
     contact, touching = result.contact, result.touching
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
-    pieces = [*pieces_of(contact)]
-    for piece in pieces:
+    pieces = [piece for piece in pieces_of(contact) if _of_zone(contact, zone)[piece.index[0]]]
+    for rank, piece in enumerate(pieces):
         s, along, colour = contact.arc_position[piece.index], values[piece.index], piece.colour
-        width = 1.5 * (2 - (piece.order + 1) / len(pieces))
-        axes.plot(s, along, color=colour, linewidth=width, linestyle=piece.dashes, zorder=2, label=piece.label)
+        width = 1.5 * (2 - (rank + 1) / len(pieces))
+        axes.plot(
+            s,
+            along,
+            color=colour,
+            linewidth=width,
+            linestyle="dashed" if rank else "solid",
+            zorder=2,
+            label=piece.label,
+        )
         axes.fill_between(s, along, color=colour, alpha=0.12, linewidth=0, zorder=1)
         faces = np.where(touching[piece.index], colour, "white")
         axes.scatter(s, along, s=8 * width**2, c=faces, edgecolors=colour, linewidths=1.0, zorder=3)
     colours = {contact.zone_names[int(contact.zone[piece.index[0]])]: piece.colour for piece in pieces}
-    for interval in result.footprint.intervals:
+    intervals = [interval for interval in result.footprint.intervals if interval.zone in colours]
+    for interval in intervals:
         width = 3 + 3 * list(colours)[::-1].index(interval.zone)
         axes.hlines(0, interval.start_arc, interval.end_arc, color=colours[interval.zone], linewidth=width, zorder=2)
     axes.set_xlabel(labelled("distance along the contact zone", units_of(result.contact).length))
     axes.spines[["top", "right"]].set_visible(False)
+    axes.xaxis.set_major_locator(round_ticks(7))
+    _zoom(axes, pieces, intervals, contact, values)
+    if zone is not None:
+        axes.set_title(
+            short_label(zone, 40), loc="left", fontsize=10, pad=16 if zone in result.accuracy.infinite else 6
+        )
     if len(pieces) > 1:
         axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize=9)
+
+
+def _zoom(
+    axes: Axes,
+    pieces: Sequence[Piece],
+    intervals: Sequence[ContactInterval],
+    contact: CondensedContact,
+    values: Array,
+) -> None:
+    """Show only what lies about a contact that is small beside its pieces of boundary, and say so."""
+    arcs = [contact.arc_position[piece.index] for piece in pieces]
+    start, end = min(s[0] for s in arcs), max(s[-1] for s in arcs)
+    low = min((item.start_arc for item in intervals), default=start)
+    high = max((item.end_arc for item in intervals), default=end)
+    if high - low >= NARROW * (end - start):
+        return
+    air, unit = WIDTHS * (high - low), plain(units_of(contact).length)
+    window = (max(low - air, start), min(high + air, end))
+    shown = np.concatenate(
+        [
+            np.interp(np.linspace(*window, 200), s, values[piece.index], left=0, right=0)
+            for s, piece in zip(arcs, pieces, strict=True)
+        ]
+    )
+    axes.set(xlim=window, ylim=(-0.05 * shown.max() or None, 1.1 * shown.max() or None))
+    zone = with_unit(number(end - start), unit)
+    axes.set_xlabel(f"{axes.get_xlabel()}\nonly around the contact; the zone is {zone} long")
 
 
 def _gap(result: Result) -> Array:

@@ -27,7 +27,7 @@ def test_long_and_foreign_names_fit(name: str, tmp_path: Path):
     for path in tmp_path.iterdir():
         height, width = matplotlib.image.imread(path).shape[:2]
         assert width < 13 * 160
-        assert height < 10 * 160
+        assert height < 12.5 * 160  # two zones
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])

@@ -12,6 +12,7 @@ from studies import punch
 from tool_problems import FREE, FREE_CASES, made, not_met, of_peaks
 
 import bemcontact
+from bemcontact import spec
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import CertificateKind
@@ -20,6 +21,8 @@ from bemcontact.report import figures
 from bemcontact.report.facts import peak_of
 from bemcontact.report.figures.result import draw_case_peaks
 from bemcontact.report.verdicts import case_verdicts
+
+MODELS = Path(__file__).parents[3] / "models"
 
 
 @cache
@@ -86,16 +89,19 @@ def test_one_result_has_its_own_figure():
 
 
 def test_result_page_has_contact_pressure_gap_and_shape(result: analysis.Result):
-    contact, pressure, gap, shape = figures.figure_of_result(result).axes
-    assert contact.get_title(loc="left") == "contact pressure, displacements to scale"
+    contact, *panels, shape = figures.figure_of_result(result).axes
+    pressures, gaps = panels[: len(panels) // 2], panels[len(panels) // 2 :]
+    assert contact.get_title(loc="left").startswith("contact pressure, displacements to scale")
     assert contact.get_aspect() == 1
-    assert "per undeformed length" in pressure.get_ylabel()
-    assert gap.get_ylabel().startswith("gap")
+    zones = len(result.contact.zone_names)
+    assert len(pressures) == len(gaps) == zones
+    assert all("per undeformed length" in axes.get_ylabel() for axes in pressures)
+    assert all(axes.get_ylabel().startswith("gap") for axes in gaps)
     assert "deformed shape" in shape.get_title(loc="left")
     assert shape.get_aspect() == 1
-    drawn = [np.asarray(line.get_ydata()) for line in pressure.lines if len(line.get_xdata()) > 2]
+    drawn = [np.asarray(line.get_ydata()) for axes in pressures for line in axes.lines if len(line.get_xdata()) > 2]
     assert np.sort(np.concatenate(drawn)) == pytest.approx(np.sort(result.solution.pressure))
-    drawn = [np.asarray(line.get_ydata()) for line in gap.lines if len(line.get_xdata()) > 2]
+    drawn = [np.asarray(line.get_ydata()) for axes in gaps for line in axes.lines if len(line.get_xdata()) > 2]
     assert np.sort(np.concatenate(drawn)) == pytest.approx(
         np.sort(result.contact.initial_gap + result.solution.displacement),
         abs=1e-9 * result.contact.scales.displacement,
@@ -131,7 +137,7 @@ def test_zones_with_equal_pressures_are_both_seen():
 
 def test_result_of_a_condensed_problem_has_no_shape():
     result = analysis.solve(analysis.condense(block_in_a_corner()))
-    assert len(figures.figure_of_result(result).axes) == 2
+    assert len(figures.figure_of_result(result).axes) == 2 * len(result.contact.zone_names)
     with pytest.raises(ValueError, match="no boundary"):
         figures.draw_deformed(Figure().add_subplot(), result)
     with pytest.raises(ValueError, match="no boundary"):
@@ -176,3 +182,29 @@ def test_colour_of_the_title_is_that_of_the_worse_verdict():
     unmet = replace(one, accuracy=replace(one.accuracy, met=False))
     colours = [colour_of(item) for item in (one, unmet, replace(unmet, certificate=doubtful))]
     assert colours == ["#222222", "#8a5a00", "#d55e00"]
+
+
+@pytest.mark.parametrize("name", ["gallery/hertz_small", "gallery/flat_punch", "cylinder_on_plane"])
+def test_panels_show_a_small_contact_and_about_its_width_to_either_side(name: str):
+    """At least a sixth of the axis is contact; the largest value that is drawn in the frame fills it."""
+    result = analysis.solve(spec.load(MODELS / f"{name}.yaml"))
+    _, pressure, gap, _ = figures.figure_of_result(result).axes
+    arcs = [s for item in result.footprint.intervals for s in (item.start_arc, item.end_arc)]
+    for axes in (pressure, gap):
+        low, high = axes.get_xlim()
+        assert low <= min(arcs) + 1e-9 * max(arcs)
+        assert high >= max(arcs) * (1 - 1e-9)
+        assert max(arcs) - min(arcs) > 0.13 * (high - low)
+
+
+@pytest.mark.parametrize(
+    "name", ["gallery/hertz_small", "gallery/flat_punch", "cylinder_on_plane", "gallery/block_in_corner"]
+)
+def test_names_lie_in_the_frame_and_apart_from_each_other(name: str):
+    result = analysis.solve(spec.load(MODELS / f"{name}.yaml"))
+    axes = figures.figure_of_result(result).axes[0]
+    frame = axes.get_window_extent()
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in boxes)
+    assert all(frame.y0 <= box.y0 and box.y1 <= frame.y1 for box in boxes)
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
