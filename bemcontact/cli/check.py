@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import CommandOutput, FigureOption, RefineOption, Source, refuse, reported, run, write_json
+from bemcontact.cli.arguments import FigureOption, RefineOption, Source
+from bemcontact.cli.command import CommandOutput, refuse, reported, run, write_json
 from bemcontact.cli.terminal import Report, tell
 from bemcontact.errors import ProblemError, SingularSystemError, SpecError
 

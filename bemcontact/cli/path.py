@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import CommandOutput, JsonOption, RefineOption, Source, read_number, run, with_default
+from bemcontact.cli.arguments import JsonOption, RefineOption, Source, read_number, with_default
+from bemcontact.cli.command import CommandOutput, run
 from bemcontact.cli.terminal import Report
 
 

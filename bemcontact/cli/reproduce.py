@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import CommandOutput, JsonOption, run, several
+from bemcontact.cli.arguments import JsonOption, several
+from bemcontact.cli.command import CommandOutput, run
 from bemcontact.cli.terminal import Report
 
 

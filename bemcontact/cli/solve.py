@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.command import CommandOutput, FigureOption, JsonOption, RefineOption, Source, run
+from bemcontact.cli.arguments import FigureOption, JsonOption, RefineOption, Source
+from bemcontact.cli.command import CommandOutput, run
 from bemcontact.cli.terminal import Report
 from bemcontact.errors import OptionError
 from bemcontact.options import SolveOptions

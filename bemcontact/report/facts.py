@@ -2,188 +2,39 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from bemcontact.problem import Units
+from bemcontact.report.bars import (
+    NOTHING,
+    ROUND_OFF,
+    Record,
+    _exponent,
+    _rounded,
+    _unit_of_bar,
+    bars_of,
+    infinite_peaks,
+    with_bar,
+)
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
     number,
     per_thickness,
-    sentence_case,
     vector,
     with_unit,
     zero_if_negligible,
 )
 
-Record = Mapping[str, Any]
-"""A JSON object of a result."""
 RESIDUALS = ("penetration", "tension", "complementarity", "equilibrium", "force_balance")
 """Residuals that are listed."""
 QUALITIES = {"holds": "good", "does not hold": "bad", "not judged": "fair"}
 """Verdict on a quantity of a reference -> quality."""
-NOTHING = "–"
-"""Text for a missing number."""
 PLAIN = 0.01, 1000.0
 """Range of numbers that are written without a power of ten."""
-ROUND_OFF = 1e-9
-"""Relative difference that is written as zero."""
 UNRESOLVED = 1e-3
 """Share of the length of contact below which no place in it is resolved."""
-
-
-QUANTITIES = {
-    "peak": "peak pressure", "force": "sum of contact forces", "start": "start of contact", "end": "end of contact",
-    "pressure": "pressure as a whole", "displacement": "largest displacement",
-    "intensity": "intensity of the infinite pressure", "motion": "motion", "rotation": "rotation",
-}  # fmt: skip
-"""Name of a quantity with an error bar -> the same in words."""
-LEAST_SHOWN = 1e-5
-"""Least error that is written, relative: smaller ones are written as this one."""
-BARS_ARE = (
-    "Error bars are estimates, from the change of each quantity when every element is cut in two. They are not proved."
-)
-"""What an error bar is."""
-
-
-def mesh_in_short(accuracy: Record) -> str:
-    """Error of a mesh, for a column of a table: ``0.4 %``, ``not met: 30 %``, ``not assessed``."""
-    if accuracy["met"] is None:
-        return "not assessed"
-    largest = worst_bar(accuracy)
-    error = "not known" if largest is not None and largest["bar"] is None else error_percent((largest or {}).get("bar"))
-    return error if accuracy["met"] else f"not met: {error}"
-
-
-def worst_bar(accuracy: Record) -> Record | None:
-    """The largest error bar of those to which the accuracy applies, an unknown one first; None if there is none.
-
-    The first of those that are too small to be written, so that round-off does not choose.
-    """
-    judged = [bar for bar in accuracy["bars"] if bar["promised"]]
-    return max(judged, key=lambda bar: np.inf if bar["bar"] is None else max(bar["bar"], LEAST_SHOWN), default=None)
-
-
-def error_percent(error: float | None) -> str:
-    """A relative error in per cent, rounded up to two figures: 0.41 %."""
-    error = max(error or 0.0, LEAST_SHOWN)
-    power = 10.0 ** (np.floor(np.log10(100 * error)) - 1)
-    return f"{power * np.ceil(100 * error / power * (1 - ROUND_OFF)):.3g} %"
-
-
-def bar_in_words(bar: Record) -> str:
-    """Name a quantity and its zone: ``peak pressure of foot``."""
-    return QUANTITIES[bar["quantity"]] + (f" of {bar['zone'] or bar['mover']}" if bar["zone"] or bar["mover"] else "")
-
-
-def bars_of(record: Record, quantity: str) -> Iterator[Record]:
-    """Error bars of a quantity."""
-    return (bar for bar in record.get("accuracy", {}).get("bars", ()) if bar["quantity"] == quantity)
-
-
-def infinite_peaks(record: Record) -> dict[str, str]:
-    """Zones whose peak pressure is infinite, with the reason."""
-    return {bar["zone"]: bar["note"] for bar in bars_of(record, "peak") if bar["value"] is None}
-
-
-def with_bar(value: float, bar: float | None) -> str:
-    """Write a number and its relative error: 183.3 ± 0.4."""
-    return number(value) if bar is None or not value else with_error(value, abs(value) * bar)
-
-
-def without_digits_beyond(value: float, bar: float | None) -> str:
-    """Write a number alone, with the digits that a relative error leaves: 183.3."""
-    if bar is None or not value:
-        return number(value)
-    (written,), _, power = _rounded((value,), abs(value) * bar)
-    return f"{written}{_exponent(power)}"
-
-
-def with_error(value: float, error: float) -> str:
-    """Write a number and its error: 183.3 ± 0.4; the error is rounded up, and the number has no digit beyond it."""
-    if not value and not error:
-        return number(value)
-    (written,), shown, power = _rounded((value,), error)
-    return f"({written} ± {shown}){_exponent(power)}" if power else f"{written} ± {shown}"
-
-
-def _rounded(values: Sequence[float], error: float) -> tuple[list[str], str, int]:
-    """Numbers and their error over a power of ten: the error rounded up, and no number with a digit beyond it."""
-    largest = max(map(abs, values))
-    power = int(np.floor(np.log10(largest))) if largest else 0
-    power = 0 if -4 <= power < 6 else power
-    error = max(error, LEAST_SHOWN * largest) / 10.0**power
-    first = int(np.floor(np.log10(error) + ROUND_OFF))
-    place = first - 1 if error < 2 * 10.0**first else first  # 0.14 keeps two figures, 0.4 one
-    shown = np.ceil(error / 10.0**place * (1 - ROUND_OFF)) * 10.0**place
-    digits = max(0, -place)
-    rounded = (round(value / 10.0**power, -place) for value in values)
-    return [f"{value:.{digits}f}" if value else "0" for value in rounded], f"{shown:.{digits}f}", power
-
-
-def _exponent(power: int) -> str:
-    return f"e{power:+03d}" if power else ""
-
-
-def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
-    """Write each quantity with its error bar, the share of the accuracy asked, and what is noted, for a table."""
-    asked, bars = accuracy["asked"], accuracy["bars"]
-    lengths = _interval_lengths(bars)
-    for bar in bars:
-        error = bar["bar"]
-        size = abs(bar["value"] or 0.0) if bar["interval"] is None else lengths.get((bar["zone"], bar["interval"]), 0.0)
-        interval = f" {bar['interval'] + 1}" if bar["interval"] is not None and _several(bars, bar) else ""
-        over = error is not None and asked and bar["promised"] and error > asked
-        share = "not known" if error is None else f"{100 * error / (asked or 1.0):.2g} %"
-        yield {
-            "quantity": sentence_case(QUANTITIES[bar["quantity"]]) + interval,
-            "zone": bar["zone"] or bar["mover"] or NOTHING,
-            "value": _bar_value(bar, size, units),
-            "share": share if asked and bar["promised"] else NOTHING,
-            "colour": "bad" if over else "",
-            "note": bar["note"] if bar["quantity"] == "intensity" else sentence_case(bar["note"]),
-        }
-
-
-def _bar_value(bar: Record, size: float, units: Units) -> str:
-    """Write a quantity and its error relative to a size, with the unit."""
-    value, error = bar["value"], bar["bar"]
-    if value is None and error is not None:
-        return f"± {error_percent(error)}"
-    if value is None:
-        return "infinite" if bar["quantity"] == "peak" else NOTHING
-    return with_unit(with_error(value, error * size) if error else number(value), _unit_of_bar(bar, units))
-
-
-def _interval_lengths(bars: Sequence[Record]) -> dict[tuple[str, int], float]:
-    """Length of each contact interval, by zone and number, to which the errors of its ends are relative."""
-    ends = {(bar["quantity"], bar["zone"], bar["interval"]): bar["value"] for bar in bars}
-    return {
-        (zone, i): abs(ends["end", zone, i] - value)
-        for (quantity, zone, i), value in ends.items()
-        if quantity == "start" and ("end", zone, i) in ends
-    }
-
-
-def _several(bars: Sequence[Record], bar: Record) -> bool:
-    """Whether a zone has several contact intervals."""
-    return any(other["zone"] == bar["zone"] and (other["interval"] or 0) > 0 for other in bars)
-
-
-def _unit_of_bar(bar: Record, units: Units) -> str:
-    """Label of the unit of a quantity with an error bar; K of p = K s^-α has that of p times a length to the α."""
-    match bar["quantity"]:
-        case "peak" | "pressure":
-            return units.stress
-        case "force":
-            return per_thickness(units)
-        case "intensity":
-            return f"{units.stress}·{units.length}^{bar['note'].rpartition('s^-')[2]}" if units.stress else ""
-        case "rotation":
-            return "rad"
-    return units.length
 
 
 def peak_of(record: Record, units: Units) -> str:

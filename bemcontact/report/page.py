@@ -12,20 +12,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from bemcontact.assessment.contender import OUTCOMES, Outcome
 from bemcontact.errors import escaped_lines
 from bemcontact.problem import Units
-from bemcontact.report.facts import (
-    BARS_ARE,
-    NOTHING,
-    Record,
-    accuracy_rows,
-    facts,
-    infinite_peaks,
-    peak_bar,
-    peak_of,
-    percent,
-    scores_in_words,
-    small,
-    with_bar,
-)
+from bemcontact.report.bars import BARS_ARE, NOTHING, Record, accuracy_rows, infinite_peaks, with_bar
+from bemcontact.report.facts import facts, peak_bar, peak_of, percent, scores_in_words, small
 from bemcontact.report.formatting import (
     number,
     penalty_unit,

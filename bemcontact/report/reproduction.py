@@ -8,15 +8,8 @@ from rich.table import Table
 from rich.text import Text
 
 from bemcontact.problem import Units
-from bemcontact.report.facts import (
-    NOTHING,
-    QUALITIES,
-    Record,
-    peak_of,
-    score_verdict,
-    scores_in_words,
-    small,
-)
+from bemcontact.report.bars import NOTHING, Record
+from bemcontact.report.facts import QUALITIES, peak_of, score_verdict, scores_in_words, small
 from bemcontact.report.formatting import number, seconds_in_words, sentence_case, with_unit
 from bemcontact.report.page import formulation_name, picture, template
 from bemcontact.report.text import add_verdict, list_of_facts, table_of

@@ -19,17 +19,8 @@ from bemcontact.assessment.comparison import Comparison
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.problem import DeflectedContour, Problem, Units
-from bemcontact.report.facts import (
-    Record,
-    coordinate_size,
-    facts,
-    mesh_in_short,
-    peak_of,
-    peak_place,
-    scores_in_words,
-    span,
-    zone_forces,
-)
+from bemcontact.report.bars import Record, mesh_in_short
+from bemcontact.report.facts import coordinate_size, facts, peak_of, peak_place, scores_in_words, span, zone_forces
 from bemcontact.report.formatting import (
     case_in_words,
     convexity_in_words,

@@ -7,7 +7,7 @@ from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.study import Study
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.report.facts import Record, bar_in_words, error_percent, worst_bar
+from bemcontact.report.bars import Record, bar_in_words, error_percent, worst_bar
 from bemcontact.report.formatting import certificate_sentence, number, sentence_case
 
 

@@ -9,15 +9,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bemcontact.problem import Units
-from bemcontact.report.facts import (
-    LEAST_SHOWN,
-    accuracy_rows,
-    error_percent,
-    facts,
-    peak_of,
-    with_bar,
-    without_digits_beyond,
-)
+from bemcontact.report.bars import LEAST_SHOWN, accuracy_rows, error_percent, with_bar, without_digits_beyond
+from bemcontact.report.facts import facts, peak_of
 
 UNITS = Units(length="cm", force="kN")
 

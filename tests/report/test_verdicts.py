@@ -3,7 +3,7 @@
 from accuracies import accuracy, bar
 
 from bemcontact.assessment.accuracy import Accuracy
-from bemcontact.report.facts import mesh_in_short
+from bemcontact.report.bars import mesh_in_short
 from bemcontact.report.verdicts import in_short, mesh_verdict, overall
 
 

@@ -14,7 +14,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.problem import DeflectedContour, Problem
-from bemcontact.report.facts import with_bar, without_digits_beyond
+from bemcontact.report.bars import with_bar, without_digits_beyond
 from bemcontact.report.figures.page import (
     BLACK,
     BODY,

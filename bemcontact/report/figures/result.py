@@ -12,7 +12,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.report.facts import with_bar
+from bemcontact.report.bars import with_bar
 from bemcontact.report.figures.contact import LEVEL, body_extent, draw_contact, draw_deformed
 from bemcontact.report.figures.page import (
     BLACK,

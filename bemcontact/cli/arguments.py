@@ -1,0 +1,234 @@
+"""Arguments of the commands: what is said of them, and how they are read."""
+
+import json
+import re
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from enum import StrEnum
+from functools import cached_property
+from math import isfinite
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import typer
+
+from bemcontact.errors import OptionError, ProblemError, SpecError, escaped
+from bemcontact.options import ComparisonOptions, SolveOptions, StartName
+
+Number = TypeVar("Number", int, float)
+
+STANDARD_STREAM = Path("-")
+"""The file name that means standard input or output."""
+
+
+def reader(kind: type[Any], least: int | None = None, *, finite: bool = True) -> Callable[[Any], Any]:
+    """A parser of an option that says in plain words what it expects."""
+
+    def read(text: Any) -> Any:
+        try:
+            value = kind(text.strip() if isinstance(text, str) else text)
+        except (ValueError, OverflowError):
+            value = None
+        if value is None or (least is not None and value < least) or (kind is float and finite and not isfinite(value)):
+            hint = "; the decimal sign is a point" if kind is float and re.fullmatch(r"[-+]?\d+,\d+", text) else ""
+            raise typer.BadParameter(f"expected {_expected(kind, least)}, found '{text[:40]}'{hint}")
+        return value
+
+    return read
+
+
+def _expected(kind: type[Any], least: int | None) -> str:
+    """Name the values that an option takes."""
+    if issubclass(kind, StrEnum):
+        return f"one of {', '.join(kind)}"
+    return "a number" if kind is float else f"a whole number{'' if least is None else f' of at least {least}'}"
+
+
+def with_default(meaning: str, default: str) -> str:
+    """Help of an option whose default is no value but words."""
+    return f"{meaning}  [default: {default}]"
+
+
+RefineOption = Annotated[
+    int, typer.Option(parser=reader(int, 1), metavar="K", help="Split each element into K equal parts.")
+]
+read_number = reader(float)
+PERCENT = re.compile(r"\s*(\d+(\.\d*)?|\.\d+)\s*%?\s*")
+
+
+def read_accuracy(text: Any) -> float:
+    """Read a relative accuracy; one in percent is refused with what to write."""
+    if isinstance(text, str) and (percent := PERCENT.fullmatch(text)):
+        value = float(percent[1])
+        if 0 < value < 1 and "%" not in text:
+            return value
+        if 0 < value < 100:
+            raise typer.BadParameter(
+                f"expected a relative accuracy between 0 and 1, found '{text.strip()[:40]}'; "
+                f"write {value / 100:.12g} for {value:.12g} %"
+            )
+    value = read_number(text)
+    if not 0 < value < 1:
+        raise typer.BadParameter(
+            f"expected a relative accuracy between 0 and 1, such as 0.01 for 1 %, found '{str(text)[:40]}'"
+        )
+    return value
+
+
+FigureOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Draw a picture; FILE ends in .png, .svg or .pdf.", show_default=False),
+]
+JsonOption = Annotated[
+    Path | None,
+    typer.Option("--json", metavar="FILE", help="Write all results; - for standard output.", show_default=False),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """The spec that a command reads, with the changes made to it on the command line."""
+
+    spec: Annotated[
+        Path,
+        typer.Argument(metavar="SPEC", help="Problem to read, a YAML file; - for standard input.", show_default=False),
+    ]
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY.PATH=VALUE",
+            help="Replace one value of the spec, stated or at its default, before it is checked; repeatable. "
+            "It adds no zone, tool or load case.",
+            show_default=False,
+        ),
+    ] = None
+    variant: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Take a variant of the spec; check lists them. --set changes the variant.",
+            show_default=False,
+        ),
+    ] = None
+    case: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Apply one load case or combination of the spec; check lists them.",
+            show_default=False,
+        ),
+    ] = None
+
+    accuracy: Annotated[
+        float | None,
+        typer.Option(
+            metavar="X",
+            parser=read_accuracy,
+            help=with_default(
+                "Find a mesh on which no error bar is larger than X, relative: 0.003 is 0.3 percent.", "as in the spec"
+            ),
+            show_default=False,
+        ),
+    ] = None
+
+    def __post_init__(self) -> None:
+        """Refuse a change without its value, which would be taken for another argument."""
+        for setting in self.overrides or ():
+            if "=" not in setting:
+                raise OptionError(f"--set {escaped(setting)}: there is no '='; write --set {escaped(setting)}=VALUE")
+
+    @property
+    def changes(self) -> list[str]:
+        """All changes as --set writes them."""
+        options = {"case": self.case, "accuracy": self.accuracy}
+        stated = [f"{key}={json.dumps(value)}" for key, value in options.items() if value is not None]
+        return [*(self.overrides or ()), *stated]
+
+    @property
+    def name(self) -> str:
+        """Name of the spec in messages."""
+        return "standard input" if self.spec == STANDARD_STREAM else str(self.spec)
+
+    @cached_property
+    def text(self) -> str:
+        """Text of the spec, read once."""
+        from bemcontact.files.text import MOST_BYTES, decoded, text_of
+
+        if self.spec == STANDARD_STREAM:
+            if sys.stdin is None:  # the shell has closed it, as with <&-
+                raise SpecError("standard input is closed; name a file, or send the spec to standard input")
+            return decoded(sys.stdin.buffer.read(MOST_BYTES + 1), self.name)
+        return text_of(self.spec)
+
+    def problem(self, refine: int = 1):  # its type costs the time of importing it
+        """Read the problem, with each element split."""
+        from bemcontact import spec
+
+        problem = spec.loads(self.text, self.name, self.changes, self.variant)
+        try:
+            return problem.refined(refine)
+        except ProblemError as error:
+            raise OptionError(f"--refine {refine}: {'; '.join(issue.message for issue in error.issues)}") from None
+
+    def readable(self):
+        """What can be read of a problem that is refused, for a picture; None without a sound boundary."""
+        from bemcontact import spec
+
+        return spec.readable(self.text, self.name, self.changes, self.variant)
+
+    def as_run(self) -> str:
+        """The spec with all changes, as YAML."""
+        from bemcontact import spec
+
+        return spec.as_run(self.text, self.name, self.changes, self.variant)
+
+    def located(self, error: ProblemError) -> str:
+        """The text of an error with file, line and column."""
+        from bemcontact import spec
+
+        return str(spec.located(error, self.text, self.name, self.changes, self.variant))
+
+
+def option(kind: type[SolveOptions | ComparisonOptions], name: str) -> Any:
+    """An option of the command line as `SolveOptions` or `ComparisonOptions` declares it."""
+    item = next(item for item in fields(kind) if item.name == name)
+    about, default = item.metadata, item.default
+    parser, metavar = None, about["metavar"]
+    if name == "start":
+        parser = _start
+    elif about["least"] is not None:
+        parser = reader(int, about["least"])
+    elif isinstance(default, StrEnum):
+        parser, metavar = reader(type(default)), f"<{'|'.join(type(default))}>"
+    elif isinstance(default, float):
+        parser = reader(float, finite=False)  # the options state the range
+    meaning, shown = about["meaning"], about["shown"]
+    if isinstance(shown, str):
+        meaning, shown = with_default(meaning, shown), False
+    return typer.Option(metavar=metavar, help=meaning, show_default=shown, parser=parser)
+
+
+def _start(text: str) -> StartName | Path:
+    """Read --start: a name, or else a file."""
+    if not text.strip():
+        raise typer.BadParameter(f"expected {', '.join(StartName)} or the name of a file, found nothing")
+    return StartName(text) if text in [*StartName] else Path(text)
+
+
+def names(text: str) -> list[str]:
+    """Read names with commas between them, in any case."""
+    return [item.strip().lower() for item in text.split(",")]
+
+
+def several(text: str, option: str, kind: str, read: Callable[[str], Number]) -> list[Number]:
+    """Read numbers with commas between them; `OptionError` says which one is not of the kind."""
+    numbers = []
+    for item in text.split(","):
+        try:
+            numbers.append(read(item))
+        except ValueError:
+            message = f"{option}: expected {kind}s with commas between, found '{item.strip()}'"
+            raise OptionError(message) from None
+    return numbers
