@@ -26,8 +26,8 @@ from bemcontact.report.figures.page import (
     plain,
     without_glyph_warnings,
 )
-from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, draw_tools, surface_line
-from bemcontact.report.figures.symbols import Name, dense, draw_arrows, draw_ground, place_names
+from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
+from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names
 from bemcontact.report.formatting import units_of, with_unit
 
 VISIBLE = 0.005
@@ -98,8 +98,8 @@ def draw_contact(axes: Axes, result: Result) -> None:
 
     The fan lies outside the body, along the normals of the rigid surface. The largest pressure of each unbroken piece
     of contact is written beside it; one that is infinite is cut off and written as such. If the contact is small beside
-    the body, only the part of the body around it is shown, as the title says, without supports and loads on edges.
-    `ValueError` for the result of a condensed problem.
+    the body, only the part of the body around it is shown, without supports and loads. `ValueError` for the result of a
+    condensed problem.
     """
     state, problem, units = result.boundary, result.problem, units_of(result.contact)
     if state is None or problem is None:
@@ -112,7 +112,6 @@ def draw_contact(axes: Axes, result: Result) -> None:
     reach = size if part else OVERHANG * size
     grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in _surfaces(result, problem, reach)]
     covered = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
-    names, tips = list[Name](), list[Array]()
     if not part:
         displacement = _displacement(state)
         covered += [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
@@ -120,6 +119,7 @@ def draw_contact(axes: Axes, result: Result) -> None:
     scale = min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans)) if fans else 1.0
     length = max(TALL * float(np.sqrt(width * height)), LEAST * size)
     length = min([length, *(CROSSING * fan.longest(scale) for fan in fans)])
+    names, tips = list[Name](), list[Array]()
     for fan in fans:
         tips.append(fan.feet - length * np.minimum(fan.pressure / scale, 1.0)[:, None] * fan.normals)
         _draw_fan(axes, fan, tips[-1], 0.03 * size)
@@ -128,34 +128,12 @@ def draw_contact(axes: Axes, result: Result) -> None:
             names.append(_label(fan, tips[-1], text, cut=fan.peak > scale * (1 + LEVEL)))
         elif fan.peak == max(other.peak for other in fans if other.zone == fan.zone):
             names.append(_label(fan, tips[-1], "infinite", cut=True))
-    for arrows, name in draw_tools(axes, problem, size, _moves(result)):
-        if not part or _holds(window, arrows):
-            covered.append(arrows)
-            names.append(name)
     drawn = np.concatenate([window, *tips] if part else [window, *tips, *covered])
     frame_plan(axes, drawn, units.length)
-    shown = "contact pressure, displacements to scale"
-    cut = "only the part of the body around the contact;\nsupports and loads on edges not drawn"
-    axes.set_title(f"{shown}; {cut}" if part else shown, loc="left", fontsize=10)
-    step = 0.01 * size
-    across = (np.stack(pair) for fan, tip in zip(fans, tips, strict=True) for pair in zip(fan.feet, tip, strict=True))
-    lines = [*tips, *loops, *across]
     with without_glyph_warnings():
-        place_names(axes, names, np.concatenate([*covered, *(dense(line, step) for line in lines)]), loops)
+        place_names(axes, names, drawn, loops)
     for text in axes.texts:
         text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
-
-
-def _moves(result: Result) -> dict[str, Array]:
-    """Translation (2,) of each tool."""
-    tools = result.contact.tools
-    return dict(zip(tools.names, tools.displacement(result.solution.rigid_amplitudes)[:, :2], strict=True))
-
-
-def _holds(window: Array, points: Array) -> bool:
-    """Whether the middle of points (k, 2) lies in the box around a window (j, 2)."""
-    middle = points.mean(axis=0)
-    return bool(((middle > window.min(axis=0) - np.ptp(window)) & (middle < window.max(axis=0) + np.ptp(window))).all())
 
 
 def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
@@ -223,8 +201,6 @@ def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:
     highest = np.flatnonzero(fan.pressure >= (1 - LEVEL) * fan.peak)
     at = int(highest[len(highest) // 2])
     outward, across = -fan.normals[at], fan.normals[at, ::-1] * (1, -1)
-    if abs(outward[0]) > abs(outward[1]):
-        text = text.replace(" ± ", "\n± ")  # beside the body width is scarce
     directions = np.array([outward, outward + across, outward - across, across, -across])
     return Name(
         text=text + (",\nfan cut off" if cut else ""),

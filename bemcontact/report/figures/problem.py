@@ -1,7 +1,7 @@
 """The picture of a problem: geometry, mesh, conditions, loads, rigid surfaces and tools."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -327,24 +327,20 @@ REACH = 0.13
 """Length of an arrow over the size of the body."""
 
 
-def draw_tools(
-    axes: Axes, problem: Problem, size: float | None = None, moves: Mapping[str, Array] | None = None
-) -> Iterator[tuple[Array, Name]]:
+def draw_tools(axes: Axes, problem: Problem) -> Iterator[tuple[Array, Name]]:
     """Draw arrows of the force and of the displacement of each tool, with the load cases that act.
 
     An arrow ends at the point of the tool, or at the middle of its first surface, if it pushes; it starts there if it
-    pulls. Yield points (k, 2) that the arrows cover, and the text to be placed beside them. `size` is that of the
-    drawing, of the body if there is none. Tools are drawn after their translations (2,) in `moves`.
+    pulls. Yield points (k, 2) that the arrows cover, and the text to be placed beside them.
     """
     for tool in problem.tools:
         place, normal = _place(problem, tool)
-        place = place + (moves[tool] if moves else 0.0)
         action = problem.tool_action(tool)
         covered = [place[None]]
         for components, colour in ((action.position, BLUE), (action.load, GREEN)):
             if not any(components[:2]):
                 continue
-            arrow = REACH * (size or problem.boundary.size) * np.array(components[:2]) / np.linalg.norm(components[:2])
+            arrow = REACH * problem.boundary.size * np.array(components[:2]) / np.linalg.norm(components[:2])
             tail = place - arrow if arrow @ normal > 0 else place
             covered.append(draw_arrows(axes, tail[None], arrow[None], colour))
         lines = tool_in_words(action, problem.units).split("; ")

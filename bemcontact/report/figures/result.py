@@ -61,6 +61,7 @@ def figure_of_result(result: Result) -> Figure:
         ratios = [*(plans * [1.0 if plans == 2 else 1.5]), *(len(panels) * [1.0])]
         grid = figure.add_gridspec(plans + len(panels), 2, height_ratios=ratios)
         contact = figure.add_subplot(grid[0, :] if plans == 2 else grid[0, 0])
+        contact.set_title("contact pressure, displacements to scale", loc="left", fontsize=10)
         places = [(figure.add_subplot(grid[row, 0]), grid[row, 1]) for row in range(plans, plans + len(panels))]
     for (pressure, beside), zone in zip(places, panels, strict=True):
         draw_pressure(pressure, result, zone)

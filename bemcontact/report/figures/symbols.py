@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
-from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from bemcontact.arrays import Array, BoolArray
@@ -47,33 +46,9 @@ def crowd(box: Box, taken: Sequence[Box], ink: Array) -> float:
     return 10 * sum(overlap(box, other) for other in taken) / area + float(inside.all(axis=1).sum())
 
 
-OUTSIDE = 0.1
-"""What a label outside the frame costs, in drawn points that another place would cover, since the frame must grow."""
-FAR = 0.2
-"""What each step away from its anchor costs a label, in the same unit: near ones are better than those in the frame."""
-GROWTH = 1.5
-"""By how many times what names overhang the frame grows."""
-ASIDE = 0.15
-"""What a label costs that is not at its first anchor in its first direction, in the same unit."""
-ROUNDS = 6
-"""Most times that a frame grows for its labels."""
-
-
-def least_crowded(
-    centers: Array, size: tuple[float, float], taken: Sequence[Box], ink: Array, cost: Array | float = 0.0
-) -> int:
-    """Index of the first of the centers (c, 2) at which a label covers least of other labels and of ink (k, 2).
-
-    Each place may have a further `cost` (c,), in drawn points.
-    """
-    return int(np.argmin(np.array([crowd(centred(center, size), taken, ink) for center in centers]) + cost))
-
-
-def dense(line: Array, step: float) -> Array:
-    """Points (k, 2) of a line (j, 2), no farther from each other than `step`."""
-    s = np.concatenate([[0.0], np.hypot(*np.diff(line, axis=0).T).cumsum()])
-    at = np.union1d(s, np.linspace(0, s[-1], int(s[-1] / step) + 2))
-    return np.column_stack([np.interp(at, s, line[:, i]) for i in (0, 1)])
+def least_crowded(centers: Array, size: tuple[float, float], taken: Sequence[Box], ink: Array) -> int:
+    """Index of the first of the centers (c, 2) at which a label covers least of other labels and of ink (k, 2)."""
+    return int(np.argmin([crowd(centred(center, size), taken, ink) for center in centers]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,59 +99,28 @@ def draw_arrows(axes: Axes, tails: Array, vectors: Array, colour: str) -> Array:
 def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence[Array]) -> list[Box]:
     """Write names in order where they cover least, on their own side of the closed polygons (j, 2) of the boundary.
 
-    `drawn` are points (k, 2) of the drawing. The limits of the axes must be set; they grow until all names lie inside.
-    Return the boxes of the names.
+    `drawn` are points (k, 2) of the drawing. The limits of the axes must be set. Return the boxes of the names.
     """
-    for _ in range(ROUNDS):
-        texts, taken = _written(axes, names, drawn, loops)
-        if not _grown(axes, taken):
-            break
-        for text in texts:
-            text.remove()
-    else:
-        texts, taken = _written(axes, names, drawn, loops)
-    return taken
-
-
-def _grown(axes: Axes, boxes: Sequence[Box]) -> bool:
-    """Make the frame larger where boxes on the page leave it; whether any did."""
-    frame = axes.get_window_extent()
-    low = np.min([(box.left, box.bottom) for box in boxes] or [frame.min], axis=0)
-    high = np.max([(box.right, box.top) for box in boxes] or [frame.max], axis=0)
-    below, above = low < frame.min, high > frame.max
-    if not (below.any() or above.any()):
-        return False
-    # Names keep their size on the page while the drawing shrinks, so the frame grows by more than they overhang.
-    corners = (
-        np.where(below, frame.min - GROWTH * (frame.min - low) - 4, frame.min),
-        np.where(above, frame.max + GROWTH * (high - frame.max) + 4, frame.max),
-    )
-    (left, bottom), (right, top) = axes.transData.inverted().transform(np.array(corners))
-    axes.set(xlim=(left, right), ylim=(bottom, top))
-    return True
-
-
-def _written(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence[Array]) -> tuple[list[Text], list[Box]]:
-    """Write names in the frame as it is; return them with their boxes on the page."""
     _settle(axes)
     to_page, frame = axes.transData, axes.get_window_extent()
     ink = to_page.transform(drawn)
     walls = [Path(to_page.transform(loop)) for loop in loops]
-    taken, texts = list[Box](), list[Text]()
+    taken: list[Box] = []
     for name in names:
         text = axes.text(0, 0, name.text, color=name.colour, fontsize=9, ha="center", va="center", zorder=6)
-        text.set_in_layout(False)  # the frame holds it
         extent = text.get_window_extent()
-        size = (extent.width + 6, extent.height + 4)
+        size = (extent.width + 4, extent.height + 2)
         anchors, centers = _places(to_page.transform(name.anchors), name.directions, size)
         near_side = ~_beyond(walls, anchors, centers)
-        rank, aside = np.divmod(np.arange(len(centers)), len(name.anchors))
-        cost = FAR * rank + ASIDE * (aside > 0) + OUTSIDE * ~_holds(frame, centers, size) + 1e3 * ~near_side
-        chosen = centers[least_crowded(centers, size, taken, ink, cost)]
+        both = near_side & _holds(frame, centers, size)
+        for admissible in (both, near_side):
+            if admissible.any():
+                centers = centers[admissible]
+                break
+        chosen = centers[least_crowded(centers, size, taken, ink)]
         taken.append(centred(chosen, size))
-        texts.append(text)
         text.set_position(_to_data(axes, chosen))
-    return texts, taken
+    return taken
 
 
 def place_arrow(axes: Axes, symbol: str, vector: Array, drawn: Array, taken: Sequence[Box]) -> None:
