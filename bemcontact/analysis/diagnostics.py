@@ -25,9 +25,12 @@ LONG_NEIGHBOR = 4.0
 SMALL_NET_LOAD = 1e-3
 """Net load over the sum of the magnitudes of all loads below which it may be due to rounded numbers in the input."""
 LARGE = 0.25
-"""Change of the displacement over the length along which it changes, and strain at the peak pressure, that are not
-small. Linear theory leaves out half the square of this change, here 3 % of the length and an eighth of a strain; a
-cantilever whose end has this slope deflects 3 % less than linear theory says (Bisshopp and Drucker 1945)."""
+"""Change of the displacement over the length along which it changes, and pressure over Young's modulus, not small.
+
+Linear theory leaves out half the square of this change, here 3 % of the length and an eighth of a strain; a cantilever
+whose end has this slope deflects 3 % less than linear theory says (Bisshopp and Drucker 1945)."""
+LARGE_STRAIN = 1 / 3
+"""Strain at the peak pressure that is not small: in a line contact, where the peak is a quarter of Young's modulus."""
 LARGE_TURN = 0.1
 """Rotation of the whole body in radians from which it is named as the cause."""
 LARGE_PART = 0.05
@@ -171,7 +174,8 @@ def large_pressure(body: Body, where: Footprint, boundary: BoundaryState) -> Ite
     outward = along[:, ::-1] * (1, -1) / length[:, None]
     least = float(-(boundary.traction.mean(axis=1) * outward).sum(axis=1).max())
     sheared = (pressure - least) / E
-    if (strain := max(abs(normal), sheared)) > LARGE:
+    strain = max(abs(normal), sheared)
+    if sheared > LARGE or abs(normal) > LARGE_STRAIN:
         yield (
             f"the peak pressure is {pressure / E:.2g} times Young's modulus, and strains there are about {strain:.2g}: "
             "displacements are not small, so that the linear theory does not hold"

@@ -304,19 +304,19 @@ def _solve(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations: int)
 
 @contextmanager
 def interrupts() -> Iterator[list[int]]:
-    """Collect interrupts (Ctrl-C) in a list, and raise them at the end: what Clarabel calls cannot raise them."""
+    """Collect interrupts (Ctrl-C) in a list, and handle one at the end: what Clarabel calls cannot raise them."""
     came: list[int] = []
-    ours = threading.current_thread() is threading.main_thread()
-    if not ours or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
         yield came
         return
     signal.signal(signal.SIGINT, lambda number, _: came.append(number))
     try:
         yield came
     finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGINT, before)
     if came:
-        raise KeyboardInterrupt
+        before(came[0], None)
 
 
 def _finite(progress: Array) -> Array:
