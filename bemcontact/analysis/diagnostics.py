@@ -156,8 +156,8 @@ def large_pressure(body: Body, where: Footprint, boundary: BoundaryState) -> Ite
     """Note a peak pressure that goes with large strains.
 
     The strain along the normal follows from the pressure and from the strain along the boundary. Shear below the
-    surface is measured by the difference of the pressure from the least on the boundary: a pressure that acts all round
-    shears nothing, however large it is.
+    surface is measured by the difference of the pressure from the least on the boundary, if that is none of tension: a
+    pressure that acts all round shears nothing, however large it is.
     """
     if where.peak is None:
         return
@@ -173,7 +173,7 @@ def large_pressure(body: Body, where: Footprint, boundary: BoundaryState) -> Ite
         normal = -(pressure * (1 - nu**2) / E + nu * tangential)
     outward = along[:, ::-1] * (1, -1) / length[:, None]
     least = float(-(boundary.traction.mean(axis=1) * outward).sum(axis=1).max())
-    sheared = (pressure - least) / E
+    sheared = (pressure - max(least, 0.0)) / E
     strain = max(abs(normal), sheared)
     if sheared > LARGE or abs(normal) > LARGE_STRAIN:
         yield (
