@@ -205,7 +205,7 @@ def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool
         if attempt.shrunk or equilibrate is not attempt.rescaled:
             scaled, scaling = _equilibrated(data, shrunk=attempt.shrunk)
         solution, progress = _solve(scaled, attempt.settings, max_iterations or ITERATIONS)
-        status, residual = _judged(scaled, solution)
+        status, residual = _judged(scaled, solution, shrunk=attempt.shrunk)
         if status not in RAYS and residual > GOOD and solution.iterations >= (max_iterations or np.inf):
             status = LIMIT
         yield _End(status, residual, _note(attempt, status, residual), solution, progress, scaling)
@@ -219,8 +219,12 @@ def _note(attempt: ClarabelSettings, status: str, residual: float) -> str:
     return "; ".join(notes)
 
 
-def _judged(data: dict[str, Any], solution: Any) -> tuple[str, float]:
-    """The status that the residuals of an end allow, and the largest of them: relative for a point, 0 for a proof."""
+def _judged(data: dict[str, Any], solution: Any, *, shrunk: bool = False) -> tuple[str, float]:
+    """The status that the residuals of an end allow, and the largest of them: relative for a point, 0 for a proof.
+
+    A gap between the objectives is relative to them or to one. In a larger unit any gap is small beside one, so there
+    it is relative to the terms of the objectives.
+    """
     x, z, s = (np.array(part) for part in (solution.x, solution.z, solution.s))
     A, b, c = data["A"], data["b"], data["c"]
     curved = _symmetric(data) @ x
@@ -231,10 +235,12 @@ def _judged(data: dict[str, Any], solution: Any) -> tuple[str, float]:
     if status == RAYS[1]:
         return (status, 0.0) if _is_ray(c, x, np.append(curved, A @ x + s)) else ("Unsolved", np.inf)
     primal, dual = c @ x + x @ curved / 2, -(b @ z) - x @ curved / 2
+    terms = np.abs(c) @ np.abs(x) + np.abs(b) @ np.abs(z)
+    size = terms or 1.0 if shrunk else max(1.0, min(abs(primal), abs(dual)))
     residuals = (
         _size(A @ x + s - b) / max(1.0, _size(b) + _size(x) + _size(s)),
         _size(curved + c + A.T @ z) / max(1.0, _size(c) + _size(x) + _size(z)),
-        abs(primal - dual) / max(1.0, min(abs(primal), abs(dual))),
+        abs(primal - dual) / size,
         _outside(data["dims"], s, z),
     )
     residual = float(np.max(residuals))  # with nan if one is

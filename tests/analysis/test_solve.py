@@ -446,3 +446,24 @@ def test_an_accuracy_is_asked_for_in_place_of_that_of_the_problem(cylinder):
         bemcontact.solve(stated.contact, accuracy=0.01)
     with pytest.raises(bemcontact.ProblemError, match=r"^accuracy: "):
         bemcontact.solve(cylinder, accuracy=2.0)
+
+
+LEVER = """
+name: lever on a stop
+material: {young_modulus: 70e3, poisson_ratio: 0.33, state: plane_stress}
+boundary:
+  outer: [{name: low, start: [0, 0]}, {name: right, start: [60, 0]}, {name: top, start: [60, 12]},
+          {name: left, start: [0, 12]}]
+conditions: {left: {displacement: {x: 0, y: 0}}, top: {pressure: 0.8}}
+contact_zones:
+  stop: {edges: low, surface: {kind: circle, center: [50, -8.05], radius: 8, body: outside}}
+"""
+
+
+def test_qp3_finds_a_contact_that_is_small_beside_its_zone():
+    """Lengths from 60 to 0.001 in one program: no scaling may make what is left of the objectives look small."""
+    result = bemcontact.solve(bemcontact.loads(LEVER), "qp3")
+    assert result.certified
+    assert result.footprint.peak is not None
+    force = result.footprint.resultant.force[1]
+    assert result.footprint.peak.pressure == pytest.approx(np.sqrt(force * 70e3 / (np.pi * 8)), rel=0.01)  # Hertz

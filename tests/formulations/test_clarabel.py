@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 from contextlib import suppress
 
 import cvxpy as cp
@@ -162,10 +163,17 @@ def test_what_is_hardly_feasible_is_not_called_infeasible_or_unbounded(gap):
 
 def test_an_interrupt_is_raised_when_a_solve_has_ended():
     """Clarabel prints what its callback raises, and goes on."""
-    before = signal.getsignal(signal.SIGINT)
-    with pytest.raises(KeyboardInterrupt), clarabel.interrupts():
-        os.kill(os.getpid(), signal.SIGINT)
-    assert signal.getsignal(signal.SIGINT) is before
+    data = np.random.default_rng(0).standard_normal((300, 300))
+    x = cp.Variable(300)
+    problem = cp.Problem(cp.Minimize(cp.sum_squares(data @ x - 1)), [x >= 0])
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in the background
+    try:
+        threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with pytest.raises(KeyboardInterrupt):
+            sum(minimize_convex(problem) is not problem for _ in range(100))
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @settings(max_examples=40, deadline=None)

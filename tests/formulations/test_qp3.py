@@ -175,7 +175,7 @@ def test_iteration_limit_is_named():
 
 def test_failure_of_the_solver_is_ours(monkeypatch):
     """No end of Clarabel leaves a point: all attempts are made, and the error says what to do."""
-    monkeypatch.setattr(clarabel, "_judged", lambda *_: ("Unsolved", np.inf))
+    monkeypatch.setattr(clarabel, "_judged", lambda *_, **__: ("Unsolved", np.inf))
     with pytest.raises(SolverError, match="Clarabel found no solution of QP3") as e:
         qp3.solve(random_contact(1, 5, 0))
     assert isinstance(e.value.__cause__, SolverError)

@@ -30,7 +30,7 @@ from bemcontact.report.figures.page import (
     short_label,
     wrapped,
 )
-from bemcontact.report.formatting import number, units_of, with_unit
+from bemcontact.report.formatting import units_of, with_unit
 from bemcontact.report.verdicts import Verdict, case_verdicts, in_short, overall, result_verdicts
 
 PANELS = 4
@@ -180,7 +180,7 @@ def _zoom(
     high = max((item.end_arc for item in intervals), default=end)
     if high - low >= NARROW * (end - start):
         return
-    air, unit = WIDTHS * (high - low), plain(units_of(contact).length)
+    air = WIDTHS * (high - low)
     window = (max(low - air, start), min(high + air, end))
     shown = np.concatenate(
         [
@@ -189,8 +189,7 @@ def _zoom(
         ]
     )
     axes.set(xlim=window, ylim=(-0.05 * shown.max() or None, 1.1 * shown.max() or None))
-    zone = with_unit(number(end - start), unit)
-    axes.set_xlabel(f"{axes.get_xlabel()}\nonly around the contact; the zone is {zone} long")
+    axes.set_xlabel(f"{axes.get_xlabel()}\nonly around the contact")
 
 
 def _gap(result: Result) -> Array:
