@@ -171,7 +171,7 @@ def logarithmic_rise(difference: MeshDifference, zone: str) -> float:
 
 
 def _rise(difference: MeshDifference, place: ContactPlace) -> float:
-    """What tractions or a tilted surface add to the peak between the fine mesh and a corner that is `SHARP`."""
+    """What the wedge and its tractions add to the peak between the fine mesh and a corner that is `SHARP`."""
     fine, answer = difference.fine, difference.pair[1]
     run = fine.runs[place.run]
     zone = [*fine.body.problem.contact_zones].index(place.zone)

@@ -269,7 +269,8 @@ def _forces_changed(
     if part[number] < WITHHELD:
         return None, (f"{words}; error bars do not include this",)
     words = f"{words[0].upper()}{words[1:]}."
-    return _misfit(gaps, points, contact, i, Misfit.MOVED, float(part[number]), noted(gaps.problem), words), ()
+    off = float(abs(moved.change[contact.zone == number]).max())
+    return _misfit(gaps, points, contact, i, Misfit.MOVED, off, 0.0, words), ()
 
 
 def _peak_change(

@@ -191,9 +191,8 @@ class SurfaceGaps:
         at, displacement = self.outline.sampled(elements), self._displacement(elements)
         here, there = self.linear(zone, elements), self.exact(zone, at.points + displacement)
         nodes = np.maximum(here.gap[:, None, NODES], 0.0)
-        touching = nodes.min(axis=2) <= TOUCHES * nodes.max(
-            axis=2
-        )  # elsewhere what dips was not seen, and is no contact
+        # where no node touches, what dips was not seen, and is no contact
+        touching = nodes.min(axis=2) <= TOUCHES * nodes.max(axis=2)
         dip = DIP * np.where(self._same(zone, here), nodes, 0.0).max(axis=2) * touching
         other = np.sum(here.normals * there.normals, axis=-1) < SAME_FACE
         beyond = other & (-there.gap > self._second_order(zone))

@@ -68,8 +68,8 @@ def bemcontact(
 
     Write the problem as a YAML file (see models/), check it with check, and solve it with solve.
 
-    Exit status: 0 certified, and the accuracy asked is met (1 % by default); 1 a result of which one is not true;
-    2 bad input.
+    Exit status: 0 certified, and the accuracy asked is met (1 % by default); 1 not certified, or the accuracy
+    is not met; 2 bad input.
 
     Examples
       bemcontact check models/cylinder_on_plane.yaml --figure problem.png
