@@ -114,7 +114,7 @@ def run(
 
 def check_outputs(source: Source | None, files: Mapping[str, Path | None]) -> None:
     """Refuse files (by option) that cannot be written, or that would overwrite another, before any work is done."""
-    taken = {output.real(path): "the spec itself" for path in _spec_file(source)}
+    taken = {output.real(path): "the problem file itself" for path in _spec_file(source)}
     for name, path in files.items():
         if path is None:
             continue
