@@ -128,7 +128,7 @@ class Result(Recorded):
             peak = f"peak pressure {self.footprint.peak.pressure:.6g}"
         else:
             peak = "infinite peak pressure" if self.footprint.intervals else "no contact"
-        equations = "unique solution proved" if self.certified else self.certificate.kind
+        equations = self.certificate.heading
         if self.penetration is not None:
             equations = f"{self.penetration.kind}: '{self.penetration.zone}'"
         known, accuracy = bool(self.accuracy.bars), self.accuracy

@@ -63,12 +63,25 @@ class CertificateKind(StrEnum):
     NOT_A_SOLUTION = "not a solution"
 
 
+NOT_SOLVED = "not solved"
+HEADINGS = {
+    CertificateKind.UNIQUE: "unique solution proved",
+    CertificateKind.LOCAL: "local only",
+    CertificateKind.OPEN: "left open by round-off",
+    CertificateKind.NOT_A_SOLUTION: NOT_SOLVED,
+}
+"""What is proved -> the verdict on the equations, in a few words."""
+POSITION_OPEN_HEADING = "unique pressures proved, position not determined"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Certificate(Leaf):
     """What is proved of a solution from its pressures and displacements alone, without trust in the solver."""
 
     kind: CertificateKind
     """What is proved."""
+    heading: str
+    """The verdict on the equations in a few words."""
     smallest_eigenvalue: float | None
     """Smallest eigenvalue λ of sym(JM) on the equilibrium space, with rows and columns scaled to a diagonal of ones.
 
@@ -110,15 +123,17 @@ def certify(
         kind = CertificateKind.OPEN
     kind = CertificateKind.NOT_A_SOLUTION if violation else kind
     relative = bound / peak if bound is not None and peak > 0 else None
+    open_position = kind is CertificateKind.UNIQUE and contact.free_motions > 0 and peak == 0
     return Certificate(
         kind=kind,
+        heading=POSITION_OPEN_HEADING if open_position else HEADINGS[kind],
         smallest_eigenvalue=eigenvalue,
         why_unique=_why_unique(eigenvalue, definite) if kind is CertificateKind.UNIQUE else "",
         error_bound=bound,
         relative_error_bound=relative,
         violation=violation,
         words=_certificate_sentence(kind, violation, eigenvalue, definite, relative, advice(solution))
-        + POSITION_OPEN * (kind is CertificateKind.UNIQUE and contact.free_motions > 0 and peak == 0),
+        + POSITION_OPEN * open_position,
     )
 
 

@@ -10,6 +10,7 @@ from itertools import combinations
 
 import numpy as np
 
+from bemcontact.assessment.certificate import NOT_SOLVED
 from bemcontact.assessment.contender import (
     OUTCOMES,
     Attempt,
@@ -32,14 +33,6 @@ SAME = 1e-6
 """Difference of two pressures over the peak from which they are two states and not one."""
 ROUND_OFF = 1e-12
 """Difference of pressures over the peak that the verdict calls round-off: it varies with the threads of a machine."""
-HEADINGS = {
-    Outcome.SOLVES: "unique solution proved",
-    Outcome.SOLVES_PERHAPS_NOT_ALONE: "local only",
-    Outcome.LEFT_OPEN: "left open by round-off",
-    Outcome.NOT_THE_SOLUTION: "not solved",
-    Outcome.REFUSED: "not solved",
-}
-"""What is shown of the direct solution -> the verdict on the equations."""
 MANY = 4
 """Number of contenders above which those that agree are counted and not named."""
 
@@ -154,10 +147,11 @@ class Comparison(Recorded):
     @property
     def heading(self) -> str:
         """What is proved of the solution of the equations on this mesh, in a few words."""
-        if not self.reference.certified:
-            return HEADINGS[self.reference.verdict.outcome]
-        proved, failing = HEADINGS[Outcome.SOLVES], sum(not item.certified for item in self.contenders)
-        return f"{proved}, but {failing} of {len(self.contenders)} formulations did not find it" if failing else proved
+        direct, failing = self.reference, sum(not item.certified for item in self.contenders)
+        heading = NOT_SOLVED if direct.assessment is None else direct.assessment.certificate.heading
+        if not (direct.certified and failing):
+            return heading
+        return f"{heading}, but {failing} of {len(self.contenders)} formulations did not find it"
 
     def difference(self, label: str) -> Difference | None:
         """How far a contender is from the reference; None if it has no pressure, or is the reference."""

@@ -92,7 +92,9 @@ class Source:
 
     spec: Annotated[
         Path,
-        typer.Argument(metavar="SPEC", help="Problem file to read, in YAML (a spec); - for standard input.", show_default=False),
+        typer.Argument(
+            metavar="SPEC", help="Problem file to read, in YAML (a spec); - for standard input.", show_default=False
+        ),
     ]
     overrides: Annotated[
         list[str] | None,

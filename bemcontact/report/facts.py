@@ -122,6 +122,8 @@ def _end_errors(record: Record) -> Iterator[float | None]:
 def _amount(record: Record, motion: int, units: Units) -> str:
     """How far the body moves along a free motion: a length, or an angle; nothing where the unit is not known."""
     moved, angles = record["rigid_amplitudes"][motion], record["rotations"]
+    if not record["intervals"]:
+        return ": not determined"
     if not zero_if_negligible(moved, record["scales"]["displacement"]):
         return ": 0"
     if angles is None:

@@ -41,9 +41,7 @@ def equations_verdict(certificate: Record, words: str, penetration: Record | Non
     if penetration is not None:
         sentences = f"{penetration['words']} At the contact points: {words}"
         return Verdict("Equations", "bad", misfit_in_words(penetration), sentences)
-    kind: str = certificate["kind"]
-    word = {"unique": "unique solution proved", "not a solution": "not solved"}.get(kind, kind)
-    return Verdict("Equations", "good" if kind == "unique" else "bad", word, words)
+    return Verdict("Equations", "good" if certificate["kind"] == "unique" else "bad", certificate["heading"], words)
 
 
 def misfit_in_words(penetration: Record) -> str:

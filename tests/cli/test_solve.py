@@ -11,7 +11,7 @@ from messages import assert_states
 
 from bemcontact import spec
 from bemcontact.analysis import solve as analysis
-from bemcontact.assessment.certificate import CertificateKind
+from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations import FORMULATIONS
 
@@ -80,7 +80,12 @@ def test_a_variant_is_listed_and_taken(block: Path, tmp_path: Path):
 
 def test_a_result_without_certificate_ends_with_status_1(block: Path, monkeypatch: pytest.MonkeyPatch):
     result = analysis.solve(spec.load(block))
-    certificate = dataclasses.replace(result.certificate, kind=CertificateKind.LOCAL, words="Another may exist.")
+    certificate = dataclasses.replace(
+        result.certificate,
+        kind=CertificateKind.LOCAL,
+        heading=HEADINGS[CertificateKind.LOCAL],
+        words="Another may exist.",
+    )
     monkeypatch.setattr(analysis, "solve_with", lambda *_, **__: dataclasses.replace(result, certificate=certificate))
     table = run("solve", block)
     assert table.exit_code == 1

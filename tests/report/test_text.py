@@ -17,7 +17,7 @@ import bemcontact
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.check import check
 from bemcontact.analysis.load_cases import CaseResults
-from bemcontact.assessment.certificate import CertificateKind
+from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import LocalSearch, Penalty, Status
 from bemcontact.problem import Problem, Units
@@ -75,7 +75,12 @@ def test_result_summary_states_the_facts(result: analysis.Result):
 
 
 def test_a_result_that_is_not_certified_states_so(result: analysis.Result):
-    certificate = dataclasses.replace(result.certificate, kind=CertificateKind.LOCAL, words="Another may exist.")
+    certificate = dataclasses.replace(
+        result.certificate,
+        kind=CertificateKind.LOCAL,
+        heading=HEADINGS[CertificateKind.LOCAL],
+        words="Another may exist.",
+    )
     solution = dataclasses.replace(result.solution, status=Status.ITERATION_LIMIT)
     doubtful = dataclasses.replace(result, certificate=certificate, solution=solution)
     assert_states(shortfall(doubtful), f"Equations: local only … {Status.ITERATION_LIMIT.words} … Another may exist.")
@@ -252,7 +257,12 @@ def test_a_note_of_all_cases_is_reported_once_and_one_of_some_with_their_names()
 
 def test_a_case_that_is_not_certified_is_reported_with_the_reason():
     one = all_cases().results["heat"]
-    doubtful = dataclasses.replace(one.certificate, kind=CertificateKind.NOT_A_SOLUTION, words="Pressures pull.")
+    doubtful = dataclasses.replace(
+        one.certificate,
+        kind=CertificateKind.NOT_A_SOLUTION,
+        heading=HEADINGS[CertificateKind.NOT_A_SOLUTION],
+        words="Pressures pull.",
+    )
     results = {**all_cases().results, "heat": dataclasses.replace(one, certificate=doubtful, penetration=None)}
     told = shown(text.cases_summary(dataclasses.replace(all_cases(), results=results)))
     assert " not solved " in rows_of(told)["heat"]

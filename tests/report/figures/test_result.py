@@ -15,7 +15,7 @@ import bemcontact
 from bemcontact import spec
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.load_cases import CaseResults
-from bemcontact.assessment.certificate import CertificateKind
+from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.problem import Problem, Units
 from bemcontact.report import figures
 from bemcontact.report.facts import peak_of
@@ -178,7 +178,7 @@ def test_colour_of_the_title_is_that_of_the_worse_verdict():
         return figures.figure_of(result)._suptitle.get_color()  # pyright: ignore
 
     one = on_a_punch().results["low"]
-    doubtful = replace(one.certificate, kind=CertificateKind.LOCAL)
+    doubtful = replace(one.certificate, kind=CertificateKind.LOCAL, heading=HEADINGS[CertificateKind.LOCAL])
     unmet = replace(one, accuracy=replace(one.accuracy, met=False))
     colours = [colour_of(item) for item in (one, unmet, replace(unmet, certificate=doubtful))]
     assert colours == ["#222222", "#8a5a00", "#d55e00"]
