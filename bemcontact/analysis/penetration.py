@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bemcontact.analysis.placement import noted, placement
+from bemcontact.analysis.placement import placement, reach
 from bemcontact.analysis.variation import Variation
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
@@ -46,6 +46,7 @@ def penetration(
             element = int(deepest[np.argmin(paired[deepest])])  # of equal depths that which is easier to understand
             worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
         notes += _behind(gaps, zone, found.behind)
+        notes += () if worst else _excused(gaps, zone, found.excused, found.xi, allowed)
         notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
     misplaced, said = (None, ()) if worst else placement(gaps, body, contact, solution, nearby)
     return worst or misplaced, (*notes, *said)
@@ -59,14 +60,14 @@ def penetration_on_path(
     A state at an end of the path is judged as a solution is.
     """
     outline, worst, at, notes = Outline(problem=varied.problem), None, None, dict[str, list[float]]()
-    last, reach = len(path.parameter) - 1, noted(varied.problem)
+    last, near = len(path.parameter) - 1, reach(varied.problem)
     for i, t in enumerate(path.parameter.tolist()):
         value, contact, solution = (1 - t) * start + t * end, path.contact(t), path.breakpoint(i)
         problem = varied.at(value) if varied.path[0] == "contact_zones" else varied.problem
         state = _state_at(varied, value, contact, solution)
         body = next(iter(varied.condensed.values())).body
         gaps = surface_gaps(problem, state, contact, solution, outline)
-        nearby = _peaks_within(path, t - reach, t + reach) if 0 < i < last else None
+        nearby = _peaks_within(path, t - near, t + near) if 0 < i < last else None
         found, said = penetration(gaps, body, contact, solution, nearby)
         if found is not None and (worst is None or found.depth > worst.depth):
             worst, at = found, value
@@ -120,6 +121,22 @@ def _penetration(gaps: SurfaceGaps, zone: str, element: int, xi: float, depth: f
         paired=paired,
         words=penetration_in_words(how_deep, f"({x:.5g}, {y:.5g}) on '{edge}'", zone, paired=paired),
     )
+
+
+def _excused(gaps: SurfaceGaps, zone: str, depth: Array, xi: Array, allowed: float) -> Iterator[str]:
+    """Note a penetration that linear theory can explain."""
+    element = int(np.argmax(depth))
+    if depth[element] > allowed:
+        x, y = gaps.outline.places(np.array([element]), np.array([[xi[element]]])).points[0, 0].tolist()
+        edge, inside = (
+            gaps.state.edge_names[gaps.state.edge[element]],
+            f"{depth[element]:.2g} {gaps.problem.units.length}",
+        )
+        yield (
+            f"'{edge}' is not in '{zone}', and is inside its rigid surface by {inside.strip()} at ({x:.5g}, {y:.5g}): "
+            "displacements are so large that linear theory may be off by this, so it does not count; if this edge "
+            "should touch, add it to the zone"
+        )
 
 
 def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:

@@ -24,12 +24,18 @@ from bemcontact.formulations import complementarity
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.surface_lines import Polyline
 
-NOTED = 0.01
-"""Change of a peak over the largest one from which it is noted, unless a smaller accuracy is asked for: error bars are
-those of the gaps of the body as it is drawn. A relative curvature that is off by 2 % changes the peak of a line contact
-by half of that (Hertz)."""
+LEAST_ASKED = 0.01
+"""Accuracy to which the place is judged, unless a smaller one is asked for. A relative curvature that is off by 2 %
+changes the peak of a line contact by half of that (Hertz)."""
+NOTED = 0.25
+"""Part of this accuracy from which a change is noted: error bars are those of the gaps of the body as it is drawn, and
+are mostly a few times smaller than the accuracy."""
 WITHHELD = 0.05
 """Change from which a result is not certified: the curvature is off by a tenth."""
+MOVES_ON = 0.5
+"""Part of a motion by which a body moves on in the second solution, from which it is not held: the steps do not end."""
+NO_SQUARE = 10.0
+"""A motion that is so many times the change of the gaps does not come from it, which is of second order."""
 NO_CHANGE = 1e-7
 """Difference of the gaps, over the displacement scale of contact, that changes nothing."""
 ALIKE = 0.1
@@ -87,7 +93,9 @@ def placement(
             motion_load=contact.motion_load + _turned_load(gaps, body, contact, solution, moved),
         )
     )
-    misfit, turned = _forces_changed(gaps, points, contact, solution, again, moved) if nearby is None else (None, ())
+    misfit, turned = _moves_on(gaps, points, contact, solution, again, moved), ()
+    if misfit is None and nearby is None:
+        misfit, turned = _forces_changed(gaps, points, contact, solution, again, moved)
     if misfit is not None:
         return misfit, (*overhangs, *turned)
     misfit, said = _changed(gaps, points, contact, solution, again, moved, nearby)
@@ -95,8 +103,13 @@ def placement(
 
 
 def noted(problem: Problem) -> float:
-    """Change of a peak over the largest one from which it is noted."""
-    return min(NOTED, problem.asked_accuracy or NOTED)
+    """Change of a peak over the largest one, or of a force over itself, from which it is noted."""
+    return NOTED * reach(problem)
+
+
+def reach(problem: Problem) -> float:
+    """Part of a path before and after a state of which any parameter may be meant."""
+    return min(LEAST_ASKED, problem.asked_accuracy or LEAST_ASKED)
 
 
 def _displaced(
@@ -162,8 +175,9 @@ def _overhangs(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, beside: IntArray, pressed: BoolArray,
     moved: _Displaced,
 ) -> Iterator[str]:  # fmt: skip
-    """Note pressed points that have moved past an end of the surface by a noticeable part of the pressed length."""
-    for i in beside.tolist():
+    """Note the points of each zone that have moved farthest past an end, by a noticeable part of the pressed length."""
+    farthest = {contact.zone[i]: i for i in beside[np.argsort(moved.distance[beside])].tolist()}
+    for i in farthest.values():
         part = moved.distance[i] / _pressed_length(contact, pressed, i)
         if part >= noted(gaps.problem):
             yield (
@@ -206,7 +220,7 @@ def _changed(
     if solved and nearby is not None:
         beyond = _peak_change(contact, solution.pressure, again.pressure, nearby)
         if abs(beyond[1]) < WITHHELD:
-            return None, (_off_by_a_little(contact.zone_names[number], noted(gaps.problem)),)
+            return None, (_off_by_a_little(contact.zone_names[number], gaps.problem),)
         number, change = beyond
     own = np.flatnonzero(contact.zone == number)
     i = int(own[np.argmax(np.maximum(solution.pressure, again.pressure if solved else 0.0)[own])])
@@ -242,6 +256,37 @@ def _turned_load(
         load = np.array([fx.sum(), fy.sum(), (x * fy - y * fx).sum()])
         work = work - load @ contact.tools.amplitudes[3 * number : 3 * number + 3]
     return work
+
+
+def _moves_on(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
+    again: ContactSolution, moved: _Displaced,
+) -> Penetration | None:  # fmt: skip
+    """Find a free motion that goes on by as much again where the body has moved to: only a tilt as drawn holds it.
+
+    A flat block slides on a round support, whose normals are tilted beside the place where it touches. It would move
+    until the tilt balances the load, but takes the place of contact with it.
+    """
+    if again.status is not Status.SOLVED or not contact.free_motions:
+        return None
+    reach = abs(contact.rigid_motions).max(axis=0)
+    before = abs(solution.rigid_amplitudes) * reach
+    further = abs(again.rigid_amplitudes - solution.rigid_amplitudes) * reach
+    pressed = np.maximum(solution.pressure, again.pressure) > 0
+    least = max(NO_SQUARE * abs(moved.change[pressed]).max(), NO_CHANGE * contact.scales.displacement)
+    held = further < np.maximum(MOVES_ON * before, least)
+    if held.all():
+        return None
+    j = int(np.argmax(np.where(held, 0.0, further)))
+    i = int(np.argmax(contact.weights * solution.pressure * abs(contact.rigid_motions[:, j])))
+    by = _vector(moved.motion[i], gaps.problem.units.length)
+    words = (
+        f"No contact holds the {contact.motion_names[j]} against the load: only the tilt does that surfaces have "
+        f"beside the place of contact as drawn. Where the body then is, moved by {by}, it moves on by "
+        f"{100 * further[j] / before[j]:.2g} % of this motion. Prescribe a displacement that holds the body, or take "
+        "away the load in this direction."
+    )
+    return _misfit(gaps, points, contact, i, Misfit.MOVED, float(further[j]), float(least), words)
 
 
 def _forces_changed(
@@ -284,12 +329,12 @@ def _peak_change(
     return number, float(changes[number])
 
 
-def _off_by_a_little(zone: str, part: float) -> str:
+def _off_by_a_little(zone: str, problem: Problem) -> str:
     """Say of a state on a path that its peak is that of a parameter a little off, or off by less than is withheld."""
     return (
         f"the body moves far beside its shape: with the gaps after the motion, the peak pressure on the surface of "
-        f"'{zone}' changes by {100 * part:.2g} % or more, but by less than {100 * WITHHELD:.2g} % or than it changes "
-        f"within {100 * part:.2g} % of the path"
+        f"'{zone}' changes by {100 * noted(problem):.2g} % or more, but by less than {100 * WITHHELD:.2g} % or than it "
+        f"changes within {100 * reach(problem):.2g} % of the path"
     )
 
 

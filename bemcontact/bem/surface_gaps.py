@@ -40,6 +40,8 @@ SAME_FACE = 0.98
 """Cosine of the angle between two normals of a surface up to which they belong to the same face."""
 DIP = 1 / 8
 """Largest dip of a quadratic below zero between three nodes, over the largest of its values there, if none is below."""
+LARGEST_PART = 0.05
+"""Part of a displacement that is excused as an error of linear theory, at most: that of a rotation by a tenth."""
 TOUCHES = 1e-6
 """Gap of a node, over the largest one of its element, up to which it touches: pressure keeps such nodes at zero."""
 
@@ -75,12 +77,14 @@ class Intrusion(NamedTuple):
     xi : (m,) local coordinate where an element is deepest
     behind : (m,) whether a place of an element that is not of the zone is behind the surface before anything moves, and
         does not fit it with interference
+    excused : (m,) depth [L] that is no more than linear theory may be off, and is not in `depth`, likewise
     ends : where the surface is taken to end, with the depth [L] that places beyond would have in it if it went on
     """
 
     depth: Array
     xi: Array
     behind: BoolArray
+    excused: Array
     ends: tuple[tuple[FaceEnd, float], ...]
 
 
@@ -184,7 +188,11 @@ class SurfaceGaps:
                 depths, behind[elements], hidden = self._depth_in_other(zone, elements, ends)
             deepest = depths.argmax(axis=1)
             depth[elements], xi[elements] = depths[np.arange(len(elements)), deepest], SAMPLES[deepest]
-        return Intrusion(depth, xi, behind, tuple(zip(ends, hidden, strict=True)))
+        excused = ~paired & (depth <= self._second_order(zone))
+        return Intrusion(
+            depth=np.where(excused, -np.inf, depth), xi=xi, behind=behind, excused=np.where(excused, depth, -np.inf),
+            ends=tuple(zip(ends, hidden, strict=True)),
+        )  # fmt: skip
 
     def _depth_in_own(self, zone: str, elements: IntArray) -> Array:
         """Depth (k, q) [L] of elements (k,) of the zone."""
@@ -216,9 +224,10 @@ class SurfaceGaps:
         behind[elements] = np.any((before < -flush) & ~snug, axis=1)
         crosses = (behind | behind[mesh.before] | behind[mesh.elements[:, 2]])[elements, None]
         outside = (before > flush) | snug | (~crosses & (before >= -flush))
-        depth = np.where(outside & (-after > self._second_order(zone)), -after, -np.inf)
+        depth = np.where(outside, -after, -np.inf)
         ended = [_opposite(end, at.points - before[..., None] * normals, normals, flush) for end in ends]
-        hidden = [float(np.max(depth, initial=-np.inf, where=beyond)) for beyond in ended]
+        sure = depth > self._second_order(zone)
+        hidden = [float(np.max(depth, initial=-np.inf, where=beyond & sure)) for beyond in ended]
         return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden
 
     def _fits(self, zone: str, elements: IntArray, before: Array, turned: BoolArray) -> BoolArray:
@@ -293,12 +302,17 @@ class SurfaceGaps:
         return reference_element.values(SAMPLES) @ self.state.displacement[elements]
 
     def _second_order(self, zone: str) -> float:
-        """Depth [L] by which linear theory may be off: (difference of displacements)² over the size of the body."""
+        """Depth [L] by which linear theory may be off: (difference of displacements)² over the size of the body.
+
+        It is a part of that difference, and no more than `LARGEST_PART`: what is deeper can be seen.
+        """
         # only rotations and strains cause differences; translations are exact in linear theory
         size = self.problem.boundary.size
         spread = np.ptp(self.state.displacement.reshape(-1, 2) @ DIRECTIONS, axis=0).max()
-        turns = [self.tools[name][2] for name, tool in self.problem.tools.items() if zone in tool.zones]
-        return float(spread**2 / size + sum(turn**2 for turn in turns) * size)
+        turns = [abs(self.tools[name][2]) for name, tool in self.problem.tools.items() if zone in tool.zones]
+        return float(
+            sum(min(moved / size, LARGEST_PART) * moved for moved in (spread, *(turn * size for turn in turns)))
+        )
 
     def _near(self, zone: str) -> BoolArray:
         """Whether each element (m,) may touch a surface: no place of it is farther from its middle than its length."""

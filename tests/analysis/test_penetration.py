@@ -50,8 +50,9 @@ def bulge(pressure):
 
 
 @settings(max_examples=25, deadline=None)
-@given(st.floats(1, 60), st.floats(0.0005, 0.3), st.floats(0, 6.28), st.sampled_from([1e-3, 1.0, 1e3]))
+@given(st.floats(1, 400), st.floats(0.0005, 0.3), st.floats(0, 6.28), st.sampled_from([1e-3, 1.0, 1e3]))
 @example(40.0, 0.02, 0.0, 1.0)
+@example(400.0, 0.3, 0.0, 1.0)
 def test_depth_of_a_block_that_bulges_into_a_wall(pressure, gap, turn, size):
     """The free side bulges uniformly, in any direction and unit: the depth is the bulge less the gap."""
     problem = seal(pressure=pressure, gap=gap, turn=turn, size=size)
@@ -60,7 +61,8 @@ def test_depth_of_a_block_that_bulges_into_a_wall(pressure, gap, turn, size):
     result = solve(problem.with_value("conditions", press), "complementarity")
     free = bulge(pressure) - (1 - NU**2) * 1e-3 * SIDE / E
     depth, allowed = free - gap, 0.01 * np.hypot(free, (1 - NU**2) * pressure * SIDE / E)
-    second = (free**2 + (bulge(pressure) / NU) ** 2) / SIDE  # more than the squares over the diagonal
+    spread = np.hypot(free, bulge(pressure) / NU)
+    second = min(spread / SIDE, 0.05) * spread  # more than the squares over the diagonal
     if depth > allowed + second:
         assert not result.certified
         assert result.certificate.certified
@@ -70,6 +72,8 @@ def test_depth_of_a_block_that_bulges_into_a_wall(pressure, gap, turn, size):
         assert not result.penetration.paired
         x, y = result.penetration.at
         assert c * x + s * y == pytest.approx(SIDE * size, rel=1e-9)
+    elif result.penetration is None and depth > allowed:
+        assert any("inside its rigid surface" in note for note in result.notes)
     elif depth < 0:
         assert result.certified
         assert result.penetration is None
