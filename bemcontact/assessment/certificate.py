@@ -25,6 +25,7 @@ solution.
 Where λ is not positive, `uniqueness` may still exclude other states, and gives a λ for the error bound with S = 1.
 """
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -183,7 +184,7 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: De
 
 
 def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> float:
-    """How far y (n,) may be from exact balance: what is left of ℓᵀy + load over the lever of the points that carry.
+    """How far y (n,) may be from exact balance: the least change of points that carry which takes ℓᵀy + load away.
 
     Points side by side carry a moment by large pressures only. A point whose pressure is no more than that error may
     not carry at all. Infinite if some load is carried by round-off only.
@@ -191,26 +192,33 @@ def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> float:
     if not contact.free_motions:
         return 0.0
     ell, load = _unit_rows(contact)
-    left = np.abs(ell.T @ y + load) + len(y) * EPS * (np.abs(ell).T @ y + np.abs(load))
+    left = np.abs(_imbalance(ell, y, load)) + 2 * EPS * (np.abs(ell).T @ y + np.abs(load))
     least, change = -1.0, 0.0
     while change < np.inf and (least < 0 or ((y > least) & (y <= change)).any()):
         least = change
-        lever = _lever(ell, ell[y > least])
-        change = max(change, float(np.linalg.norm(left)) / lever) if lever > 0 else np.inf
+        change = max(change, _least_change(ell, ell[y > least], left))
     return change
 
 
-def _lever(ell: Array, carried: Array) -> float:
-    """Least load per pressure of the rows (m, k) of ℓ, with the rows that add least to them where they lack any."""
+def _imbalance(ell: Array, y: Array, load: Array) -> Array:
+    """ℓᵀy + load (k,): sums without rounding of products that are each rounded once."""
+    return np.array([math.fsum([*(column * y).tolist(), part]) for column, part in zip(ell.T, load.tolist(), strict=True)])
+
+
+def _least_change(ell: Array, carried: Array, left: Array) -> float:
+    """Bound of the least pressures on the rows (m, k) of ℓ that carry loads up to left (k,); infinity if none do.
+
+    Where the rows lack a direction, those that add least to them are taken too.
+    """
     lost = len(ell) * EPS
     while True:
         _, sizes, axes = np.linalg.svd(carried)
         rank = int(np.count_nonzero(sizes > lost))
         if rank == ell.shape[1]:
-            return float(sizes[-1])
+            return float(np.linalg.norm(np.linalg.pinv(carried, rcond=0.0), axis=1) @ left)
         levers = np.linalg.norm(ell @ axes[rank:].T, axis=1)
         if levers.max() <= 2 * lost:
-            return 0.0
+            return np.inf
         added = ell[[np.argmin(np.where(levers > 2 * lost, levers, np.inf))]]
         carried = np.vstack([carried, added])
 
@@ -234,9 +242,10 @@ def _nearest_balanced(p: Array, contact_set: NDArray[np.bool_], ell: Array, load
     for _ in range(NEWTON_STEPS):
         y = np.where(contact_set, np.maximum(p + ell @ b, 0.0), 0.0)
         imbalance = ell.T @ y + load
-        if np.abs(imbalance).max(initial=0.0) <= 1e-14 * (1.0 + np.abs(p).sum()):
-            return y
         touching = ell[y > 0]
+        if np.abs(imbalance).max(initial=0.0) <= 1e-14 * (1.0 + np.abs(p).sum()):
+            y[y > 0] -= np.linalg.lstsq(touching.T, _imbalance(ell, y, load), rcond=None)[0]
+            return np.maximum(y, 0.0)
         b -= np.linalg.lstsq(touching.T @ touching, imbalance, rcond=None)[0]
     return None
 
