@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bemcontact.analysis.placement import placement, reach
+from bemcontact.analysis.placement import part_of_path, placement
 from bemcontact.analysis.variation import Variation
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
@@ -60,7 +60,7 @@ def penetration_on_path(
     A state at an end of the path is judged as a solution is.
     """
     outline, worst, at, notes = Outline(problem=varied.problem), None, None, dict[str, list[float]]()
-    last, near = len(path.parameter) - 1, reach(varied.problem)
+    last, near = len(path.parameter) - 1, part_of_path(varied.problem)
     for i, t in enumerate(path.parameter.tolist()):
         value, contact, solution = (1 - t) * start + t * end, path.contact(t), path.breakpoint(i)
         problem = varied.at(value) if varied.path[0] == "contact_zones" else varied.problem

@@ -104,11 +104,16 @@ def placement(
 
 def noted(problem: Problem) -> float:
     """Change of a peak over the largest one, or of a force over itself, from which it is noted."""
-    return NOTED * reach(problem)
+    return NOTED * _judged_to(problem)
 
 
 def reach(problem: Problem) -> float:
     """Part of a path before and after a state of which any parameter may be meant."""
+    return _judged_to(problem)
+
+
+def _judged_to(problem: Problem) -> float:
+    """Accuracy to which the place is judged."""
     return min(LEAST_ASKED, problem.asked_accuracy or LEAST_ASKED)
 
 
@@ -334,7 +339,7 @@ def _off_by_a_little(zone: str, problem: Problem) -> str:
     return (
         f"the body moves far beside its shape: with the gaps after the motion, the peak pressure on the surface of "
         f"'{zone}' changes by {100 * noted(problem):.2g} % or more, but by less than {100 * WITHHELD:.2g} % or than it "
-        f"changes within {100 * reach(problem):.2g} % of the path"
+        f"changes within {100 * part_of_path(problem):.2g} % of the path"
     )
 
 

@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 from bemcontact.arrays import Array
 from bemcontact.assessment.definiteness import EPS, Definiteness
 from bemcontact.assessment.residual import Residuals
-from bemcontact.assessment.uniqueness import NearState, effective_eigenvalue
+from bemcontact.assessment.uniqueness import NearState, effective_eigenvalue, near_bound
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.options import FormulationName
@@ -170,17 +170,21 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: De
     round_off += D * np.linalg.norm(M, axis=1) * imbalance
     work = np.where(y > 0, 0.0, np.maximum(D * delta - round_off, 0.0))
     round_off = np.where((y > 0) | (D * delta < round_off), round_off, 0.0)
-    if stiff.definite:
-        return (off + stiff.largest_change(np.abs(s) + round_off)) * T
-    residual = float(np.linalg.norm(s) + np.linalg.norm(round_off))
+    residual = np.abs(s) + round_off
+    bound = stiff.largest_change(residual) if stiff.definite else np.inf
+    if bound <= LARGEST_BOUND * y.max():
+        return (off + bound) * T
     ell, spread = _unit_rows(contact)[0], 1.0
     if contact.free_motions:
         ell, spread = np.linalg.qr(ell)[0], float(np.linalg.cond(ell))
     state = NearState(
         pressure=y, contact_set=y > 0, equilibrium=ell, work=work, residual=residual, round_off=len(y) * EPS * spread
     )
-    eigenvalue = effective_eigenvalue(state, D, M, contact.equilibrium_space)
-    return None if eigenvalue is None else (off + residual / eigenvalue) * T
+    if not stiff.definite and (eigenvalue := effective_eigenvalue(state, D, M, contact.equilibrium_space)) is not None:
+        bound = float(np.linalg.norm(residual)) / eigenvalue
+    if bound > LARGEST_BOUND * y.max() and contact.free_motions:
+        bound = min(bound, near_bound(state, D, M, contact.equilibrium, stiff))
+    return (off + bound) * T if bound < np.inf else None
 
 
 def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> float:
@@ -202,7 +206,9 @@ def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> float:
 
 def _imbalance(ell: Array, y: Array, load: Array) -> Array:
     """ℓᵀy + load (k,): sums without rounding of products that are each rounded once."""
-    return np.array([math.fsum([*(column * y).tolist(), part]) for column, part in zip(ell.T, load.tolist(), strict=True)])
+    return np.array(
+        [math.fsum([*(column * y).tolist(), part]) for column, part in zip(ell.T, load.tolist(), strict=True)]
+    )
 
 
 def _least_change(ell: Array, carried: Array, left: Array) -> float:

@@ -21,6 +21,16 @@ so t by a number B. With σ' = σ + κ|s| the inequalities combine to
 
 If the bracket, b, is positive, then |e| <= |s|/λ (1 + ρσ'/b): s = 0 makes the state the only one, and the bound is that
 of a compliance with the smallest eigenvalue λ/(1 + ρσ'/b).
+
+Where a node has contact points for several surfaces, K has many eigenvalues that are zero up to round-off -Λ. Then
+contact is near one of the surfaces only. Let N be the points with gᵢ <= h, the contact set among them, all in the
+scaling S of `definiteness`; let λ > 0 be the eigenvalue on N, and σ the least singular value of the rows of ℓ there,
+for orthonormal columns. The load bounds |e| by a number B, and so gᵀr <= w = ΛB² + B|s|. Off N this leaves
+|r| <= τ = w/h. On N the rest of e is v + d, with v in the equilibrium space of N and |d| <= τ/σ. With η = τ (1 + 1/σ)
+
+    λ|v|² - 2‖K‖η|v| - ‖K‖η² <= eᵀKe <= (|v| + η)|s|,
+
+a bound of |e| <= |v| + η that takes the place of B, and so on: in the end little more than |s|/λ is left.
 """
 
 from dataclasses import dataclass
@@ -30,11 +40,18 @@ import scipy
 from scipy.linalg import eigh
 
 from bemcontact.arrays import Array, BoolArray
+from bemcontact.assessment.definiteness import Definiteness
 
 MOST = 8
 """Eigenvectors with which a proof is tried."""
 PASSES = 4
 """Times that the bounds of pressures and of their work sharpen one another."""
+NEAR = (0.25, 0.5, 0.75)
+"""Parts of the open points, those with the smallest gaps first, that are tried as near to contact."""
+ROUNDS = 20
+"""Times that the bound of pressures near contact and the work of all others sharpen one another."""
+SAFE = 2.0
+"""Factor of what a linear program says that pressures are bounded by: more than it can be off."""
 LEAST_REST = 0.05
 """Value of the bracket that is demanded: more than the linear programs can be off."""
 
@@ -49,7 +66,7 @@ class NearState:
     contact_set : (n,) where y may be positive
     equilibrium : (n, k) ℓ, with columns that are orthonormal, so that the linear programs see each direction
     work : (n,) g = Dδ - s on all points, zero on the contact set
-    residual : |s|, with the round-off of s
+    residual : (n,) |sᵢ|, with their round-off
     round_off : of the eigenvalues
     """
 
@@ -57,7 +74,7 @@ class NearState:
     contact_set: BoolArray
     equilibrium: Array
     work: Array
-    residual: float
+    residual: Array
     round_off: float
 
 
@@ -87,7 +104,7 @@ def _with(state: NearState, negative: float, positive: float, X: Array) -> float
     kappa = np.append(ratio[order][1:], 0.0)
     rho = np.sqrt(1 + negative / positive)
     with np.errstate(invalid="ignore"):
-        spread = sigma + kappa * state.residual
+        spread = sigma + kappa * np.linalg.norm(state.residual)
         bracket = np.nan_to_num(1 - kappa * negative * B - spread * rho, nan=-np.inf)
     best = int(np.argmax(bracket))
     return None if bracket[best] < LEAST_REST else float(positive / (1 + rho * spread[best] / bracket[best]))
@@ -95,13 +112,13 @@ def _with(state: NearState, negative: float, positive: float, X: Array) -> float
 
 def _bound(state: NearState, negative: float, positive: float, X: Array) -> float:
     """B, a bound of |Xᵀe|; infinity if the load does not bound pressures."""
-    bound, work = np.inf, np.inf
+    bound, work, residual = np.inf, np.inf, float(np.linalg.norm(state.residual))
     for _ in range(PASSES):
         bound = min(bound, float(np.linalg.norm([_largest(state, x, state.work / work) for x in X.T])))
         if not np.isfinite(bound):
             break
-        size = state.residual / positive + np.sqrt(1 + negative / positive) * bound
-        work = negative * bound**2 + size * state.residual
+        size = residual / positive + np.sqrt(1 + negative / positive) * bound
+        work = negative * bound**2 + size * residual
         if work <= 0:
             break
     return bound
@@ -121,3 +138,38 @@ def _largest(state: NearState, x: Array, g: Array) -> float:
     at = float(x @ state.pressure)
     lowest, highest = (end.fun if end.status == 0 else -np.inf for end in ends)
     return max(at - lowest, -highest - at)
+
+
+def near_bound(state: NearState, D: Array, M: Array, ell: Array, whole: Definiteness) -> float:
+    """Bound of |y - p*|, in the largest component, by the points near contact; infinity if there is none.
+
+    D (n,), M (n, n) and ℓ (n, k); `whole` is the definiteness on all points.
+    """
+    S, open_points = whole.scales, ~state.contact_set
+    rows = np.linalg.qr(S[:, None] * ell)[0]
+    y, g, residual = state.pressure / S, S * state.work, float(np.linalg.norm(S * state.residual))
+    most = scipy.optimize.linprog(-np.ones(len(y)), A_eq=rows.T, b_eq=rows.T @ y, bounds=(0, None))
+    if most.status != 0 or not open_points.any():
+        return np.inf
+    K = np.abs(S[:, None] * (D[:, None] * M) * S)
+    norm, start = float(((K + K.T) / 2).sum(axis=1).max()), SAFE * float(y.sum() - most.fun)
+    found = np.inf
+    for h in np.quantile(g[open_points], NEAR):
+        near = state.contact_set | (g <= h)
+        on, lever = Definiteness.of(D[near], M[np.ix_(near, near)], ell[near]), _least_singular(rows[near])
+        if h <= 0 or not on.definite or on.eigenvalue is None or lever <= 0:
+            continue
+        B = start
+        for _ in range(ROUNDS):
+            work = max(-whole.certain, 0.0) * B**2 + B * residual
+            rest = work / h * (1 + 1 / lever)
+            half = norm * rest + residual / 2
+            v = (half + np.sqrt(half**2 + on.certain * rest * (norm * rest + residual))) / on.certain
+            B = min(B, v + rest)
+        found = min(found, float(S.max()) * B)
+    return found
+
+
+def _least_singular(rows: Array) -> float:
+    """Least singular value of rows (m, k); zero if they are fewer than k."""
+    return float(np.linalg.svd(rows, compute_uv=False)[-1]) if len(rows) >= rows.shape[1] else 0.0
