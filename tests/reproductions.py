@@ -16,6 +16,11 @@ def problem(model: str) -> PaperStudy:
     return next(item for item in on_base_meshes().problems if item.paper.model == model)
 
 
+def of_the_cylinder() -> Reproduction:
+    """One problem alone."""
+    return replace(on_base_meshes(), problems=(problem("cylinder_on_plane"),))
+
+
 def with_coarse_mesh_judged() -> Reproduction:
     """The paper's own mesh of the bolt, which misses the references, as if it were the base mesh."""
     bolt = problem("bolt_in_plate")

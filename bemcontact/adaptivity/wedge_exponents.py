@@ -73,10 +73,10 @@ def wedge_exponents(start: float, angle: float, faces: tuple[Face, Face], poisso
 
 def _roots(wedge: "Wedge", grid: Array) -> list[float]:
     """Values of λ, between those of a grid, where the equations are singular."""
-    sizes = np.array([_singular(wedge, power) for power in grid])
+    sizes = _singular(wedge, grid)
     low = 1 + np.flatnonzero((sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] < sizes[2:]))
     powers = [_least(wedge, float(grid[i - 1]), float(grid[i + 1])) for i in low]
-    return [power for power in powers if _singular(wedge, power) <= ROOT]
+    return [power for power in powers if _singular(wedge, np.array(power)) <= ROOT]
 
 
 class SlowChange(NamedTuple):
@@ -151,17 +151,18 @@ def _least(wedge: Wedge, low: float, high: float) -> float:
     ratio = (np.sqrt(5) - 1) / 2
     while high - low > EXACT:
         one, other = high - ratio * (high - low), low + ratio * (high - low)
-        if _singular(wedge, one) <= _singular(wedge, other):
+        nearer, farther = _singular(wedge, np.array([one, other]))
+        if nearer <= farther:
             high = other
         else:
             low = one
     return (low + high) / 2
 
 
-def _singular(wedge: Wedge, power: float) -> float:
-    """Smallest singular value of the conditions on both faces, over the largest."""
-    sizes = np.linalg.svd(_conditions(wedge, power), compute_uv=False)
-    return float(sizes[-1] / sizes[0])
+def _singular(wedge: Wedge, powers: Array) -> Array:
+    """Smallest singular value of the conditions on both faces, over the largest, for each power."""
+    sizes = np.linalg.svd(_conditions(wedge, powers), compute_uv=False)
+    return sizes[..., -1] / sizes[..., 0]
 
 
 def _presses(wedge: Wedge, power: float) -> bool:
@@ -177,27 +178,28 @@ def _presses(wedge: Wedge, power: float) -> bool:
     return False
 
 
-def _conditions(wedge: Wedge, power: float) -> Array:
-    """Matrix (4, 4) of the conditions on both faces, on (Re A, Im A, Re B, Im B)."""
+def _conditions(wedge: Wedge, power: float | Array) -> Array:
+    """Matrix (..., 4, 4) of the conditions on both faces, on (Re A, Im A, Re B, Im B), for each power (...)."""
     start, angle, faces, poisson_ratio = wedge
     rows = list[Array]()
     for face, at in zip(faces, (start, start + angle), strict=True):
         displacement, traction = _field(at, power, poisson_ratio)
         for direction, held in zip((face.direction, 1j * face.direction), face.held, strict=True):
             rows.append(((displacement if held else traction) * np.conj(direction)).real)
-    return np.array(rows)
+    return np.stack(rows, axis=-2)
 
 
-def _field(theta: float, power: float, poisson_ratio: float) -> tuple[Array, Array]:
-    """2 G u and the traction on a ray (4,), as complex numbers, at r = 1 for each of (Re A, Im A, Re B, Im B)."""
+def _field(theta: float, power: float | Array, poisson_ratio: float) -> tuple[Array, Array]:
+    """2 G u and the traction on a ray (..., 4), as complex numbers, at r = 1 for each of (Re A, Im A, Re B, Im B)."""
     A, B = np.array([1, 1j, 0, 0]), np.array([0, 0, 1, 1j])
     z = np.exp(1j * theta)
+    power = np.asarray(power, float)[..., None]
     phi, slope, bent = A * _power(theta, power), power * A * _power(theta, power - 1), power * (power - 1) * A
     displacement = (3 - 4 * poisson_ratio) * phi - z * np.conj(slope) - np.conj(B * _power(theta, power))
     stress = slope + np.conj(slope) + bent * _power(theta, power - 1) + power * B * _power(theta, power + 1)
     return displacement, 1j * z * np.conj(stress)
 
 
-def _power(theta: float, power: float) -> complex:
+def _power(theta: float, power: Array) -> Array:
     """Power of z = e^(iθ), continuous in θ."""
-    return complex(np.exp(1j * theta * power))
+    return np.exp(1j * theta * power)

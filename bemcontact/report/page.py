@@ -5,6 +5,7 @@ from base64 import b64encode
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
@@ -51,8 +52,9 @@ class Picture:
     """Whether it needs the whole width of the page."""
 
 
+@cache
 def template(name: str, **more: Callable[..., Any]) -> Template:
-    """Return the template of a page, a file in ``templates``; `more` are further filters."""
+    """Return the template of a page, a file in ``templates``, compiled once; `more` are further filters."""
     environment = Environment(
         loader=PackageLoader("bemcontact.report"),
         autoescape=True,

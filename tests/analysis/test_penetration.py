@@ -36,6 +36,7 @@ def seal(*, pressure=40.0, gap=0.02, edges=("bottom",), elements=3, turn=0.0, si
     groove = {"kind": "polyline", "points": [at(-5, 0), at(SIDE + gap, 0), at(SIDE + gap, 2 * SIDE)]}
     data = {
         "name": "seal",
+        "accuracy": None,
         "material": {"young_modulus": E, "poisson_ratio": NU},
         "boundary": {"outer": outer},
         "conditions": {"top": {"pressure": pressure}},
@@ -181,7 +182,12 @@ def block(corners, zones, conditions, *, elements=3, **more):
     """A polygon with the edges 0, 1, ... and these zones, each as edges and surface."""
     outer = [{"name": str(i), "start": tuple(at), "elements": elements} for i, at in enumerate(corners)]
     stated = {name: {"edges": edges, "surface": surface} for name, (edges, surface) in zones.items()}
-    data = {"name": "block", "material": {"young_modulus": E, "poisson_ratio": NU}, "boundary": {"outer": outer}}
+    data = {
+        "name": "block",
+        "accuracy": None,
+        "material": {"young_modulus": E, "poisson_ratio": NU},
+        "boundary": {"outer": outer},
+    }
     return Problem(**data, conditions=conditions, contact_zones=stated, **more)  # pyright: ignore[reportArgumentType]
 
 

@@ -92,6 +92,7 @@ def beam(ratio: int, push: float, parts: int = 1) -> Problem:
     ]  # fmt: skip
     return Problem(
         name="beam",
+        accuracy=None,
         material={"young_modulus": 1e4, "poisson_ratio": 0.3},
         boundary={
             "outer": [{"name": n, "start": start, "elements": max(1, round(m)) * parts} for n, start, m in edges]

@@ -177,7 +177,7 @@ def test_an_unknown_figure_format_lists_the_known_ones(block: Path):
 
 
 def test_no_file_overwrites_another(block: Path):
-    assert_refused(run("solve", block, "--json", block), "overwrite the spec")
+    assert_refused(run("solve", block, "--json", block), "overwrite the problem file")
     figure = block.with_suffix(".svg")
     assert_refused(run("solve", block, "--json", figure, "--figure", figure), "overwrite the file of --figure")
     assert block.read_text(encoding="utf-8") == BLOCK

@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
+import schemas
 import yaml
-from jsonschema import Draft202012Validator
 from messages import assert_states
 
 import bemcontact
@@ -276,8 +276,7 @@ def test_value_of_a_reference_can_be_set():
 
 def schema_errors(text: str) -> list[str]:
     """Error messages of JSON Schema for a spec."""
-    validator = Draft202012Validator(bemcontact.schema())
-    return [error.message for error in validator.iter_errors(yaml.load(text, yaml.SafeLoader))]
+    return [error.message for error in schemas.of_spec().iter_errors(yaml.load(text, yaml.SafeLoader))]
 
 
 @pytest.mark.parametrize("name", GOOD)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from reproductions import on_base_meshes
+from reproductions import of_the_cylinder, on_base_meshes
 from studies import block, on_one_mesh, on_three_meshes, without_a_body
 
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -56,11 +56,11 @@ def test_a_new_and_an_empty_folder_are_fine(tmp_path: Path):
 
 def test_foreign_files_are_never_lost(tmp_path: Path):
     report = tmp_path / "report"
-    folder.save(on_one_mesh(), report)
+    folder.save(without_a_body(), report)
     for name in ("notes.txt", "figures/photo.jpg", ".hidden"):
         (report / name).touch()
         with pytest.raises(FileExistsError, match=rf"holds .*{name}.*name a new"):
-            folder.save(on_one_mesh(), report)
+            folder.save(without_a_body(), report)
         (report / name).unlink()
     (report / "figures" / "deep.svg").mkdir()
     with pytest.raises(FileExistsError, match=r"holds .*deep\.svg"):
@@ -78,26 +78,26 @@ def test_folder_with_a_foreign_report_is_refused(tmp_path: Path, content: str):
 
 
 def test_a_reproduction_is_replaced_as_a_whole(tmp_path: Path):
-    place, paper = tmp_path / "paper", on_base_meshes()
-    for _ in range(2):
+    place = tmp_path / "paper"
+    for paper in (on_base_meshes(), of_the_cylinder()):
         folder.save_reproduction(paper, place)
-    models = [item.paper.model.replace("_", "-") for item in paper.problems]
-    pictures = {f"figures/{model}-{what}.svg" for model in models for what in ("problem", "pressure")}
-    assert files(place) == {"page.html", "numbers.json", *pictures}
-    assert json.loads((place / "numbers.json").read_text(encoding="utf-8")) == json.loads(paper.to_json())
+        models = [item.paper.model.replace("_", "-") for item in paper.problems]
+        pictures = {f"figures/{model}-{what}.svg" for model in models for what in ("problem", "pressure")}
+        assert files(place) == {"page.html", "numbers.json", *pictures}
+        assert json.loads((place / "numbers.json").read_text(encoding="utf-8")) == json.loads(paper.to_json())
     assert [*tmp_path.iterdir()] == [place]
 
 
 def test_folders_of_two_kinds_do_not_replace_each_other(tmp_path: Path):
-    folder.save_reproduction(on_base_meshes(), tmp_path / "paper")
-    folder.save(on_one_mesh(), tmp_path / "report")
+    folder.save_reproduction(of_the_cylinder(), tmp_path / "paper")
+    folder.save(without_a_body(), tmp_path / "report")
     with pytest.raises(FileExistsError, match=r"which is not part of a reproduction; name a new"):
-        folder.save_reproduction(on_base_meshes(), tmp_path / "report")
+        folder.save_reproduction(of_the_cylinder(), tmp_path / "report")
     with pytest.raises(FileExistsError, match=r"which is not part of a report; name a new"):
-        folder.save(on_one_mesh(), tmp_path / "paper")
+        folder.save(without_a_body(), tmp_path / "paper")
     (tmp_path / "paper" / "numbers.json").write_text("{}", encoding="utf-8")
     with pytest.raises(FileExistsError, match=r"no numbers\.json of bemcontact.*with an earlier reproduction"):
-        folder.save_reproduction(on_base_meshes(), tmp_path / "paper")
+        folder.save_reproduction(of_the_cylinder(), tmp_path / "paper")
 
 
 def test_file_of_the_name_of_the_folder_is_refused(tmp_path: Path):

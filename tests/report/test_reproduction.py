@@ -8,13 +8,13 @@ from io import StringIO
 from typing import Any
 
 import pytest
-from jsonschema import Draft202012Validator, ValidationError, validate
+import schemas
+from jsonschema import ValidationError
 from page_reader import ensure_self_contained, read
 from reproductions import on_base_meshes, with_coarse_mesh_judged
 from rich.console import Console
 
 from bemcontact.report.reproduction import render, reproduction_summary
-from bemcontact.report.schema import schema
 
 SVG = b'<svg xmlns="http://www.w3.org/2000/svg"/>'
 
@@ -106,8 +106,8 @@ def test_the_table_fits_a_terminal():
 
 
 def test_the_schema_is_what_the_record_holds():
-    Draft202012Validator.check_schema(schema("reproduction"))
+    validator = schemas.of_result("reproduction")
     for written in (record(), json.loads(with_coarse_mesh_judged().to_json())):
-        validate(written, schema("reproduction"), Draft202012Validator)
+        validator.validate(written)
     with pytest.raises(ValidationError):
-        validate({**record(), "extra": 1}, schema("reproduction"), Draft202012Validator)
+        validator.validate({**record(), "extra": 1})

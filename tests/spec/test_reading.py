@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import schemas
 import yaml
-from jsonschema import Draft202012Validator
 from messages import assert_each_states, assert_states
 
 import bemcontact.spec
@@ -694,9 +694,7 @@ def test_schema_describes_the_keys_and_both_forms_of_a_field():
 
 def schema_errors(text):
     """Path and message of each JSON Schema error for a spec."""
-    schema = bemcontact.spec.schema()
-    Draft202012Validator.check_schema(schema)
-    errors = Draft202012Validator(schema).iter_errors(yaml.load(text, yaml.SafeLoader))
+    errors = schemas.of_spec().iter_errors(yaml.load(text, yaml.SafeLoader))
     return [(dotted(tuple(error.absolute_path)), error.message) for error in errors]
 
 

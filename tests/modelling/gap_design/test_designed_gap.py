@@ -33,7 +33,7 @@ def read(text: str) -> Problem:
 
 
 @cache
-def relieved_punch(load: float = 1.0) -> GapDesign:
+def relieved_punch(load: float) -> GapDesign:
     """All bounds in proportion to the load, so that the design is."""
     relief = Relief(lower=0, upper=0.01 * load, slope=0.004 * load, curvature=0.004 * load)
     return design_gap(bemcontact.condense(read(spec_of(load))), relief)
@@ -51,7 +51,7 @@ def test_surface_is_at_the_designed_gap(kind):
 
     That is 4e-3 for the bound on the slope, or 8e-6 of the gap; twice that where the tilt changes on the way.
     """
-    design, surface = relieved_punch(), relieved_punch().surface(kind)
+    design, surface = relieved_punch(1.0), relieved_punch(1.0).surface(kind)
     assert isinstance(surface, Spline if kind == "spline" else Polyline)
     contact = design.after[0].contact
     gap, normals = surface.closest(contact.points)
@@ -82,7 +82,7 @@ def test_whole_chain_differs_by_the_tilt_of_the_normals():
 
 
 def test_words_and_numbers():
-    design = relieved_punch()
+    design = relieved_punch(1.0)
     drop = 100 * (design.peak / design.peak_before - 1)
     assert f"({drop:+.1f} %)" in design.words
     assert "another profile does better is not proved" in design.words
@@ -97,7 +97,7 @@ def test_words_and_numbers():
 
 def test_a_pressure_that_is_not_as_designed_is_reported():
     """A pressure off by a hundredth of the peak, as a broken solver would compute it."""
-    design = relieved_punch()
+    design = relieved_punch(1.0)
     wrong = replace(design, designed=design.designed + 0.01 * design.peak)
     assert not wrong.verified
     assert wrong.difference == pytest.approx(0.01, rel=1e-6)
@@ -115,7 +115,7 @@ def test_numbers_in_yaml_have_a_point_before_the_exponent():
 
 
 def test_surfaces_that_cannot_be_written_are_refused():
-    design = relieved_punch()
+    design = relieved_punch(1.0)
     with pytest.raises(ProblemError, match="no surface of kind 'circle' to write; there are: spline, polyline"):
         design.surface("circle")
     steep = design_gap(random_contact(0, 5, 0), Relief(lower=(0, 0, 0, 0, 0), upper=0.1))
