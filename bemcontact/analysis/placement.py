@@ -107,7 +107,7 @@ def noted(problem: Problem) -> float:
     return NOTED * _judged_to(problem)
 
 
-def reach(problem: Problem) -> float:
+def part_of_path(problem: Problem) -> float:
     """Part of a path before and after a state of which any parameter may be meant."""
     return _judged_to(problem)
 
