@@ -265,12 +265,16 @@ def _intensity_bar(difference: MeshDifference, item: Singularity, m: float) -> E
     """Error bar of the intensity K of an infinite pressure K s^-α."""
     least = 0.0 if item.exact else UNKNOWN_EXPONENT
     note = f"p = K s^-{item.exponent:.4g}"
+    bar = ErrorBar(
+        quantity="intensity", zone=item.place.zone, value=None, bar=None, note=note,
+        at=difference.fine.runs[item.place.run].point(item.place.position),
+    )  # fmt: skip
     fits = [fit for part in FITTED if (fit := _fitted(difference, item, part))]
     if not fits:
-        return ErrorBar(quantity="intensity", zone=item.place.zone, value=None, bar=None, note=note)
+        return bar
     value, change = min(fits, key=lambda fit: fit[1])
     change = max(change, INTENSITY_FLOOR * m, least, *(_change(other, value) for other, _ in fits))
-    return ErrorBar(quantity="intensity", zone=item.place.zone, value=value, bar=SAFETY * change, note=note)
+    return replace(bar, value=value, bar=SAFETY * change)
 
 
 def _fitted(difference: MeshDifference, item: Singularity, part: tuple[float, float]) -> tuple[float, float] | None:

@@ -13,6 +13,7 @@ from bemcontact.bem.contact_points import element_lengths
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.curves import Edge
+from bemcontact.serialization import Pair
 
 CORNER = 0.2
 """Sine of the angle by which the boundary turns from which a joint of two edges is a corner."""
@@ -66,6 +67,13 @@ class ZoneRun:
         """Position of a point of the elements from its arc length; it increases across the seam of a closed run."""
         turns, rest = divmod(arc, float(self.arc[-1])) if self.closed else (0.0, arc)
         return turns * self.length + float(np.interp(rest, self.arc, self.ends))
+
+    def point(self, position: float) -> Pair:
+        """Place (x, y) [L] of a position."""
+        at = position % self.length if self.closed else position
+        i = int(np.clip(np.searchsorted(self.joints, at) - 1, 0, len(self.edges) - 1))
+        x, y = self.edges[i].points(np.array([(at - self.joints[i]) / self.edges[i].length]))[0].tolist()
+        return x, y
 
     def fractions(self, ends: Array) -> dict[str, tuple[float, ...]]:
         """Fractions of the length of each edge where elements end inside it, from the positions of all ends."""

@@ -48,6 +48,7 @@ def diagnostics(
     touching = contact.pressed(solution.pressure, solution.displacement)
     yield from floating(contact, touching)
     yield from nearly_balanced(contact)
+    yield from against_its_force(contact, solution)
     yield from few_points(contact, touching, where)
     if body is not None:
         yield from reached_zone_ends(body, touching)
@@ -79,6 +80,22 @@ def nearly_balanced(contact: CondensedContact) -> Iterator[str]:
             f"{contact.net_load:.1g} of the sum of their magnitudes, and contact carries only that; errors of this "
             "size in the loads change the contact entirely"
         )
+
+
+def against_its_force(contact: CondensedContact, solution: ContactSolution) -> Iterator[str]:
+    """Note a tool that moves against its force, because its surface is drawn inside the body."""
+    tools = contact.tools
+    moved = tools.displacement(solution.rigid_amplitudes)
+    force, motions = tools.force.reshape(-1, 3), tools.motions.reshape(len(contact.points), -1, 3)
+    for i, name in enumerate(tools.names):
+        own = np.any(motions[:, i], axis=1)
+        inside = -float(contact.initial_gap[own].min(initial=0.0))
+        if moved[i] @ force[i] < 0 and inside > 0:
+            yield (
+                f"the tool '{name}' moves against its force, because its surface is drawn inside the body, by "
+                f"{inside:.3g}; draw it where it touches, and look at it with check --figure: a spline bulges between "
+                "its points"
+            )
 
 
 def few_points(contact: CondensedContact, touching: NDArray[np.bool_], where: Footprint) -> Iterator[str]:

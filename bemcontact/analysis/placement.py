@@ -288,7 +288,7 @@ def _moves_on(
     words = (
         f"No contact holds the {contact.motion_names[j]} against the load: only the tilt does that surfaces have "
         f"beside the place of contact as drawn. Where the body then is, moved by {by}, it moves on by "
-        f"{100 * further[j] / before[j]:.2g} % of this motion. Prescribe a displacement that holds the body, or take "
+        f"{100 * further[j] / before[j]:.0f} % of this motion. Prescribe a displacement that holds the body, or take "
         "away the load in this direction."
     )
     return _misfit(gaps, points, contact, i, Misfit.MOVED, float(further[j]), float(least), words)
@@ -349,7 +349,7 @@ def _remedy(gaps: SurfaceGaps, motion: Array) -> str:
     spread = np.hypot(*np.ptp(displacement, axis=0))
     if spread <= ALIKE * np.hypot(*motion):
         return f"draw the body where it touches: move it by {_vector(motion)}, or the surface by {_vector(-motion)}"
-    return "draw the body near to where it will touch, or expect an error of this size: the linear theory does not hold"
+    return "draw the body near to where it will touch, or expect an error of this size"
 
 
 def _misfit(

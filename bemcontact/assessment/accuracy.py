@@ -7,7 +7,7 @@ from typing import Literal, Self
 
 from pydantic import computed_field
 
-from bemcontact.serialization import Leaf
+from bemcontact.serialization import Leaf, Pair
 
 Quantity = Literal["peak", "force", "start", "end", "pressure", "displacement", "intensity", "motion", "rotation"]
 """What an error bar is of."""
@@ -34,6 +34,8 @@ class ErrorBar(Leaf):
     K of p = K s^-α [p L^α]; null if there is none."""
     bar: float | None
     """Estimated error, relative to the value; of a start or an end, to the length of its interval. Null if unknown."""
+    at: Pair | None = None
+    """Place (x, y) of an infinite pressure, from which s is measured [L]; null for others."""
     note: str = ""
     """Why there is no value or no error bar, or what they mean."""
 

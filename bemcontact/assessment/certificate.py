@@ -304,14 +304,14 @@ def _certificate_sentence(
         case CertificateKind.LOCAL:
             return (
                 f"All contact conditions hold, but the compliance is not positive definite ({sure}), so another "
-                "contact state may exist. Refine the mesh (--refine 2), or look where many starts end "
-                "(--formulation qp1 --starts 100)."
+                "contact state may exist. Take away parts of the zones that cannot touch, or refine the mesh "
+                "(--refine 2)."
             )
         case CertificateKind.OPEN:
             return (
                 "All contact conditions hold to their tolerance, but round-off leaves open whether other pressures, "
-                f"far from this one, satisfy them too ({sure}).{error} Look in the mesh for very short elements; "
-                "if no elements are stated, units may be mixed: check loads, lengths and Young's modulus."
+                f"far from this one, satisfy them too ({sure}).{error} Take away parts of the zones that cannot touch, "
+                "look in the mesh for very short elements, and check units: loads, lengths and Young's modulus."
             )
         case CertificateKind.NOT_A_SOLUTION:
             return f"This is not the contact state: {violation}.{error} {way_out}"

@@ -10,6 +10,7 @@ from bemcontact.report.formatting import (
     number,
     per_thickness,
     sentence_case,
+    vector,
     with_unit,
 )
 
@@ -128,7 +129,7 @@ def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
             "value": _bar_value(bar, size, units),
             "share": share if asked and bar["promised"] else NOTHING,
             "colour": "bad" if over else "",
-            "note": bar["note"] if bar["quantity"] == "intensity" else sentence_case(bar["note"]),
+            "note": f"{bar['note']} at {vector(bar['at'], units.length)}" if bar["at"] else sentence_case(bar["note"]),
         }
 
 

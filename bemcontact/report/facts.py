@@ -89,7 +89,8 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     for bar in bars_of(record, "intensity"):
         if bar["value"] is not None:
             value = with_unit(with_bar(bar["value"], bar["bar"]), _unit_of_bar(bar, units))
-            yield "Intensity", f"of {bar['zone']}: K = {value} in {bar['note']}"
+            place = vector(bar["at"], units.length, scale=size)
+            yield "Intensity", f"of {bar['zone']}: K = {value} in {bar['note']} at {place}"
     for bar in bars_of(record, "displacement"):
         yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most"
     force = _force(record["resultant"], record, None, units)

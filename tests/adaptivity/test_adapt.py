@@ -120,6 +120,8 @@ def test_the_exponent_at_a_corner_is_that_of_the_wedge(angle: float):
     assert {item.exact for item in result.singular[0]} == {True}
     assert sin(power * twice) + power * sin(twice) == pytest.approx(0, abs=1e-9)
     assert entry(result, "intensity").note == f"p = K s^-{1 - power:.4g}"
+    places = [bar.at for bar in result.accuracies[0].bars if bar.quantity == "intensity"]
+    assert {(round(x, 9), round(y, 9)) for x, y in places} == {corners["face"], corners["right"]}
 
 
 def test_a_block_on_a_floor_is_exact():
