@@ -118,7 +118,7 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
     reason = f"no better mesh was found in {MOST_PASSES} passes"
     for number in range(1, MOST_PASSES + 1):
         try:
-            coarse = search.fitted()
+            coarse = search.fitted(MOST_UNKNOWNS)
             if 2 * coarse.degrees_of_freedom > MOST_UNKNOWNS:
                 reason = f"a finer mesh would have more than {MOST_UNKNOWNS} unknowns"
                 break

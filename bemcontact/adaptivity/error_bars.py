@@ -121,6 +121,8 @@ def _motion_bars(estimate: _Estimate, m: float, largest: float) -> Iterator[Erro
     Of what is round-off beside the largest displacement [L] there is none.
     """
     size = estimate.difference.fine.mesh.size
+    if not all(answer.pressure.any() for answer in estimate.difference.pair):
+        return  # nothing determines them
     for one, two in zip(*map(_motions, estimate.difference.pair), strict=True):
         value = estimate.value(one.size, two.size)
         if abs(value) * (size if one.quantity == "rotation" else 1.0) > NOTHING * largest:

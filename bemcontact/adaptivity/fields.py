@@ -37,7 +37,7 @@ class CaseAnswer:
     solution : of its contact problem
     stretches : stretches of contact by run; two with a slit between them are one
     pressure : (zones, m, 3) [p] by zone, element and local node, zero outside the zone
-    state : traction and displacement of the boundary, less the motions that nothing determines
+    state : traction and displacement of the boundary
     """
 
     condensation: Condensation
@@ -51,10 +51,21 @@ class CaseAnswer:
         """Traction (m, 3, 2) [p]."""
         return self.state.traction
 
-    @property
+    @cached_property
     def displacement(self) -> Array:
-        """Displacement (m, 3, 2) [L]."""
-        return self.state.displacement
+        """Displacement (m, 3, 2) [L], less its part in the free motions that nothing determines.
+
+        Nothing determines motions that no contact point sees, and none at all where nothing touches.
+        """
+        body, whole = self.condensation.body, self.state.displacement
+        nodes = body.mesh.nodes[body.mesh.elements]
+        free = (body.unseen,) if self.pressure.any() else (body.unseen, body.seen)
+        motions = np.concatenate([each.body.displacement(nodes) for each in free], axis=-1)
+        if not motions.shape[-1]:
+            return whole
+        root = np.sqrt(body.mesh.tributary)[..., None]
+        columns = (root[..., None] * motions).reshape(-1, motions.shape[-1])
+        return whole - motions @ np.linalg.lstsq(columns, (root * whole).ravel(), rcond=None)[0]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -118,29 +129,17 @@ def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> CaseAnswer:
     if solution.status is not Status.SOLVED:
         raise SolverError(f"no contact state was found on a mesh: {solution.status.words}")
     intervals = footprint(contact, solution).intervals
-    state = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
     points = body.points
     pressure = np.zeros((len(body.problem.contact_zones), *body.mesh.elements.shape))
-    pressure[points.zone[points.point], points.element, points.local] = solution.pressure[points.point]
+    if intervals:  # else what there is of pressure is round-off
+        pressure[points.zone[points.point], points.element, points.local] = solution.pressure[points.point]
     return CaseAnswer(
         condensation=condensation,
         solution=solution,
         stretches={run.number: _without_slits(contact_stretches(run, contact, solution, intervals)) for run in runs},
         pressure=pressure,
-        state=replace(state, displacement=_less_undetermined(body, state.displacement)),
+        state=boundary_state(condensation, solution.pressure, solution.rigid_amplitudes),
     )
-
-
-def _less_undetermined(body: Body, displacement: Array) -> Array:
-    """Displacement (m, 3, 2) less its part in the free motions that neither gaps nor loads determine."""
-    motions = body.unseen.body
-    if not len(motions):
-        return displacement
-    mesh = body.mesh
-    root = np.sqrt(mesh.tributary)[..., None]
-    columns = (root[..., None] * motions.displacement(mesh.nodes[mesh.elements])).reshape(-1, len(motions))
-    amount = np.linalg.lstsq(columns, (root * displacement).ravel(), rcond=None)[0]
-    return displacement - motions.displacement(mesh.nodes[mesh.elements]) @ amount
 
 
 def _without_slits(stretches: Iterable[Stretch]) -> tuple[Stretch, ...]:

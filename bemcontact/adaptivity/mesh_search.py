@@ -78,8 +78,8 @@ class MeshSearch:
         """Halve all elements."""
         self.sources = [[limit._replace(size=limit.size / 2) for limit in own] for own in self.sources]
 
-    def fitted(self) -> Solved:
-        """Solve on meshes fitted to the ends of contact until these rest."""
+    def fitted(self, most: int) -> Solved:
+        """Solve on meshes of up to `most` unknowns, fitted to the ends of contact until these rest."""
         coarse = self.solve(1)
         for count in range(NARROW_REFITS):
             ends, spots = self.ends_of_contact(coarse)
@@ -93,7 +93,10 @@ class MeshSearch:
             self.spots = spots
             for number, limit in between:
                 self.sources[number].append(limit)
-            coarse = self.solve(1)
+            mesh = self.mesh(1)
+            if 4 * sum(edge.elements or 0 for edge in mesh.boundary.edges) > most:
+                return coarse
+            coarse = solved(mesh)
         return coarse
 
     def ends_of_contact(self, answer: Solved) -> tuple[list[ContactEnd], list[tuple[int, Limit]]]:

@@ -373,3 +373,27 @@ def test_a_roller_in_a_v_block_without_names_of_edges_and_without_elements():
             assert bar.bar is not None
             truth = (forces if bar.quantity == "force" else peaks)[bar.zone]
             assert bar.value == pytest.approx(truth, rel=bar.bar + 1e-4)
+
+
+def test_a_body_that_touches_nothing_has_the_error_of_its_deformation_alone():
+    """A free bar that is heated grows by α (1 + ν) T x each way; nothing determines where it is."""
+    outer = [{"name": name, "start": at} for name, at in
+             {"bottom": (0, 0), "right": (100, 0), "top": (100, 20), "left": (0, 20)}.items()]  # fmt: skip
+    walls = {"right": ((100.05, 0), (-1, 0)), "left": ((-0.02, 0), (1, 0))}
+    bar = Problem.model_validate(
+        {
+            "name": "bar between two walls",
+            "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+            "boundary": {"outer": outer},
+            "loads": {"temperature": {"expansion": 12e-6, "change": 30.0}},
+            "contact_zones": {
+                name: {"edges": name, "surface": {"kind": "plane", "point": point, "normal": normal}}
+                for name, (point, normal) in walls.items()
+            },
+        }
+    )
+    result = found(bar)
+    grown = entry(result, "displacement")
+    assert result.accuracies[0].met
+    assert grown.value == pytest.approx(12e-6 * 30 * 1.3 * np.hypot(50, 10), rel=1e-9)
+    assert {item.quantity for item in result.accuracies[0].bars} == {"force", "displacement"}
