@@ -1,5 +1,7 @@
 """Contact problems that stand for all, for the tests of every room."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -18,6 +20,18 @@ def random_contact(seed: int, n: int, k: int) -> CondensedContact:
         J,
         rigid_motions=R,
         motion_load=-(J[:, None] * R).T @ carried,
+    )
+
+
+def in_units(problem: CondensedContact, length: float, stress: float) -> CondensedContact:
+    """The same problem in units of length and stress that make its numbers larger by these factors."""
+    return replace(
+        problem,
+        compliance=problem.compliance * length / stress,
+        free_displacement=problem.free_displacement * length,
+        initial_gap=problem.initial_gap * length,
+        weights=problem.weights * length,
+        motion_load=problem.motion_load * stress * length,
     )
 
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import typer.main
-from contact_problems import random_contact
+from contact_problems import in_units, random_contact
 
 from bemcontact import cli
 from bemcontact.assessment.certificate import Certificate, CertificateKind, advice, certify
@@ -213,13 +213,7 @@ def test_no_contact_is_certified():
 @pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6)])
 def test_units_do_not_matter(length, stress):
     problem = random_contact(2, 8, 1)
-    other = CondensedContact.from_compliance(
-        problem.compliance * length / stress,
-        problem.offset * length,
-        problem.weights * length,
-        rigid_motions=problem.rigid_motions,
-        motion_load=problem.motion_load * stress * length,
-    )
+    other = in_units(problem, length, stress)
     change = np.full(problem.size, 1e-3)
     lift = np.zeros(1)
     one = judged(problem, moved(problem, complementarity.solve(problem), change, lift))

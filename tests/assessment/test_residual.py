@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contact_problems import random_contact
+from contact_problems import in_units, random_contact
 
 from bemcontact.assessment.residual import objectives, residuals
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -141,9 +141,7 @@ def test_a_change_of_units_changes_nothing():
     rng = np.random.default_rng(1)
     p, u = rng.uniform(0, 1, 6), rng.uniform(0, 1, 6)
     length, stress = 1e3, 1e-6
-    other = CondensedContact.from_compliance(
-        contact.compliance * length / stress, contact.offset * length, contact.weights * length
-    )
+    other = in_units(contact, length, stress)
     one = objectives(contact, at(contact, p, u), Weights.TRIBUTARY, (1.0,))
     two = objectives(other, at(other, p * stress, u * length), Weights.TRIBUTARY, (1.0,))
     assert two.qp1 == pytest.approx(one.qp1, rel=1e-12)

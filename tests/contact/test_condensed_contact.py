@@ -4,7 +4,7 @@ from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
 import pytest
-from contact_problems import random_contact
+from contact_problems import in_units, random_contact
 
 import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -184,13 +184,7 @@ def test_stiffness_rows_of_a_slender_beam():
 def test_scales_follow_the_units(length, stress):
     """U is a length and T a pressure: they change with the units exactly as the data do."""
     problem = random_contact(10, 12, 2)
-    other = CondensedContact.from_compliance(
-        problem.compliance * length / stress,
-        problem.offset * length,
-        problem.weights * length,
-        rigid_motions=problem.rigid_motions,
-        motion_load=problem.motion_load * stress * length,
-    )
+    other = in_units(problem, length, stress)
     assert other.scales.displacement == pytest.approx(problem.scales.displacement * length, rel=1e-12)
     assert other.scales.pressure == pytest.approx(problem.scales.pressure * stress, rel=1e-12)
 

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from contact_problems import random_contact
+from contact_problems import in_units, random_contact
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -198,13 +198,7 @@ def test_renumbered_problem_has_the_renumbered_solution(seed, k):
 @pytest.mark.parametrize("k", [0, 1, 3])
 def test_units_do_not_matter(length, stress, k):
     problem = random_contact(11, 20, k)
-    other = CondensedContact.from_compliance(
-        problem.compliance * length / stress,
-        problem.offset * length,
-        problem.weights * length,
-        rigid_motions=problem.rigid_motions,
-        motion_load=problem.motion_load * stress * length,
-    )
+    other = in_units(problem, length, stress)
     one, two = solve(problem), solve(other)
     np.testing.assert_allclose(two.pressure / stress, one.pressure, atol=1e-12 * one.pressure.max())
 

@@ -6,7 +6,7 @@ from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
 import pytest
-from contact_problems import random_contact
+from contact_problems import in_units, random_contact
 
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -29,18 +29,6 @@ CYCLE = CondensedContact.from_compliance(
     [0.0, -2.0, 1.0, 0.0, -2.0],
 )
 """A P-matrix on which the active sets come back, so that Lemke's method follows."""
-
-
-def in_units(problem: CondensedContact, length: float, stress: float) -> CondensedContact:
-    """The same problem in units of length and stress that make its numbers larger by these factors."""
-    return replace(
-        problem,
-        compliance=problem.compliance * length / stress,
-        free_displacement=problem.free_displacement * length,
-        initial_gap=problem.initial_gap * length,
-        weights=problem.weights * length,
-        motion_load=problem.motion_load * stress * length,
-    )
 
 
 def counted(solution: ContactSolution) -> list[int]:

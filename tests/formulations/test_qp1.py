@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contact_problems import random_contact
+from contact_problems import in_units, random_contact
 from scipy.linalg import null_space
 
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -102,13 +102,7 @@ def test_all_statements_have_one_solution(seed, k, rows):
 def test_units_do_not_matter(formulation, length, stress, k):
     """The scaled problem is the same but for round-off, which may decide ties on the way but not the pressure."""
     problem = random_contact(5, 12, k)
-    other = CondensedContact.from_compliance(
-        problem.compliance * length / stress,
-        problem.offset * length,
-        problem.weights * length,
-        rigid_motions=problem.rigid_motions,
-        motion_load=problem.motion_load * stress * length,
-    )
+    other = in_units(problem, length, stress)
     one, two = (FORMULATIONS[formulation](p, SolveOptions.of(formulation, polish=False)) for p in (problem, other))
     np.testing.assert_allclose(two.pressure / stress, one.pressure, atol=1e-12 * one.pressure.max())
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contact_problems import random_contact, resting
+from contact_problems import in_units, random_contact, resting
 from scipy.linalg import null_space
 
 from bemcontact.analysis.solve import solve as judged
@@ -26,13 +26,7 @@ def test_objective_in_the_units_of_the_user(k, length, stress):
     """F2 = pᵀJδ + (1/μ)|K u_n - B p - r|² with the raw μ, over U T max J: pins the objective, and what raw means."""
     rng = np.random.default_rng(3)
     one = random_contact(1, 8, k)
-    condensed = CondensedContact.from_compliance(
-        one.compliance * length / stress,
-        one.offset * length,
-        one.weights * length,
-        rigid_motions=one.rigid_motions,
-        motion_load=one.motion_load * stress * length,
-    )
+    condensed = in_units(one, length, stress)
     U, T = condensed.scales
     options = SolveOptions.of("qp2", penalty=0.3)
     program = qp2.program_of(condensed, options)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contact_problems import random_contact
+from contact_problems import in_units, random_contact
 
 import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -81,13 +81,7 @@ def test_agrees_with_the_direct_solver(seed, k):
 @pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6)])
 def test_units_do_not_matter(length, stress, k):
     problem = random_contact(5, 12, k)
-    other = CondensedContact.from_compliance(
-        problem.compliance * length / stress,
-        problem.offset * length,
-        problem.weights * length,
-        rigid_motions=problem.rigid_motions,
-        motion_load=problem.motion_load * stress * length,
-    )
+    other = in_units(problem, length, stress)
     one, two = qp3.solve(problem), qp3.solve(other)
     np.testing.assert_allclose(two.pressure / stress, one.pressure, atol=1e-12 * one.pressure.max())
     assert two.smallest_eigenvalue == pytest.approx(one.smallest_eigenvalue, rel=1e-9)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import schemas
 import yaml
-from messages import assert_states
+from messages import assert_one_mistake
 
 import bemcontact
 from bemcontact.problem import Crack, FlatPunch, Hertz, Problem, ProppedBeam, ShrinkFit, Table, Uniform, Values
@@ -222,11 +222,7 @@ REFUSED = {
 def test_each_mistake_is_reported_at_its_place(case: str):
     """The entry starts in line 13, column 7; the error gives the place of the wrong value in it."""
     text, wrong, words = REFUSED[case]
-    with pytest.raises(bemcontact.SpecError) as caught:
-        bemcontact.loads(spec(text), "body.yaml")
-    [line] = str(caught.value).splitlines()
-    assert line.startswith(f"body.yaml:13:{text.index(wrong) + 7}: reference.it")
-    assert_states(line, words)
+    assert_one_mistake(spec(text), f"13:{text.index(wrong) + 7}: reference.it", words)
 
 
 @pytest.mark.parametrize(
