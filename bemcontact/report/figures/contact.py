@@ -41,6 +41,8 @@ BENT = 0.2
 SMALL, AROUND = 0.08, 4.0
 """Extent of the contact over the size of the body below which only the part around it is shown, and over how many
 extents to either side."""
+ROOM = 1.5
+"""Room for a fan and its number over the length of the fan, where only a part of the body is shown."""
 OVERHANG = 0.14
 """Length of a rigid surface beyond its contact zone, and beyond the body, over the size of what is shown."""
 LEVEL = 1e-3
@@ -82,7 +84,7 @@ class Fan:
         steps, turns = np.diff(self.feet, axis=0), np.diff(self.normals, axis=0)
         if np.hypot(*turns.T).sum() < BENT:
             return np.inf
-        pressure = np.maximum(self.pressure[1:], self.pressure[:-1])
+        pressure = np.minimum(self.pressure[1:], self.pressure[:-1])  # a normal without pressure has no length
         closing = np.maximum((steps * turns).sum(axis=1) * pressure / scale, 0.0)
         return float(1 / (closing / (steps**2).sum(axis=1)).max()) if closing.any() else np.inf
 
@@ -128,7 +130,8 @@ def draw_contact(axes: Axes, result: Result) -> None:
             names.append(_label(fan, tips[-1], text, cut=fan.peak > scale * (1 + LEVEL)))
         elif fan.peak == max(other.peak for other in fans if other.zone == fan.zone):
             names.append(_label(fan, tips[-1], "infinite", cut=True))
-    drawn = np.concatenate([window, *tips] if part else [window, *tips, *covered])
+    beyond = [fan.feet + ROOM * (tip - fan.feet) for fan, tip in zip(fans, tips, strict=True)]
+    drawn = np.concatenate([window, *beyond] if part else [window, *tips, *covered])
     frame_plan(axes, drawn, units.length)
     with without_glyph_warnings():
         place_names(axes, names, drawn, loops)

@@ -101,7 +101,10 @@ def draw_pressure(axes: Axes, result: Result, zone: str | None = None) -> None:
     s, (low, high) = float(contact.arc_position[peak]), axes.get_xlim()
     side = "left" if s < low + 0.3 * (high - low) else "right" if s > high - 0.3 * (high - low) else "center"
     value = with_unit(with_bar(float(pressure.max()), result.accuracy.peak_bar(zone)), plain(units_of(contact).stress))
-    axes.annotate(f"peak {value}", (s, pressure[peak]), xytext=(0, 7), textcoords="offset points", ha=side, color=BLACK)
+    axes.annotate(
+        f"peak {value}", (s, pressure[peak]), xytext=({"left": 5, "right": -5}.get(side, 0), 7),
+        textcoords="offset points", ha=side, color=BLACK,
+    )  # fmt: skip
 
 
 def draw_gap(axes: Axes, result: Result, zone: str | None = None) -> None:
