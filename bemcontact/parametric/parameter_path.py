@@ -196,7 +196,9 @@ class ParameterPath(Leaf):
     def _state(self, t: float, i: int | None) -> PathState:
         """The state at breakpoint i, or at t."""
         solution = self.path.at(t) if i is None else self.path.breakpoint(i)
-        p, contact = solution.pressure, self.path.contact(t)
+        contact = self.path.contact(t)
+        where = footprint(contact, solution, infinite=bool(self.infinite))
+        p = solution.pressure if where.intervals else np.zeros_like(solution.pressure)  # at first touch: round-off
         return PathState(
             value=self.value(t),
             breakpoint=i is not None,
@@ -206,7 +208,7 @@ class ParameterPath(Leaf):
             at=int(p.argmax()) if p.any() and not self.infinite else None,
             resultant=tuple((float(x), float(y)) for x, y in contact.resultants(p)),
             touching=tuple(np.flatnonzero(p > 0).tolist()),
-            footprint=footprint(contact, solution, infinite=bool(self.infinite)),
+            footprint=where,
         )
 
     def to_csv(self) -> str:

@@ -1,11 +1,13 @@
 """Problems from YAML files; each error message gives file, line, column and key path."""
 
+import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import yaml
 
 from bemcontact.checks.arguments import shown, text_of_argument, texts
@@ -18,6 +20,8 @@ from bemcontact.problem.wording import described, number_hint, unknown_word
 from bemcontact.spec.document import Document, LocatedMessage, Mark, Place, error_text
 from bemcontact.spec.yaml_1_2 import MOST_CHARACTERS, MOST_KEYS, READERS, TAG, Budget, Loader, Refused, to_yaml
 
+Changes = Sequence[str] | Mapping[str, object]
+"""Changes as texts ``key=value``, or values by key."""
 _REQUIRED = ", ".join(key for key, item in Problem.model_fields.items() if item.is_required())
 _HINTS = {
     "found character '\\t'": "YAML indents with spaces; replace the tab",
@@ -33,13 +37,14 @@ _HINTS = {
 """Usual cause of each error of the parser."""
 
 
-def load(path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: str | None = None) -> Problem:
+def load(path: str | os.PathLike[str], overrides: Changes = (), variant: str | None = None) -> Problem:
     """Read a problem from a YAML file.
 
     Parameters
     ----------
     path : the file, in UTF-8 (or UTF-16 with a byte order mark)
-    overrides : changes such as ``material.young_modulus=2e6``, made before the problem is checked
+    overrides : changes such as ``material.young_modulus=2e6``, or a mapping of keys to values, made before the problem
+        is checked
     variant : name of a variant in the file, to which the changes are made; the problem itself if None
 
     Returns
@@ -58,7 +63,7 @@ def load(path: str | os.PathLike[str], overrides: Sequence[str] = (), variant: s
     return loads(text_of(path), os.fspath(path), overrides, variant)
 
 
-def loads(text: str, name: str = "<string>", overrides: Sequence[str] = (), variant: str | None = None) -> Problem:
+def loads(text: str, name: str = "<string>", overrides: Changes = (), variant: str | None = None) -> Problem:
     """Read a problem from a YAML text, see `load`.
 
     Parameters
@@ -79,7 +84,7 @@ def loads(text: str, name: str = "<string>", overrides: Sequence[str] = (), vari
     return _problem(_stages(text, name, overrides, variant))
 
 
-def as_run(text: str, name: str, overrides: Sequence[str] = (), variant: str | None = None) -> str:
+def as_run(text: str, name: str, overrides: Changes = (), variant: str | None = None) -> str:
     """Text of a spec after its changes, from which `loads` reads the same problem as from this text with the changes.
 
     Without changes it is the text itself, else YAML without comments. `SpecError` if a change cannot be made.
@@ -90,7 +95,7 @@ def as_run(text: str, name: str, overrides: Sequence[str] = (), variant: str | N
 
 
 def located(
-    error: ProblemError, text: str, name: str, overrides: Sequence[str] = (), variant: str | None = None
+    error: ProblemError, text: str, name: str, overrides: Changes = (), variant: str | None = None
 ) -> SpecError:
     """Error with the place in the text of each issue of a problem that had been read with these arguments.
 
@@ -101,7 +106,7 @@ def located(
     return SpecError(error_text([*whole, *(document.located(item) for item in error.issues if item.path)]))
 
 
-def readable(text: str, name: str, overrides: Sequence[str] = (), variant: str | None = None) -> Problem | None:
+def readable(text: str, name: str, overrides: Changes = (), variant: str | None = None) -> Problem | None:
     """What can be read of a spec that may have mistakes, unchecked, for a picture; None without a sound boundary."""
     try:
         return readable_part(_stages(text, name, overrides, variant)[-1].data)
@@ -118,11 +123,13 @@ def schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **properties}
 
 
-def _stages(text: str, name: str, overrides: Sequence[str], variant: str | None) -> list[Document]:
+def _stages(text: str, name: str, overrides: Changes, variant: str | None) -> list[Document]:
     """Documents of a text: without changes, then after each change."""
     name = escaped(name if isinstance(name, str) else shown(name))
     try:
         text_of_argument(text, "what loads reads")
+        if isinstance(overrides, Mapping):
+            overrides = [f"{key}={json.dumps(value, default=_plain)}" for key, value in overrides.items()]
         overrides = texts(overrides, "overrides, such as ['material.young_modulus=2e6'],")
         text_of_argument("" if variant is None else variant, "the name of a variant")
     except ProblemError as error:
@@ -134,6 +141,13 @@ def _stages(text: str, name: str, overrides: Sequence[str], variant: str | None)
     for override in overrides:
         stages.append(_overridden(stages[-1], override))
     return stages
+
+
+def _plain(value: object) -> object:
+    """A number or an array of NumPy as Python's own."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    raise ProblemError(f"an override cannot have the value {shown(value)}; give a number, a text, a list or a mapping")
 
 
 def _parsed(text: str, name: str) -> Document:

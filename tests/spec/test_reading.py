@@ -533,6 +533,15 @@ def test_later_override_wins():
     assert problem.material.young_modulus == 3
 
 
+def test_changes_may_be_a_mapping_of_values_by_key():
+    """A key and its value say the same as the text `key=value`, also as numbers of NumPy."""
+    values = {"material.young_modulus": np.float64(2e6), "material.poisson_ratio": 0.25, "description": "a: b"}
+    texts = ["material.young_modulus=2e6", "material.poisson_ratio=0.25", "description='a: b'"]
+    assert bemcontact.loads(SPEC, overrides=values) == bemcontact.loads(SPEC, overrides=texts)
+    with pytest.raises(SpecError, match="an override cannot have the value"):
+        bemcontact.loads(SPEC, overrides={"description": object()})
+
+
 @pytest.mark.parametrize(
     ("override", "words"),
     [
