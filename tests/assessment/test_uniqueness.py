@@ -124,3 +124,40 @@ def test_contact_recedes_point_by_point_on_a_very_slender_beam():
     assert 20 < interval.end_arc - interval.start_arc < 22.4  # a strip recedes 1.008 heights beyond the load at most
     assert result.certificate.kind in (CertificateKind.LOCAL, CertificateKind.UNIQUE)
     assert not result.certificate.violation
+
+
+def on_three_rods(edges: dict[str, list[str]], pressure: float) -> Problem:
+    """A beam on three rods, the middle one a little lower; each third of its underside is an edge."""
+    names = {"left": (0, 0), "middle": (4, 0), "right": (8, 0)}
+    sides = {"end": (12, 0), "top": (12, 2), "start": (0, 2)}
+    return Problem(
+        name="beam on three rods",
+        material={"young_modulus": 1e3, "poisson_ratio": 0.3},
+        boundary={
+            "outer": [
+                {"name": name, "start": at, "elements": 24 if name in names else 8}
+                for name, at in {**names, **sides}.items()
+            ]
+        },
+        conditions={"top": {"pressure": pressure}},
+        contact_zones={
+            name: {
+                "edges": edges[name],
+                "surface": {"kind": "circle", "center": (x, -2 - low), "radius": 2, "body": "outside"},
+            }
+            for name, x, low in (("left", 2, 0), ("middle", 6, 0.01), ("right", 10, 0))
+        },
+        accuracy=None,
+    )
+
+
+@pytest.mark.parametrize("pressure", [2.0, 10.0])
+def test_three_surfaces_at_each_node_are_no_obstacle_where_contact_holds_the_body(pressure: float):
+    """Pressures on three surfaces at one node can cancel: the compliance is singular. The state is that of one each."""
+    names = ["left", "middle", "right"]
+    one = solve(on_three_rods({name: [name] for name in names}, pressure))
+    three = solve(on_three_rods(dict.fromkeys(names, names), pressure))
+    assert one.certified
+    assert three.certified
+    assert three.certificate.smallest_eigenvalue == pytest.approx(0.0, abs=1e-9)
+    assert three.footprint.peak.pressure == pytest.approx(one.footprint.peak.pressure, rel=1e-9)
