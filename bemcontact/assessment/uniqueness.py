@@ -164,7 +164,7 @@ def near_bound(state: NearState, D: Array, M: Array, ell: Array, whole: Definite
             half = norm * rest + residual / 2
             v = (half + np.sqrt(half**2 + on.certain * rest * (norm * rest + residual))) / on.certain
             B = min(B, v + rest)
-        found = min(found, float(S.max()) * B if B < start else np.inf)
+        found = min(found, float(S.max()) * B if start > B else np.inf)
     return found
 
 
