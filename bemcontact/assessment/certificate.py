@@ -204,11 +204,12 @@ def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> tuple[floa
     if not contact.free_motions:
         return change, beside
     ell, load = _unit_rows(contact)
-    left = np.abs(_imbalance(ell, y, load)) + 2 * EPS * (np.abs(ell).T @ y + np.abs(load))
     while change < np.inf and (least < 0 or ((y > least) & (y <= change)).any()):
         least = change
+        carried = np.where(y > least, y, 0.0)
+        left = np.abs(_imbalance(ell, carried, load)) + 2 * EPS * (np.abs(ell).T @ carried + np.abs(load))
         size, beside = _least_change(ell, y > least, left)
-        change = max(change, size)
+        change = max(change, size + float(np.linalg.norm(y - carried)))
     return change, np.where(y > 0, 0.0, beside)
 
 
@@ -228,7 +229,7 @@ def _least_change(ell: Array, carries: NDArray[np.bool_], left: Array) -> tuple[
     if np.count_nonzero(np.linalg.svd(ell[carries], compute_uv=False) > lost) == ell.shape[1]:
         return float(np.linalg.norm(np.linalg.pinv(ell[carries], rcond=0.0), axis=1) @ left), beside
     columns, size = np.vstack([ell, -ell[carries]]).T, 0.0
-    for load, part in zip(np.eye(len(left)), left, strict=True):
+    for load, part in zip(np.eye(len(left))[left > 0], left[left > 0], strict=True):
         ends = [linprog(np.ones(columns.shape[1]), A_eq=columns, b_eq=sign * load) for sign in (1.0, -1.0)]
         if any(end.status != 0 for end in ends):
             return np.inf, beside

@@ -197,6 +197,19 @@ def test_point_that_carries_alone_between_others_is_certified(seed):
     assert error <= certificate.error_bound < 1e-6
 
 
+@pytest.mark.parametrize("k", [1, 2])
+@pytest.mark.parametrize("size", [0.0, 1e-18, 1e-15])
+def test_pressures_of_round_off_carry_nothing(k, size):
+    """A free body without load that touches nowhere: pressures of round-off are no state of their own."""
+    R = np.column_stack([np.ones(3), [-1.0, 0.3, 1.0]])[:, :k]
+    problem = CondensedContact.from_compliance(np.eye(3), [0.5, 1.0, 0.5], rigid_motions=R, motion_load=np.zeros(k))
+    solution = moved(problem, complementarity.solve(problem), np.array([size, 0.0, size / 2]), np.ones(k) / 10)
+    certificate = judged(problem, solution)
+    assert certificate.certified
+    assert certificate.error_bound is not None
+    assert solution.pressure.max() <= certificate.error_bound < 1e-13
+
+
 @pytest.mark.parametrize("seed", range(40))
 def test_definite_parts_below_the_round_off_of_the_rest_prove_nothing(seed):
     """[[1, b], [4 - b, 1]] with b = 1e16 and more has λ = -1, which a rounded product D M hides."""
