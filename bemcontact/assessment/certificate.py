@@ -17,10 +17,12 @@ yᵀ(Dδ - s) = 0. For the solution (p*, δ*) and e = y - p*
 so that |y - p*|ᵢ <= Sᵢ|Ss|/λ, and for any p at all |p - p*|ᵢ <= |p - y| + Sᵢ|Ss|/λ. With Z an orthonormal basis of the
 space and its rows Zᵢ it is even Sᵢ|Zᵢ||ZᵀSs|/λ: nothing where equilibrium fixes a pressure. Here y is p cut off outside
 its contact set and brought into equilibrium by the smallest change. What round-off leaves of equilibrium changes y by
-that over the least lever of the points that carry, and is added. This sharpens Pang's bound for strongly monotone
-problems, (1 + ‖DM‖)/λ·|min(p, Dδ)| (Math. Oper. Res. 12(3), 1987, 474-484), which does not carry over to bodies with
-free motions: a small pressure on a body lifted off its support has a small min(p, Dδ), however far it is from the
-solution.
+that over the least lever of the points that carry, and is added. Where these lack a direction, others must carry in it,
+by pressures z >= 0 that linear programs bound: then yᵀ(Dδ - s) = zᵀDδ, and |S⁻¹e| <= |Ss|/λ + √(zᵀDδ/λ).
+
+This sharpens Pang's bound for strongly monotone problems, (1 + ‖DM‖)/λ·|min(p, Dδ)| (Math. Oper. Res. 12(3), 1987,
+474-484), which does not carry over to bodies with free motions: a small pressure on a body lifted off its support has a
+small min(p, Dδ), however far it is from the solution.
 
 Where λ is not positive, `uniqueness` may still exclude other states, and gives a λ for the error bound with S = 1.
 """
@@ -31,6 +33,7 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import linprog
 
 from bemcontact.arrays import Array
 from bemcontact.assessment.definiteness import EPS, Definiteness
@@ -50,6 +53,8 @@ POSITION_OPEN = (
     "the one given is one of many."
 )
 NEWTON_STEPS = 20
+SAFE = 2.0
+"""Factor of what linear programs say of pressures: more than they can be off."""
 LOCAL = (FormulationName.QP1, FormulationName.QP2)
 """Formulations whose solver starts somewhere and may end in a local minimum."""
 DIRECT = "--formulation complementarity"
@@ -156,7 +161,7 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: De
     y = _balanced(contact, p, p > gap)
     if y is None:
         return None
-    imbalance = _round_off_of_equilibrium(contact, y)
+    imbalance, beside = _round_off_of_equilibrium(contact, y)
     if imbalance == np.inf:
         return None
     off = float(np.linalg.norm(p - y)) + imbalance
@@ -171,9 +176,10 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: De
     work = np.where(y > 0, 0.0, np.maximum(D * delta - round_off, 0.0))
     round_off = np.where((y > 0) | (D * delta < round_off), round_off, 0.0)
     residual = np.abs(s) + round_off
-    bound = stiff.largest_change(residual) if stiff.definite else np.inf
-    if bound <= LARGEST_BOUND * y.max():
-        return (off + bound) * T
+    beside_work = float(beside @ (np.maximum(D * delta, 0.0) + round_off))
+    bound = stiff.largest_change(residual, beside_work) if stiff.definite else np.inf
+    if bound <= LARGEST_BOUND * y.max() or beside_work > 0:
+        return (off + bound) * T if bound < np.inf else None
     ell, spread = _unit_rows(contact)[0], 1.0
     if contact.free_motions:
         ell, spread = np.linalg.qr(ell)[0], float(np.linalg.cond(ell))
@@ -187,21 +193,24 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: De
     return (off + bound) * T if bound < np.inf else None
 
 
-def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> float:
+def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> tuple[float, Array]:
     """How far y (n,) may be from exact balance: the least change of points that carry which takes ℓᵀy + load away.
 
     Points side by side carry a moment by large pressures only. A point whose pressure is no more than that error may
-    not carry at all. Infinite if some load is carried by round-off only.
+    not carry at all. Infinite if some load is carried by round-off only. With it the pressures (n,) of points without
+    pressure that this takes where those that carry lack a direction.
     """
+    least, change, beside = -1.0, 0.0, np.zeros(len(y))
     if not contact.free_motions:
-        return 0.0
+        return change, beside
     ell, load = _unit_rows(contact)
-    left = np.abs(_imbalance(ell, y, load)) + 2 * EPS * (np.abs(ell).T @ y + np.abs(load))
-    least, change = -1.0, 0.0
     while change < np.inf and (least < 0 or ((y > least) & (y <= change)).any()):
         least = change
-        change = max(change, _least_change(ell, ell[y > least], left))
-    return change
+        carried = np.where(y > least, y, 0.0)
+        left = np.abs(_imbalance(ell, carried, load)) + 2 * EPS * (np.abs(ell).T @ carried + np.abs(load))
+        size, beside = _least_change(ell, y > least, left)
+        change = max(change, size + float(np.linalg.norm(y - carried)))
+    return change, np.where(y > 0, 0.0, beside)
 
 
 def _imbalance(ell: Array, y: Array, load: Array) -> Array:
@@ -211,22 +220,22 @@ def _imbalance(ell: Array, y: Array, load: Array) -> Array:
     )
 
 
-def _least_change(ell: Array, carried: Array, left: Array) -> float:
-    """Bound of the least pressures on the rows (m, k) of ℓ that carry loads up to left (k,); infinity if none do.
+def _least_change(ell: Array, carries: NDArray[np.bool_], left: Array) -> tuple[float, Array]:
+    """Bound of the least pressures that carry loads up to left (k,), infinity if none do; those (n,) beside the points.
 
-    Where the rows lack a direction, those that add least to them are taken too.
+    Points that carry may lose pressure. Where their rows of ℓ (n, k) lack a direction, others gain pressure.
     """
-    lost = len(ell) * EPS
-    while True:
-        _, sizes, axes = np.linalg.svd(carried)
-        rank = int(np.count_nonzero(sizes > lost))
-        if rank == ell.shape[1]:
-            return float(np.linalg.norm(np.linalg.pinv(carried, rcond=0.0), axis=1) @ left)
-        levers = np.linalg.norm(ell @ axes[rank:].T, axis=1)
-        if levers.max() <= 2 * lost:
-            return np.inf
-        added = ell[[np.argmin(np.where(levers > 2 * lost, levers, np.inf))]]
-        carried = np.vstack([carried, added])
+    lost, beside = len(ell) * EPS, np.zeros(len(ell))
+    if np.count_nonzero(np.linalg.svd(ell[carries], compute_uv=False) > lost) == ell.shape[1]:
+        return float(np.linalg.norm(np.linalg.pinv(ell[carries], rcond=0.0), axis=1) @ left), beside
+    columns, size = np.vstack([ell, -ell[carries]]).T, 0.0
+    for load, part in zip(np.eye(len(left))[left > 0], left[left > 0], strict=True):
+        ends = [linprog(np.ones(columns.shape[1]), A_eq=columns, b_eq=sign * load) for sign in (1.0, -1.0)]
+        if any(end.status != 0 for end in ends):
+            return np.inf, beside
+        size += float(max(end.fun for end in ends)) * part
+        beside += np.maximum(*(end.x[: len(ell)] for end in ends)) * part
+    return SAFE * size, SAFE * beside
 
 
 def _unit_rows(contact: CondensedContact) -> tuple[Array, Array]:

@@ -48,7 +48,7 @@ class Definiteness:
         round_off = n * EPS * spread * float(terms.sum(axis=1).max())
         return cls(scales=S, reach=reach, eigenvalue=smallest, certain=smallest - round_off)
 
-    def largest_change(self, s: Array) -> float:
-        """Largest change of a pressure by forces up to s (n,), of either sign: max Sᵢ|Zᵢ||ZᵀSs|/λ."""
+    def largest_change(self, s: Array, work: float = 0.0) -> float:
+        """Change of a pressure, at most, by forces up to s (n,) and work w: max Sᵢ|Zᵢ|(|ZᵀSs|/λ + √(w/λ))."""
         part = min(np.linalg.norm(self.scales * s), self.reach @ (self.scales * s))
-        return float((self.scales * self.reach).max() * part / self.certain)
+        return float((self.scales * self.reach).max() * (part / self.certain + np.sqrt(work / self.certain)))

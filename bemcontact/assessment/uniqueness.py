@@ -40,7 +40,7 @@ import scipy
 from scipy.linalg import eigh
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.assessment.definiteness import Definiteness
+from bemcontact.assessment.definiteness import EPS, Definiteness
 
 MOST = 8
 """Eigenvectors with which a proof is tried."""
@@ -51,7 +51,7 @@ NEAR = (0.25, 0.5, 0.75)
 ROUNDS = 20
 """Times that the bound of pressures near contact and the work of all others sharpen one another."""
 SAFE = 2.0
-"""Factor of what a linear program says that pressures are bounded by: more than it can be off."""
+"""Bound of |p - p'| over the largest sum of pressures, for two p, p' >= 0: √2, and more than round-off can add."""
 LEAST_REST = 0.05
 """Value of the bracket that is demanded: more than the linear programs can be off."""
 
@@ -146,17 +146,15 @@ def near_bound(state: NearState, D: Array, M: Array, ell: Array, whole: Definite
     D (n,), M (n, n) and ℓ (n, k); `whole` is the definiteness on all points.
     """
     S, open_points = whole.scales, ~state.contact_set
-    rows = np.linalg.qr(S[:, None] * ell)[0]
-    y, g, residual = state.pressure / S, S * state.work, float(np.linalg.norm(S * state.residual))
-    most = scipy.optimize.linprog(-np.ones(len(y)), A_eq=rows.T, b_eq=rows.T @ y, bounds=(0, None))
-    if most.status != 0 or not open_points.any():
-        return np.inf
+    scaled = S[:, None] * ell / np.linalg.norm(S[:, None] * ell, axis=0)
+    rows, lost = np.linalg.qr(scaled)[0], len(S) * EPS * float(np.linalg.cond(scaled))
+    g, residual = S * state.work, float(np.linalg.norm(S * state.residual))
     K = np.abs(S[:, None] * (D[:, None] * M) * S)
-    norm, start = float(((K + K.T) / 2).sum(axis=1).max()), SAFE * float(y.sum() - most.fun)
+    norm, start = float(((K + K.T) / 2).sum(axis=1).max()), SAFE * _largest_sum(rows, state.pressure / S, lost)
     found = np.inf
-    for h in np.quantile(g[open_points], NEAR):
+    for h in np.quantile(g[open_points], NEAR) if start < np.inf and open_points.any() else ():
         near = state.contact_set | (g <= h)
-        on, lever = Definiteness.of(D[near], M[np.ix_(near, near)], ell[near]), _least_singular(rows[near])
+        on, lever = Definiteness.of(D[near], M[np.ix_(near, near)], ell[near]), _least_singular(rows[near]) - lost
         if h <= 0 or not on.definite or on.eigenvalue is None or lever <= 0:
             continue
         B = start
@@ -166,8 +164,22 @@ def near_bound(state: NearState, D: Array, M: Array, ell: Array, whole: Definite
             half = norm * rest + residual / 2
             v = (half + np.sqrt(half**2 + on.certain * rest * (norm * rest + residual))) / on.certain
             B = min(B, v + rest)
-        found = min(found, float(S.max()) * B)
+        found = min(found, float(S.max()) * B if start > B else np.inf)
     return found
+
+
+def _largest_sum(rows: Array, y: Array, lost: float) -> float:
+    """Bound of the sum of any p >= 0 with rowsᵀp = rowsᵀy, rows (n, k) but for `lost`; infinity if there is none.
+
+    By duality it is yᵀ(rows v) if rows v >= 1 for all points: no tolerance of the program that gives v enters.
+    """
+    most = scipy.optimize.linprog(-np.ones(len(y)), A_eq=rows.T, b_eq=rows.T @ y, bounds=(0, None))
+    if most.status != 0:
+        return np.inf
+    v = -most.eqlin.marginals
+    share = rows @ v
+    least = float(share.min()) - lost * float(np.linalg.norm(v))
+    return float(np.maximum(share, 0.0) @ y) / least if least > 0 else np.inf
 
 
 def _least_singular(rows: Array) -> float:

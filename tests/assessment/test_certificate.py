@@ -120,6 +120,96 @@ def test_points_side_by_side_carry_a_moment_to_less_accuracy(seed, distance):
     assert max(abs(Fraction(u) - v) for u, v in zip(solution.pressure[:2], exact, strict=True)) <= bound
 
 
+def solved(rows: list[list[Fraction]]) -> list[Fraction] | None:
+    """Solve linear equations, the right side last, without rounding; None if there is no pivot."""
+    for i in range(len(rows)):
+        pivot = next((row for row in rows[i:] if row[i]), None)
+        if pivot is None:
+            return None
+        rows.remove(pivot)
+        unit = [value / pivot[i] for value in pivot]
+        rows = [[a - row[i] * b for a, b in zip(row, unit, strict=True)] for row in rows]
+        rows.insert(i, unit)
+    return [row[-1] for row in rows]
+
+
+def exact_pressure(problem: CondensedContact) -> list[Fraction] | None:
+    """The first contact state of all contact sets, by the numbers of the problem without rounding; None if none is."""
+
+    def exact(values: np.ndarray) -> list[Fraction]:
+        return [Fraction(value) for value in values.tolist()]
+
+    (n, k), M, R = problem.rigid_motions.shape, [*map(exact, problem.compliance)], [*map(exact, problem.rigid_motions)]
+    q = [a + b for a, b in zip(exact(problem.initial_gap), exact(problem.free_displacement), strict=True)]
+    J, load = exact(problem.weights), exact(problem.motion_load)
+    for chosen in itertools.chain.from_iterable(itertools.combinations(range(n), m) for m in range(k, n + 1)):
+        rows = [[M[i][j] for j in chosen] + R[i] + [-q[i]] for i in chosen]
+        rows += [[J[i] * R[i][j] for i in chosen] + [Fraction(0)] * k + [-load[j]] for j in range(k)]
+        x = solved(rows)
+        if x is None or min(x[: len(chosen)], default=Fraction(0)) < 0:
+            continue
+        p = dict(zip(chosen, x, strict=False))
+        gaps = (
+            q[i] + sum(M[i][j] * p[j] for j in chosen) + sum(r * a for r, a in zip(R[i], x[len(chosen) :], strict=True))
+            for i in range(n)
+        )
+        if all(gap >= 0 for i, gap in enumerate(gaps) if i not in p):
+            return [p.get(i, Fraction(0)) for i in range(n)]
+    return None
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_fewer_points_than_motions_carry_what_round_off_leaves_only_with_others(seed):
+    """Two points carry a load in three motions, but for its round-off, which other points must carry.
+
+    Points of the same sign differ from these in the third motion by round-off only, so that they may need large
+    pressures. The bound holds for the state without any rounding.
+    """
+    rng = np.random.default_rng(seed)
+    for _ in range(10):
+        n, x = 5, rng.uniform(0.1, 1, 5) * [1, 1, 1, -1, -1]
+        R = np.column_stack([np.ones(n), x, rng.uniform(0.1, 1) * x + rng.uniform(0.1, 1) * np.sign(x)])
+        p = rng.uniform(0.1, 1, n) * (np.arange(n) < 2)
+        problem = CondensedContact.from_compliance(
+            np.eye(n), rng.uniform(0.1, 1, n) * (p == 0) - p, rigid_motions=R, motion_load=-R.T @ p
+        )
+        solution, exact = complementarity.solve(problem), exact_pressure(problem)
+        bound = judged(problem, solution).error_bound
+        if exact is not None and bound is not None:
+            assert max(abs(Fraction(u) - v) for u, v in zip(solution.pressure.tolist(), exact, strict=True)) <= bound
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_point_that_carries_alone_between_others_is_certified(seed):
+    """Round-off of the moment tilts the body onto a neighbor on either side, which carries little."""
+    rng = np.random.default_rng(seed)
+    x, p = np.array([-1.0, 0.0, 1.0]) + rng.uniform(-1, 1), rng.uniform(0.5, 1)
+    R, J = np.column_stack([np.ones(3), x]), rng.uniform(0.5, 1.5, 3)
+    problem = CondensedContact.from_compliance(
+        np.eye(3) / J[:, None], [1.0, -p / J[1], 1.0], J, rigid_motions=R, motion_load=-p * J[1] * R[1]
+    )
+    solution, exact = complementarity.solve(problem), exact_pressure(problem)
+    certificate = judged(problem, solution)
+    assert exact is not None
+    assert certificate.certified
+    assert certificate.error_bound is not None
+    error = max(abs(Fraction(u) - v) for u, v in zip(solution.pressure.tolist(), exact, strict=True))
+    assert error <= certificate.error_bound < 1e-6
+
+
+@pytest.mark.parametrize("k", [1, 2])
+@pytest.mark.parametrize("size", [0.0, 1e-18, 1e-15])
+def test_pressures_of_round_off_carry_nothing(k, size):
+    """A free body without load that touches nowhere: pressures of round-off are no state of their own."""
+    R = np.column_stack([np.ones(3), [-1.0, 0.3, 1.0]])[:, :k]
+    problem = CondensedContact.from_compliance(np.eye(3), [0.5, 1.0, 0.5], rigid_motions=R, motion_load=np.zeros(k))
+    solution = moved(problem, complementarity.solve(problem), np.array([size, 0.0, size / 2]), np.ones(k) / 10)
+    certificate = judged(problem, solution)
+    assert certificate.certified
+    assert certificate.error_bound is not None
+    assert solution.pressure.max() <= certificate.error_bound < 1e-13
+
+
 @pytest.mark.parametrize("seed", range(40))
 def test_definite_parts_below_the_round_off_of_the_rest_prove_nothing(seed):
     """[[1, b], [4 - b, 1]] with b = 1e16 and more has λ = -1, which a rounded product D M hides."""

@@ -83,6 +83,52 @@ def test_only_lonely_states_are_certified_and_the_bound_holds():
     assert several > 0
 
 
+def several_surfaces_at_a_node(rng: np.random.Generator) -> CondensedContact:
+    """Two or three nodes in contact, which are points of one to three far surfaces too, with compliances nearly alike.
+
+    The more these differ, and the less far the surfaces are, the more contact states there are.
+    """
+    m, n = (nodes := int(rng.integers(2, 4))), nodes + int(rng.integers(1, 4))
+    node = np.append(np.arange(m), rng.integers(0, m, n - m))
+    A, J = rng.standard_normal((m, m)), 10 ** rng.uniform(-1, 0, m)
+    M = ((A @ A.T + np.eye(m)) / J[:, None])[np.ix_(node, node)]
+    M = M + 10 ** rng.uniform(-6, 0.3) * rng.standard_normal((n, n))
+    R, weights = np.column_stack([np.ones(n), node])[:, : rng.integers(1, 3)], J[node] * rng.uniform(0.5, 1.5, n)
+    load = -(weights[:, None] * R)[:m].T @ rng.uniform(0, 1, m)
+    far = 10 ** rng.uniform(-2, 3.5) * rng.uniform(0.3, 2, n)
+    q = np.where(np.arange(n) < m, rng.uniform(0, 1, n) * (rng.uniform(size=n) < 0.5), far)
+    return CondensedContact.from_compliance(M, q, weights, rigid_motions=R, motion_load=load)
+
+
+def test_points_near_contact_prove_lonely_states_only(monkeypatch):
+    """Of nodes with several surfaces: each certified problem has one state, and the bound holds for all states.
+
+    Pressures are off by a known amount. Eigenvectors are left out, so that the points near contact prove alone.
+    """
+    monkeypatch.setattr("bemcontact.assessment.certificate.effective_eigenvalue", lambda *_: None)
+    rng = np.random.default_rng(5)
+    certified = several = 0
+    for _ in range(150):
+        contact = several_surfaces_at_a_node(rng)
+        solution = complementarity.solve(contact)
+        certificate = certificate_of(contact, solution)
+        assert certificate.smallest_eigenvalue is not None
+        if certificate.smallest_eigenvalue > 0 or certificate.violation:
+            continue
+        states = all_states(contact)
+        several += len(states) > 1
+        if len(states) > 1:
+            assert certificate.kind is CertificateKind.LOCAL
+        certified += certificate.certified
+        assert len(states) == 1 or not certificate.certified
+        wrong = solution.pressure * (1 + 10 ** rng.uniform(-9, -2) * rng.standard_normal(contact.size))
+        moved = contact.gap(wrong, solution.rigid_amplitudes) - contact.initial_gap
+        bound = certificate_of(contact, replace(solution, pressure=wrong, displacement=moved)).error_bound
+        assert bound is None or max(abs(wrong - state).max() for state in states) <= bound
+    assert certified > 5
+    assert several > 0
+
+
 def beam(ratio: int, push: float, parts: int = 1) -> Problem:
     """A beam on a floor, pressed in its middle; its length is `ratio` times its height."""
     L, half = float(ratio), push / 2
