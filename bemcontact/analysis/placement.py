@@ -35,7 +35,8 @@ WITHHELD = 0.05
 MOVES_ON = 0.5
 """Part of a motion by which a body moves on in the second solution, from which it is not held: the steps do not end."""
 NO_SQUARE = 10.0
-"""A motion that is so many times the change of the gaps does not come from it, which is of second order."""
+"""A motion that is so many times the change of the gaps, or the turn of normals times the motion of their places, does
+not come from these, which are of second order."""
 NO_CHANGE = 1e-7
 """Difference of the gaps, over the displacement scale of contact, that changes nothing."""
 ALIKE = 0.1
@@ -278,7 +279,8 @@ def _moves_on(
     before = abs(solution.rigid_amplitudes) * reach
     further = abs(again.rigid_amplitudes - solution.rigid_amplitudes) * reach
     pressed = np.maximum(solution.pressure, again.pressure) > 0
-    least = max(NO_SQUARE * abs(moved.change[pressed]).max(), NO_CHANGE * contact.scales.displacement)
+    square = max(abs(moved.change[pressed]).max(), abs(moved.turn[pressed]).max() * abs(moved.motion[pressed]).max())
+    least = max(NO_SQUARE * square, NO_CHANGE * contact.scales.displacement)
     held = further < np.maximum(MOVES_ON * before, least)
     if held.all():
         return None

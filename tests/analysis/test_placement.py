@@ -266,6 +266,36 @@ def test_grooves_hold_a_block_on_round_supports(power, radius):
     assert result.footprint.resultant.force[0] == pytest.approx(-300 * 10**power, rel=1e-9)
 
 
+@pytest.mark.parametrize("moment", [100.0, 300.0])
+def test_a_flat_tool_that_rolls_on_a_dome_is_held(moment):
+    """It turns by M/(F R) until it touches beside the top; it is lifted by a square of that, which is no motion.
+
+    Its force turns with it: the moment gains the height of the pivot, a seventh of R, which is a change of a seventh.
+    """
+    rise, R = 10.0, np.hypot(10, 10)
+    dome = {"name": "dome", "kind": "arc", "center": (0, -rise), "radius": R, "angles": (45, 135)}
+    flat = {"kind": "plane", "point": (0, R - rise), "normal": (0, -1)}
+    lines = [
+        {"name": name, "start": at} for name, at in {"base": (-10, -8), "right": (10, -8), "left": (-10, 0)}.items()
+    ]
+    result = solve(
+        Problem(
+            name="flat tool on a dome",
+            material=STEEL,
+            boundary={"outer": [*lines[:2], dome, lines[2]]},
+            conditions={"base": {"displacement": {"x": 0, "y": 0}}},
+            contact_zones={"top": {"edges": "dome", "surface": flat}},
+            tools={"flat": {
+                "zones": "top", "point": (0, R - rise + R / 7), "displacement": {"x": 0},
+                "force": {"y": -500, "moment": moment}}},
+            accuracy=0.03,
+        )  # pyright: ignore[reportArgumentType]
+    )  # fmt: skip
+    angle = result.contact.tools.displacement(result.solution.rigid_amplitudes)[0, 2]
+    assert angle == pytest.approx(moment / (500 * R), rel=0.03)
+    assert result.certified
+
+
 @pytest.mark.parametrize("share", [0.004, -0.02, 0.09])
 def test_a_force_turns_with_the_normal_of_the_place_that_the_body_moves_to(share):
     """A roller that rises into a wide block and moves aside by d presses straight up there; its normals turn by d/R."""
