@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import null_space
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.penetration import Misfit, Penetration, tolerated
@@ -37,6 +38,8 @@ MOVES_ON = 0.5
 NO_SQUARE = 10.0
 """A motion that is so many times the change of the gaps, or the turn of normals times the motion of their places, does
 not come from these, which are of second order."""
+UNSEEN = 1e-9
+"""Normal displacement of pressed points by a free motion, over the largest one, that is none."""
 NO_CHANGE = 1e-7
 """Difference of the gaps, over the displacement scale of contact, that changes nothing."""
 ALIKE = 0.1
@@ -277,7 +280,9 @@ def _moves_on(
         return None
     reach = abs(contact.rigid_motions).max(axis=0)
     before = abs(solution.rigid_amplitudes) * reach
-    further = abs(again.rigid_amplitudes - solution.rigid_amplitudes) * reach
+    unseen = null_space(contact.rigid_motions[solution.pressure > 0], rcond=UNSEEN)  # their amplitudes are a rule's
+    change = again.rigid_amplitudes - solution.rigid_amplitudes
+    further = abs(change - unseen @ (unseen.T @ change)) * reach
     pressed = np.maximum(solution.pressure, again.pressure) > 0
     square = max(abs(moved.change[pressed]).max(), abs(moved.turn[pressed]).max() * abs(moved.motion[pressed]).max())
     least = max(NO_SQUARE * square, NO_CHANGE * contact.scales.displacement)
