@@ -17,8 +17,10 @@ yᵀ(Dδ - s) = 0. For the solution (p*, δ*) and e = y - p*
 so that |y - p*|ᵢ <= Sᵢ|Ss|/λ, and for any p at all |p - p*|ᵢ <= |p - y| + Sᵢ|Ss|/λ. With Z an orthonormal basis of the
 space and its rows Zᵢ it is even Sᵢ|Zᵢ||ZᵀSs|/λ: nothing where equilibrium fixes a pressure. Here y is p cut off outside
 its contact set and brought into equilibrium by the smallest change. What round-off leaves of equilibrium changes y by
-that over the least lever of the points that carry, and is added. Where these lack a direction, others must carry in it,
-by pressures z >= 0 that linear programs bound: then yᵀ(Dδ - s) = zᵀDδ, and |S⁻¹e| <= |Ss|/λ + √(zᵀDδ/λ).
+that over the least lever of the points that carry, and is added. Where these lack one direction, the amplitudes a may
+be changed in it until the first gap beside closes: this point carries the round-off, and no work is done. Where they
+lack more, others must carry by pressures z >= 0 that linear programs bound: then yᵀ(Dδ - s) = zᵀDδ, and
+|S⁻¹e| <= |Ss|/λ + √(zᵀDδ/λ).
 
 This sharpens Pang's bound for strongly monotone problems, (1 + ‖DM‖)/λ·|min(p, Dδ)| (Math. Oper. Res. 12(3), 1987,
 474-484), which does not carry over to bodies with free motions: a small pressure on a body lifted off its support has a
@@ -53,6 +55,8 @@ POSITION_OPEN = (
     "the one given is one of many."
 )
 NEWTON_STEPS = 20
+TIE = 1e-6
+"""Relative difference of gaps that round-off may decide."""
 SAFE = 2.0
 """Factor of what linear programs say of pressures: more than they can be off."""
 LOCAL = (FormulationName.QP1, FormulationName.QP2)
@@ -161,25 +165,27 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: De
     y = _balanced(contact, p, p > gap)
     if y is None:
         return None
-    imbalance, beside = _round_off_of_equilibrium(contact, y)
-    if imbalance == np.inf:
-        return None
-    off = float(np.linalg.norm(p - y)) + imbalance
-    if stiff.eigenvalue is None:
-        return off * T
     q, R = contact.offset / U, contact.rigid_motions
     a = contact.amplitudes_of(gap - q - M @ y)
     delta = q + M @ y + R @ a
     s = D * np.where(y > 0, delta, np.minimum(delta, 0.0))
     round_off = len(D) * EPS * D * (np.abs(q) + np.abs(M) @ y + np.abs(R) @ np.abs(a))
+    imbalance, beside, tilted = _round_off_of_equilibrium(contact, y, np.maximum(D * delta, 0.0), round_off)
+    if imbalance == np.inf:
+        return None
+    off = float(np.linalg.norm(p - y)) + imbalance
+    if stiff.eigenvalue is None:
+        return off * T * (1 + 4 * EPS)
     round_off += D * np.linalg.norm(M, axis=1) * imbalance
     work = np.where(y > 0, 0.0, np.maximum(D * delta - round_off, 0.0))
-    round_off = np.where((y > 0) | (D * delta < round_off), round_off, 0.0)
+    lacking = beside.any() or tilted is not None
+    least = D * delta if tilted is None else np.minimum(D * delta, (1 - TIE) * tilted - TIE * np.abs(D * delta))
+    round_off = np.where((y > 0) | (least < round_off), round_off, 0.0)
     residual = np.abs(s) + round_off
     beside_work = float(beside @ (np.maximum(D * delta, 0.0) + round_off))
     bound = stiff.largest_change(residual, beside_work) if stiff.definite else np.inf
-    if bound <= LARGEST_BOUND * y.max() or beside_work > 0:
-        return (off + bound) * T if bound < np.inf else None
+    if bound <= LARGEST_BOUND * y.max() or lacking:
+        return (off + bound) * T * (1 + 4 * EPS) if bound < np.inf else None
     ell, spread = _unit_rows(contact)[0], 1.0
     if contact.free_motions:
         ell, spread = np.linalg.qr(ell)[0], float(np.linalg.cond(ell))
@@ -190,27 +196,30 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: De
         bound = float(np.linalg.norm(residual)) / eigenvalue
     if bound > LARGEST_BOUND * y.max() and contact.free_motions:
         bound = min(bound, near_bound(state, D, M, contact.equilibrium, stiff))
-    return (off + bound) * T if bound < np.inf else None
+    return (off + bound) * T * (1 + 4 * EPS) if bound < np.inf else None
 
 
-def _round_off_of_equilibrium(contact: CondensedContact, y: Array) -> tuple[float, Array]:
+def _round_off_of_equilibrium(
+    contact: CondensedContact, y: Array, gaps: Array, round_off: Array
+) -> tuple[float, Array, Array | None]:
     """How far y (n,) may be from exact balance: the least change of points that carry which takes ℓᵀy + load away.
 
     Points side by side carry a moment by large pressures only. A point whose pressure is no more than that error may
     not carry at all. Infinite if some load is carried by round-off only. With it the pressures (n,) of points without
-    pressure that this takes where those that carry lack a direction.
+    pressure that this takes where those that carry lack directions; or, if they lack one, the gaps Dδ (n,) that are
+    left where the body tilts onto one such point, whichever the direction. `gaps` are Dδ (n,) with their round-off.
     """
-    least, change, beside = -1.0, 0.0, np.zeros(len(y))
+    least, change, beside, tilted = -1.0, 0.0, np.zeros(len(y)), None
     if not contact.free_motions:
-        return change, beside
+        return change, beside, tilted
     ell, load = _unit_rows(contact)
     while change < np.inf and (least < 0 or ((y > least) & (y <= change)).any()):
         least = change
         carried = np.where(y > least, y, 0.0)
         left = np.abs(_imbalance(ell, carried, load)) + 2 * EPS * (np.abs(ell).T @ carried + np.abs(load))
-        size, beside = _least_change(ell, y > least, left)
+        size, beside, tilted = _least_change(ell, y > least, left, gaps, round_off)
         change = max(change, size + float(np.linalg.norm(y - carried)))
-    return change, np.where(y > 0, 0.0, beside)
+    return change, np.where(y > 0, 0.0, beside), tilted
 
 
 def _imbalance(ell: Array, y: Array, load: Array) -> Array:
@@ -220,22 +229,53 @@ def _imbalance(ell: Array, y: Array, load: Array) -> Array:
     )
 
 
-def _least_change(ell: Array, carries: NDArray[np.bool_], left: Array) -> tuple[float, Array]:
-    """Bound of the least pressures that carry loads up to left (k,), infinity if none do; those (n,) beside the points.
+def _least_change(
+    ell: Array, carries: NDArray[np.bool_], left: Array, gaps: Array, round_off: Array
+) -> tuple[float, Array, Array | None]:
+    """Bound of the least pressures that carry loads up to left (k,), infinity if none do; the rest as is returned.
 
-    Points that carry may lose pressure. Where their rows of ℓ (n, k) lack a direction, others gain pressure.
+    Points that carry may lose pressure. Where their rows of ℓ (n, k) lack directions, others gain pressure.
     """
     lost, beside = len(ell) * EPS, np.zeros(len(ell))
-    if np.count_nonzero(np.linalg.svd(ell[carries], compute_uv=False) > lost) == ell.shape[1]:
-        return float(np.linalg.norm(np.linalg.pinv(ell[carries], rcond=0.0), axis=1) @ left), beside
+    if not left.any():
+        return 0.0, beside, None
+    _, sizes, axes = np.linalg.svd(ell[carries])
+    if (rank := int(np.count_nonzero(sizes > lost))) == ell.shape[1]:
+        return float(np.linalg.norm(np.linalg.pinv(ell[carries], rcond=0.0), axis=1) @ left), beside, None
+    if rank == ell.shape[1] - 1:
+        return _tilted(ell, carries, left, gaps, round_off, axes[-1])
     columns, size = np.vstack([ell, -ell[carries]]).T, 0.0
     for load, part in zip(np.eye(len(left))[left > 0], left[left > 0], strict=True):
         ends = [linprog(np.ones(columns.shape[1]), A_eq=columns, b_eq=sign * load) for sign in (1.0, -1.0)]
         if any(end.status != 0 for end in ends):
-            return np.inf, beside
+            return np.inf, beside, None
         size += float(max(end.fun for end in ends)) * part
         beside += np.maximum(*(end.x[: len(ell)] for end in ends)) * part
-    return SAFE * size, SAFE * beside
+    return SAFE * size, SAFE * beside, None
+
+
+def _tilted(
+    ell: Array, carries: NDArray[np.bool_], left: Array, gaps: Array, round_off: Array, lacking: Array
+) -> tuple[float, Array, Array | None]:
+    """As `_least_change` where one direction (k,) is lacking: in it the body tilts onto the point that it meets first.
+
+    The points that carry do not see this motion, and no other gap becomes negative, so that no work is done.
+    """
+    lost, lever, size = len(ell) * EPS, ell @ lacking, 0.0
+    inverse = np.linalg.norm(np.linalg.pinv(ell[carries], rcond=lost), axis=1)
+    tilted = np.full(len(ell), np.inf)
+    if np.abs(lacking) @ left <= lost * np.linalg.norm(left):
+        return float(inverse @ left), np.zeros(len(ell)), None
+    for sign in (1.0, -1.0):
+        may = ~carries & (sign * lever > 2 * lost)
+        if not may.any():
+            return np.inf, np.zeros(len(ell)), None
+        rest = gaps - sign * lever * (gaps[may] / (sign * lever[may])).min()
+        met = may & (rest <= TIE * gaps + 2 * round_off)
+        pressure = float(np.abs(lacking) @ left / np.abs(lever[met]).min())
+        size = max(size, pressure + float(inverse @ (left + np.abs(ell[met]).max(axis=0) * pressure)))
+        tilted = np.minimum(tilted, np.where(carries, np.inf, rest))
+    return SAFE * size, np.zeros(len(ell)), tilted
 
 
 def _unit_rows(contact: CondensedContact) -> tuple[Array, Array]:
