@@ -291,12 +291,12 @@ def _moves_on(
         return None
     j = int(np.argmax(np.where(held, 0.0, further)))
     i = int(np.argmax(contact.weights * solution.pressure * abs(contact.rigid_motions[:, j])))
-    by = _vector(moved.motion[i], gaps.problem.units.length)
+    unit = gaps.problem.units.length
     words = (
         f"No contact holds the {contact.motion_names[j]} against the load: only the tilt does that surfaces have "
-        f"beside the place of contact as drawn. Where the body then is, moved by {by}, it moves on by "
-        f"{100 * further[j] / before[j]:.0f} % of this motion. Prescribe a displacement that holds the body, or take "
-        "away the load in this direction."
+        f"beside the place of contact as drawn. Along this motion contact moves by {_length(before[j], unit)}, and "
+        f"from there on by {_length(further[j], unit)}. Prescribe a displacement that holds the body, or take away the "
+        "load in this direction."
     )
     return _misfit(gaps, points, contact, i, Misfit.MOVED, float(further[j]), float(least), words)
 
