@@ -3,8 +3,8 @@
 Contact sees gaps along the normals of the undeformed body, ε + n·(u - w). This is exact on a plane. Elsewhere the gap
 of the displaced places differs from it by squares of displacements. These are small in linear theory, but not where a
 body moves far before it is held. The contact problem is then solved once more with the gaps of the displaced places;
-the change of the pressure is the error of the first solution, to first order. The normals have another direction there
-too, which turns the force on the surface.
+the change of the pressure is the error of the first solution, to first order. Forces have other directions and levers
+there too: the normals turn, and a body that moves takes the places of its forces along.
 """
 
 from collections.abc import Iterator
@@ -35,7 +35,7 @@ WITHHELD = 0.05
 """Change from which a result is not certified: the curvature is off by a tenth."""
 MOVES_ON = 0.5
 """Part of a motion by which a body moves on in the second solution, from which it is not held: the steps do not end."""
-NO_SQUARE = 10.0
+NO_SQUARE = 2.0
 """A motion that is so many times the change of the gaps, or the turn of normals times the motion of their places, does
 not come from these, which are of second order."""
 UNSEEN = 1e-9
@@ -88,15 +88,13 @@ def placement(
         return _off_the_surface(gaps, points, contact, farthest, moved), ()
     overhangs = tuple(_overhangs(gaps, points, contact, beside, pressed, moved))
     moved.change[beside] = 0.0
-    if max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max()) <= NO_CHANGE:
+    load = _load_of_levers(gaps, body) + _load_of_turns(gaps, body, contact, solution, moved)
+    least_load = NO_CHANGE * (contact.weights * solution.pressure) @ abs(contact.rigid_motions)
+    change = max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max())
+    if change <= NO_CHANGE and np.all(abs(load) <= least_load):
         return None, overhangs
-    again = complementarity.solve(
-        replace(
-            contact,
-            initial_gap=contact.initial_gap + moved.change,
-            motion_load=contact.motion_load + _turned_load(gaps, body, contact, solution, moved),
-        )
-    )
+    there = {"initial_gap": contact.initial_gap + moved.change, "motion_load": contact.motion_load + load}
+    again = complementarity.solve(replace(contact, **there))
     misfit, turned = _moves_on(gaps, points, contact, solution, again, moved), ()
     if misfit is None and nearby is None:
         misfit, turned = _forces_changed(gaps, points, contact, solution, again, moved)
@@ -251,7 +249,20 @@ def _changed(
     return _misfit(gaps, points, contact, i, Misfit.MOVED, off, allowed, words), ()
 
 
-def _turned_load(
+def _load_of_levers(gaps: SurfaceGaps, body: Body) -> Array:
+    """Work (k,) in the free motions of the moment -θ Σ r·f that forces gain as they turn with the body by θ.
+
+    Distances r are from the centroid of the area, on which a weight acts.
+    """
+    mesh, length = body.mesh, body.mesh.tributary[..., None]
+    x, u = gaps.state.points - mesh.centroid, gaps.state.displacement
+    angle = np.sum(length[..., 0] * (x[..., 0] * u[..., 1] - x[..., 1] * u[..., 0])) / np.sum(length * x**2)
+    flux = length * np.sum(x * mesh.normals, axis=-1, keepdims=True)
+    r = x - 2 / 3 * np.sum(flux * x, axis=(0, 1)) / flux.sum()
+    return body.seen.body.work_of(np.zeros(2), -angle * float(np.sum(length * gaps.state.traction * r)))
+
+
+def _load_of_turns(
     gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: _Displaced
 ) -> Array:
     """Work (k,) in the free motions of what the pressure gains along the normals of the displaced places."""
@@ -271,10 +282,11 @@ def _moves_on(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
     again: ContactSolution, moved: _Displaced,
 ) -> Penetration | None:  # fmt: skip
-    """Find a free motion that goes on by as much again where the body has moved to: only a tilt as drawn holds it.
+    """Find a free motion that goes on by as much again where the body has moved to: nothing holds it.
 
     A flat block slides on a round support, whose normals are tilted beside the place where it touches. It would move
-    until the tilt balances the load, but takes the place of contact with it.
+    until the tilt balances the load, but takes the place of contact with it. So does a disc that a couple rolls along
+    a plane: it would turn until the lever of the pressure balances the couple.
     """
     if again.status is not Status.SOLVED or not contact.free_motions:
         return None
@@ -293,10 +305,10 @@ def _moves_on(
     i = int(np.argmax(contact.weights * solution.pressure * abs(contact.rigid_motions[:, j])))
     unit = gaps.problem.units.length
     words = (
-        f"No contact holds the {contact.motion_names[j]} against the load: only the tilt does that surfaces have "
-        f"beside the place of contact as drawn. Along this motion contact moves by {_length(before[j], unit)}, and "
-        f"from there on by {_length(further[j], unit)}. Prescribe a displacement that holds the body, or take away the "
-        "load in this direction."
+        f"No contact holds the {contact.motion_names[j]} against the load. As drawn, surfaces that are tilted beside the "
+        "place of contact or levers of forces seem to hold it, but they move with the body: along this motion contact "
+        f"moves by {_length(before[j], unit)}, and from there on by {_length(further[j], unit)}. Prescribe a "
+        "displacement that holds the body, or take away the load in this direction."
     )
     return _misfit(gaps, points, contact, i, Misfit.MOVED, float(further[j]), float(least), words)
 

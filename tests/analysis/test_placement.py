@@ -15,6 +15,7 @@ from bemcontact.problem import Problem
 R = 10.0
 SAID = NOTED * LEAST_ASKED
 """Change that is noted where no accuracy is asked for."""
+TURNS = st.sampled_from([0.0, 33.0, 140.0])
 QUICK = [Phase.explicit, Phase.generate]
 """Examples are not made smaller: each takes half a second."""
 STEEL = {"young_modulus": 210e3, "poisson_ratio": 0.3}
@@ -264,6 +265,61 @@ def test_grooves_hold_a_block_on_round_supports(power, radius):
     result = solve(on_two_supports(10**power, radius, "grooved"))
     assert result.certified
     assert result.footprint.resultant.force[0] == pytest.approx(-300 * 10**power, rel=1e-9)
+
+
+def disc_on_planes(couple, slopes, *, turn=0.0, size=1.0):
+    """A disc under its weight and a couple, which is so many times weight and radius, on planes of these slopes."""
+
+    def at(angle, radius=R * size):
+        return radius * np.cos(np.radians(angle + turn)), radius * np.sin(np.radians(angle + turn))
+
+    angles = {"right": (300, 360), "upper right": (0, 90), "upper left": (90, 180), "left": (180, 240)}
+    angles["bottom"] = (240, 300)
+    arcs = [
+        {"name": name, "kind": "arc", "center": (0, 0), "radius": R * size, "angles": (a + turn, b + turn)}
+        for name, (a, b) in angles.items()
+    ]
+    up = np.array(at(90, 1.0)) * couple * np.pi / 2 * R
+    zones = {
+        f"plane {slope}": {
+            "edges": "bottom",
+            "surface": {"kind": "plane", "point": at(270 + slope), "normal": at(90 + slope, 1.0)},
+        }
+        for slope in slopes
+    }
+    return Problem(
+        name="disc",
+        material=STEEL,
+        boundary={"outer": arcs},
+        conditions={
+            name: {"traction": {"x": sense * up[0], "y": sense * up[1]}}
+            for name, sense in (("upper right", 1), ("upper left", -1))
+        },
+        loads={"gravity": {"density": 1 / size, "acceleration": at(270, 1.0)}},
+        contact_zones=zones,
+    )  # pyright: ignore[reportArgumentType]
+
+
+@settings(max_examples=3, deadline=None, phases=QUICK)
+@given(st.floats(-6, -2), st.sampled_from([(0,), (-25, 25)]), TURNS, st.sampled_from([1e-3, 1e3]))
+@example(-3.0, (0,), 0.0, 1.0)
+@example(-3.0, (-25, 25), 0.0, 1.0)
+def test_a_couple_rolls_a_disc_on_and_on(power, slopes, turn, size):
+    """All normals meet in the middle of a disc, wherever it has turned to: no pressure has a moment about it.
+
+    As drawn, pressure beside the place of contact has a lever, so that the equations balance the couple.
+    """
+    for sense in (-1, 1):
+        result = solve(disc_on_planes(sense * 10**power, slopes, turn=turn, size=size))
+        assert result.certificate.certified
+        assert not result.certified
+        assert result.penetration is not None
+        assert "rotation" in result.penetration.words
+
+
+@pytest.mark.parametrize("slopes", [(0,), (-25, 25)])
+def test_a_disc_without_a_couple_rests(slopes):
+    assert solve(disc_on_planes(0.0, slopes)).certified
 
 
 @pytest.mark.parametrize("moment", [100.0, 300.0])
