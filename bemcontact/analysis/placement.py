@@ -15,6 +15,7 @@ import numpy as np
 from scipy.linalg import null_space
 
 from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.penetration import Misfit, Penetration, tolerated
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ContactPoints
@@ -38,6 +39,8 @@ MOVES_ON = 0.5
 NO_SQUARE = 2.0
 """A motion that is so many times the change of the gaps, or the turn of normals times the motion of their places, does
 not come from these, which are of second order."""
+UNMOVED = 0.01
+"""Motion of the place of contact, over the length that is pressed, that may come from the mesh."""
 UNSEEN = 1e-9
 """Normal displacement of pressed points by a free motion, over the largest one, that is none."""
 NO_CHANGE = 1e-7
@@ -88,7 +91,7 @@ def placement(
         return _off_the_surface(gaps, points, contact, farthest, moved), ()
     overhangs = tuple(_overhangs(gaps, points, contact, beside, pressed, moved))
     moved.change[beside] = 0.0
-    load = _load_of_levers(gaps, body) + _load_of_turns(gaps, body, contact, solution, moved)
+    load = _load_of_levers(gaps, body, contact, solution) + _load_of_turns(gaps, body, contact, solution, moved)
     least_load = NO_CHANGE * (contact.weights * solution.pressure) @ abs(contact.rigid_motions)
     change = max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max())
     if change <= NO_CHANGE and np.all(abs(load) <= least_load):
@@ -101,6 +104,8 @@ def placement(
     if misfit is not None:
         return misfit, (*overhangs, *turned)
     misfit, said = _changed(gaps, points, contact, solution, again, moved, nearby)
+    if misfit is None and nearby is None:
+        said = (*said, *_places_changed(gaps, contact, solution, replace(contact, **there), again))
     return misfit, (*overhangs, *turned, *said)
 
 
@@ -230,8 +235,8 @@ def _changed(
             return None, (_off_by_a_little(contact.zone_names[number], gaps.problem),)
         number, change = beyond
     own = np.flatnonzero(contact.zone == number)
-    i = int(own[np.argmax(np.maximum(solution.pressure, again.pressure if solved else 0.0)[own])])
-    zone, motion = contact.zone_names[number], moved.motion[i]
+    zone, pressure = contact.zone_names[number], np.maximum(solution.pressure, again.pressure if solved else 0.0)[own]
+    i, motion = int(own[np.argmax(pressure)]), moved.motion[own[np.argmax(pressure * np.hypot(*moved.motion[own].T))]]
     effect = (
         f"with the gaps after this motion, the peak pressure there {'rises' if change > 0 else 'falls'} by "
         f"{100 * abs(change):.2g} %{' of the largest' * (len(contact.zone_names) > 1)}"
@@ -249,17 +254,22 @@ def _changed(
     return _misfit(gaps, points, contact, i, Misfit.MOVED, off, allowed, words), ()
 
 
-def _load_of_levers(gaps: SurfaceGaps, body: Body) -> Array:
+def _load_of_levers(gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution) -> Array:
     """Work (k,) in the free motions of the moment -θ Σ r·f that forces gain as they turn with the body by θ.
 
-    Distances r are from the centroid of the area, on which a weight acts.
+    Distances r are from the centroid of the area, on which a weight acts. A moment that contact balances by pressure
+    that moves by a small part of its length is none: it may come from the mesh.
     """
     mesh, length = body.mesh, body.mesh.tributary[..., None]
     x, u = gaps.state.points - mesh.centroid, gaps.state.displacement
     angle = np.sum(length[..., 0] * (x[..., 0] * u[..., 1] - x[..., 1] * u[..., 0])) / np.sum(length * x**2)
     flux = length * np.sum(x * mesh.normals, axis=-1, keepdims=True)
     r = x - 2 / 3 * np.sum(flux * x, axis=(0, 1)) / flux.sum()
-    return body.seen.body.work_of(np.zeros(2), -angle * float(np.sum(length * gaps.state.traction * r)))
+    moment = -angle * float(np.sum(length * gaps.state.traction * r))
+    own = contact.weights * (contact.zone == np.arange(len(contact.zone_names))[:, None])
+    pressed = own @ (solution.pressure > 0)
+    unseen = abs(moment) <= UNMOVED * pressed[pressed > 0].min() * (contact.weights @ solution.pressure)
+    return body.seen.body.work_of(np.zeros(2), 0.0 if unseen else moment)
 
 
 def _load_of_turns(
@@ -305,9 +315,9 @@ def _moves_on(
     i = int(np.argmax(contact.weights * solution.pressure * abs(contact.rigid_motions[:, j])))
     unit = gaps.problem.units.length
     words = (
-        f"No contact holds the {contact.motion_names[j]} against the load. As drawn, surfaces that are tilted beside the "
-        "place of contact or levers of forces seem to hold it, but they move with the body: along this motion contact "
-        f"moves by {_length(before[j], unit)}, and from there on by {_length(further[j], unit)}. Prescribe a "
+        f"No contact holds the {contact.motion_names[j]} against the load. As drawn, surfaces that are tilted beside "
+        "the place of contact or levers of forces seem to hold it, but they move with the body: along this motion "
+        f"contact moves by {_length(before[j], unit)}, and from there on by {_length(further[j], unit)}. Prescribe a "
         "displacement that holds the body, or take away the load in this direction."
     )
     return _misfit(gaps, points, contact, i, Misfit.MOVED, float(further[j]), float(least), words)
@@ -340,6 +350,24 @@ def _forces_changed(
     words = f"{words[0].upper()}{words[1:]}."
     off = float(abs(moved.change[contact.zone == number]).max())
     return _misfit(gaps, points, contact, i, Misfit.MOVED, off, 0.0, words), ()
+
+
+def _places_changed(
+    gaps: SurfaceGaps, contact: CondensedContact, solution: ContactSolution, there: CondensedContact,
+    again: ContactSolution,
+) -> Iterator[str]:  # fmt: skip
+    """Note the contact of each zone whose place changes most, by a noticeable part of its length."""
+    was, is_now = footprint(contact, solution).intervals, footprint(there, again).intervals
+    if [item.run for item in was] != [item.run for item in is_now]:
+        return
+    before, after = (np.array([item.arc for item in intervals]).reshape(-1, 2) for intervals in (was, is_now))
+    shifts, length = abs(np.mean(after - before, axis=1)), np.maximum(np.ptp(before, axis=1), np.ptp(after, axis=1))
+    shifts = np.divide(shifts, length, out=np.zeros(len(was)), where=length > 0)
+    if len(was) and shifts[number := int(np.argmax(shifts))] >= noted(gaps.problem):
+        yield (
+            f"with the gaps after the motion of the body, contact of '{was[number].zone}' is elsewhere by "
+            f"{100 * shifts[number]:.2g} % of its length; error bars of its ends do not include this"
+        )
 
 
 def _peak_change(
