@@ -67,7 +67,7 @@ class RigidMotions:
             length = np.hypot(a, b)
             return f"translation along ({a / length:.4g}, {b / length:.4g})"
         pole = self.center + self.radius / c * np.array([-b, a])
-        x, y = np.where(abs(pole) > 1e-9 * self.radius, pole, 0.0)
+        x, y = np.where(abs(pole) > 1e-5 * self.radius, pole, 0.0)  # the middle of the nodes depends on the mesh
         sense = "counterclockwise" if c > 0 else "clockwise"
         return f"rotation {sense} about ({x:.4g}, {y:.4g})"
 
