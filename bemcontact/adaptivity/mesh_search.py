@@ -2,21 +2,27 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
-from bemcontact.adaptivity.error_bars import near_singularities
+from bemcontact.adaptivity.error_bars import SAFETY, near_singularities
 from bemcontact.adaptivity.fields import MeshDifference, Solved, norm_squared, penetrations, solved
 from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
 from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
-from bemcontact.adaptivity.sizes import Layers, Limit, Loop
+from bemcontact.adaptivity.sizes import GROWTH, OUTSIDE, Layers, Limit, Loop
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.problem import Problem
 
 LAYERS = 5.0
-"""Layers of elements in contact beside an end of contact, at first."""
+"""Least number of layers of elements in contact beside an end of contact."""
+SLOWER = 0.8
+"""Factor of the growth of the element size from pass to pass.
+
+Halved elements keep the ratio to their neighbors, and with it an error: that of the pressure at a corner in contact.
+"""
 MORE_LAYERS = 1.25
 """Factor of the layers where the end of contact is what limits."""
 END_SHARE = 0.1
@@ -58,6 +64,16 @@ class MeshSearch:
     layers: list[tuple[ContactEnd, float]] = field(default_factory=list)
     spots: list[tuple[int, Limit]] = field(default_factory=list)
     watch: Watch = field(default_factory=Watch)
+    growth: float = GROWTH
+
+    @cached_property
+    def first_layers(self) -> float:
+        """Layers at first: as many as the distance of nodes outside needs for half of the accuracy asked.
+
+        It is w / 4 (n / `OUTSIDE`)³ when elements are cut in two, and contact is at least 2 w long.
+        """
+        assert self.problem.asked_accuracy is not None
+        return max(LAYERS, OUTSIDE * (SAFETY / 4 / self.problem.asked_accuracy) ** (1 / 3))
 
     def mesh(self, refine: int) -> Problem:
         """The problem with elements as the sources ask, cut into equal parts."""
@@ -67,7 +83,8 @@ class MeshSearch:
             layers = [Layers(position=e.position, width=e.width, count=n, after=e.after) for e, n in own]
             narrow = [limit for at, limit in self.spots if at == number]
             marks = [*self.marks[number], *(end.position for end, _ in own)]
-            ends |= loop.element_ends(np.array([*self.sources[number], *narrow]), layers, marks)
+            sized = replace(loop, growth=self.growth)
+            ends |= sized.element_ends(np.array([*self.sources[number], *narrow]), layers, marks)
         return cut(self.problem.with_element_ends(ends), refine)
 
     def solve(self, refine: int) -> Solved:
@@ -121,7 +138,7 @@ class MeshSearch:
                             ends.append(ContactEnd(loop=loop, position=at, after=after, width=layer))
         kept: list[ContactEnd] = []
         for end in ends:
-            first = end.width / LAYERS**3
+            first = end.width / self.first_layers**3
             joints = self.outline.loops[end.loop].joints
             nearest = float(joints[np.argmin(np.abs(joints - end.position))])
             if abs(nearest - end.position) < first / 2:
@@ -152,7 +169,7 @@ class MeshSearch:
         alike = [
             (abs(other.position - end.position), n) for other, n in self.layers if self._same(end, other, end.width)
         ]
-        return min(alike)[1] if alike else LAYERS
+        return min(alike)[1] if alike else self.first_layers
 
     def _resting(self, ends: Sequence[ContactEnd]) -> bool:
         """Whether the ends of contact are within the first element of those that the mesh is fitted to."""
@@ -189,6 +206,7 @@ class MeshSearch:
         for element in np.flatnonzero(wanted):
             self._limit(coarse, int(element), float(factor[element]))
         self.sources = [_useful(*pair) for pair in zip(self.outline.loops, self.sources, strict=True)]
+        self.growth *= SLOWER
         return bool(wanted.any())
 
     def _change_of_pressure(self, difference: MeshDifference, singular: Sequence[Singularity]) -> Array:

@@ -13,7 +13,7 @@ from bemcontact.arrays import Array
 from bemcontact.problem.curves import Edge
 
 GROWTH = 1.2
-"""Growth of the element size with the distance along the boundary: neighbors up to 3.3 times as long."""
+"""Largest growth of the element size with the distance along the boundary: neighbors up to 3.3 times as long."""
 OUTSIDE = 1.5
 """Ratio of the layers in contact to those outside, beside an end of contact."""
 SHORTEST = 5e-4
@@ -56,7 +56,7 @@ class Layers:
     count: float
     after: bool
 
-    def at(self, beyond: Array) -> Array:
+    def at(self, beyond: Array, growth: float) -> Array:
         """Size at distances (k,) from the end of contact, negative before it; at the end itself that in contact."""
         d, w = np.abs(beyond), self.width
         touching = ((beyond > 0) == self.after) | (d <= SAME * w)
@@ -64,14 +64,21 @@ class Layers:
         inside = np.maximum.reduce(
             [w / n**3, np.full_like(d, SHORTEST * w), 3 / n * np.cbrt(w * np.minimum(d, w) ** 2)]
         )
-        return inside + GROWTH * np.maximum(d - w, 0.0)
+        return inside + growth * np.maximum(d - w, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Loop:
-    """A closed loop of edges; positions on it are arc lengths from its start [L]."""
+    """A closed loop of edges; positions on it are arc lengths from its start [L].
+
+    Parameters
+    ----------
+    edges : in their order
+    growth : of the element size with the distance along the loop
+    """
 
     edges: tuple[Edge, ...]
+    growth: float = GROWTH
 
     @cached_property
     def joints(self) -> Array:
@@ -95,15 +102,18 @@ class Loop:
         low, high, size = limits.T
         offset = np.mod(positions[:, None] - low, self.length)  # from the first position on
         beyond = np.maximum(np.minimum(offset - (high - low), self.length - offset), 0.0)
-        least = np.min(size + GROWTH * beyond, axis=1)
+        least = np.min(size + self.growth * beyond, axis=1)
         for layer in layers:
             offset = np.mod(positions - layer.position, self.length)
             after = offset <= self.length / 2
-            np.minimum(least, layer.at(np.where(after, offset, offset - self.length)), out=least)
+            np.minimum(least, layer.at(np.where(after, offset, offset - self.length), self.growth), out=least)
         return least
 
     def without_idle(self, limits: Array) -> Array:
-        """The limits (l, 3) without those that others make idle, the smallest first, of equal ones the first."""
+        """The limits (l, 3) without those that others make idle, the smallest first, of equal ones the first.
+
+        They are idle for any smaller growth too.
+        """
         rounded = np.round(np.log(limits[:, 2] / self.length) / SAME)
         order = limits[np.lexsort((limits[:, 0], rounded))]
         others = self._least_of_others(order)
@@ -120,11 +130,11 @@ class Loop:
         order = np.argsort(position)
         at, value = position[order], np.append(size, size[wide])[order]
         turns = np.concatenate([at - self.length, at, at + self.length])
-        before = np.minimum.accumulate(np.tile(value, 3) - GROWTH * turns)
-        after = np.minimum.accumulate((np.tile(value, 3) + GROWTH * turns)[::-1])[::-1]
+        before = np.minimum.accumulate(np.tile(value, 3) - self.growth * turns)
+        after = np.minimum.accumulate((np.tile(value, 3) + self.growth * turns)[::-1])[::-1]
         here = np.arange(len(at), 2 * len(at))
         least = np.empty(len(at))
-        least[order] = np.minimum(before[here - 1] + GROWTH * at, after[here + 1] - GROWTH * at)
+        least[order] = np.minimum(before[here - 1] + self.growth * at, after[here + 1] - self.growth * at)
         least = np.where(wide, np.nan, least[: len(limits)])
         inside = np.mod(low[:, None] - low[wide], self.length) <= (high - low)[wide]
         return np.minimum(least, np.where(inside, size[wide], np.inf).min(axis=1, initial=np.inf))
@@ -132,7 +142,7 @@ class Loop:
     def _idle(self, limit: Array, others: Array) -> bool:
         """Whether others (l, 3) allow no larger size than a limit (3,) anywhere on it: together they cover it."""
         low, high, size = others.T
-        reach = ((1 + SAME) * limit[2] - size) / GROWTH
+        reach = ((1 + SAME) * limit[2] - size) / self.growth
         begin = np.mod(low - reach - limit[0], self.length)
         begin, end = np.stack([[begin, begin - self.length], [begin, begin - self.length] + (high - low + 2 * reach)])
         order = np.argsort(begin, axis=None)

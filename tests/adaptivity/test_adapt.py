@@ -193,7 +193,7 @@ def test_tools_that_are_free_have_error_bars_of_where_they_are(x: float, turns: 
         assert not one.promised
         assert one.value is not None
         assert other.value is not None
-        assert 0 < (other.bar or 0) < (one.bar or 0) < 0.1
+        assert 0 < (other.bar or 0) <= (one.bar or 0) < 0.1
         assert abs(one.value / other.value - 1) <= (one.bar or 0) + (other.bar or 0)
 
 
