@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -17,14 +16,14 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.problem import Problem
 
 LAYERS = 5.0
-"""Least number of layers of elements in contact beside an end of contact."""
+"""Layers of elements in contact beside an end of contact, at first."""
 SLOWER = 0.8
 """Factor of the growth of the element size from pass to pass.
 
 Halved elements keep the ratio to their neighbors, and with it an error: that of the pressure at a corner in contact.
 """
-MORE_LAYERS = 1.25
-"""Factor of the layers where the end of contact is what limits."""
+MORE_LAYERS, MOST_LAYERS = 1.25, 2.0
+"""Factors of the layers where the end of contact is what limits, and of those that the accuracy asks for, in a pass."""
 END_SHARE = 0.1
 """Part of the change of the pressure that the layers of an end may have."""
 BESIDE_END = 0.25
@@ -65,15 +64,6 @@ class MeshSearch:
     spots: list[tuple[int, Limit]] = field(default_factory=list)
     watch: Watch = field(default_factory=Watch)
     growth: float = GROWTH
-
-    @cached_property
-    def first_layers(self) -> float:
-        """Layers at first: as many as the distance of nodes outside needs for half of the accuracy asked.
-
-        It is w / 4 (n / `OUTSIDE`)³ when elements are cut in two, and contact is at least 2 w long.
-        """
-        assert self.problem.asked_accuracy is not None
-        return max(LAYERS, OUTSIDE * (SAFETY / 4 / self.problem.asked_accuracy) ** (1 / 3))
 
     def mesh(self, refine: int) -> Problem:
         """The problem with elements as the sources ask, cut into equal parts."""
@@ -138,7 +128,7 @@ class MeshSearch:
                             ends.append(ContactEnd(loop=loop, position=at, after=after, width=layer))
         kept: list[ContactEnd] = []
         for end in ends:
-            first = end.width / self.first_layers**3
+            first = end.width / LAYERS**3
             joints = self.outline.loops[end.loop].joints
             nearest = float(joints[np.argmin(np.abs(joints - end.position))])
             if abs(nearest - end.position) < first / 2:
@@ -169,7 +159,7 @@ class MeshSearch:
         alike = [
             (abs(other.position - end.position), n) for other, n in self.layers if self._same(end, other, end.width)
         ]
-        return min(alike)[1] if alike else self.first_layers
+        return min(alike)[1] if alike else LAYERS
 
     def _resting(self, ends: Sequence[ContactEnd]) -> bool:
         """Whether the ends of contact are within the first element of those that the mesh is fitted to."""
@@ -206,8 +196,17 @@ class MeshSearch:
         for element in np.flatnonzero(wanted):
             self._limit(coarse, int(element), float(factor[element]))
         self.sources = [_useful(*pair) for pair in zip(self.outline.loops, self.sources, strict=True)]
+        self.layers = [(end, max(n, min(MOST_LAYERS * n, self._layers_asked()))) for end, n in self.layers]
         self.growth *= SLOWER
         return bool(wanted.any())
+
+    def _layers_asked(self) -> float:
+        """Layers with which the distance of nodes at an end of contact allows half of the accuracy asked.
+
+        It is w / 4 (n / `OUTSIDE`)³ outside when elements are cut in two, and contact is at least 2 w long.
+        """
+        assert self.problem.asked_accuracy is not None
+        return OUTSIDE * (SAFETY / 4 / self.problem.asked_accuracy) ** (1 / 3)
 
     def _change_of_pressure(self, difference: MeshDifference, singular: Sequence[Singularity]) -> Array:
         """Change of the pressure (m,) that elements can mend; where the layers of an end can, they become more."""

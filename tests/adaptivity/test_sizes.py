@@ -180,7 +180,7 @@ def test_the_mirror_image_has_the_mirror_image_of_the_ends(at: float, width: flo
 
 def test_layers_have_a_shortest_element():
     layer = Layers(position=1.0, width=2.0, count=100.0, after=True)
-    assert layer.at(np.array([0.0]))[0] == 2.0 * SHORTEST
+    assert layer.at(np.array([0.0]), GROWTH)[0] == 2.0 * SHORTEST
 
 
 def test_layers_at_the_seam_of_a_loop_reach_to_both_sides():
