@@ -565,11 +565,17 @@ def incompressible_block() -> Case:
 
 @case
 def slot_closes() -> Case:
-    """A lens-shaped slot of 0.01 by 10 in a block closes in its middle."""
-    y = 10.0
-    outer = polygon([(0, y), (5, y), (20, y), (20, 30), (0, 30)], ["slot", "ligament", "side", "top", "axis"])
-    mirror = {"kind": "spline", "points": [[x / 4, y - 0.004 * max(0.0, 1 - (x / 4 / 5) ** 2)] for x in range(-4, 24)]}
-    made = problem("slot", outer, {"slot": {"edges": "slot", "surface": mirror}},
+    """A lens-shaped slot of 0.008 by 10 in a block closes from its tips.
+
+    The slot is drawn, not the surface: a surface at an angle to the ligament, which slides along it, would be a wedge.
+    """
+    y, rise = 10.0, 0.004
+    down = (25 - rise**2) / (2 * rise)
+    slot = {"name": "slot", "kind": "arc", "center": [0, y - down], "start": [0, y + rise], "end": [5, y],
+            "clockwise": True}  # fmt: skip
+    rest = polygon([(5, y), (20, y), (20, 30), (0, 30)], ["ligament", "side", "top", "axis"])
+    rest[-1]["end"] = [0, y + rise]
+    made = problem("slot", [slot, *rest], {"slot": {"edges": "slot", "surface": floor(y)}},
                    conditions={"axis": {"displacement": {"x": 0}}, "ligament": {"displacement": {"y": 0}},
                                "top": {"pressure": 60.0}})  # fmt: skip
     return made, {}
