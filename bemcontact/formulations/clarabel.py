@@ -27,6 +27,7 @@ from scipy.sparse import csc_array, diags_array, triu
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.solution import Status
 from bemcontact.errors import SolverError
+from bemcontact.formulations.presolve import FixedVariables
 
 ASKED, RAY = 1e-11, 1e-13
 """Tolerances that are asked of Clarabel, for a point and for a ray."""
@@ -281,7 +282,18 @@ def _size(values: Array) -> float:
 
 
 def _solve(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations: int) -> tuple[Any, Array]:
-    """Clarabel's solution of the cone program of cvxpy, and its progress as of `Answer`."""
+    """Clarabel's solution of the cone program of cvxpy, and its progress as of `Answer`.
+
+    Clarabel does not see variables that one equation alone fixes.
+    """
+    fixed = FixedVariables(data)
+    solution, progress = _solve_rest(fixed.rest(), chosen, max_iterations)
+    proof, descent = (str(solution.status).endswith(ray) for ray in RAYS)
+    return fixed.whole(solution, proof=proof, descent=descent), progress + np.array([fixed.constant, 0.0])
+
+
+def _solve_rest(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations: int) -> tuple[Any, Array]:
+    """Clarabel's own solution of a cone program, and its progress."""
     from clarabel import DefaultSettings, DefaultSolver  # pyright: ignore (has no stubs)
     from cvxpy.reductions.solvers.conic_solvers.clarabel_conif import dims_to_solver_cones
 

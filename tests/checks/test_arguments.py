@@ -142,7 +142,7 @@ CALLS: dict[str, Call] = {
         bemcontact.design_gap,
         {
             "contact": PAIR, "relief": Relief(lower=0.0, upper=0.1), "zone": "none of them", "cases": None,
-            "goal": "peak",
+            "goal": "peak", "progress": None,
         },
     ),
     "design_gap, place": (

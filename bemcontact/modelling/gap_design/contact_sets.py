@@ -8,6 +8,7 @@ although the profile is unknown. Without them, complementarity is dropped, and t
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import cvxpy as cp
@@ -106,7 +107,8 @@ class SharedProfile:
         rows[:, points] = np.sqrt(part)[:, None] * (np.eye(len(points)) - part)
         return rows
 
-    def _stated(self) -> "_Program":
+    @cached_property
+    def _program(self) -> "_Program":
         """Variables, expressions, and all constraints except those of contact sets."""
         U, profiles = self.scales.displacement, self.profiles
         c, top = cp.Variable(profiles.shapes.shape[1]), cp.Variable()
@@ -128,37 +130,58 @@ class SharedProfile:
             gaps.append(gap)
         return _Program(c, top, relief, pressures, motions, gaps, constraints)
 
+    @cached_property
+    def _sets(self) -> "_Sets":
+        """Contact sets as parameters, so that all of them are one program for cvxpy."""
+        return _Sets.of(self._program)
+
+    @cached_property
+    def _best(self) -> cp.Problem:
+        """The best profile for the contact sets."""
+        return cp.Problem(cp.Minimize(self._program.top), [*self._program.constraints, *self._sets.constraints])
+
+    @cached_property
+    def _pieces(self) -> dict[bytes, BestProfile | None]:
+        """What `best_with` has computed, by contact sets: searches from several starts meet."""
+        return {}
+
     def best_with(self, touching: BoolArray) -> BestProfile | None:
         """The best profile with given contact sets (loads, n); None if no solution is computed."""
-        program = self._stated()
-        sets = program.with_contact(touching)
-        problem = cp.Problem(cp.Minimize(program.top), [*program.constraints, *sets.constraints])
+        key = touching.tobytes()
+        if key not in self._pieces:
+            self._pieces[key] = self._best_with(touching)
+        return self._pieces[key]
+
+    def _best_with(self, touching: BoolArray) -> BestProfile | None:
+        """Compute the best profile with contact sets."""
+        self._sets.choose(touching)
         try:
-            minimize_convex(problem)
+            minimize_convex(self._best)
         except SolverError:  # sets that hardly fit together; others will do
             return None
-        return None if program.top.value is None else self._piece(program, touching, sets.promise())
+        return None if self._program.top.value is None else self._piece(touching)
 
     def gentlest(self, piece: BestProfile) -> BestProfile:
         """Find, among profiles with these contact sets that are as good, that of the least mean square.
 
         The piece itself is returned if no gentler one is computed.
         """
-        program = self._stated()
-        sets = program.with_contact(piece.touching)
+        program = self._program
+        self._sets.choose(piece.touching)
         width = np.sqrt(self.states[0].weights / self.states[0].weights.sum())
         as_good = program.top <= piece.value + ROOM * abs(piece.value)
         size = float(np.abs(self.profiles.shapes @ piece.coefficients).max()) / self.scales.displacement
         goal = cp.Minimize(cp.sum_squares(cp.multiply(width / (size or 1.0), program.relief)))
         try:
-            minimize_convex(cp.Problem(goal, [*program.constraints, *sets.constraints, as_good]))
+            minimize_convex(cp.Problem(goal, [*program.constraints, *self._sets.constraints, as_good]))
         except SolverError:
             return piece
-        gentler = None if program.top.value is None else self._piece(program, piece.touching, sets.promise())
+        gentler = None if program.top.value is None else self._piece(piece.touching)
         return gentler if gentler is not None and gentler.value <= piece.value + 2 * ROOM * abs(piece.value) else piece
 
-    def _piece(self, program: "_Program", touching: BoolArray, promise: Array) -> BestProfile:
-        """Take the numbers out of a program that has been solved."""
+    def _piece(self, touching: BoolArray) -> BestProfile:
+        """Take the numbers out of the program that has been solved."""
+        program, promise = self._program, self._sets.promise()
         pressures = np.array([value_of(p) for p in program.pressures]) * self.scales.pressure
         edge = [int(i) for i in _descending(promise) if promise.flat[i] > -np.inf]
         return BestProfile(
@@ -178,7 +201,7 @@ class SharedProfile:
         the peak is minimized, p up to the best peak that is known.
         """
         U, T = self.scales
-        program = self._stated()
+        program = self._program
         signs = [sign for p, gap in zip(program.pressures, program.gaps, strict=True) for sign in (p >= 0, gap >= 0)]
         work = self._work_cuts(program, best * (1 + MARGIN))
         try:
@@ -218,34 +241,6 @@ def _descending(promise: Array) -> IntArray:
     return np.argsort(-np.round(promise / largest, DIGITS), axis=None, kind="stable")
 
 
-class _Side(NamedTuple):
-    """Points (j,) of a load state on one side: the equation there (j,), and the expression that is not negative."""
-
-    load: int
-    points: IntArray
-    zero: cp.Constraint
-    signed: cp.Expression
-
-
-class _Sets(NamedTuple):
-    """Contact sets as constraints."""
-
-    shape: tuple[int, int]
-    sides: list[_Side]
-
-    @property
-    def constraints(self) -> list[cp.Constraint]:
-        """The equations and inequalities of the contact sets."""
-        return [constraint for side in self.sides for constraint in (side.zero, side.signed >= 0)]
-
-    def promise(self) -> Array:
-        """First-order gain of switching a point (loads, n); minus infinity off the edge of contact."""
-        gains = np.full(self.shape, -np.inf)
-        for load, points, zero, signed in self.sides:
-            gains[load, points] = np.where(value_of(signed) <= WEAK, np.asarray(zero.dual_value, float), -np.inf)
-        return gains
-
-
 class _Program(NamedTuple):
     """Variables and expressions of a design, scaled."""
 
@@ -257,11 +252,40 @@ class _Program(NamedTuple):
     gaps: list[cp.Expression]
     constraints: list[cp.Constraint]
 
-    def with_contact(self, touching: BoolArray) -> _Sets:
-        """State gap = 0 and p >= 0 on the contact sets (loads, n), p = 0 and gap >= 0 off them."""
-        sides = []
-        for load, (p, gap, inside) in enumerate(zip(self.pressures, self.gaps, touching, strict=True)):
-            for points, none, signed in ((np.flatnonzero(inside), gap, p), (np.flatnonzero(~inside), p, gap)):
-                if len(points):
-                    sides.append(_Side(load, points, none[points] == 0, signed[points]))
-        return _Sets(touching.shape, sides)
+
+class _Sets(NamedTuple):
+    """Contact sets of load states as constraints: gap = 0 and p >= 0 inside, p = 0 and gap >= 0 outside.
+
+    Parameters
+    ----------
+    inside : (n,) one in the set and zero off it, for each load state
+    zero : the equations
+    signed : (n,) what is not negative
+    """
+
+    inside: list[cp.Parameter]
+    zero: list[cp.Constraint]
+    signed: list[cp.Expression]
+
+    @classmethod
+    def of(cls, program: _Program) -> "_Sets":
+        """State them for a program."""
+        inside = [cp.Parameter(p.size, nonneg=True) for p in program.pressures]
+        parts = list(zip(inside, program.pressures, program.gaps, strict=True))
+        zero: list[cp.Constraint] = [cp.multiply(on, gap) + cp.multiply(1 - on, p) == 0 for on, p, gap in parts]
+        return cls(inside, zero, [cp.multiply(on, p) + cp.multiply(1 - on, gap) for on, p, gap in parts])
+
+    @property
+    def constraints(self) -> list[cp.Constraint]:
+        """The equations and inequalities of the contact sets."""
+        return [*self.zero, *(signed >= 0 for signed in self.signed)]
+
+    def choose(self, touching: BoolArray) -> None:
+        """Set the contact sets (loads, n)."""
+        for parameter, inside in zip(self.inside, touching, strict=True):
+            parameter.value = inside.astype(float)
+
+    def promise(self) -> Array:
+        """First-order gain (loads, n) of switching a point; minus infinity off the edge of contact."""
+        gains = np.array([np.asarray(zero.dual_value, float) for zero in self.zero])
+        return np.where(np.array([value_of(signed) for signed in self.signed]) <= WEAK, gains, -np.inf)

@@ -5,7 +5,7 @@ points on their edge, as long as the goal gets smaller, from several starts. Wha
 problem.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.checks.arguments import instance_of, shown
+from bemcontact.checks.arguments import ensure_callable, instance_of, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
@@ -43,6 +43,7 @@ def design_gap(
     arc: tuple[float, float] | None = None,
     cases: Sequence[Mapping[str, float]] | None = None,
     goal: Goal | str = Goal.PEAK,
+    progress: Callable[[str, str], object] | None = None,
 ) -> GapDesign:
     """Find the profile within bounds that, added to the initial gap, makes the peak pressure smallest.
 
@@ -55,6 +56,7 @@ def design_gap(
     cases : factors of load cases, one mapping for each load state, as in `CondensedContact.with_factors`
     goal : a `Goal` or its name: "peak" (the largest pressure anywhere) or "uniform" (the mean square deviation of the
         pressure on the interval from its mean there)
+    progress : called with two texts, the name of a stage and how far it has come, which is empty when it begins
 
     Returns
     -------
@@ -69,19 +71,29 @@ def design_gap(
     SolverError
         Clarabel breaks down.
     """
+    ensure_callable(progress, "progress")
+    say = progress or (lambda *_: None)
     states, goal = _states(contact, cases), _goal(goal)
     instance_of(relief, Relief, "relief", "it holds the bounds on the profile: Relief(lower=0.0, upper=0.1)")
     profiles = Profiles.of(states[0], relief, zone, arc)
     shared = SharedProfile.of(states, profiles, goal)
+    say("without a profile", "")
     before = tuple(_solved(state, np.zeros(state.size)) for state in states)
-    best = _best(shared, states)
+    best = _best(shared, states, say)
+    say("lower bound", "")
     bound, coefficients, sets = shared.relaxed(best.value * shared.scales.pressure)
     if best.value * shared.scales.pressure > bound * (1 + MET):
+        say("profiles of the lower bound", "")
         others = (_descended(shared, some) for some in (sets, _state(states, profiles.shapes @ coefficients)[1]))
         best = _least([piece for piece in (best, *others) if piece is not None])
+    say("gentlest of equally good profiles", "")
     best, gentlest = _gently_descended(shared, best)
+    say("contact with the profile", "")
     gentle = _carried_out(shared, states, before, gentlest, bound)
-    return gentle if gentle.verified else _carried_out(shared, states, before, best, bound)
+    if gentle.verified and gentle.value <= best.value * shared.scales.pressure * (1 + MET):
+        return gentle
+    plain = _carried_out(shared, states, before, best, bound)  # narrow bounds may cost the gentlest profile more
+    return min((gentle, plain), key=lambda design: (not design.verified, design.value))
 
 
 def _carried_out(
@@ -171,15 +183,17 @@ def _on_sets(state: LoadState, touching: BoolArray) -> Array:
     return pressure * state.contact.scales.pressure
 
 
-def _best(shared: SharedProfile, states: Sequence[CondensedContact]) -> BestProfile:
+def _best(shared: SharedProfile, states: Sequence[CondensedContact], say: Callable[[str, str], object]) -> BestProfile:
     """The best end of all starts."""
-    known = set[bytes]()
+    say("profiles to start from", "")
+    starts = [*_starts(shared, states)]
     ends: list[BestProfile] = []
-    for sets in _starts(shared, states):
-        end = None if sets.tobytes() in known else _descended(shared, sets)
-        known.add(sets.tobytes())
-        if end is not None:
-            ends.append(end)
+    say("contact sets", "")
+    for number, sets in enumerate(starts, start=1):
+        end = _descended(shared, sets)
+        ends += [] if end is None else [end]
+        known = f", {_least(ends).value * shared.scales.pressure:.4g} is reached" if ends else ""
+        say("contact sets", f"start {number} of {len(starts)}{known}")
     if not ends:
         raise SolverError("no convex program of the design had an optimum; look in the mesh for very short elements")
     return _least(ends)

@@ -16,7 +16,9 @@ import bemcontact
 from bemcontact import GapDesign, Relief, design_gap, spec
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
-from bemcontact.formulations import complementarity
+from bemcontact.formulations import clarabel, complementarity
+from bemcontact.modelling.gap_design import contact_sets
+from bemcontact.modelling.gap_design.contact_sets import SharedProfile
 from bemcontact.modelling.gap_design.designed_gap import relieved
 from bemcontact.modelling.gap_design.relief import Profiles
 
@@ -243,6 +245,49 @@ def test_load_cases_are_load_states():
     assert "the worst of 2 load states" in design.words
     assert design.value == pytest.approx(again.value, rel=1e-9)
     assert design.value < design.value_before
+
+
+def test_all_contact_sets_are_one_program_for_cvxpy(monkeypatch):
+    """Few problems, each of which cvxpy compiles once: its data change with parameters. None is solved again."""
+    solved, chosen = [], []
+
+    def noted(problem):
+        solved.append(problem)
+        chosen.append(b"".join(np.asarray(p.value).tobytes() for p in problem.parameters()))
+        return clarabel.minimize_convex(problem)
+
+    monkeypatch.setattr(contact_sets, "minimize_convex", noted)
+    design_gap(three_loads(), Relief(lower=-0.2, upper=0.4, slope=0.2), arc=(2, 9))
+    most = max(solved, key=solved.count)
+    sets = [some for problem, some in zip(solved, chosen, strict=True) if problem is most]
+    assert len(sets) > 20
+    assert len({*sets}) == len(sets)
+    assert len({*map(id, solved)}) <= 5
+    assert all(problem.is_dcp(dpp=True) for problem in solved)
+
+
+def test_progress_has_stages_and_the_starts_that_are_done():
+    told = []
+    design = design_gap(
+        symmetric_punch(), Relief(lower=0, upper=0.05), progress=lambda stage, now: told.append((stage, now))
+    )
+    starts = [now for stage, now in told if stage == "contact sets" and now]
+    assert all(now.startswith(f"start {i} of {len(starts)}, ") for i, now in enumerate(starts, start=1))
+    assert starts[-1].endswith(f"{design.value:.4g} is reached")
+    assert {stage for stage, now in told if not now} >= {"profiles to start from", "lower bound"}
+
+
+def test_a_gentler_profile_that_costs_too_much_is_not_taken(monkeypatch):
+    """Bounds near each other and the tolerance of a solver make it dearer; here it is moved by hand."""
+    contact, relief = symmetric_punch(), Relief(lower=0, upper=0.05, curvature=0.1)
+    plain, gentlest = design_gap(contact, relief), SharedProfile.gentlest
+
+    def dear(shared, piece):
+        gentle = gentlest(shared, piece)
+        return replace(gentle, coefficients=0.9 * gentle.coefficients)
+
+    monkeypatch.setattr(SharedProfile, "gentlest", dear)
+    assert design_gap(contact, relief).value == pytest.approx(plain.value, rel=1e-6)
 
 
 def test_units_do_not_matter():
