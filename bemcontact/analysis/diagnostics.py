@@ -63,11 +63,11 @@ def diagnostics(
 
 
 def floating(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Note that no point carries pressure although only contact could hold the body or a tool."""
+    """Note that no point carries pressure although a body or tool is held by contact."""
     if contact.free_motions and not touching.any():
-        motions = " and the ".join(contact.motion_names)
+        motions, verb = " and the ".join(contact.motion_names), "is" if contact.free_motions == 1 else "are"
         yield (
-            f"no contact point carries pressure, so contact does not determine the {motions}; if there should be "
+            f"no contact point carries pressure, so that the {motions} {verb} not determined; if there should be "
             "contact, check the directions of loads and displaced tools"
         )
 

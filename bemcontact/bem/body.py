@@ -20,6 +20,7 @@ from bemcontact.bem.rigid_motions import (
     free_motions,
     free_rigid_motions,
     placed_tools,
+    toward,
 )
 from bemcontact.bem.system import System, solve_system
 from bemcontact.checks.memory import ensure_memory
@@ -117,7 +118,7 @@ class Body:
     def idle_motion(self) -> str | None:
         """A motion that opens gaps and closes none, and in which the loads do no work; None if there is none.
 
-        Contact does not determine its amplitude. A linear program finds it.
+        Its amplitude is not determined. A linear program finds it.
         """
         R, load = self.relative_load
         if not load.size or (load.size == 1 and load.any()):
@@ -132,16 +133,14 @@ class Body:
     @property
     def notes(self) -> tuple[str, ...]:
         """Decisions that a user should know."""
-        pinned = tuple(
-            f"the {motion} moves no contact point and has no load: {_pinned(self.unseen.who(j))} against it"
-            for j, motion in enumerate(self.unseen.describe())
+        at_zero = tuple(
+            f"the {motion} moves no contact point and has no load: it is held at zero"
+            for motion in self.unseen.describe()
         )
         idle = self.idle_motion if self.relative_load[1].any() else None
-        left_open = (
-            f"the loads do no work in the {idle}, which only opens gaps: contact does not determine its amplitude"
-        )
+        undetermined = f"the loads do no work in the {idle}, which only opens gaps: it is not determined"
         placed = (*_wholly_behind(self.problem, self.mesh), *_left_out(self.problem))
-        return (*placed, *pinned, *(() if idle is None else (left_open,)))
+        return (*placed, *at_zero, *(() if idle is None else (undetermined,)))
 
 
 def _wholly_behind(problem: Problem, mesh: Mesh) -> Iterator[str]:
@@ -166,16 +165,11 @@ def _left_out(problem: Problem) -> Iterator[str]:
             yield f"{names} can see the surface of '{name}' and may not touch it, because {it} a condition"
 
 
-def _pinned(who: str) -> str:
-    """Name what is pinned, with its verb."""
-    return "they are pinned" if who.endswith(" together") else f"{who} is pinned"
-
-
 def body_of(problem: Problem) -> Body:
     """Mesh a problem, spread its conditions over the mesh, and check whether contact can hold the body.
 
-    `ProblemError` if the loads that act pull the body off its support, move it in a way that no contact resists, or do
-    not press it on; or if the conditions of a deflected contour do not hold the body. A problem with load cases of
+    `ProblemError` if the loads that act pull the body off its support, move it in a way that nothing holds, or do not
+    press it on; or if the conditions of a deflected contour do not hold the body. A problem with load cases of
     which none acts is meshed without this check.
     """
     mesh = build(problem)
@@ -220,18 +214,28 @@ def _check_support(body: Body) -> None:
     R, load = body.relative_load
     forces, residual = scipy.optimize.nnls(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
     if residual > BALANCED:
-        pull = body.seen.combined((R.T @ forces + load)[:, None])
-        who, off = pull.who(0), "its support" if pull.who(0) == BODY else "what it touches"
-        raise ProblemError(
-            f"the load pulls {who} off {off}: it drives the {pull.way(0)}, which no contact resists; "
-            "turn the load around, or move it to where contact can hold it, or prescribe a displacement that holds "
-            f"{who if off == 'its support' else 'it'}"
-        )
+        raise ProblemError(_pull(body, body.seen.combined((R.T @ forces + load)[:, None])))
     if not load.any() and body.idle_motion is not None:
         raise ProblemError(
-            f"only contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
+            f"contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
             "is not determined; apply a load, or prescribe a displacement"
         )
+
+
+def _pull(body: Body, pull: FreeMotions) -> str:
+    """Say in which motion the loads pull the body or a tool off, and what to add against it."""
+    who, way, direction = pull.who(0), pull.way(0), pull.direction(0)
+    off = "its support" if who == BODY else "what it touches"
+    load, against = "", "against this motion"
+    if direction is not None:
+        resultant = (body.motion_load(pull.along(0)) @ body.factors + 0.0).tolist()
+        load, against = " of ({:.4g}, {:.4g})".format(*resultant), toward(-direction)
+        way = f"{way}, {toward(direction)}"
+    return (
+        f"the load{load} pulls {who} off {off}: it drives the {way}, which nothing holds; add a load {against} that "
+        f"presses {who} on, or turn the load around or move it, or prescribe a displacement that holds "
+        f"{who if who == BODY else 'it'}"
+    )
 
 
 def _against(motions: FreeMotions) -> str:

@@ -1,6 +1,6 @@
 """A body condensed to its contact points: u_n = Δ1 + M p + R a with ℓᵀp = -load, [SS92] (11)-(15), (35)-(38).
 
-The method also covers bodies that only contact holds. Their free rigid motions border the singular system, and
+The method also covers bodies that are held by contact. Their free rigid motions border the singular system, and
 equilibrium is exact: ℓ = J R, and the load is the work of the applied loads in the free motions.
 """
 

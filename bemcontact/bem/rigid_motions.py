@@ -16,6 +16,9 @@ from bemcontact.problem.problem import Problem
 HELD = 1e-9
 """Singular value, relative to one, below which the prescribed displacements do not hold a motion."""
 
+SIDEWAYS = 0.01
+"""Component of a unit vector from which it is named."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RigidMotions:
@@ -70,6 +73,13 @@ class RigidMotions:
         x, y = np.where(abs(pole) > 1e-5 * self.radius, pole, 0.0)  # the middle of the nodes depends on the mesh
         sense = "counterclockwise" if c > 0 else "clockwise"
         return f"rotation {sense} about ({x:.4g}, {y:.4g})"
+
+
+def toward(direction: Array) -> str:
+    """Say where a direction (2,) points in a picture, x to the right and y up: to one or two sides."""
+    x, y = np.where(abs(direction) > SIDEWAYS * np.hypot(*direction), direction, 0.0)
+    sides = ("to the right" if x > 0 else "to the left") if x else "", ("up" if y > 0 else "down") if y else ""
+    return " and ".join(filter(None, sides))
 
 
 def all_rigid_motions(mesh: Mesh) -> RigidMotions:
@@ -235,6 +245,16 @@ class FreeMotions:
         """Distance (k,) [L] from the center of a rotation at which a motion moves by its amplitude; else infinite."""
         turns = (abs(row[2::3]).max() if self.turns(motion) else 0.0 for motion, row in enumerate(self.coefficients))
         return np.array([self.radius / turn if turn else np.inf for turn in turns], float)
+
+    def direction(self, motion: int) -> Array | None:
+        """Direction (2,) in which one part, the body or a tool, moves without turning; None for other motions."""
+        moving = self._moving(motion)
+        return None if self.turns(motion) or len(moving) > 1 else self._of(motion, moving[0])[:2]
+
+    def along(self, motion: int) -> "FreeMotions":
+        """Unit translations along x and y of what moves first in a motion."""
+        part = self._moving(motion)[0]
+        return replace(self, coefficients=np.eye(self.coefficients.shape[1])[3 * part : 3 * part + 2])
 
     def turns(self, motion: int) -> bool:
         """Whether something turns in a motion."""

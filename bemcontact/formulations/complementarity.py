@@ -218,7 +218,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     """Solve the complementarity problem (16)-(18) with (35)-(38) directly, without an objective.
 
     p is exactly zero off the contact set. With `Status.INFEASIBLE` p = 0, and the notes describe the motion in which
-    the load carries the body away. The history is `ScaledContact.residual` after each step of the active set, and as
+    the load pulls the body off. The history is `ScaledContact.residual` after each step of the active set, and as
     "infeasibility" the artificial variable z0 after each pivot of Lemke's method, which `max_iterations` limits.
     `ProblemError` if another option is set.
     """
@@ -275,7 +275,7 @@ def loose_load(contact: ScaledContact) -> Array:
 
 
 def escape_note(contact: CondensedContact) -> str | None:
-    """Describe the motion in which the load carries the body off its support; None if the support carries the load."""
+    """Describe the motion in which the load pulls the body off its support; None if the support carries the load."""
     body = scaled(contact)
     motion = loose_load(body)
     if np.linalg.norm(motion) <= BALANCED * np.linalg.norm(body.motion_load):
@@ -284,10 +284,10 @@ def escape_note(contact: CondensedContact) -> str | None:
 
 
 def escape_words(contact: CondensedContact, motion: Array) -> str:
-    """Describe the motion (k,), dimensionless, in which the load carries the body off its support."""
+    """Describe the motion (k,), dimensionless, in which the load pulls the body off its support."""
     parts = zip(motion / np.abs(motion).max(), contact.motion_names, strict=True)
     terms = ", ".join(f"{part:+.3g} x {name}" for part, name in parts if abs(part) > NAMED)
-    return f"the load carries the body off its support, in a motion that no contact resists: {terms}"
+    return f"the load pulls the body off its support, in a motion that nothing holds: {terms}"
 
 
 def standard_form(contact: ScaledContact) -> tuple[Array, Array, BoolArray]:

@@ -1,4 +1,4 @@
-"""The position of a body or tool that contact leaves open, chosen by a rule instead of by round-off.
+"""The position of a body or tool that contact does not determine, chosen by a rule instead of by round-off.
 
 Where no pressed point sees a motion, any amplitude solves the contact problem that opens no pressed point and closes
 no gap beyond touching. Chosen is the one with the least normal displacement R a of the contact points, in the least
@@ -30,7 +30,7 @@ ACCEPTED = 1e-11
 def with_chosen_position(
     contact: CondensedContact, solution: ContactSolution, closed: BoolArray | None = None
 ) -> ContactSolution:
-    """Choose the position by the rule, and say so, if contact leaves one open; otherwise nothing changes.
+    """Choose the position by the rule, and say so, if one is not determined; otherwise nothing changes.
 
     Points that do not solve the contact problem to round-off, and bodies that nothing touches, are left as they are.
     `closed` (n,) are points that must stay closed although nothing presses them.
@@ -51,8 +51,8 @@ def with_chosen_position(
     p, u_n, a = unscaled(contact, p, a)
     named = [name for name, way in zip(contact.motion_names, ways, strict=True) if way]
     note = (
-        f"contact leaves the {' and the '.join(named)} open: the position is the one with the least "
-        "normal displacement of the contact points; state a load or a displacement that holds it, if it matters"
+        f"not determined: the {' and the '.join(named)}; the position that is given has the least normal displacement "
+        "of the contact points; state a load or a displacement that holds it, if it matters"
     )
     return replace(
         solution, pressure=p, displacement=u_n, rigid_amplitudes=a, notes=tuple(dict.fromkeys((*solution.notes, note)))

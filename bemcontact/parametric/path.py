@@ -268,8 +268,8 @@ class LoadPath(Leaf):
 def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:
     """Follow the contact state from one problem to another of the same body, exactly.
 
-    The path is followed from the start, or from the end backwards where the start has no solution or leaves the
-    position of the body open.
+    The path is followed from the start, or from the end backwards where the start has no solution or does not
+    determine the position of the body.
 
     Parameters
     ----------
@@ -363,7 +363,7 @@ def _path(start: CondensedContact, end: CondensedContact, trail: Trail, note: st
 
 
 def _with_positions(path: LoadPath) -> LoadPath:
-    """Choose the positions that contact leaves open by the rule of `settled`.
+    """Choose the positions that are not determined by the rule of `settled`.
 
     At a breakpoint the points that are pressed beside it stay closed, so that the states between are linear.
     """

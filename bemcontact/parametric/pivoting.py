@@ -178,7 +178,7 @@ class Tangent:
     def rate(self, change: Change) -> Rate:
         """Find the derivative along a change (q̇, ḟ), free of units.
 
-        `ProblemError` if the state does not determine it: the body is not held, the change of load carries it away,
+        `ProblemError` if the state does not determine it: the body is not held, the change of load pulls it off,
         there is no state beside this one in that direction, or there may be several. `SingularSystemError` if the
         equations of contact are singular to working precision.
         """
@@ -191,7 +191,7 @@ class Tangent:
     def after(self, change: Change) -> ContactBlock:
         """The points in contact just after: S and those of W that the small complementarity problem loads.
 
-        The errors are those of `rate`, except that a load that carries the body away is not noticed.
+        The errors are those of `rate`, except that a load that pulls the body off is not noticed.
         """
         if not self.weak.size:
             return self.held
@@ -269,7 +269,7 @@ class Trail:
     ----------
     states : b of them
     touching : (n,) for each of the b - 1 pieces between them, which points are in contact
-    escape : (k,) motion in which the load carries the body away where the trail ends early, else None
+    escape : (k,) motion in which the load pulls the body off where the trail ends early, else None
     stop : why it ends early otherwise, else empty
     unique : whether each state is known to be the only one
     """

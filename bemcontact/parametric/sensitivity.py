@@ -156,7 +156,7 @@ def sensitivities(
     ------
     ProblemError
         There is no contact state, the given one is none, or it does not determine a derivative: contact does not hold
-        the body, or the change carries it away.
+        the body, or the change pulls it off.
     SingularSystemError
         The equations of contact are singular to working precision.
     """

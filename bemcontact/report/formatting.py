@@ -224,10 +224,10 @@ def penalty_unit(dimension: str, units: Units) -> str:
 
 
 def held_by(contact: CondensedContact) -> str:
-    """Rigid motions that only contact holds."""
+    """Rigid motions that are held by contact."""
     if not contact.free_motions:
         return "all held by conditions"
-    return f"held by contact alone: {', '.join(contact.motion_names)}"
+    return f"held by contact: {', '.join(contact.motion_names)}"
 
 
 def seconds_in_words(seconds: float) -> str:

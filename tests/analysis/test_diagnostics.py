@@ -138,7 +138,7 @@ def test_a_body_that_nothing_presses_floats_and_a_note_states_so():
         made(BETWEEN, tools=moves_away, load_cases={}, combinations={}, conditions={"left": {"displacement": {"x": 0}}})
     )
     assert result.footprint.intervals == ()
-    assert any("contact does not determine the translation along (0, 1)" in note for note in result.notes)
+    assert any("so that the translation along (0, 1) is not determined" in note for note in result.notes)
 
 
 RADII = 10.0, 20.0

@@ -93,7 +93,7 @@ def test_block_in_a_corner_of_two_planes():
 
 @pytest.mark.parametrize("formulation", ["qp3", "complementarity"])
 def test_block_on_a_plane_under_downward_load_on_three_free_motions(formulation):
-    """A load off the middle: force and moment exact to 1e-9, sliding pinned with a note, the wall not touched."""
+    """A load off the middle: force and moment exact to 1e-9, sliding held at zero with a note, the wall not touched."""
     conditions = {"top": {"pressure": {"constant": 5, "x": 4}}}  # ∫ = 18, ∫ x = 10 + 32/3
     zones = {"base": (["bottom"], PLANE), "wall": (["left"], WALL)}
     for where in (None, zones):
@@ -101,7 +101,7 @@ def test_block_on_a_plane_under_downward_load_on_three_free_motions(formulation)
         assert result.certified
         assert result.footprint.resultant.force == pytest.approx([0, 18], abs=18e-9)
         assert moment_of(result) == pytest.approx(10 + 32 / 3, rel=1e-9)
-    assert "pinned" in solve(block(conditions)).contact.notes[0]
+    assert "held at zero" in solve(block(conditions)).contact.notes[0]
 
 
 def test_polygon_on_a_plane_under_its_weight():
@@ -207,6 +207,35 @@ def test_contact_determines_the_position_of_a_free_body():
     x, y = np.moveaxis(result.boundary.points, -1, 0)
     expected = np.stack([10 * x * 0.3 * 1.3 / 1000, -10 * y * (1 - 0.09) / 1000], axis=-1)
     assert abs(result.boundary.displacement - expected).max() < 1e-12 * abs(expected).max()
+
+
+CORNER = {"base": (["bottom"], PLANE), "side": (["left"], WALL)}
+SIDES = {"to the right": (1, 0), "to the left": (-1, 0), "up": (0, 1), "down": (0, -1)}
+
+
+def drawn(x: float, y: float):
+    """A block in a corner of two walls, with a weight of any direction in its middle."""
+    return block({}, CORNER, loads={"gravity": {"density": 1.0, "acceleration": [x, y]}})
+
+
+@pytest.mark.parametrize("degrees", range(0, 360, 15))
+def test_what_is_missing_is_named_by_its_side(degrees):
+    """The walls hold what goes down and to the left. A load twice as large on the side that is named suffices."""
+    x, y = np.round([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))], 12)
+    if x <= 0 and y <= 0 and (x, y) != (0, 0):
+        body_of(drawn(x, y))
+        return
+    with pytest.raises(ProblemError) as refused:
+        body_of(drawn(x, y))
+    text = str(refused.value)
+    assert f"the load of ({2 * x + 0:.4g}, {2 * y + 0:.4g}) pulls the body off its support" in text  # 2 is its area
+    drives, added = (
+        np.sum([way for side, way in SIDES.items() if side in text.split(begin)[1].split(end)[0]], axis=0)
+        for begin, end in ((" drives ", " which "), ("add a load", " that "))
+    )
+    np.testing.assert_array_equal(added, -drives)
+    assert drives @ (x, y) > 0
+    body_of(drawn(*(np.array([x, y]) + 2 * added)))
 
 
 @pytest.mark.parametrize(

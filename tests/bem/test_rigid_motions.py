@@ -5,7 +5,7 @@ import pytest
 from tool_problems import FREE, HELD, ROLLER, WEDGE, Spec, made
 
 from bemcontact.bem.body import Body, body_of
-from bemcontact.bem.rigid_motions import FreeMotions, RigidMotions
+from bemcontact.bem.rigid_motions import FreeMotions, RigidMotions, toward
 
 WIDE = {"table": FREE["contact_zones"]["table"], "press": {
     "edges": ["head", "top"], "surface": FREE["contact_zones"]["punch"]["surface"]}}  # fmt: skip
@@ -165,3 +165,15 @@ def test_hinged_tool_turns_about_its_hinge_only():
     body = hinged()
     assert body.seen.describe() == (f"{TURN} (1.8, 3) of the tool 'punch'",)
     assert body.seen.tools[:2] == pytest.approx(np.zeros((2, 1)))
+
+
+@pytest.mark.parametrize("size", [1e-12, 1.0, 1e9])
+def test_directions_have_the_words_of_their_components(size):
+    """Both components are named but for half a degree beside an axis: a load against one alone would not suffice."""
+    words = ["to the right", "to the right and up", "up", "to the left and up", "to the left", "to the left and down",
+             "down", "to the right and down"]  # fmt: skip
+    for degrees in (0, 0.5, 1, 45, 89, 89.5):
+        for quarter in range(4):
+            angle = np.radians(90 * quarter + degrees)
+            number = 2 * quarter + (degrees > 0.5) + (degrees > 89)
+            assert toward(size * np.array([np.cos(angle), np.sin(angle)])) == words[number % 8]

@@ -47,7 +47,7 @@ def in_newton_metres(contact: CondensedContact) -> CondensedContact:
 
 
 def cylinder() -> CondensedContact:
-    """The shipped model, held by contact alone."""
+    """The shipped model, held by contact."""
     return bemcontact.condense(bemcontact.load(CYLINDER))
 
 

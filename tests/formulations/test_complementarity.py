@@ -259,7 +259,7 @@ def test_load_that_carries_the_body_away_is_named(load, motion):
     solution = solve(problem)
     assert solution.status is Status.INFEASIBLE
     assert (solution.pressure == 0).all()
-    assert "carries the body off its support" in solution.notes[0]
+    assert "pulls the body off its support" in solution.notes[0]
     assert motion in solution.notes[0]
 
 

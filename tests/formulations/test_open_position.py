@@ -1,4 +1,4 @@
-"""The position that contact leaves open: a rule chooses it, whatever the units and the path of the solver are."""
+"""The position that is not determined: a rule chooses it, whatever the units and the path of the solver are."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from bemcontact import CondensedContact, Problem, condense, solve
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.formulations.open_position import farthest
 
-NOTE = "contact leaves the"
+NOTE = "not determined: the"
 
 
 def loose(slopes: list[float], gaps: list[float], length: float = 1.0, stress: float = 1.0) -> CondensedContact:

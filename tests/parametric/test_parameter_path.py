@@ -71,7 +71,7 @@ def test_numbers_are_json():
     assert not record["certified"]
     assert record["reaches"] == pytest.approx([-0.5, 1.0])
     assert record["notes"][0].startswith(
-        "the path exists up to 1; beyond that, the load carries the body off its support"
+        "the path exists up to 1; beyond that, the load pulls the body off its support"
     )
     assert [state["left"] for state in record["states"] if state["breakpoint"]] == [[], [0], [], []]
 

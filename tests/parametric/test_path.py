@@ -120,7 +120,7 @@ def test_degenerate_paths_are_those_of_exhaustive_search(made):
     for seed in range(100):
         rng = np.random.default_rng(seed)
         path = load_path(*made(rng))
-        assert path.complete or path.note.startswith("the load carries the body off its support")
+        assert path.complete or path.note.startswith("the load pulls the body off its support")
         assert path.residual <= 1e-12
         tipped += bool((np.diff(path.parameter) == 0).any())
         together += any(len(points) > 1 for points in (*path.entered, *path.left))
@@ -342,7 +342,7 @@ def test_load_beyond_the_last_support_ends_the_path(start, end, reach, words):
     path = load_path(rocker(start), rocker(end))
     assert not path.complete
     assert (path.begins_at, path.ends_at) == pytest.approx(reach, abs=1e-14)
-    assert path.note.startswith("the load carries the body off its support, in a motion that no contact resists")
+    assert path.note.startswith("the load pulls the body off its support, in a motion that nothing holds")
     assert path.notes == (f"{words}; beyond that, {path.note}",)
     with pytest.raises(ProblemError, match="there is nothing at"):
         path.at(1.0 if reach[0] == 0 else 0.0)
@@ -350,7 +350,7 @@ def test_load_beyond_the_last_support_ends_the_path(start, end, reach, words):
 
 
 def test_no_path_without_a_support():
-    with pytest.raises(ProblemError, match="there is no path of contact states: at the start, the load carries"):
+    with pytest.raises(ProblemError, match="there is no path of contact states: at the start, the load pulls"):
         load_path(rocker(2.0), rocker(3.0))
 
 

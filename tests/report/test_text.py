@@ -251,7 +251,7 @@ def test_a_note_of_all_cases_is_reported_once_and_one_of_some_with_their_names()
     one = all_cases().results["wind"]
     results = {**all_cases().results, "wind": dataclasses.replace(one, notes=(*one.notes, "the wind turns"))}
     told = shown(text.cases_summary(dataclasses.replace(all_cases(), results=results)))
-    assert " ".join(told.split()).count("the body is pinned against it") == 1
+    assert " ".join(told.split()).count("it is held at zero") == 1
     assert "wind: the wind turns" in told
 
 
