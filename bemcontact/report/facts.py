@@ -79,9 +79,8 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     if not record["intervals"]:
         held = "" if record["motion_names"] else ", and the supports alone hold the body"
         yield "Contact", f"nowhere: the body presses on no rigid surface{held}"
-    for interval, error in zip(record["intervals"], _end_errors(record), strict=False):
-        ends = f", ends ± {with_unit(small(error), units.length)}" if error else ""
-        yield "Contact", f"{interval['zone']}: {span(interval, size, units)}{ends}"
+    for zone, place in contact_intervals(record, units):
+        yield "Contact", f"{zone}: {place}"
     for zone in dict.fromkeys(record["zone"]):
         if record["intervals"] and zone not in [interval["zone"] for interval in record["intervals"]]:
             yield "Contact", f"{zone}: nowhere"
@@ -107,6 +106,15 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
     written = (f"{name.replace('_', ' ')} {value + 0.0:.1e}" for name, value in residuals if value is not None)
     yield "Residuals", ", ".join(written)
+
+
+def contact_intervals(record: Record, units: Units, *, short: bool = False) -> Iterator[tuple[str, str]]:
+    """Zone and place of each interval of contact, with the error of its ends; the length in place of a `short` one."""
+    size = coordinate_size(record)
+    for interval, error in zip(record["intervals"], _end_errors(record), strict=True):
+        first, last = interval["arc"]
+        place = with_unit(number(last - first), units.length) if short else span(interval, size, units)
+        yield interval["zone"], place + (f", ends ± {with_unit(small(error), units.length)}" if error else "")
 
 
 def _end_errors(record: Record) -> Iterator[float | None]:

@@ -4,7 +4,6 @@ The functions return a renderable for `rich`, no wider than 100 columns where th
 into them as plain text, never as markup.
 """
 
-from collections.abc import Iterator
 from pathlib import Path
 
 from rich.console import Group, RenderableType
@@ -19,8 +18,8 @@ from bemcontact.assessment.comparison import Comparison
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.problem import DeflectedContour, Problem, Units
-from bemcontact.report.bars import Record, mesh_in_short
-from bemcontact.report.facts import coordinate_size, facts, peak_of, peak_place, scores_in_words, span, zone_forces
+from bemcontact.report.bars import mesh_in_short
+from bemcontact.report.facts import contact_intervals, facts, peak_of, peak_place, scores_in_words, zone_forces
 from bemcontact.report.formatting import (
     case_in_words,
     convexity_in_words,
@@ -139,8 +138,10 @@ def cases_summary(cases: CaseResults) -> RenderableType:
             peak_place(record, units),
         ]
         table.add_row(*map(Text, cells), style=style)
-        for i, (zone, force) in enumerate(zone_forces(record, units).items()):
-            touching = "\n".join(_places(record, zone, units)) or "nowhere"
+        forces = zone_forces(record, units)
+        places = [*contact_intervals(record, units, short=len(forces) > 1)]  # so that lines stay short
+        for i, (zone, force) in enumerate(forces.items()):
+            touching = "\n".join(place for where, place in places if where == zone) or "nowhere"
             zones.add_row(*map(Text, (name if i == 0 else "", zone, force, touching)), style=style)
     for note in dict.fromkeys(note for result in cases.results.values() for note in result.notes):
         names = [name for name, result in cases.results.items() if note in result.notes]
@@ -152,16 +153,6 @@ def cases_summary(cases: CaseResults) -> RenderableType:
     for verdict in case_verdicts(cases):
         add_verdict(shown, verdict)
     return Group(Text(cases.name, "bold"), "", table, "", zones, "", shown)
-
-
-def _places(record: Record, zone: str, units: Units) -> Iterator[str]:
-    """Intervals of contact of a zone; only their lengths if there are several zones, so that lines stay short."""
-    alone = len({*record["zone"]}) == 1
-    for interval in record["intervals"]:
-        if interval["zone"] == zone:
-            start, end = interval["arc"]
-            length = with_unit(number(end - start), units.length)
-            yield span(interval, coordinate_size(record), units) if alone else length
 
 
 def _edge_table(problem: Problem) -> Table:

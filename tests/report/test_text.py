@@ -4,6 +4,7 @@ import dataclasses
 import re
 from functools import cache
 from io import StringIO
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,8 +23,11 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import LocalSearch, Penalty, Status
 from bemcontact.problem import Problem, Units
 from bemcontact.report import formatting, text
-from bemcontact.report.facts import zone_forces
+from bemcontact.report.facts import facts, zone_forces
+from bemcontact.report.formatting import units_of
 from bemcontact.report.verdicts import shortfall
+
+GALLERY = Path(__file__).parents[2] / "models" / "gallery"
 
 
 def block() -> Problem:
@@ -237,6 +241,19 @@ def test_each_case_has_a_row_with_its_own_numbers():
         value, bar = lines[name].split(" N/mm²")[0].rsplit("  ", 1)[-1].split(" ± ")
         assert abs(float(value) - peak.pressure) <= float(bar)
         assert "  not met: " in lines[name]
+
+
+@pytest.mark.parametrize("model", ["hertz_small", "three_zones"])
+def test_each_case_has_the_errors_of_its_ends_of_contact(model):
+    """The same text as the table of one case; where there are several zones, without places."""
+    one = bemcontact.solve(bemcontact.load(GALLERY / f"{model}.yaml").with_value("accuracy", 0.1))
+    told = shown(text.cases_summary(CaseResults(name="two", results={"a": one, "b": one}, seconds={})), 300)
+    contact = [value for name, value in facts(one.to_dict(), units_of(one.contact)) if name == "Contact"]
+    ends = [value.partition(", ends ")[2] for value in contact]
+    assert any(ends)
+    for value, error in zip(contact, ends, strict=True):
+        place = value.partition(": ")[2] if len(one.contact.zone_names) == 1 else f"ends {error}"
+        assert told.count(place) >= 2
 
 
 def test_the_worst_case_is_named():
