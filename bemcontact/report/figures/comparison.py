@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from bemcontact.analysis.result import Result
 from bemcontact.analysis.study import MeshLevel
 from bemcontact.arrays import Array
 from bemcontact.assessment.comparison import SAME, Contender
@@ -77,7 +78,7 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
     three times the mean one.
     """
     contact, unit = level.answer.contact, units_of(level.answer.contact).stress
-    along, curves = _Along(contact=contact), _curves(level)
+    along, curves = _Along(answer=level.answer), _curves(level)
     for curve in curves:
         along.plot(axes, curve.solution.pressure, curve)
     infinite, direct = level.answer.accuracy.infinite, level.answer.solution.pressure
@@ -106,7 +107,7 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
 def draw_gaps(axes: Axes, level: MeshLevel) -> None:
     """Draw the gaps of all contenders along the contact zones, and the initial gap."""
     contact, unit = level.answer.contact, units_of(level.answer.contact).length
-    along, maxima = _Along(contact=contact), dict[str, float]()
+    along, maxima = _Along(answer=level.answer), dict[str, float]()
     for curve in _curves(level):
         gap = contact.initial_gap + curve.solution.displacement
         along.plot(axes, gap, curve)
@@ -123,7 +124,7 @@ def draw_gaps(axes: Axes, level: MeshLevel) -> None:
 
 def draw_differences(axes: Axes, level: MeshLevel) -> None:
     """Draw |p - p'| over the largest pressure for each contender, with p' the direct solution; zero is not drawn."""
-    along, direct = _Along(contact=level.answer.contact), level.answer.solution.pressure
+    along, direct = _Along(answer=level.answer), level.answer.solution.pressure
     peak = along.contact.peak(direct) or along.contact.scales.pressure
     for curve in _curves(level, merged=False):
         difference = np.abs(curve.solution.pressure - direct) / peak
@@ -138,17 +139,22 @@ def draw_differences(axes: Axes, level: MeshLevel) -> None:
 class _Along:
     """Pieces of the contact zones, laid out one after the other on one axis."""
 
-    contact: CondensedContact
+    answer: Result
+
+    @property
+    def contact(self) -> CondensedContact:
+        """The contact points."""
+        return self.answer.contact
 
     @cached_property
     def pieces(self) -> list[Piece]:
         """Pieces in the order of the contact points."""
-        return [*pieces_of(self.contact)]
+        return [*pieces_of(self.contact, self.answer.touching)]
 
     @cached_property
     def shifts(self) -> list[float]:
         """Shift of each piece along the axis [L]."""
-        arcs = [self.contact.arc_position[piece.index] for piece in self.pieces]
+        arcs = [piece.arc for piece in self.pieces]
         lengths = [float(np.ptp(arc)) for arc in arcs]
         starts = np.cumsum([0.0, *(length + SPACE * sum(lengths) for length in lengths)])
         return [float(start - arc[0]) for start, arc in zip(starts, arcs, strict=False)]
@@ -156,7 +162,7 @@ class _Along:
     def stretches(self, values: Array) -> Iterator[tuple[Array, Array]]:
         """Positions and values (n,) on each piece."""
         for piece, shift in zip(self.pieces, self.shifts, strict=True):
-            yield self.contact.arc_position[piece.index] + shift, values[piece.index]
+            yield piece.arc + shift, values[piece.index]
 
     def plot(self, axes: Axes, values: Array, curve: SharedCurve, marker: str = "") -> None:
         """Draw values (n,) of a contender."""
@@ -191,7 +197,7 @@ class _Along:
         """Label each piece, with distances from its own start."""
         ticks, labels = [], []
         for piece, shift in zip(self.pieces, self.shifts, strict=True):
-            s = self.contact.arc_position[piece.index]
+            s = piece.arc
             own = [tick for tick in MaxNLocator(3).tick_values(s[0], s[-1]) if s[0] <= tick <= s[-1] * (1 + 1e-9)]
             ticks += [tick + shift for tick in own]
             labels += [f"{tick:.4g}" for tick in own]

@@ -172,9 +172,8 @@ def _fans(result: Result, state: BoundaryState) -> Iterator[Fan]:
     nodes, moved = state.points.reshape(-1, 2), (state.points + state.displacement).reshape(-1, 2)
     places = dict(zip(map(tuple, nodes.tolist()), moved, strict=True))
     feet = np.array([places[x, y] for x, y in contact.points.tolist()])
-    for piece in pieces_of(contact):
-        closed = np.isfinite(contact.run_length[contact.run[piece.index[0]]])
-        index = np.append(piece.index, piece.index[0]) if closed else piece.index
+    for piece in pieces_of(contact, touching):
+        index = piece.index
         pressed = touching[index]
         shown = pressed | np.append(pressed[1:], False) | np.insert(pressed[:-1], 0, False)
         for stretch in np.split(index, np.flatnonzero(np.diff(shown)) + 1):
@@ -306,7 +305,7 @@ def ground_of(result: Result, near: float) -> Iterator[tuple[Array, Array]]:
     moved = contact.tools.motions @ (contact.tools.amplitudes @ result.solution.rigid_amplitudes)
     feet = contact.points - (contact.initial_gap + moved)[:, None] * contact.normals
     shown = result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes) <= near
-    for piece in pieces_of(contact):
+    for piece in pieces_of(contact, result.touching):
         for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
             if shown[stretch[0]] and len(stretch) > 1:
                 yield feet[stretch], contact.normals[stretch]

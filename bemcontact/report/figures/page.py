@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import escaped_lines
 from bemcontact.files import output
@@ -156,11 +156,21 @@ PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 
 @dataclass(frozen=True, kw_only=True)
 class Piece:
-    """An unbroken piece of boundary in one contact zone, with its points in order."""
+    """An unbroken piece of boundary in one contact zone, with its points (m,) in order.
+
+    A piece that closes on itself goes once round and ends at its first point; arc positions go on counting across the
+    place where they begin.
+    """
 
     label: str
     order: int
     index: IntArray
+    arc: Array
+    run: int
+
+    def place_of(self, arc: float, perimeter: float) -> float:
+        """The same arc position, counted as on this piece."""
+        return arc + perimeter if arc < self.arc[0] else arc
 
     @property
     def colour(self) -> str:
@@ -173,15 +183,38 @@ class Piece:
         return "dashed" if self.order else "solid"
 
 
-def pieces_of(contact: CondensedContact) -> Iterator[Piece]:
-    """List the unbroken pieces of all contact zones, in the order of the contact points."""
-    for order, run in enumerate(np.unique(contact.run)):
+def pieces_of(contact: CondensedContact, touching: BoolArray) -> Iterator[Piece]:
+    """List the unbroken pieces of all contact zones, in the order of the contact points.
+
+    No stretch of points that touch (n,) is cut in two where a piece closes on itself, unless all of it touches.
+    """
+    for order, run in enumerate(np.unique(contact.run).tolist()):
         index = contact.points_of_run(run)
         zone = int(contact.zone[index[0]])
         label = short_label(contact.zone_names[zone], 24)
         if len(np.unique(contact.run[contact.zone == zone])) > 1:
             label += f" ({contact.points[index[0], 0]:.3g}, {contact.points[index[0], 1]:.3g}) on"
-        yield Piece(label=label, order=order, index=index)
+        index, arc = _once_round(contact, index, touching[index])
+        yield Piece(label=label, order=order, index=index, arc=arc, run=run)
+
+
+def _once_round(contact: CondensedContact, index: IntArray, touching: BoolArray) -> tuple[IntArray, Array]:
+    """Points (m,) of a run and their arc positions; a closed run begins and ends at one point that touches nothing."""
+    arc, perimeter, m = contact.arc_position[index], contact.run_length[contact.run[index[0]]], len(index)
+    if not np.isfinite(perimeter):
+        return index, arc
+    first = 0
+    if (touching[0] or touching[-1]) and not touching.all():
+        begins = np.flatnonzero(touching & ~np.roll(touching, -1))  # last points before the open stretches
+        ends = np.array([np.argmax(np.roll(touching, -begin - 1)) + begin + 1 for begin in begins.tolist()])
+        place = np.concatenate([arc, arc + perimeter])
+        widest = int(np.argmax(place[ends] - place[begins]))
+        begin, end = int(begins[widest]), int(ends[widest])
+        middle = (place[begin] + place[end]) / 2
+        first = begin + 1 + int(np.argmin(np.abs(place[begin + 1 : end] - middle)))
+    around = np.arange(first, first + m + 1)
+    turns = around // m - first // m
+    return index[around % m], arc[around % m] + turns * perimeter
 
 
 INK = "#e8eaed"

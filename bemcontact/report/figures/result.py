@@ -1,6 +1,6 @@
 """The page of a result or of several load cases: contact, pressure, gap, deformed shape, peaks."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
 import numpy as np
@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report.bars import with_bar
 from bemcontact.report.figures.contact import LEVEL, body_extent, draw_contact, draw_deformed
@@ -98,7 +97,8 @@ def draw_pressure(axes: Axes, result: Result, zone: str | None = None) -> None:
         return
     highest = np.flatnonzero(pressure >= (1 - LEVEL) * pressure.max())
     peak = int(highest[len(highest) // 2])
-    s, (low, high) = float(contact.arc_position[peak]), axes.get_xlim()
+    piece = next(piece for piece in pieces_of(contact, result.touching) if peak in piece.index)
+    s, (low, high) = float(piece.arc[list(piece.index).index(peak)]), axes.get_xlim()
     side = "left" if s < low + 0.3 * (high - low) else "right" if s > high - 0.3 * (high - low) else "center"
     value = with_unit(with_bar(float(pressure.max()), result.accuracy.peak_bar(zone)), plain(units_of(contact).stress))
     axes.annotate(
@@ -136,9 +136,9 @@ def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> 
     """
     contact, touching = result.contact, result.touching
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
-    pieces = [piece for piece in pieces_of(contact) if _of_zone(contact, zone)[piece.index[0]]]
+    pieces = [piece for piece in pieces_of(contact, touching) if _of_zone(contact, zone)[piece.index[0]]]
     for rank, piece in enumerate(pieces):
-        s, along, colour = contact.arc_position[piece.index], values[piece.index], piece.colour
+        s, along, colour = piece.arc, values[piece.index], piece.colour
         width = 1.5 * (2 - (rank + 1) / len(pieces))
         axes.plot(
             s,
@@ -153,14 +153,13 @@ def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> 
         faces = np.where(touching[piece.index], colour, "white")
         axes.scatter(s, along, s=8 * width**2, c=faces, edgecolors=colour, linewidths=1.0, zorder=3)
     colours = {contact.zone_names[int(contact.zone[piece.index[0]])]: piece.colour for piece in pieces}
-    intervals = [interval for interval in result.footprint.intervals if interval.zone in colours]
-    for interval in intervals:
-        width = 3 + 3 * list(colours)[::-1].index(interval.zone)
-        axes.hlines(0, interval.start_arc, interval.end_arc, color=colours[interval.zone], linewidth=width, zorder=2)
+    intervals = [*_intervals(result, pieces)]
+    for name, ends in intervals:
+        axes.hlines(0, *ends, color=colours[name], linewidth=3 + 3 * list(colours)[::-1].index(name), zorder=2)
     axes.set_xlabel(labelled("distance along the contact zone", units_of(result.contact).length))
     axes.spines[["top", "right"]].set_visible(False)
     axes.xaxis.set_major_locator(round_ticks(7))
-    _zoom(axes, pieces, intervals, contact, values)
+    _zoom(axes, pieces, [ends for _, ends in intervals], values)
     if zone is not None:
         axes.set_title(
             short_label(zone, 40), loc="left", fontsize=10, pad=16 if zone in result.accuracy.infinite else 6
@@ -169,27 +168,26 @@ def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> 
         axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize=9)
 
 
-def _zoom(
-    axes: Axes,
-    pieces: Sequence[Piece],
-    intervals: Sequence[ContactInterval],
-    contact: CondensedContact,
-    values: Array,
-) -> None:
+def _intervals(result: Result, pieces: Sequence[Piece]) -> Iterator[tuple[str, tuple[float, float]]]:
+    """Zone and ends of each interval of contact on pieces, in their arc positions."""
+    by_run = {piece.run: piece for piece in pieces}
+    for interval in result.footprint.intervals:
+        if interval.run in by_run:
+            start = by_run[interval.run].place_of(interval.start_arc, interval.perimeter)
+            yield interval.zone, (start, start + interval.end_arc - interval.start_arc)
+
+
+def _zoom(axes: Axes, pieces: Sequence[Piece], intervals: Sequence[tuple[float, float]], values: Array) -> None:
     """Show only what lies about a contact that is small beside its pieces of boundary, and say so."""
-    arcs = [contact.arc_position[piece.index] for piece in pieces]
-    start, end = min(s[0] for s in arcs), max(s[-1] for s in arcs)
-    low = min((item.start_arc for item in intervals), default=start)
-    high = max((item.end_arc for item in intervals), default=end)
+    start, end = min(piece.arc[0] for piece in pieces), max(piece.arc[-1] for piece in pieces)
+    low = min((begin for begin, _ in intervals), default=start)
+    high = max((finish for _, finish in intervals), default=end)
     if high - low >= NARROW * (end - start):
         return
     air = WIDTHS * (high - low)
     window = (max(low - air, start), min(high + air, end))
     shown = np.concatenate(
-        [
-            np.interp(np.linspace(*window, 200), s, values[piece.index], left=0, right=0)
-            for s, piece in zip(arcs, pieces, strict=True)
-        ]
+        [np.interp(np.linspace(*window, 200), piece.arc, values[piece.index], left=0, right=0) for piece in pieces]
     )
     axes.set(xlim=window, ylim=(-0.05 * shown.max() or None, 1.1 * shown.max() or None))
     axes.set_xlabel(f"{axes.get_xlabel()}\nonly around the contact")
@@ -224,15 +222,16 @@ def figure_of_cases(cases: CaseResults) -> Figure:
 
 def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
     """Draw the contact pressure of each load case, per undeformed length, over the distance along each piece."""
-    first = next(iter(cases.results.values()))
+    first, touching = next(iter(cases.results.values())), np.any([it.touching for it in cases.results.values()], axis=0)
+    pieces = [*pieces_of(first.contact, touching)]
     for order, (name, result) in enumerate(cases.results.items()):
-        contact, colour = result.contact, PIECE_COLOURS[order % len(PIECE_COLOURS)]
+        colour = PIECE_COLOURS[order % len(PIECE_COLOURS)]
         width = 2.2 if order < len(PIECE_COLOURS) else 1.2
-        for piece in pieces_of(contact):
-            along, pressure = contact.arc_position[piece.index], result.solution.pressure[piece.index]
+        for piece in pieces:
             label, dashes = None if piece.order else short_label(name, 30), DASHES[piece.order % len(DASHES)]
-            axes.plot(along, pressure, color=colour, linestyle=dashes, linewidth=width, label=label)
-    labels = [f"{DASHES[piece.order % len(DASHES)]}: {piece.label}" for piece in pieces_of(first.contact)]
+            pressure = result.solution.pressure[piece.index]
+            axes.plot(piece.arc, pressure, color=colour, linestyle=dashes, linewidth=width, label=label)
+    labels = [f"{DASHES[piece.order % len(DASHES)]}: {piece.label}" for piece in pieces]
     if len(labels) > 1:
         axes.set_title("; ".join(labels), loc="left", fontsize=9, color=GREY)
     axes.axhline(0, color=GREY, linewidth=0.8)

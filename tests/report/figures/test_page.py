@@ -1,6 +1,7 @@
 """Pages of all pictures: their files, sizes, colors, and a page written twice is the same."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.colors
@@ -8,6 +9,8 @@ import matplotlib.image
 import numpy as np
 import pytest
 from drawings import beam_over_a_circle, block_in_a_corner
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from matplotlib.figure import Figure
 from studies import (
     on_one_mesh,
@@ -15,8 +18,44 @@ from studies import (
 
 from bemcontact.analysis import solve as analysis
 from bemcontact.bem import mesh
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Problem
 from bemcontact.report import figures
+from bemcontact.report.figures.page import pieces_of
+
+
+@settings(deadline=None)
+@given(
+    touching=st.lists(st.booleans(), min_size=1, max_size=12),
+    steps=st.randoms(use_true_random=False),
+    closed=st.booleans(),
+)
+def test_pieces_go_once_round_and_cut_no_contact(touching: list[bool], steps, closed: bool):
+    """Each point once, a closed piece ends at its first one; stretches of contact are those of a circle."""
+    m = len(touching)
+    arc = np.cumsum([steps.uniform(0.1, 3.0) for _ in range(m)])
+    perimeter = float(arc[-1]) + 1.0
+    contact = replace(
+        CondensedContact.from_compliance(np.eye(m), -np.ones(m)),
+        arc_position=arc, run_length=np.array([perimeter if closed else np.inf]),
+    )  # fmt: skip
+    (piece,) = pieces_of(contact, np.array(touching))
+    if not closed:
+        np.testing.assert_array_equal(piece.index, np.arange(m))
+        np.testing.assert_array_equal(piece.arc, arc)
+        return
+    assert sorted(piece.index[:-1]) == [*range(m)]
+    assert piece.index[-1] == piece.index[0]
+    assert (np.diff(piece.arc) > 0).all()
+    np.testing.assert_allclose(piece.arc[-1] - piece.arc[0], perimeter)
+    np.testing.assert_allclose(piece.arc % perimeter, arc[piece.index] % perimeter)
+    around = np.array(touching)[piece.index]
+    stretches = int((np.diff(np.concatenate([[0], around.astype(int), [0]])) > 0).sum())
+    on_circle = sum(now and not before for now, before in zip(touching, touching[-1:] + touching[:-1], strict=True))
+    assert stretches == (on_circle or any(touching))
+    for start in arc[np.array(touching)]:
+        place = piece.place_of(float(start), perimeter)
+        assert piece.arc[0] <= place <= piece.arc[-1]
 
 
 @pytest.mark.parametrize("name", ["long words " * 60, "x" * 900, "方块"])

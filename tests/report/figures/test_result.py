@@ -208,3 +208,35 @@ def test_names_lie_in_the_frame_and_apart_from_each_other(name: str):
     assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in boxes)
     assert all(frame.y0 <= box.y0 and box.y1 <= frame.y1 for box in boxes)
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+
+
+def test_contact_across_the_end_of_a_closed_zone_is_one_curve():
+    """A pin that is drawn to the right in a hole whose line begins there: each case rises once and falls once."""
+    hole = {
+        "outer": [{"name": "out", "kind": "arc", "center": [0, 0], "radius": 2, "angles": [0, 360], "elements": 16}],
+        "holes": [[{"name": "hole", "kind": "arc", "center": [0, 0], "radius": 1, "angles": [360, 0], "elements": 32}]],
+    }
+    ways = {"right": (1, 0), "up": (0, 1), "right and down": (1, -0.2)}
+    problem = Problem(
+        name="lug", material={"young_modulus": 1000, "poisson_ratio": 0.3}, boundary=hole,
+        conditions={"out": {"displacement": {"x": 0, "y": 0}}},
+        contact_zones={"pin": {"edges": "hole", "surface": {
+            "kind": "circle", "center": [0, 0], "radius": 0.99, "body": "outside"}}},
+        tools={"pin": {"zones": "pin", "force": {"x": 0, "y": 0}}},
+        load_cases={name: {"tools": {"pin": {"force": {"x": x, "y": y}}}} for name, (x, y) in ways.items()},
+        accuracy=None,
+    )  # pyright: ignore  # fmt: skip
+    cases = bemcontact.solve_cases(problem)
+    axes = Figure().add_subplot()
+    figures.draw_case_pressures(axes, cases)
+    for case, result in cases.results.items():
+        alone = Figure().add_subplot()
+        figures.draw_pressure(alone, result)
+        drawn = [line for line in axes.lines if line.get_label() == case] + [alone.lines[1]]
+        for x, y in ((np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in drawn):
+            assert (np.diff(x) > 0).all()
+            assert x[-1] - x[0] == pytest.approx(result.contact.run_length[0])
+            assert y[0] == y[-1] == 0
+            rises = np.diff(y)[np.diff(y) != 0] > 0
+            assert (np.diff(rises.astype(int)) != 0).sum() == 1
+            assert np.trapezoid(y, x) == pytest.approx(result.contact.weights @ result.solution.pressure, rel=0.02)
