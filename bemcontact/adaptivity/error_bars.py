@@ -15,6 +15,7 @@ from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside, images
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.bem import reference_element
+from bemcontact.contact.free_motions import angle_of_round_off
 
 SAFETY = 1.5
 """Error bar over the change."""
@@ -120,12 +121,15 @@ def _motion_bars(estimate: _Estimate, m: float, largest: float) -> Iterator[Erro
 
     Of what is round-off beside the largest displacement [L] there is none.
     """
-    size = estimate.difference.fine.mesh.size
+    size, answer = estimate.difference.fine.mesh.size, estimate.reported[1]
     if not all(answer.pressure.any() for answer in estimate.difference.pair):
         return  # nothing determines them
+    contact, p = answer.condensation.contact, answer.solution.pressure
+    least = angle_of_round_off(contact.points, contact.normals, p > 0)
     for one, two in zip(*map(_motions, estimate.difference.pair), strict=True):
         value = estimate.value(one.size, two.size)
-        if abs(value) * (size if one.quantity == "rotation" else 1.0) > NOTHING * largest:
+        turns = one.quantity == "rotation"
+        if abs(value) * (size if turns else 1.0) > NOTHING * largest and not (turns and abs(value) <= least):
             change = float(np.linalg.norm(two.amount - one.amount)) / abs(value)
             bar = estimate.bar(max(change, m))
             yield ErrorBar(quantity=one.quantity, zone=None, mover=one.mover, value=value, bar=bar)

@@ -7,13 +7,18 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.errors import SingularSystemError
 
 INTERFERENCE = 1e-6
 """Fraction of the largest gap from which there is interference: the accuracy of a linear program."""
 ROUND_OFF = 1e-12
 """Fraction of the terms of a gap from which there is interference of a body that is held: less has just closed."""
+
+COORDINATES = 4 * float(np.finfo(float).eps)
+"""Round-off of a gap over the largest coordinate of a contact point."""
+UNSEEN = 1e-9
+"""Lever over the extent of contact up to which points see no turn."""
 
 
 class ContactScales(NamedTuple):
@@ -49,6 +54,18 @@ def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:
     cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
     optimum = scipy.optimize.linprog(cost, A_ub=-columns, b_ub=q / widest, bounds=bounds)
     return widest * optimum.fun if optimum.success and optimum.fun > INTERFERENCE else 0.0
+
+
+def angle_of_round_off(points: Array, normals: Array, pressed: BoolArray) -> float:
+    """Angle [rad] of a body or tool that is round-off of the gaps at pressed points; 0 where these see no turn.
+
+    From points (n, 2) [L] and normals (n, 2). A turn changes gaps by the angle times the levers of the normals. What
+    translations change as well does not count; a gap has the round-off of the coordinates.
+    """
+    at, n = points[pressed] - points[pressed].mean(axis=0), normals[pressed]
+    levers = at[:, 0] * n[:, 1] - at[:, 1] * n[:, 0]
+    lever = float(np.abs(levers - n @ np.linalg.lstsq(n, levers)[0]).max())
+    return COORDINATES * float(np.abs(points).max()) / lever if lever > UNSEEN * float(np.abs(at).max()) else 0.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from bemcontact.contact.free_motions import angle_of_round_off
 from bemcontact.problem import Units
 from bemcontact.report.bars import (
     NOTHING,
@@ -133,7 +134,7 @@ def _amount(record: Record, motion: int, units: Units) -> str:
     moved, angles = record["rigid_amplitudes"][motion], record["rotations"]
     if not record["intervals"]:
         return ": not determined"
-    if not zero_if_negligible(moved, record["scales"]["displacement"]):
+    if _stays(record, motion):
         return ": 0"
     if angles is None:
         return ""
@@ -141,6 +142,21 @@ def _amount(record: Record, motion: int, units: Units) -> str:
     bar = _bar_of_motion(record, "rotation" if angle else "motion", record["motion_names"][motion])
     unit = "rad" if angle else units.length
     return f": {with_unit(with_bar(abs(angle) if angle else moved, bar), unit)}"
+
+
+def _stays(record: Record, motion: int) -> bool:
+    """Whether a free motion is zero but for round-off."""
+    if not zero_if_negligible(record["rigid_amplitudes"][motion], record["scales"]["displacement"]):
+        return True
+    angles = record["rotations"]
+    return angles is not None and 0 < abs(angles[motion]) <= _least_angle(record)
+
+
+def _least_angle(record: Record) -> float:
+    """Angle [rad] up to which a rotation is round-off."""
+    pressure = np.array(record["pressure"])
+    pressed = pressure > NEGLIGIBLE * pressure.max()
+    return angle_of_round_off(np.array(record["nodes"]), np.array(record["normals"]), pressed) if pressed.any() else 0.0
 
 
 def _bar_of_motion(record: Record, quantity: str, mover: str) -> float | None:
@@ -151,7 +167,7 @@ def _bar_of_motion(record: Record, quantity: str, mover: str) -> float | None:
 def _in_sense(name: str, record: Record, motion: int) -> str:
     """Name of a free motion, with the sense in which it turns."""
     angles = record["rotations"]
-    if angles is None or not angles[motion] < 0:
+    if angles is None or not angles[motion] < 0 or _stays(record, motion):
         return name
     return re.sub(r"(counter)?clockwise", lambda sense: "clockwise" if sense[1] else "counterclockwise", name)
 
@@ -162,6 +178,7 @@ def _tool(record: Record, tool: Record, size: float, pressed: float, moves: floa
     error = None if bar is None else bar * float(np.hypot(*tool["displacement"]))
     moved = _with_error(tool["displacement"], error, units.length, moves)
     turn = zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)
+    turn = turn if not tool["free"][2] or abs(turn) > _least_angle(record) else 0.0
     turned = with_unit(with_bar(turn, _bar_of_motion(record, "rotation", tool["name"])), "rad")
     force = vector(tool["force_of_body"], per_thickness(units), scale=pressed)
     moment = with_unit(number(zero_if_negligible(tool["moment_of_body"], pressed * size)), units.force)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.free_motions import MotionAlgebra
+from bemcontact.contact.free_motions import MotionAlgebra, angle_of_round_off
 from bemcontact.errors import SingularSystemError
 
 
@@ -64,3 +64,18 @@ def test_motions_that_underflow_are_said_to_be_singular():
     motions = MotionAlgebra(rigid_motions=np.full((3, 1), 1e-200), weights=np.ones(3), motion_load=np.ones(1))
     with pytest.raises(SingularSystemError, match="working precision"):
         motions.balancing(np.ones(1))
+
+
+@pytest.mark.parametrize(("size", "center"), [(1.0, 0.0), (1e-6, 3.0), (1e6, -2.0)])
+def test_an_angle_is_round_off_up_to_that_of_coordinates_over_the_half_width(size: float, center: float):
+    """Pressed points on a line see a turn by their distance from its middle, points on a circle see none."""
+    x = size * np.linspace(-1.0, 1.0, 7)
+    points = np.column_stack([center * size + x, 0 * x])
+    up = np.tile([0.0, 1.0], (7, 1))
+    pressed = np.abs(x) < 0.5 * size
+    least = angle_of_round_off(points, up, pressed)
+    half = float(x[pressed].max())
+    assert least == pytest.approx(4 * np.finfo(float).eps * np.abs(points).max() / half)
+    angles = np.linspace(0.0, 2.0, 7)
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    assert angle_of_round_off(size * (circle + center), circle, np.ones(7, bool)) == 0.0

@@ -256,6 +256,31 @@ def test_each_case_has_the_errors_of_its_ends_of_contact(model):
         assert told.count(place) >= 2
 
 
+@pytest.mark.parametrize("radius", [10.0, 1e-3])
+@pytest.mark.parametrize("center", [0.0, 1000.0])
+@pytest.mark.parametrize("pressed_by", ["gravity", "tool"])
+def test_a_symmetric_roller_does_not_turn(radius: float, center: float, pressed_by: str):
+    """Its angle is zero by symmetry, and round-off of coordinates in numbers, of either sense: it is printed as 0."""
+    plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    load: dict = {"loads": {"gravity": {"density": 0.01, "acceleration": [0, -1]}}}
+    zones = {"rim": {"edges": "rim", "surface": plane}}
+    if pressed_by == "tool":
+        zones["top"] = {"edges": "top", "surface": {"kind": "plane", "point": [0, 2 * radius], "normal": [0, -1]}}
+        load = {"tools": {"top": {"zones": "top", "point": [center, 2 * radius], "force": {"y": -radius, "moment": 0}}}}
+    arcs = {"rim": [180, 360], "top": [0, 180]}
+    roller = Problem(
+        name="roller", material={"young_modulus": 210e3, "poisson_ratio": 0.3}, contact_zones=zones, accuracy=0.05,
+        boundary={"outer": [{"name": name, "kind": "arc", "center": [center, radius], "radius": radius, "angles": at}
+                            for name, at in arcs.items()]}, **load,
+    )  # pyright: ignore  # fmt: skip
+    result = bemcontact.solve(roller)
+    listed = [value for name, value in facts(result.to_dict(), Units()) if name in ("Free motion", "Tool")]
+    turns = [text.partition("turns by ")[2].partition(";")[0] or text.rpartition(": ")[2] for text in listed[1:]]
+    assert turns == ["0"] * (1 + (pressed_by == "tool"))
+    assert "counterclockwise" in listed[1]
+    assert not [bar for bar in result.accuracy.bars if bar.quantity == "rotation"]
+
+
 def test_the_worst_case_is_named():
     told = shown(text.cases_summary(all_cases()))
     assert_states(told, f"in {all_cases().worst}; … UNDEFORMED length")
