@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
+from bemcontact.checks.attributes import WithHints
 from bemcontact.errors import escaped_json
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -55,7 +56,7 @@ Flags = Annotated[NDArray[np.bool_], PlainSerializer(_listed, return_type=list[b
 """An array (n,) that is a list of true and false in JSON."""
 
 
-class Leaf:
+class Leaf(WithHints):
     """Base of a dataclass that JSON has with the same fields; a docstring below each field says what it is."""
 
     __pydantic_config__ = CONFIG
@@ -79,7 +80,7 @@ class Record(BaseModel):
         return self.model_dump(mode="json")
 
 
-class Recorded(ABC):
+class Recorded(WithHints, ABC):
     """Base of a result whose JSON is a `Record`."""
 
     @abstractmethod

@@ -17,7 +17,7 @@ ROOMS = {
     "errors": (),
     "checks": ("errors",),
     "arrays": ("errors", "checks"),
-    "serialization": ("errors",),
+    "serialization": ("errors", "checks"),
     "options": ("errors", "checks"),
     "version": (),
     "files": ("errors",),

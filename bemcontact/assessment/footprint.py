@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from pydantic import computed_field
 
 from bemcontact.arrays import Array, IntArray
+from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import BALANCED
 from bemcontact.contact.solution import ContactSolution
@@ -52,7 +53,7 @@ class Peak(Leaf):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Resultant:
+class Resultant(WithHints):
     """Force of the rigid surfaces on the body."""
 
     force: Pair
@@ -64,7 +65,7 @@ class Resultant:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Footprint:
+class Footprint(WithHints):
     """Where the body touches, and how hard."""
 
     intervals: tuple[ContactInterval, ...]

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays, real_array, whole_array
 from bemcontact.checks.arguments import file_path, instance_of, real_number, shown, whole_number
+from bemcontact.checks.attributes import WithHints
 from bemcontact.contact import archive
 from bemcontact.contact.consistency import ensure_arrays, ensure_independent, ensure_labels, ensure_parts_fit
 from bemcontact.contact.free_motions import (
@@ -38,7 +39,7 @@ PEAK = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class CondensedContact(MotionAlgebra):
+class CondensedContact(WithHints, MotionAlgebra):
     """An elastic body condensed to its n contact points: u_n = Δ1 + M p + R a with ℓᵀp = -load, [SS92] (35)-(38).
 
     A contact point is a pair (zone, node): a node in two zones is two points, with two normals, gaps and pressures.

@@ -6,6 +6,7 @@ from enum import StrEnum
 from typing import Literal
 
 from bemcontact.arrays import Array, freeze_arrays
+from bemcontact.checks.attributes import WithHints
 from bemcontact.serialization import Leaf
 
 
@@ -114,7 +115,7 @@ def traces_in_turn(*parts: tuple[str, Sequence[float]]) -> tuple[Trace, ...]:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class ContactSolution:
+class ContactSolution(WithHints):
     """A solution as a formulation reports it; `bemcontact.assessment` recomputes whether it is one.
 
     Parameters

@@ -11,6 +11,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.checks.arguments import instance_of, real_number, shown
+from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
 from bemcontact.errors import ProblemError
@@ -32,7 +33,7 @@ class ContactProblem(cp.Problem):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class ContactModel:
+class ContactModel(WithHints):
     """Minimize F3 = pᵀJ gap with gap = q + M p + R a >= 0, p >= 0, ℓᵀp = -load, (40)-(42), to be extended in cvxpy.
 
     Everything is in the user's units; the variables behind the expressions are scaled, so that units do not matter to a

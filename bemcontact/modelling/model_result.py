@@ -9,6 +9,7 @@ import numpy as np
 from bemcontact.arrays import Array, freeze_arrays
 from bemcontact.assessment.certificate import Certificate, certify
 from bemcontact.assessment.residual import Residuals, residuals
+from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
@@ -22,7 +23,7 @@ NOT_CONTACT = "optimum of your model, not a contact state"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class ModelResult:
+class ModelResult(WithHints):
     """The optimum of a contact model, recomputed and assessed; arrays are None where there is no optimum.
 
     Parameters

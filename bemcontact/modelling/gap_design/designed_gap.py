@@ -10,6 +10,7 @@ from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
 from bemcontact.assessment.residual import Residuals
 from bemcontact.checks.arguments import shown
+from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
@@ -78,7 +79,7 @@ class GapDesignRecord(Record):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LoadState:
+class LoadState(WithHints):
     """A contact state, solved by the direct solver and assessed."""
 
     contact: CondensedContact

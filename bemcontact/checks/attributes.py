@@ -1,0 +1,83 @@
+"""Attributes that do not exist: an error that says where the quantity is."""
+
+import difflib
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+PLACES = {
+    "footprint.peak.pressure": ("peak", "max_pressure", "maximum_pressure", "peak_pressure", "p_max", "pmax", "max"),
+    "solution.pressure": ("pressure", "pressures", "stress", "stresses", "traction", "tractions", "p"),
+    "solution.displacement": ("displacement", "displacements", "deformation", "deflection", "u"),
+    "solution.rigid_amplitudes": ("rigid_amplitudes", "amplitudes", "motions", "rotation", "rotations"),
+    "solution.status": ("status",),
+    "solution.solver": ("solver",),
+    "solution.iterations": ("iterations", "nit", "steps"),
+    "footprint.resultant.force": ("resultant", "resultants", "force", "forces", "total_force", "contact_force",
+                                  "reaction", "reactions"),
+    "footprint.resultant.moment": ("moment", "torque"),
+    "footprint.intervals": ("intervals", "contact_length", "contact_width", "contact_area", "half_width", "ends"),
+    "boundary": ("mesh", "nodes", "elements"),
+    "touching": ("contact_set", "active_set", "in_contact"),
+    "contact.points": ("points", "coordinates", "positions"),
+    "contact.initial_gap": ("initial_gap",),
+    "contact_fields": ("gap", "gaps", "opening"),
+    "contact.compliance": ("compliance", "flexibility", "compliance_matrix"),
+    "contact.stiffness_rows.K": ("stiffness_rows", "stiffness", "stiffness_matrix"),
+    "certified": ("converged", "success", "solved", "is_solved", "optimal", "ok"),
+    "certificate.words": ("verdict", "message", "words"),
+    "accuracy.bars": ("error", "errors", "error_bars", "bars", "tolerance"),
+    "problem.material.young_modulus": ("young_modulus",),
+    "problem.material.poisson_ratio": ("poisson_ratio",),
+}  # fmt: skip
+"""Place of a quantity in a result -> its own name and what others call it."""
+OF_A_RESULT = "the result of bemcontact.solve has it as"
+
+
+class WithHints:
+    """Base of objects whose users look for a quantity by another name or in another place."""
+
+    if not TYPE_CHECKING:  # checkers of types shall go on to know all attributes
+
+        def __getattr__(self, name: str) -> Any:
+            """Raise the error of an attribute that does not exist."""
+            if name.startswith("_") or hasattr(type(self), name):  # an error within a property is another one
+                return object.__getattribute__(self, name)
+            raise AttributeError(f"{type(self).__name__} has no '{name}'; {_hint(self, name)}")
+
+
+def _hint(owner: object, name: str) -> str:
+    """Say where a quantity is: by another name, in another place, under a similar name; else list the names."""
+    known = {word: place for place, words in PLACES.items() for word in words}
+    own = [part for part in dir(owner) if not part.startswith("_")]
+    if name.lower() not in known:
+        similar = difflib.get_close_matches(name.lower(), own, 1) or difflib.get_close_matches(name.lower(), known, 1)
+        if not similar or similar[0] in own:
+            return f"did you mean '{similar[0]}'?" if similar else f"there are: {', '.join(sorted(own))}"
+        name = similar[0]
+    place = known[name.lower()]
+    found = (*_there(owner, place), *(word for word in PLACES[place] if word in own), *_in_parts(owner, place))
+    return f"use {found[0]}" if found else f"{OF_A_RESULT} {place}"
+
+
+def _there(owner: object, place: str) -> Iterator[str]:
+    """The place of a quantity in an object that has it, or in one of several results."""
+    if _leads(owner, place.split(".")):
+        yield place
+    results = vars(owner).get("results")
+    for case, result in results.items() if isinstance(results, Mapping) else ():
+        yield from (f"results[{case!r}].{there}" for there in _there(result, place))
+
+
+def _in_parts(owner: object, place: str) -> Iterator[str]:
+    """The place in an object that is itself a part of a result."""
+    while place := place.partition(".")[2]:
+        yield from _there(owner, place)
+
+
+def _leads(owner: object, parts: list[str]) -> bool:
+    """Whether attributes within each other exist, as far as that can be said without computing any."""
+    first, *rest = parts
+    inside = getattr(owner, "__dict__", {})
+    if not rest:
+        return first in inside or hasattr(type(owner), first)
+    return first in inside and (inside[first] is None or _leads(inside[first], rest))
