@@ -28,8 +28,6 @@ from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest
 
 FAILURES = 6
 """Largest number of restarts with new factors after a claim failed its check."""
-NEAR = 1e-6
-"""Relative distance to the point within which a constraint may count as active."""
 FINER = 1e-2
 """Factor of the tolerance of phase one after each failure."""
 
@@ -136,10 +134,9 @@ def _second_order(
             return Restart(sides=descent.working.sides, failed=True)
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     slope, curved = float(progress.gradient @ direction), float(direction @ progress.statement.H @ direction)
-    rounding = 100.0 * EPS * abs(progress.objective)
-    if block.step * (slope + 0.5 * block.step * curved) >= -rounding:
-        near = block.step <= NEAR * max(1.0, largest(progress.x))
-        return _second_order(progress, descent, conditions.stricter(along, block.constraint, near=near), multipliers)
+    rounding = 100.0 * EPS * float(progress.terms(direction[:0], progress.statement.A[:0]) @ np.abs(direction))
+    if slope + 0.5 * block.step * curved >= -rounding or block.step <= EPS * max(1.0, largest(progress.x)):
+        return _second_order(progress, descent, conditions.stricter(along, block.constraint), multipliers)
     progress.move(along, block.step, 1.0)
     progress.look()
     held = int(np.count_nonzero(conditions.strong)) + 1

@@ -200,21 +200,19 @@ class FirstOrder:
         normals[fixed.size :] = statement.A[rows][:, free]
         return CriticalCone(free=free, equal=statement.A[self.strong[n:]][:, free], weak=inwards[:, None] * normals)
 
-    def stricter(self, along: Array, blocking: int, *, near: bool) -> "FirstOrder":
-        """Conditions of a smaller cone, without a direction on which the objective does not fall.
+    def stricter(self, along: Array, blocking: int) -> "FirstOrder":
+        """Doubtful conditions of a smaller cone, without a direction on which the objective does not clearly fall.
 
         Small multipliers that make the objective rise are taken as strong. If there are none, the constraint that
-        blocks the step is taken as active. The result is doubtful, except if a bound that is not active is `near`.
+        blocks the step is taken as active.
         """
         leaving = self.weak & (self.sides * along < 0.0) & (self.size > 0.0)
-        sides, weak, doubtful = self.sides.copy(), self.weak & ~leaving, True
+        sides, weak = self.sides.copy(), self.weak & ~leaving
         if not leaving.any():
             reached = -1 if along[blocking] < 0.0 else 1
-            doubtful = not near or bool(weak[blocking] and sides[blocking] == reached)
             leaving[blocking], weak[blocking] = weak[blocking], not weak[blocking]
             sides[blocking] = reached
-        doubtful = self.doubtful or doubtful
-        return replace(self, strong=self.strong | leaving, weak=weak, sides=sides, doubtful=doubtful)
+        return replace(self, strong=self.strong | leaving, weak=weak, sides=sides, doubtful=True)
 
 
 def first_order(progress: Progress, multipliers: Array, zeros: Array) -> FirstOrder:

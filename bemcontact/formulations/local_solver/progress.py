@@ -106,19 +106,24 @@ class Progress:
 
         The variables may differ in size by many orders, so each component has its own tolerance, relative to its own
         terms. Rounding in one component changes the multipliers of the rows (r, n) by their right inverse (n, r), and
-        so other components. The components of the point have the rounding of numbers of the size `reach` (n,); faint
-        ones have no digit.
+        so other components.
         """
-        size = self.travelled
-        size = np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
-        lost = EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(size, reach)))
-        fine = FINE * self.options.optimality_tolerance * terms
+        lost, fine = self.lost(terms, reach), FINE * self.options.optimality_tolerance * terms
         if not rows.size:
             return np.maximum(fine, 100.0 * lost)
         N = np.abs(inverse)
         of_rows = lost.dot(N)
         lost += of_rows.dot(np.abs(rows))
         return np.maximum(np.concatenate([fine, fine.dot(N)]), 100.0 * np.concatenate([lost, of_rows]))
+
+    def lost(self, terms: Array, reach: Array) -> Array:
+        """Rounding of each component of the gradient (n,) if the point has that of numbers of the size `reach` (n,).
+
+        Faint components of the point have no digit.
+        """
+        size = self.travelled
+        size = np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
+        return EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(size, reach)))
 
     def level(self, direction: Array, zero: Array) -> float:
         """Size of a slope along a direction that counts as zero, from that of each component of the gradient (n,)."""
