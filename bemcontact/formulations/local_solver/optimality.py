@@ -22,6 +22,8 @@ ZERO = 1e-11
 """A curvature below -ZERO is negative, in units in which the rows of |H| have size one."""
 ROUNDING = 1e-14
 """A curvature above -ROUNDING max(10, n) is not negative. Between the two limits it stays undecided."""
+IN_CONE = 1e-11
+"""A unit direction whose product with an inward normal is above -IN_CONE is in the cone."""
 OF_RAY = (1e-13, 1e-12, 1e-11, 1e-10)
 """Sizes of the components of a ray that may be rounding, relative to the largest; tried one after the other."""
 FEW = 100
@@ -64,17 +66,18 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     negative eigenvectors are tried before the other faces.
     """
     form = H[cone.free][:, cone.free]
-    units = unit_sizes(np.abs(form))
-    N = null_space(unit_rows(cone.equal * units)[0], cone.free.size)
+    units = _units(np.abs(form), np.abs(np.vstack([cone.equal, cone.weak])))
+    N, lost = null_space(unit_rows(cone.equal * units)[0], cone.free.size)
     reduced = N.T @ (units[:, None] * form * units) @ N
     if _positive_semidefinite(reduced):
         return Curvature(copositive=True)
     weak = unit_rows(cone.weak * units)[0] @ N
-    copositive, falling = _search_faces(reduced, weak, min(faces, FEW))
+    weak = weak[np.linalg.norm(weak, axis=1) > lost]  # others are combinations of the rows that are held
+    copositive, falling = _search_faces(reduced, weak, lost, min(faces, FEW))
     if copositive is None:
-        falling = _probe(reduced, weak)
+        falling = _probe(reduced, weak, lost)
     if copositive is None and falling is None:
-        copositive, falling = _search_faces(reduced, weak, faces)
+        copositive, falling = _search_faces(reduced, weak, lost, faces)
     if falling is None:
         return Curvature(copositive=copositive)
     direction = np.zeros(H.shape[0])
@@ -82,11 +85,22 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     return Curvature(copositive=False, direction=direction / np.linalg.norm(direction))
 
 
-def null_space(rows: Array, n: int) -> Array:
-    """An orthonormal basis of {d : rows d = 0}."""
+def _units(form: Array, rows: Array) -> Array:
+    """Factors of variables by which the rows of |H| have size one, or those of the constraints where |H| has none."""
+    units, flat = unit_sizes(form), ~form.any(axis=0)
+    curved = np.maximum.reduce(rows * units * ~flat, axis=1, initial=0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        balanced = np.where(rows > 0.0, curved[:, None] / rows, 0.0).max(axis=0, initial=0.0)
+    return np.where(flat & (balanced > 0.0), balanced, units)
+
+
+def null_space(rows: Array, n: int) -> tuple[Array, float]:
+    """An orthonormal basis of {d : rows d = 0}, and its rounding, which is large where rows are nearly dependent."""
     if rows.shape[0] == 0 or n == 0:
-        return np.eye(n)
-    return orthogonal(rows, DEPENDENT)[1]
+        return np.eye(n), IN_CONE
+    _, basis, triangle, _ = orthogonal(rows, DEPENDENT)
+    least = np.abs(triangle.diagonal()).min(initial=1.0)
+    return basis, max(IN_CONE, 10.0 * n * EPS / least)
 
 
 def _positive_semidefinite(matrix: Array) -> bool:
@@ -114,7 +128,7 @@ def _projected(weak: Array, d: Array) -> Array:
     return d + weak.T @ y
 
 
-def _probe(reduced: Array, weak: Array) -> Array | None:
+def _probe(reduced: Array, weak: Array, lost: float) -> Array | None:
     """Find a falling direction by projected descents from negative eigenvectors and random sums of them."""
     eigenvalues, vectors = np.linalg.eigh(reduced)
     size = float(np.abs(eigenvalues).max())
@@ -129,18 +143,18 @@ def _probe(reduced: Array, weak: Array) -> Array | None:
             if length < 1e-9:
                 break
             d = d / length
-            if _falls(reduced, weak, d):
+            if _falls(reduced, weak, d, lost):
                 return d
             d = d - reduced @ d / size
     return None
 
 
-def _falls(reduced: Array, weak: Array, d: Array) -> bool:
-    """Whether the unit direction is in the cone and has negative curvature."""
-    return float(d @ reduced @ d) < -ZERO and bool(np.all(weak @ d >= -1e-11))
+def _falls(reduced: Array, weak: Array, d: Array, lost: float) -> bool:
+    """Whether the unit direction is in the cone, up to rounding, and has negative curvature."""
+    return float(d @ reduced @ d) < -ZERO and bool(np.all(weak @ d >= -lost))
 
 
-def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None, Array | None]:
+def _search_faces(reduced: Array, weak: Array, lost: float, faces: int) -> tuple[bool | None, Array | None]:
     """Examine faces on whose span the form is not positive semidefinite, until one contains a falling direction."""
     stack: list[tuple[int, ...]] = [()]
     seen, settled = 0, True
@@ -149,7 +163,7 @@ def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None,
             return None, None
         face = stack.pop()
         seen += 1
-        basis = null_space(weak[list(face)], reduced.shape[0])
+        basis, more = null_space(weak[list(face)], reduced.shape[0])
         if basis.shape[1] == 0:
             continue
         form = basis.T @ reduced @ basis
@@ -158,7 +172,7 @@ def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None,
         eigenvalues, vectors = np.linalg.eigh(form)
         for column in np.flatnonzero(eigenvalues < -ZERO):
             for d in (basis @ vectors[:, column], -(basis @ vectors[:, column])):
-                if _falls(reduced, weak, d):
+                if _falls(reduced, weak, d, max(lost, more)):
                     return False, d
         settled = settled and eigenvalues[0] < -ZERO
         stack += [(*face, i) for i in range(face[-1] + 1 if face else 0, weak.shape[0])]
@@ -167,6 +181,8 @@ def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None,
 
 WEAK = 10.0
 """A multiplier is strong if it exceeds its zero by this factor."""
+DOUBT = 0.03
+"""A multiplier of the wrong sign is more than likely rounding if it exceeds its zero by this factor."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -237,6 +253,7 @@ def first_order(progress: Progress, multipliers: Array, zeros: Array) -> FirstOr
         weak=held & ~strong,
         sides=sides,
         size=size,
+        doubtful=bool((wrong > DOUBT * zeros).any()),
     )
 
 

@@ -328,9 +328,11 @@ class Descent:
             self._refused.add(block.constraint)
 
     def _fine_slope(self, direction: Array) -> float:
-        """The slope along a direction that counts as zero."""
-        multipliers = self.working.multipliers(self.progress.gradient)
-        return self.progress.level(direction, self._fine_zero(multipliers)[: direction.size])
+        """The slope along a direction of the null space that counts as zero."""
+        n, working, progress = direction.size, self.working, self.progress
+        terms = progress.terms(working.multipliers(progress.gradient)[n:], working.W)
+        no_rows = working.W[:0]  # errors of their multipliers do not change this slope
+        return progress.level(direction, progress.fine_zero(terms, no_rows, no_rows.T, self._reach(terms)))
 
     def _fine_zero(self, multipliers: Array) -> Array:
         """Size of each component of the gradient and of each multiplier of rows that counts as zero (n + r,)."""
