@@ -108,7 +108,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
     if outcome.ending is Ending.INACCURATE:
         return Restart(sides=descent.working.sides, failed=True)
     multipliers = descent.working.of_all(descent.multipliers)
-    conditions = first_order(progress, multipliers, descent.working.of_all(descent.zeros))
+    conditions = first_order(progress, descent.working.held, multipliers, descent.working.of_all(descent.zeros))
     if not conditions.holds:
         return Restart(sides=descent.working.sides, failed=True)
     return _second_order(progress, descent, conditions, multipliers)
@@ -141,7 +141,7 @@ def _second_order(
     progress.look()
     held = int(np.count_nonzero(conditions.strong)) + 1
     progress.write(2, progress.objective / progress.unit, block.step, block.constraint, None, held, 1)
-    return Restart(sides=progress.statement.sides_reached(progress.values, progress.slack), failed=False)
+    return Restart(sides=progress.statement.sides_reached(progress.values, progress.sharp), failed=False)
 
 
 def _strict(descent: Descent, conditions: FirstOrder) -> bool:

@@ -231,8 +231,11 @@ class FirstOrder:
         return replace(self, strong=self.strong | leaving, weak=weak, sides=sides, doubtful=True)
 
 
-def first_order(progress: Progress, multipliers: Array, zeros: Array) -> FirstOrder:
-    """Recompute the first-order conditions at the point; a multiplier below its entry of `zeros` (n + m,) is zero."""
+def first_order(progress: Progress, working: BoolArray, multipliers: Array, zeros: Array) -> FirstOrder:
+    """Recompute the first-order conditions at the point; a multiplier below its entry of `zeros` (n + m,) is zero.
+
+    A constraint that is not in the `working` set is active if its bound is as near as rounding.
+    """
     statement, n = progress.statement, progress.x.size
     values = statement.values(progress.x)
     slack = 2.0 * progress.slack
@@ -245,12 +248,13 @@ def first_order(progress: Progress, multipliers: Array, zeros: Array) -> FirstOr
     wrong[statement.equality] = 0.0
     held[n:] &= np.logical_or.reduce(statement.A, axis=1)  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
+    active = working | (statement.sides_reached(values, progress.sharp) != 0)
     tolerated = 2.0 * zeros
     tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
     return FirstOrder(
         holds=feasible and stationary and np.count_nonzero(wrong <= tolerated) == zeros.size,
         strong=strong,
-        weak=held & ~strong,
+        weak=held & ~strong & active,
         sides=sides,
         size=size,
         doubtful=bool((wrong > DOUBT * zeros).any()),

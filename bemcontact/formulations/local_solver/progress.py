@@ -88,6 +88,13 @@ class Progress:
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
     @property
+    def sharp(self) -> Array:
+        """Distance of each constraint from its bound that may be rounding (n + m,)."""
+        size = np.abs(self.x)
+        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
+        return np.maximum(FINE * self._slack, 100.0 * EPS * terms)
+
+    @property
     def objective(self) -> float:
         """cᵀx + xᵀHx/2."""
         return 0.5 * float(self.x.dot(self.gradient + self.statement.c))
