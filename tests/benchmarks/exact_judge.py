@@ -17,7 +17,6 @@ CLOSE = 1e-9
 """A product of unit vectors below this may be zero."""
 NEAR = 1e-8
 """An exact point is next to one of doubles if no component differs by more, relative to the largest."""
-DENOMINATOR = 10**6
 FAR = 1e6
 """Terms of the gradient and of constraints near their bounds beyond this have lost too many digits to be judged."""
 
@@ -251,12 +250,12 @@ def _snapped(rows: list[Row], d: Array) -> Row:
 
 
 def _rational(value: float) -> Fraction:
-    """A fraction of a small denominator if there is one near."""
-    for limit in (1000, DENOMINATOR):
+    """A fraction of a small denominator if there is one near, else the number itself."""
+    for limit in (1000, 10**6):
         near = Fraction(value).limit_denominator(limit)
         if abs(float(near) - value) <= 1e-8 * max(1.0, abs(value)):
             return near
-    return Fraction(value).limit_denominator(DENOMINATOR)
+    return Fraction(value)
 
 
 def solved_exactly(rows: list[Row], unknowns: int, guess: Row) -> Row | None:

@@ -71,8 +71,9 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     reduced = N.T @ (units[:, None] * form * units) @ N
     if _positive_semidefinite(reduced):
         return Curvature(copositive=True)
-    weak = unit_rows(cone.weak * units)[0] @ N
-    weak = weak[np.linalg.norm(weak, axis=1) > lost]  # others are combinations of the rows that are held
+    weak, length = unit_rows(unit_rows(cone.weak * units)[0] @ N)
+    seen = length > lost  # others are combinations of the rows that are held
+    weak, lost = weak[seen], max(lost, _rounding_of_rows(length[seen], cone.free.size))
     copositive, falling = _search_faces(reduced, weak, lost, min(faces, FEW))
     if copositive is None:
         falling = _probe(reduced, weak, lost)
@@ -99,8 +100,12 @@ def null_space(rows: Array, n: int) -> tuple[Array, float]:
     if rows.shape[0] == 0 or n == 0:
         return np.eye(n), IN_CONE
     _, basis, triangle, _ = orthogonal(rows, DEPENDENT)
-    least = np.abs(triangle.diagonal()).min(initial=1.0)
-    return basis, max(IN_CONE, 10.0 * n * EPS / least)
+    return basis, max(IN_CONE, _rounding_of_rows(np.abs(triangle.diagonal()), n))
+
+
+def _rounding_of_rows(length: Array, n: int) -> float:
+    """Rounding of a unit direction (n,) that meets unit rows of which only this length is not in the span of others."""
+    return 10.0 * n * EPS / length.min(initial=1.0)
 
 
 def _positive_semidefinite(matrix: Array) -> bool:
@@ -151,7 +156,12 @@ def _probe(reduced: Array, weak: Array, lost: float) -> Array | None:
 
 def _falls(reduced: Array, weak: Array, d: Array, lost: float) -> bool:
     """Whether the unit direction is in the cone, up to rounding, and has negative curvature."""
-    return float(d @ reduced @ d) < -ZERO and bool(np.all(weak @ d >= -lost))
+    return float(d @ reduced @ d) < -max(ZERO, _of_curvature(lost)) and bool(np.all(weak @ d >= -lost))
+
+
+def _of_curvature(lost: float) -> float:
+    """Rounding of a curvature in units in which the rows of |H| have size one, from that of the direction."""
+    return 2.0 * lost if lost > IN_CONE else 0.0
 
 
 def _search_faces(reduced: Array, weak: Array, lost: float, faces: int) -> tuple[bool | None, Array | None]:
@@ -174,7 +184,7 @@ def _search_faces(reduced: Array, weak: Array, lost: float, faces: int) -> tuple
             for d in (basis @ vectors[:, column], -(basis @ vectors[:, column])):
                 if _falls(reduced, weak, d, max(lost, more)):
                     return False, d
-        settled = settled and eigenvalues[0] < -ZERO
+        settled = settled and eigenvalues[0] < -max(ZERO, _of_curvature(max(lost, more)))
         stack += [(*face, i) for i in range(face[-1] + 1 if face else 0, weak.shape[0])]
     return True if settled else None, None
 
@@ -286,12 +296,24 @@ def _stays(statement: Statement, d: Array) -> bool:
 def _has_no_end(progress: Progress, d: Array) -> bool:
     """Whether the objective falls without end on the unit direction."""
     statement = progress.statement
-    curvature, slope = float(d @ statement.H @ d), float(progress.gradient @ d)
-    zero = statement.rounding(d)
+    bent = statement.H @ d
+    curvature, slope, lost = float(d @ bent), float(progress.gradient @ d), _rounding_of_ray(statement, d)
+    zero = max(statement.rounding(d), 2.0 * lost * float(np.abs(bent).sum()))
     no_rows = statement.A[:0]
     terms = progress.terms(d[:0], no_rows)
     level = progress.level(d, progress.fine_zero(terms, no_rows, no_rows.T, 0.0 * d))
+    level = max(level, lost * float(np.abs(progress.gradient).sum()))
     return curvature < -zero or (curvature <= zero and slope < -level)
+
+
+def _rounding_of_ray(statement: Statement, d: Array) -> float:
+    """Rounding of a unit direction that keeps the constraints along which it does not move, where this is large."""
+    bounded = np.isfinite(statement.lower) | np.isfinite(statement.upper)
+    n, along = d.size, statement.values(d)
+    free = ((d != 0.0) | ~bounded[:n]).nonzero()[0]
+    kept = bounded[n:] & (np.abs(along[n:]) <= 1e-10 * (statement.absolute[2] @ np.abs(d)))
+    lost = null_space(unit_rows(statement.A[kept][:, free])[0], free.size)[1]
+    return lost if lost > IN_CONE else 0.0
 
 
 def separates(statement: Statement, certificate: Array) -> bool:
