@@ -12,6 +12,9 @@ from bemcontact.formulations.local_solver.statement import EPS, Statement, large
 FINE = 1e-3
 """Factor of the optimality tolerance where each component is compared with its own terms."""
 
+NEAR = 0.03
+"""Part of the tolerance of a constraint that may be rounding of a point of which the gradient is known to `FINE`."""
+
 PARALLEL = 1e-10
 """A unit direction whose product with a normal is below this does not meet the constraint, except on a long step."""
 
@@ -92,7 +95,7 @@ class Progress:
         """Distance of each constraint from its bound that may be rounding (n + m,)."""
         size = np.abs(self.x)
         terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
-        return np.maximum(FINE * self._slack, 100.0 * EPS * terms)
+        return np.maximum(NEAR * self._slack, 100.0 * EPS * terms)
 
     @property
     def objective(self) -> float:
