@@ -26,7 +26,8 @@ This sharpens Pang's bound for strongly monotone problems, (1 + ‖DM‖)/λ·|m
 474-484), which does not carry over to bodies with free motions: a small pressure on a body lifted off its support has a
 small min(p, Dδ), however far it is from the solution.
 
-Where λ is not positive, `uniqueness` may still exclude other states, and gives a λ for the error bound with S = 1.
+Where λ is not positive, `uniqueness` may still exclude all states outside of an error bound. Inside it there may be
+more than one.
 """
 
 import math
@@ -82,6 +83,7 @@ HEADINGS = {
 }
 """What is proved -> the verdict on the equations, in a few words."""
 POSITION_OPEN_HEADING = "unique pressures proved, position not determined"
+WITHIN_BOUND_HEADING = "unique within the error bound"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +100,7 @@ class Certificate(Leaf):
     The pressure is unique if λ > 0. Null if equilibrium alone fixes the pressure.
     """
     why_unique: str
-    """Why there is no other contact state, as a clause; empty where this is not proved."""
+    """Why no other contact state exists, or none outside the error bound, as a clause; empty if this is not proved."""
     error_bound: float | None
     """Bound on the difference of each pressure from that of the solution [p]; null if there is none."""
     relative_error_bound: float | None
@@ -110,7 +112,7 @@ class Certificate(Leaf):
 
     @property
     def certified(self) -> bool:
-        """Whether this is the solution, the only one, to the tolerance."""
+        """Whether this is the solution to the tolerance, and each solution is within the error bound."""
         return self.kind is CertificateKind.UNIQUE
 
 
@@ -134,9 +136,10 @@ def certify(
     kind = CertificateKind.NOT_A_SOLUTION if violation else kind
     relative = bound / peak if bound is not None and peak > 0 else None
     open_position = kind is CertificateKind.UNIQUE and contact.free_motions > 0 and peak == 0
+    within_bound = kind is CertificateKind.UNIQUE and not definite
     return Certificate(
         kind=kind,
-        heading=POSITION_OPEN_HEADING if open_position else HEADINGS[kind],
+        heading=WITHIN_BOUND_HEADING if within_bound else POSITION_OPEN_HEADING if open_position else HEADINGS[kind],
         smallest_eigenvalue=eigenvalue,
         why_unique=_why_unique(eigenvalue, definite) if kind is CertificateKind.UNIQUE else "",
         error_bound=bound,
@@ -320,14 +323,15 @@ def _violation(residuals: Residuals, tolerance: float, size: float) -> str:
 
 
 def _why_unique(eigenvalue: float | None, definite: bool) -> str:
-    """The reason for uniqueness, as a clause."""
+    """Which other states are excluded, and why, as a clause."""
     if eigenvalue is None:
-        return "equilibrium alone fixes the pressure"
+        return "equilibrium alone fixes the pressure, so no other state exists"
+    size = f"(its smallest eigenvalue is {eigenvalue:.2e})"
     if definite:
-        return f"the compliance is positive definite (its smallest eigenvalue is {eigenvalue:.2e})"
+        return f"the compliance is positive definite {size}, so no other state exists"
     return (
-        f"the load and the gaps exclude it, although the compliance is not positive definite (its smallest eigenvalue "
-        f"is {eigenvalue:.2e})"
+        "the load and the gaps exclude all states outside the error bound, although the compliance is not positive "
+        f"definite {size}"
     )
 
 
@@ -341,15 +345,11 @@ def _certificate_sentence(
 ) -> str:
     """Two or three sentences for an engineer."""
     sure = "equilibrium alone fixes it" if eigenvalue is None else f"its smallest eigenvalue is {eigenvalue:.2e}"
-    error = "" if relative is None else f" {_bound_sentence(relative)}"
+    error = "" if relative is None else f" {_bound_sentence(relative, definite)}"
     match kind:
         case CertificateKind.UNIQUE:
-            if definite:
-                return (
-                    f"All contact conditions hold. The compliance is positive definite ({sure}), so no other state "
-                    f"exists.{error}"
-                )
-            return f"All contact conditions hold. No other state exists: {_why_unique(eigenvalue, definite)}.{error}"
+            why = _why_unique(eigenvalue, definite)
+            return f"All contact conditions hold. {why[0].upper()}{why[1:]}.{error}"
         case CertificateKind.LOCAL:
             return (
                 f"All contact conditions hold, but the compliance is not positive definite ({sure}), so another "
@@ -366,12 +366,10 @@ def _certificate_sentence(
             return f"This is not the contact state: {violation}.{error} {way_out}"
 
 
-def _bound_sentence(relative: float) -> str:
+def _bound_sentence(relative: float, definite: bool) -> str:
     """Say how far each pressure can be off."""
-    return (
-        f"No pressure is off by more than {relative:.1e} of the peak from the exact solution of the equations on this "
-        "mesh."
-    )
+    solution = "the exact solution" if definite else "any exact solution"
+    return f"No pressure is off by more than {relative:.1e} of the peak from {solution} of the equations on this mesh."
 
 
 def advice(solution: ContactSolution) -> str:

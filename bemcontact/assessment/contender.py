@@ -137,8 +137,7 @@ def conclusion(
         case CertificateKind.UNIQUE:
             return Conclusion(
                 outcome=Outcome.SOLVES,
-                words=f"solves the contact problem: {objective}all conditions hold, and no other state exists, because "
-                f"{certificate.why_unique}",
+                words=f"solves the contact problem: {objective}all conditions hold, and {certificate.why_unique}",
             )
         case CertificateKind.LOCAL:
             return Conclusion(

@@ -19,8 +19,8 @@ so t by a number B. With σ' = σ + κ|s| the inequalities combine to
 
     t (1 - κΛB - σ'ρ) <= σ'|s|/λ.
 
-If the bracket, b, is positive, then |e| <= |s|/λ (1 + ρσ'/b): s = 0 makes the state the only one, and the bound is that
-of a compliance with the smallest eigenvalue λ/(1 + ρσ'/b).
+If the bracket, b, is positive, then |e| <= |s|/λ (1 + ρσ'/b), the bound of a compliance with the smallest eigenvalue
+λ/(1 + ρσ'/b). All states are within this bound of y. That there is only one is proved if s = 0 alone.
 
 Where a node has contact points for several surfaces, K has many eigenvalues that are zero up to round-off -Λ. Then
 contact is near one of the surfaces only. Let N be the points with gᵢ <= h, the contact set among them, all in the
@@ -79,7 +79,7 @@ class NearState:
 
 
 def effective_eigenvalue(state: NearState, D: Array, M: Array, Z: Array) -> float | None:
-    """Eigenvalue that bounds the error of the state by |s| over it, if it is proved to be the only one; else None.
+    """Eigenvalue by which |s| over it bounds how far each state can be from y; None if none is proved.
 
     D (n,), M (n, n), and Z (n, n - k), an orthonormal basis of the equilibrium space.
     """
@@ -141,7 +141,7 @@ def _largest(state: NearState, x: Array, g: Array) -> float:
 
 
 def near_bound(state: NearState, D: Array, M: Array, ell: Array, whole: Definiteness) -> float:
-    """Bound of |y - p*|, in the largest component, by the points near contact; infinity if there is none.
+    """Bound of |y - p*| of all states p*, in the largest component, by points near contact; infinity if there is none.
 
     D (n,), M (n, n) and ℓ (n, k); `whole` is the definiteness on all points.
     """

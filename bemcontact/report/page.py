@@ -207,7 +207,7 @@ def _certificate(answer: Record | None, units: Units) -> str:
             f"{holds} A second contact state cannot be ruled out, because the smallest eigenvalue of the compliance "
             f"({small(eigenvalue)}) is not positive. This is proved to be a solution, but not the only one."
         )
-    why = f"There is no other solution: {proved['why_unique']}."
+    why = f"{sentence_case(proved['why_unique'])}."
     return f"{holds} {why}{_bound(proved['error_bound'], answer['peak'], units)}"
 
 

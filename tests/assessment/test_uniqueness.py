@@ -73,6 +73,8 @@ def test_only_lonely_states_are_certified_and_the_bound_holds():
         certified += 1
         assert len(states) == 1
         assert "although the compliance is not positive definite" in certificate.words
+        assert certificate.heading == "unique within the error bound"
+        assert "no other state" not in certificate.words.lower()
         assert certificate.error_bound is not None
         assert abs(solution.pressure - states[0]).max() <= certificate.error_bound + 1e-12
         wrong = solution.pressure * (1 + 1e-6 * rng.standard_normal(N))
@@ -206,4 +208,6 @@ def test_three_surfaces_at_each_node_are_no_obstacle_where_contact_holds_the_bod
     assert one.certified
     assert three.certified
     assert three.certificate.smallest_eigenvalue == pytest.approx(0.0, abs=1e-9)
+    assert three.certificate.heading == "unique within the error bound"
+    assert "any exact solution" in three.certificate.words
     assert three.footprint.peak.pressure == pytest.approx(one.footprint.peak.pressure, rel=1e-9)

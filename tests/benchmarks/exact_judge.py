@@ -15,7 +15,8 @@ CLEAR = 1e-6
 """A residual above this is no rounding: the numbers of the programs are whole and small."""
 CLOSE = 1e-9
 """A product of unit vectors below this may be zero."""
-DENOMINATOR = 10**6
+NEAR = 1e-8
+"""An exact point is next to one of doubles if no component differs by more, relative to the largest."""
 FAR = 1e6
 """Terms of the gradient and of constraints near their bounds beyond this have lost too many digits to be judged."""
 
@@ -39,9 +40,10 @@ def judge(program: IntegerProgram, units: Units, result: QPResult) -> Verdict:
     x = units.columns * result.x
     if result.status is QPStatus.LOCAL_MINIMIZER:
         verdict = _of_minimizer(program, x)
-        return Verdict.RIGHT if verdict is not Verdict.RIGHT and _proved(program, x, result.working_set) else verdict
+        exact = verdict if verdict is Verdict.RIGHT else _at_working_set(program, x, result.working_set)
+        return verdict if exact is Verdict.UNSETTLED else exact
     if result.status is QPStatus.UNBOUNDED and result.ray is not None:
-        return _of_ray(program, x, units.columns * result.ray)
+        return _of_ray(program, x, units.columns * result.ray, result.working_set)
     if result.status is QPStatus.INFEASIBLE and result.certificate is not None:
         return _of_certificate(program, units.rows * result.certificate[x.size :])
     return Verdict.NO_CLAIM
@@ -186,21 +188,57 @@ def _stationary(program: IntegerProgram, guess: Row, held: list[tuple[int, float
     return None if solution is None else (solution[:k], solution[k:])
 
 
-def _proved(program: IntegerProgram, x: Array, sides: NDArray[np.int8]) -> bool:
-    """Whether a strict minimizer of the working set, exact and feasible, is next to x: closer than `CLEAR` can tell."""
-    numbers, lower, upper = np.flatnonzero(sides), program.lower, program.upper
-    held = [(int(i), float(upper[i] if sides[i] == 1 else lower[i])) for i in numbers]
-    solution = _stationary(program, [Fraction(float(v)) for v in x], held)
-    if solution is None:
-        return False
-    multipliers, point = solution
-    if max(abs(float(v) - w) for v, w in zip(point, x, strict=True)) > CLOSE * max(1.0, float(np.abs(x).max())):
-        return False
+def _at_working_set(program: IntegerProgram, x: Array, sides: NDArray[np.int8]) -> Verdict:
+    """Judge the exact point of the working set in fractions, if it is feasible and next to x: closer than `CLEAR`."""
+    solution = _stationary(program, [Fraction(float(v)) for v in x], _held(program, sides))
+    if solution is None or not _is_near(solution[1], x):
+        return Verdict.UNSETTLED
+    (multipliers, point), G = solution, program.normals
+    bounds = _exact_bounds(program, point)
+    if bounds is None:
+        return Verdict.UNSETTLED
+    equal = program.lower == program.upper
+    sizes = np.zeros(sides.size, dtype=object)
+    sizes[np.flatnonzero(sides)] = multipliers
+    at_lower, at_upper = bounds[0] & ~equal, bounds[1] & ~equal
+    if ((sizes * sides.astype(int) > 0) & ~equal).any():  # others may be right where active normals are dependent
+        gradient = [_product(row, [*point, Fraction(1)]) for row in _exact(np.column_stack([program.H, program.c]))]
+        falls = _slope_falls(gradient, G[equal], np.vstack([G[at_lower], -G[at_upper]]))
+        return Verdict.FALSE_MINIMIZER if falls else Verdict.UNSETTLED
+    weak = sizes == 0
+    return _of_cone(program.H, _exact(G[~weak | equal]), np.vstack([G[at_lower & weak], -G[at_upper & weak]]))
+
+
+def _is_near(point: Row, x: Array) -> bool:
+    """Whether an exact point is next to x."""
+    return _distance(point, x) <= NEAR * max(1.0, float(np.abs(x).max()))
+
+
+def _distance(point: Row, x: Array) -> float:
+    """The largest difference of a component."""
+    return max(abs(float(v - Fraction(float(w)))) for v, w in zip(point, x, strict=True))
+
+
+def _exact_bounds(program: IntegerProgram, point: Row) -> tuple[NDArray[np.bool_], NDArray[np.bool_]] | None:
+    """Which constraints are at their lower and at their upper bound; None if one is violated."""
     values = [_product(row, point) for row in _exact(program.normals)]
-    feasible = all(low <= value <= high for low, value, high in zip(lower, values, upper, strict=True))
-    strict = all(y * int(sides[i]) < 0 or lower[i] == upper[i] for y, i in zip(multipliers, numbers, strict=True))
-    N = _null_space(program.normals[numbers])
-    return feasible and strict and bool(N.shape[1] == 0 or np.linalg.eigvalsh(N.T @ program.H @ N)[0] > CLOSE)
+    pairs = list(zip(program.lower, values, program.upper, strict=True))
+    if not all(low <= value <= high for low, value, high in pairs):
+        return None
+    return np.array([low == v for low, v, _ in pairs]), np.array([v == high for _, v, high in pairs])
+
+
+def _slope_falls(gradient: Row, equal: Array, inwards: Array) -> bool:
+    """Whether a direction that all active constraints allow has a negative slope; sought by a linear program."""
+    g = np.array([float(v) for v in gradient])
+    bounds = [(-1.0, 1.0)] * g.size
+    lengths = np.abs(inwards).max(axis=1, keepdims=True, initial=1.0)
+    found = linprog(g, -inwards / lengths, np.zeros(len(inwards)), equal, np.zeros(len(equal)), bounds=bounds)
+    if found.status != 0 or found.fun > -CLEAR:
+        return False
+    held = np.abs(inwards @ found.x) <= CLOSE * lengths[:, 0]
+    d = _snapped(_exact(np.vstack([equal, inwards[held]])), found.x)
+    return all(_product(row, d) >= 0 for row in _exact(inwards)) and _product(gradient, d) < 0
 
 
 def _snapped(rows: list[Row], d: Array) -> Row:
@@ -212,12 +250,12 @@ def _snapped(rows: list[Row], d: Array) -> Row:
 
 
 def _rational(value: float) -> Fraction:
-    """A fraction of a small denominator if there is one near."""
-    for limit in (1000, DENOMINATOR):
+    """A fraction of a small denominator if there is one near, else the number itself."""
+    for limit in (1000, 10**6):
         near = Fraction(value).limit_denominator(limit)
         if abs(float(near) - value) <= 1e-8 * max(1.0, abs(value)):
             return near
-    return Fraction(value).limit_denominator(DENOMINATOR)
+    return Fraction(value)
 
 
 def solved_exactly(rows: list[Row], unknowns: int, guess: Row) -> Row | None:
@@ -256,30 +294,62 @@ def _product(a: Row, b: Row) -> Fraction:
     return sum((v * w for v, w in zip(a, b, strict=True) if v and w), Fraction(0))
 
 
-def _of_ray(program: IntegerProgram, x: Array, ray: Array) -> Verdict:
+def _of_ray(program: IntegerProgram, x: Array, ray: Array, sides: NDArray[np.int8]) -> Verdict:
     """A ray: recession direction on which the objective falls without end."""
     G, H, d = program.normals, program.H, ray / np.abs(ray).max()
     along, rounding = G @ d, 1e-8 * (np.abs(G) @ np.abs(d))
     falls, rises = np.isfinite(program.lower), np.isfinite(program.upper)
     leaves = (falls & (along < -rounding)) | (rises & (along > rounding))
-    if violation(program, x) > CLEAR or leaves.any():
+    held = (falls | rises) & (np.abs(along) <= rounding)
+    exact = _snapped(_exact(G[held]), d)
+    point = _feasible_point(program, x, exact, sides)
+    if leaves.any() or (point is None and violation(program, x) > CLEAR):
         return Verdict.FALSE_UNBOUNDED
     curvature, product = float(d @ H @ d), float(np.abs(d) @ np.abs(H) @ np.abs(d))
     if curvature < -CLEAR * product:  # the nearest direction that meets the rows exactly has it too
         return Verdict.RIGHT
-    held = (falls | rises) & (np.abs(along) <= rounding)
-    exact = _snapped(_exact(G[held]), d)
-    if np.abs(np.array([float(v) for v in exact]) - d).max() > 1e-6:
+    if _distance(exact, d) > 1e-6:
         return Verdict.UNSETTLED
-    if curvature < -CLOSE * product and _product([_product(row, exact) for row in _exact(H)], exact) < 0:
+    if _falls_without_end(program, point, exact):
         return Verdict.RIGHT
-    if not any(_product(row, exact) for row in _exact(H)) and _product(_exact(program.c[None])[0], exact) < 0:
-        return Verdict.RIGHT  # on a direction that H does not see, the slope is that of c
     gradient = H @ x + program.c
     terms = float((np.abs(H) @ np.abs(x) + np.abs(program.c)) @ np.abs(d))
     if abs(curvature) <= CLOSE * product and gradient @ d < -CLEAR * terms:
         return Verdict.RIGHT
     return _unbounded_at_all(program)
+
+
+def _falls_without_end(program: IntegerProgram, point: Row | None, d: Row) -> bool:
+    """Whether the objective falls without end along the direction, from a feasible point if it depends on that."""
+    along = np.array([_product(row, d) for row in _exact(program.normals)])
+    if (along[np.isfinite(program.lower)] < 0).any() or (along[np.isfinite(program.upper)] > 0).any():
+        return False
+    bent = [_product(row, d) for row in _exact(program.H)]
+    curvature, slope = _product(bent, d), _product(_exact(program.c[None])[0], d)
+    if curvature or not any(bent):
+        return curvature < 0 or (curvature == 0 and slope < 0)  # where H sees nothing, the slope is that of c
+    return point is not None and slope + _product(bent, point) < 0
+
+
+def _feasible_point(program: IntegerProgram, x: Array, d: Row, sides: NDArray[np.int8]) -> Row | None:
+    """An exact feasible point next to x, or a little further along the ray d, with the working set at its bounds."""
+    lower, upper, size = program.lower[: x.size], program.upper[: x.size], max(1.0, float(np.abs(x).max()))
+    clipped = np.where(np.abs(x - lower) < CLOSE, lower, np.where(np.abs(x - upper) < CLOSE, upper, x))
+    for held in (_held(program, sides), _active(program, x, CLEAR)[2], _active(program, x, CLOSE)[2]):
+        rows = _exact(program.normals[[number for number, _ in held]])
+        rows = [[*row, Fraction(int(bound))] for row, (_, bound) in zip(rows, held, strict=True)]
+        for guess in (clipped, x):
+            point = solved_exactly(rows, x.size, [Fraction(float(v)) for v in guess])
+            for step in (Fraction(0), Fraction(NEAR * size)):
+                moved = None if point is None else [v + step * w for v, w in zip(point, d, strict=True)]
+                if moved and _distance(moved, x) <= 2 * NEAR * size and _exact_bounds(program, moved) is not None:
+                    return moved
+    return None
+
+
+def _held(program: IntegerProgram, sides: NDArray[np.int8]) -> list[tuple[int, float]]:
+    """Number and bound of each constraint of a working set."""
+    return [(int(i), float(program.upper[i] if sides[i] == 1 else program.lower[i])) for i in np.flatnonzero(sides)]
 
 
 def _unbounded_at_all(program: IntegerProgram) -> Verdict:
@@ -298,10 +368,14 @@ def _unbounded_at_all(program: IntegerProgram) -> Verdict:
 
 def _of_certificate(program: IntegerProgram, of_rows: Array) -> Verdict:
     """Farkas multipliers made rational; where this proves nothing, a linear program decides."""
-    n, lower, upper = program.c.size, program.lower, program.upper
-    largest = float(np.abs(of_rows).max(initial=0.0))
-    rows = [_rational(v / largest) for v in of_rows] if largest else []
-    columns = [-_product(row, rows) for row in _exact(program.A.T)] if largest else [Fraction(0)] * n
+    lower, upper, largest = program.lower, program.upper, float(np.abs(of_rows).max(initial=0.0))
+    y = of_rows / (largest or 1.0)
+    used, cancels = y != 0.0, np.abs(program.A.T @ y) <= CLOSE * (np.abs(program.A.T) @ np.abs(y))
+    conditions = [[*row, Fraction(0)] for row in _exact(program.A[used][:, cancels].T)]
+    of_used = solved_exactly(conditions, int(used.sum()), [Fraction(float(v)) for v in y[used]]) or []
+    rows = np.zeros(y.size, dtype=object)
+    rows[used] = of_used
+    columns = [-_product(row, list(rows)) for row in _exact(program.A.T)]
     total = Fraction(0)
     for y, low, high in zip([*columns, *rows], lower, upper, strict=False):
         bound = low if y > 0 else high

@@ -139,12 +139,12 @@ def resting_program(rng: np.random.Generator) -> tuple[IntegerProgram, Array, ND
     return program, x.astype(float), free
 
 
-def narrow_program(rng: np.random.Generator) -> IntegerProgram:
-    """A program whose rows are in part parallel to others up to a thousandth, most of them active at one point."""
+def narrow_program(rng: np.random.Generator, level: int = 1000) -> IntegerProgram:
+    """A program whose rows are in part parallel to others up to one in `level`, most of them active at one point."""
     n, m = int(rng.integers(2, 6)), int(rng.integers(2, 7))
     A = rng.integers(-2, 3, (m, n)) * (rng.random((m, n)) < rng.choice([0.4, 0.8, 1.0]))
     alike, other, changed = rng.random(m) < 0.5, rng.integers(0, m, m), rng.integers(0, n, m)
-    A = np.where(alike[:, None], 1000 * A[other], A)
+    A = np.where(alike[:, None], level * A[other], A)
     A[np.arange(m), changed] += alike * rng.integers(-1, 2, m)
     x, H = rng.integers(-3, 4, n), _hessian(n, rng)
     values, room = np.concatenate([x, A @ x]), rng.integers(0, 5, (2, n + m)) * (rng.random((2, n + m)) < 0.2)

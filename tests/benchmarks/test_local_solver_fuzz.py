@@ -187,6 +187,25 @@ def test_rows_that_are_parallel_up_to_a_thousandth_have_answers_that_stay(seed):
         assert (again.status, again.iterations) == (result.status, 0)
 
 
+@settings(max_examples=300)
+@given(st.integers(0, 10**9))
+@example(939)
+@example(1008)
+@example(1585)
+@example(3153)
+@example(3844)
+@example(3900)
+@example(4416)
+@example(4657)
+def test_rows_that_are_parallel_up_to_1e_7_have_no_false_claim(seed):
+    """Seven digits of multipliers and directions are rounding; what they could decide is undecided."""
+    rng = np.random.default_rng(seed)
+    program = narrow_program(rng, 10**7)
+    units = random_units(program, rng)
+    start = rng.integers(-4, 5, program.c.size).astype(float) if rng.random() < 0.5 else None
+    assert "false" not in judge(program, units, solved(program, units, start, None))
+
+
 @settings(max_examples=200)
 @given(st.integers(0, 10**9))
 def test_units_change_no_verdict_of_convex_programs(seed):

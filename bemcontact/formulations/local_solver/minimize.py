@@ -28,8 +28,6 @@ from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest
 
 FAILURES = 6
 """Largest number of restarts with new factors after a claim failed its check."""
-NEAR = 1e-6
-"""Relative distance to the point within which a constraint may count as active."""
 FINER = 1e-2
 """Factor of the tolerance of phase one after each failure."""
 
@@ -110,7 +108,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
     if outcome.ending is Ending.INACCURATE:
         return Restart(sides=descent.working.sides, failed=True)
     multipliers = descent.working.of_all(descent.multipliers)
-    conditions = first_order(progress, multipliers, descent.working.of_all(descent.zeros))
+    conditions = first_order(progress, descent.working.held, multipliers, descent.working.of_all(descent.zeros))
     if not conditions.holds:
         return Restart(sides=descent.working.sides, failed=True)
     return _second_order(progress, descent, conditions, multipliers)
@@ -136,15 +134,14 @@ def _second_order(
             return Restart(sides=descent.working.sides, failed=True)
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     slope, curved = float(progress.gradient @ direction), float(direction @ progress.statement.H @ direction)
-    rounding = 100.0 * EPS * abs(progress.objective)
-    if block.step * (slope + 0.5 * block.step * curved) >= -rounding:
-        near = block.step <= NEAR * max(1.0, largest(progress.x))
-        return _second_order(progress, descent, conditions.stricter(along, block.constraint, near=near), multipliers)
+    rounding = 100.0 * EPS * float(progress.terms(direction[:0], progress.statement.A[:0]) @ np.abs(direction))
+    if slope + 0.5 * block.step * curved >= -rounding or block.step <= EPS * max(1.0, largest(progress.x)):
+        return _second_order(progress, descent, conditions.stricter(along, block.constraint), multipliers)
     progress.move(along, block.step, 1.0)
     progress.look()
     held = int(np.count_nonzero(conditions.strong)) + 1
     progress.write(2, progress.objective / progress.unit, block.step, block.constraint, None, held, 1)
-    return Restart(sides=progress.statement.sides_reached(progress.values, progress.slack), failed=False)
+    return Restart(sides=progress.statement.sides_reached(progress.values, progress.sharp), failed=False)
 
 
 def _strict(descent: Descent, conditions: FirstOrder) -> bool:

@@ -22,6 +22,8 @@ ZERO = 1e-11
 """A curvature below -ZERO is negative, in units in which the rows of |H| have size one."""
 ROUNDING = 1e-14
 """A curvature above -ROUNDING max(10, n) is not negative. Between the two limits it stays undecided."""
+IN_CONE = 1e-11
+"""A unit direction whose product with an inward normal is above -IN_CONE is in the cone."""
 OF_RAY = (1e-13, 1e-12, 1e-11, 1e-10)
 """Sizes of the components of a ray that may be rounding, relative to the largest; tried one after the other."""
 FEW = 100
@@ -64,17 +66,19 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     negative eigenvectors are tried before the other faces.
     """
     form = H[cone.free][:, cone.free]
-    units = unit_sizes(np.abs(form))
-    N = null_space(unit_rows(cone.equal * units)[0], cone.free.size)
+    units = _units(np.abs(form), np.abs(np.vstack([cone.equal, cone.weak])))
+    N, lost = null_space(unit_rows(cone.equal * units)[0], cone.free.size)
     reduced = N.T @ (units[:, None] * form * units) @ N
     if _positive_semidefinite(reduced):
         return Curvature(copositive=True)
-    weak = unit_rows(cone.weak * units)[0] @ N
-    copositive, falling = _search_faces(reduced, weak, min(faces, FEW))
+    weak, length = unit_rows(unit_rows(cone.weak * units)[0] @ N)
+    seen = length > lost  # others are combinations of the rows that are held
+    weak, lost = weak[seen], max(lost, _rounding_of_rows(length[seen], cone.free.size))
+    copositive, falling = _search_faces(reduced, weak, lost, min(faces, FEW))
     if copositive is None:
-        falling = _probe(reduced, weak)
+        falling = _probe(reduced, weak, lost)
     if copositive is None and falling is None:
-        copositive, falling = _search_faces(reduced, weak, faces)
+        copositive, falling = _search_faces(reduced, weak, lost, faces)
     if falling is None:
         return Curvature(copositive=copositive)
     direction = np.zeros(H.shape[0])
@@ -82,11 +86,26 @@ def examine(H: Array, cone: CriticalCone, *, faces: int) -> Curvature:
     return Curvature(copositive=False, direction=direction / np.linalg.norm(direction))
 
 
-def null_space(rows: Array, n: int) -> Array:
-    """An orthonormal basis of {d : rows d = 0}."""
+def _units(form: Array, rows: Array) -> Array:
+    """Factors of variables by which the rows of |H| have size one, or those of the constraints where |H| has none."""
+    units, flat = unit_sizes(form), ~form.any(axis=0)
+    curved = np.maximum.reduce(rows * units * ~flat, axis=1, initial=0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        balanced = np.where(rows > 0.0, curved[:, None] / rows, 0.0).max(axis=0, initial=0.0)
+    return np.where(flat & (balanced > 0.0), balanced, units)
+
+
+def null_space(rows: Array, n: int) -> tuple[Array, float]:
+    """An orthonormal basis of {d : rows d = 0}, and its rounding, which is large where rows are nearly dependent."""
     if rows.shape[0] == 0 or n == 0:
-        return np.eye(n)
-    return orthogonal(rows, DEPENDENT)[1]
+        return np.eye(n), IN_CONE
+    _, basis, triangle, _ = orthogonal(rows, DEPENDENT)
+    return basis, max(IN_CONE, _rounding_of_rows(np.abs(triangle.diagonal()), n))
+
+
+def _rounding_of_rows(length: Array, n: int) -> float:
+    """Rounding of a unit direction (n,) that meets unit rows of which only this length is not in the span of others."""
+    return 10.0 * n * EPS / length.min(initial=1.0)
 
 
 def _positive_semidefinite(matrix: Array) -> bool:
@@ -114,7 +133,7 @@ def _projected(weak: Array, d: Array) -> Array:
     return d + weak.T @ y
 
 
-def _probe(reduced: Array, weak: Array) -> Array | None:
+def _probe(reduced: Array, weak: Array, lost: float) -> Array | None:
     """Find a falling direction by projected descents from negative eigenvectors and random sums of them."""
     eigenvalues, vectors = np.linalg.eigh(reduced)
     size = float(np.abs(eigenvalues).max())
@@ -129,18 +148,23 @@ def _probe(reduced: Array, weak: Array) -> Array | None:
             if length < 1e-9:
                 break
             d = d / length
-            if _falls(reduced, weak, d):
+            if _falls(reduced, weak, d, lost):
                 return d
             d = d - reduced @ d / size
     return None
 
 
-def _falls(reduced: Array, weak: Array, d: Array) -> bool:
-    """Whether the unit direction is in the cone and has negative curvature."""
-    return float(d @ reduced @ d) < -ZERO and bool(np.all(weak @ d >= -1e-11))
+def _falls(reduced: Array, weak: Array, d: Array, lost: float) -> bool:
+    """Whether the unit direction is in the cone, up to rounding, and has negative curvature."""
+    return float(d @ reduced @ d) < -max(ZERO, _of_curvature(lost)) and bool(np.all(weak @ d >= -lost))
 
 
-def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None, Array | None]:
+def _of_curvature(lost: float) -> float:
+    """Rounding of a curvature in units in which the rows of |H| have size one, from that of the direction."""
+    return 2.0 * lost if lost > IN_CONE else 0.0
+
+
+def _search_faces(reduced: Array, weak: Array, lost: float, faces: int) -> tuple[bool | None, Array | None]:
     """Examine faces on whose span the form is not positive semidefinite, until one contains a falling direction."""
     stack: list[tuple[int, ...]] = [()]
     seen, settled = 0, True
@@ -149,7 +173,7 @@ def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None,
             return None, None
         face = stack.pop()
         seen += 1
-        basis = null_space(weak[list(face)], reduced.shape[0])
+        basis, more = null_space(weak[list(face)], reduced.shape[0])
         if basis.shape[1] == 0:
             continue
         form = basis.T @ reduced @ basis
@@ -158,15 +182,17 @@ def _search_faces(reduced: Array, weak: Array, faces: int) -> tuple[bool | None,
         eigenvalues, vectors = np.linalg.eigh(form)
         for column in np.flatnonzero(eigenvalues < -ZERO):
             for d in (basis @ vectors[:, column], -(basis @ vectors[:, column])):
-                if _falls(reduced, weak, d):
+                if _falls(reduced, weak, d, max(lost, more)):
                     return False, d
-        settled = settled and eigenvalues[0] < -ZERO
+        settled = settled and eigenvalues[0] < -max(ZERO, _of_curvature(max(lost, more)))
         stack += [(*face, i) for i in range(face[-1] + 1 if face else 0, weak.shape[0])]
     return True if settled else None, None
 
 
 WEAK = 10.0
 """A multiplier is strong if it exceeds its zero by this factor."""
+DOUBT = 0.03
+"""A multiplier of the wrong sign is more than likely rounding if it exceeds its zero by this factor."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,25 +226,26 @@ class FirstOrder:
         normals[fixed.size :] = statement.A[rows][:, free]
         return CriticalCone(free=free, equal=statement.A[self.strong[n:]][:, free], weak=inwards[:, None] * normals)
 
-    def stricter(self, along: Array, blocking: int, *, near: bool) -> "FirstOrder":
-        """Conditions of a smaller cone, without a direction on which the objective does not fall.
+    def stricter(self, along: Array, blocking: int) -> "FirstOrder":
+        """Doubtful conditions of a smaller cone, without a direction on which the objective does not clearly fall.
 
         Small multipliers that make the objective rise are taken as strong. If there are none, the constraint that
-        blocks the step is taken as active. The result is doubtful, except if a bound that is not active is `near`.
+        blocks the step is taken as active.
         """
         leaving = self.weak & (self.sides * along < 0.0) & (self.size > 0.0)
-        sides, weak, doubtful = self.sides.copy(), self.weak & ~leaving, True
+        sides, weak = self.sides.copy(), self.weak & ~leaving
         if not leaving.any():
             reached = -1 if along[blocking] < 0.0 else 1
-            doubtful = not near or bool(weak[blocking] and sides[blocking] == reached)
             leaving[blocking], weak[blocking] = weak[blocking], not weak[blocking]
             sides[blocking] = reached
-        doubtful = self.doubtful or doubtful
-        return replace(self, strong=self.strong | leaving, weak=weak, sides=sides, doubtful=doubtful)
+        return replace(self, strong=self.strong | leaving, weak=weak, sides=sides, doubtful=True)
 
 
-def first_order(progress: Progress, multipliers: Array, zeros: Array) -> FirstOrder:
-    """Recompute the first-order conditions at the point; a multiplier below its entry of `zeros` (n + m,) is zero."""
+def first_order(progress: Progress, working: BoolArray, multipliers: Array, zeros: Array) -> FirstOrder:
+    """Recompute the first-order conditions at the point; a multiplier below its entry of `zeros` (n + m,) is zero.
+
+    A constraint that is not in the `working` set is active if its bound is as near as rounding.
+    """
     statement, n = progress.statement, progress.x.size
     values = statement.values(progress.x)
     slack = 2.0 * progress.slack
@@ -231,14 +258,16 @@ def first_order(progress: Progress, multipliers: Array, zeros: Array) -> FirstOr
     wrong[statement.equality] = 0.0
     held[n:] &= np.logical_or.reduce(statement.A, axis=1)  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
+    active = working | (statement.sides_reached(values, progress.sharp) != 0)
     tolerated = 2.0 * zeros
     tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
     return FirstOrder(
         holds=feasible and stationary and np.count_nonzero(wrong <= tolerated) == zeros.size,
         strong=strong,
-        weak=held & ~strong,
+        weak=held & ~strong & active,
         sides=sides,
         size=size,
+        doubtful=bool((wrong > DOUBT * zeros).any()),
     )
 
 
@@ -267,12 +296,24 @@ def _stays(statement: Statement, d: Array) -> bool:
 def _has_no_end(progress: Progress, d: Array) -> bool:
     """Whether the objective falls without end on the unit direction."""
     statement = progress.statement
-    curvature, slope = float(d @ statement.H @ d), float(progress.gradient @ d)
-    zero = statement.rounding(d)
+    bent = statement.H @ d
+    curvature, slope, lost = float(d @ bent), float(progress.gradient @ d), _rounding_of_ray(statement, d)
+    zero = max(statement.rounding(d), 2.0 * lost * float(np.abs(bent).sum()))
     no_rows = statement.A[:0]
     terms = progress.terms(d[:0], no_rows)
     level = progress.level(d, progress.fine_zero(terms, no_rows, no_rows.T, 0.0 * d))
+    level = max(level, lost * float(np.abs(progress.gradient).sum()))
     return curvature < -zero or (curvature <= zero and slope < -level)
+
+
+def _rounding_of_ray(statement: Statement, d: Array) -> float:
+    """Rounding of a unit direction that keeps the constraints along which it does not move, where this is large."""
+    bounded = np.isfinite(statement.lower) | np.isfinite(statement.upper)
+    n, along = d.size, statement.values(d)
+    free = ((d != 0.0) | ~bounded[:n]).nonzero()[0]
+    kept = bounded[n:] & (np.abs(along[n:]) <= 1e-10 * (statement.absolute[2] @ np.abs(d)))
+    lost = null_space(unit_rows(statement.A[kept][:, free])[0], free.size)[1]
+    return lost if lost > IN_CONE else 0.0
 
 
 def separates(statement: Statement, certificate: Array) -> bool:

@@ -18,7 +18,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, pivoted_cholesky
-from bemcontact.formulations.local_solver.progress import Progress
+from bemcontact.formulations.local_solver.progress import FINE, Progress
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 from bemcontact.formulations.local_solver.working_set import (
     FLAT,
@@ -175,7 +175,7 @@ class Descent:
         self.changed = self.broken = False
         self.whole = self.idle = 0
         self._refused: set[int] = set()
-        self.multipliers = self.zeros = progress.x[:0]
+        self.multipliers = self.zeros = self._refinement = progress.x[:0]
         self.working = working
         self.hessian = ReducedHessian(progress.statement, working.null_space)
         for direction in self.hessian.left_over.T:
@@ -233,7 +233,10 @@ class Descent:
         multipliers, zeros = self.multipliers, self.zeros
         if loose and (np.abs(multipliers[:n] * working.free) > zeros[:n]).any():
             return True, None
-        return False, wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
+        place = wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
+        if place is None and self._sharpened():
+            place = wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
+        return False, place
 
     def _refine(self) -> None:
         """Solve the equations of the working set again from the data, by two steps of refinement."""
@@ -245,7 +248,25 @@ class Descent:
         progress.place(x)
         once = working.multipliers(progress.gradient, refined=True)
         self.multipliers = working.refined(once)
-        self.zeros = self._fine_zero(self.multipliers) + np.abs(self.multipliers - once)
+        self._refinement = np.abs(self.multipliers - once)
+        self.zeros = self._fine_zero(self.multipliers) + self._refinement
+
+    def _sharpened(self) -> bool:
+        """Compute `zeros` of fixed variables with wrong signs from the directions that release them.
+
+        Nearly dependent rows have multipliers with large rounding, but along these directions much of it cancels.
+        """
+        working, n = self.working, self.progress.x.size
+        terms = self.progress.terms(self.multipliers[n:], working.W)
+        fine = np.maximum(FINE * self.progress.options.optimality_tolerance, 100.0 * EPS) * terms
+        wrong = (working.signs[:n] * self.multipliers[:n] > fine).nonzero()[0]
+        if wrong.size == 0 or working.size == 0:
+            return False
+        released = working.N.dot(working.W[:, wrong])
+        released[wrong, np.arange(wrong.size)] -= 1.0
+        lost = 100.0 * self.progress.lost(terms, self._reach(terms)).dot(np.abs(released))
+        self.zeros[wrong] = np.minimum(self.zeros[wrong], np.maximum(fine[wrong], lost) + self._refinement[wrong])
+        return True
 
     def _allowed(self, multipliers: Array) -> Array:
         """Multipliers (n + r,) with zeros for refused constraints."""
@@ -307,9 +328,11 @@ class Descent:
             self._refused.add(block.constraint)
 
     def _fine_slope(self, direction: Array) -> float:
-        """The slope along a direction that counts as zero."""
-        multipliers = self.working.multipliers(self.progress.gradient)
-        return self.progress.level(direction, self._fine_zero(multipliers)[: direction.size])
+        """The slope along a direction of the null space that counts as zero."""
+        n, working, progress = direction.size, self.working, self.progress
+        terms = progress.terms(working.multipliers(progress.gradient)[n:], working.W)
+        no_rows = working.W[:0]  # errors of their multipliers do not change this slope
+        return progress.level(direction, progress.fine_zero(terms, no_rows, no_rows.T, self._reach(terms)))
 
     def _fine_zero(self, multipliers: Array) -> Array:
         """Size of each component of the gradient and of each multiplier of rows that counts as zero (n + r,)."""

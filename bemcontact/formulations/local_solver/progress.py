@@ -12,6 +12,9 @@ from bemcontact.formulations.local_solver.statement import EPS, Statement, large
 FINE = 1e-3
 """Factor of the optimality tolerance where each component is compared with its own terms."""
 
+NEAR = 0.03
+"""Part of the tolerance of a constraint that may be rounding of a point of which the gradient is known to `FINE`."""
+
 PARALLEL = 1e-10
 """A unit direction whose product with a normal is below this does not meet the constraint, except on a long step."""
 
@@ -88,6 +91,13 @@ class Progress:
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
     @property
+    def sharp(self) -> Array:
+        """Distance of each constraint from its bound that may be rounding (n + m,)."""
+        size = np.abs(self.x)
+        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
+        return np.maximum(NEAR * self._slack, 100.0 * EPS * terms)
+
+    @property
     def objective(self) -> float:
         """cᵀx + xᵀHx/2."""
         return 0.5 * float(self.x.dot(self.gradient + self.statement.c))
@@ -106,19 +116,24 @@ class Progress:
 
         The variables may differ in size by many orders, so each component has its own tolerance, relative to its own
         terms. Rounding in one component changes the multipliers of the rows (r, n) by their right inverse (n, r), and
-        so other components. The components of the point have the rounding of numbers of the size `reach` (n,); faint
-        ones have no digit.
+        so other components.
         """
-        size = self.travelled
-        size = np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
-        lost = EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(size, reach)))
-        fine = FINE * self.options.optimality_tolerance * terms
+        lost, fine = self.lost(terms, reach), FINE * self.options.optimality_tolerance * terms
         if not rows.size:
             return np.maximum(fine, 100.0 * lost)
         N = np.abs(inverse)
         of_rows = lost.dot(N)
         lost += of_rows.dot(np.abs(rows))
         return np.maximum(np.concatenate([fine, fine.dot(N)]), 100.0 * np.concatenate([lost, of_rows]))
+
+    def lost(self, terms: Array, reach: Array) -> Array:
+        """Rounding of each component of the gradient (n,) if the point has that of numbers of the size `reach` (n,).
+
+        Faint components of the point have no digit.
+        """
+        size = self.travelled
+        size = np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
+        return EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(size, reach)))
 
     def level(self, direction: Array, zero: Array) -> float:
         """Size of a slope along a direction that counts as zero, from that of each component of the gradient (n,)."""
