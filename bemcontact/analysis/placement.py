@@ -9,22 +9,21 @@ there too: the normals turn, and a body that moves takes the places of its force
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import null_space
 
+from bemcontact.analysis.displaced import Displaced, displaced, load_after
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.penetration import Misfit, Penetration, tolerated
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ContactPoints
-from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps
+from bemcontact.bem.surface_gaps import SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.formulations import complementarity
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.surface_lines import Polyline
 
 LEAST_ASKED = 0.01
 """Accuracy to which the place is judged, unless a smaller one is asked for. A relative curvature that is off by 2 %
@@ -39,33 +38,12 @@ MOVES_ON = 0.5
 NO_SQUARE = 2.0
 """A motion that is so many times the change of the gaps, or the turn of normals times the motion of their places, does
 not come from these, which are of second order."""
-UNMOVED = 0.01
-"""Motion of the place of contact, over the length that is pressed, that may come from the mesh."""
 UNSEEN = 1e-9
 """Normal displacement of pressed points by a free motion, over the largest one, that is none."""
 NO_CHANGE = 1e-7
 """Difference of the gaps, over the displacement scale of contact, that changes nothing."""
 ALIKE = 0.1
 """Difference of displacements on the boundary, over one of them, up to which the body moves as a whole."""
-
-
-class _Displaced(NamedTuple):
-    """Contact points after they have moved.
-
-    Parameters
-    ----------
-    motion : (n, 2) displacement against the surface [L]
-    change : (n,) of the gap beside the linear one [L]
-    distance : (n,) from the surface [L]
-    other : (n,) whether another face of the surface is nearest
-    turn : (n, 2) change of the normal
-    """
-
-    motion: Array
-    change: Array
-    distance: Array
-    other: BoolArray
-    turn: Array
 
 
 def placement(
@@ -81,7 +59,7 @@ def placement(
     after it. A peak between them is that of a parameter a little off: at first touch no peak is sure to any part of it.
     """
     points = body.points
-    moved = _displaced(gaps, points, contact, solution)
+    moved = displaced(gaps, points, contact, solution)
     pressed = contact.pressed(solution.pressure, solution.displacement)
     if not pressed.any():
         return None, ()
@@ -91,7 +69,7 @@ def placement(
         return _off_the_surface(gaps, points, contact, farthest, moved), ()
     overhangs = tuple(_overhangs(gaps, points, contact, beside, pressed, moved))
     moved.change[beside] = 0.0
-    load = _load_of_levers(gaps, body, contact, solution) + _load_of_turns(gaps, body, contact, solution, moved)
+    load = load_after(gaps, body, contact, solution, moved)
     least_load = NO_CHANGE * (contact.weights * solution.pressure) @ abs(contact.rigid_motions)
     change = max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max())
     if change <= NO_CHANGE and np.all(abs(load) <= least_load):
@@ -124,39 +102,8 @@ def _judged_to(problem: Problem) -> float:
     return min(LEAST_ASKED, problem.asked_accuracy or LEAST_ASKED)
 
 
-def _displaced(
-    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution
-) -> _Displaced:
-    """Compare the gap of contact with the distance after the motion; on another, nearer face the former counts."""
-    at, displacement = contact.points, _at_points(gaps, points)
-    linear = contact.initial_gap + solution.displacement
-    still = np.zeros_like(displacement)
-    found = _Displaced(displacement.copy(), np.zeros(len(at)), linear.copy(), np.zeros(len(at), bool), still)
-    for number, zone in enumerate(contact.zone_names):
-        if zone not in gaps.surfaces:
-            continue
-        own = contact.zone == number
-        there = gaps.exact(zone, at[own] + displacement[own])
-        other = np.sum(there.normals * contact.normals[own], axis=-1) < SAME_FACE
-        beyond = there.gap - linear[own]
-        grooved = other & (beyond < 0) & isinstance(gaps.surfaces[zone], Polyline)
-        found.motion[own] -= gaps.tool_motion(zone, at[own])
-        turned = there.normals + gaps.tool_motion(zone, there.normals) - gaps.tool_motion(zone, np.zeros((1, 2)))
-        found.turn[own] = np.where(other[:, None], 0.0, turned - contact.normals[own])
-        found.change[own] = np.where(grooved, 0.0, beyond)
-        found.distance[own], found.other[own] = there.gap, other
-    return found
-
-
-def _at_points(gaps: SurfaceGaps, points: ContactPoints) -> Array:
-    """Displacement (n, 2) [L] of the contact points."""
-    displacement = np.zeros((len(points.mesh.nodes), 2))
-    displacement[points.mesh.elements] = gaps.state.displacement
-    return displacement[points.node]
-
-
 def _slipped(
-    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, pressed: BoolArray, moved: _Displaced
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, pressed: BoolArray, moved: Displaced
 ) -> tuple[IntArray, IntArray]:
     """Points under pressure opposite to another face: those that are off the surface, and those beside which it is.
 
@@ -185,7 +132,7 @@ def _pressed_length(contact: CondensedContact, pressed: BoolArray, i: int) -> fl
 
 def _overhangs(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, beside: IntArray, pressed: BoolArray,
-    moved: _Displaced,
+    moved: Displaced,
 ) -> Iterator[str]:  # fmt: skip
     """Note the points of each zone that have moved farthest past an end, by a noticeable part of the pressed length."""
     farthest = {contact.zone[i]: i for i in beside[np.argsort(moved.distance[beside])].tolist()}
@@ -206,7 +153,7 @@ def _allowed(gaps: SurfaceGaps, contact: CondensedContact) -> float:
 
 
 def _off_the_surface(
-    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, i: int, moved: _Displaced
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, i: int, moved: Displaced
 ) -> Penetration:
     """Pressure at a point that is off the surface."""
     unit, zone = gaps.problem.units.length, contact.zone_names[contact.zone[i]]
@@ -222,7 +169,7 @@ def _off_the_surface(
 
 def _changed(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
-    again: ContactSolution, moved: _Displaced, nearby: Array | None,
+    again: ContactSolution, moved: Displaced, nearby: Array | None,
 ) -> tuple[Penetration | None, tuple[str, ...]]:  # fmt: skip
     """Judge how the peak of each zone changes with the gaps and normals of the displaced places."""
     solved = again.status is Status.SOLVED
@@ -254,43 +201,9 @@ def _changed(
     return _misfit(gaps, points, contact, i, Misfit.MOVED, off, allowed, words), ()
 
 
-def _load_of_levers(gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution) -> Array:
-    """Work (k,) in the free motions of the moment -θ Σ r·f that forces gain as they turn with the body by θ.
-
-    Distances r are from the centroid of the area, on which a weight acts. A moment that contact balances by pressure
-    that moves by a small part of its length is none: it may come from the mesh.
-    """
-    mesh, length = body.mesh, body.mesh.tributary[..., None]
-    x, u = gaps.state.points - mesh.centroid, gaps.state.displacement
-    angle = np.sum(length[..., 0] * (x[..., 0] * u[..., 1] - x[..., 1] * u[..., 0])) / np.sum(length * x**2)
-    flux = length * np.sum(x * mesh.normals, axis=-1, keepdims=True)
-    r = x - 2 / 3 * np.sum(flux * x, axis=(0, 1)) / flux.sum()
-    moment = -angle * float(np.sum(length * gaps.state.traction * r))
-    own = contact.weights * (contact.zone == np.arange(len(contact.zone_names))[:, None])
-    pressed = own @ (solution.pressure > 0)
-    unseen = abs(moment) <= UNMOVED * pressed[pressed > 0].min() * (contact.weights @ solution.pressure)
-    return body.seen.body.work_of(np.zeros(2), 0.0 if unseen else moment)
-
-
-def _load_of_turns(
-    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: _Displaced
-) -> Array:
-    """Work (k,) in the free motions of what the pressure gains along the normals of the displaced places."""
-    forces = (contact.weights * solution.pressure)[:, None] * moved.turn
-    work = body.seen.body.work(contact.points, forces)
-    for number, name in enumerate(contact.tools.names):
-        zones = [contact.zone_names.index(zone) for zone in gaps.problem.tools[name].zones]
-        own = np.isin(contact.zone, zones)
-        x, y = (contact.points[own] - contact.tools.point[number]).T
-        fx, fy = forces[own].T
-        load = np.array([fx.sum(), fy.sum(), (x * fy - y * fx).sum()])
-        work = work - load @ contact.tools.amplitudes[3 * number : 3 * number + 3]
-    return work
-
-
 def _moves_on(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
-    again: ContactSolution, moved: _Displaced,
+    again: ContactSolution, moved: Displaced,
 ) -> Penetration | None:  # fmt: skip
     """Find a free motion that goes on by as much again where the body has moved to: nothing holds it.
 
@@ -325,7 +238,7 @@ def _moves_on(
 
 def _forces_changed(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
-    again: ContactSolution, moved: _Displaced,
+    again: ContactSolution, moved: Displaced,
 ) -> tuple[Penetration | None, tuple[str, ...]]:  # fmt: skip
     """Judge how the force on each surface changes with the gaps and normals of the displaced places."""
     if again.status is not Status.SOLVED:
