@@ -120,8 +120,9 @@ def one_home_for_each_foreign_package(name: str, tree: ast.Module) -> Iterator[s
 
 def no_type_checking_imports(name: str, tree: ast.Module) -> Iterator[str]:
     for node in ast.walk(tree):
-        if "TYPE_CHECKING" in (getattr(node, "id", ""), getattr(node, "attr", "")):
-            yield f"{name}:{node.lineno} hides an import behind TYPE_CHECKING"  # pyright: ignore
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            hidden = (part for part in ast.walk(node) if isinstance(part, ast.Import | ast.ImportFrom))
+            yield from (f"{name}:{part.lineno} hides an import behind TYPE_CHECKING" for part in hidden)
 
 
 def no_relative_imports(name: str, tree: ast.Module) -> Iterator[str]:
