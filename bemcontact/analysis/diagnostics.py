@@ -22,6 +22,8 @@ UNBOUNDED = "the pressure there is infinite in theory, and its values at the las
 """Note on an end of contact where the stresses are singular."""
 LONG_NEIGHBOR = 4.0
 """Length of the element beyond the end of a zone over that inside, above which pressure at that end suffers."""
+COARSE = 0.1
+"""Accuracy asked for, relative, above which meshes are so coarse that a contact may be missed."""
 SMALL_NET_LOAD = 1e-3
 """Net load over the sum of the magnitudes of all loads below which it may be due to rounded numbers in the input."""
 LARGE = 0.25
@@ -51,6 +53,7 @@ def diagnostics(
     yield from against_its_force(contact, solution)
     yield from few_points(contact, touching, where)
     if body is not None:
+        yield from coarse_answer(body.problem.asked_accuracy)
         yield from reached_zone_ends(body, touching)
         yield from long_neighbors(body, touching)
         yield from beyond_ends(body, touching)
@@ -60,6 +63,15 @@ def diagnostics(
         turns = any("rotation" in name for name in contact.motion_names)
         modulus = None if body is None else body.problem.material.young_modulus
         yield from large_displacements(boundary, turns, modulus)
+
+
+def coarse_answer(asked: float | None) -> Iterator[str]:
+    """Note that an accuracy was asked for with which an answer is only a first look."""
+    if asked is not None and asked > COARSE:
+        yield (
+            f"an accuracy of {100 * asked:.3g} % was asked for: the answer is coarse, and error bars of this size are "
+            "rough themselves; for numbers to rely on, ask for 1 %, with accuracy: 0.01 or --accuracy 0.01"
+        )
 
 
 def floating(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator[str]:

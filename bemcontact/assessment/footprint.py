@@ -49,7 +49,7 @@ class Peak(Leaf):
     pressure: float
     """Nodal pressure per undeformed length [p]."""
     at: Pair
-    """Contact point (x, y) [L]."""
+    """Contact point (x, y) [L]; one of them where the pressure is the same all along the contact."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,7 +2,7 @@
 
 import difflib
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 PLACES = {
     "footprint.peak.pressure": ("peak", "max_pressure", "maximum_pressure", "peak_pressure", "p_max", "pmax", "max"),
@@ -36,13 +36,15 @@ OF_A_RESULT = "the result of bemcontact.solve has it as"
 class WithHints:
     """Base of objects whose users look for a quantity by another name or in another place."""
 
-    if not TYPE_CHECKING:  # checkers of types shall go on to know all attributes
 
-        def __getattr__(self, name: str) -> Any:
-            """Raise the error of an attribute that does not exist."""
-            if name.startswith("_") or hasattr(type(self), name):  # an error within a property is another one
-                return object.__getattribute__(self, name)
-            raise AttributeError(f"{type(self).__name__} has no '{name}'; {_hint(self, name)}")
+def _missing(owner: object, name: str) -> Any:
+    """Raise the error of an attribute that does not exist."""
+    if name.startswith("_") or hasattr(type(owner), name):  # an error within a property is another one
+        return object.__getattribute__(owner, name)
+    raise AttributeError(f"{type(owner).__name__} has no '{name}'; {_hint(owner, name)}")
+
+
+setattr(WithHints, "__getattr__", _missing)  # noqa: B010 (in the class it would tell checkers of types that all exist)
 
 
 def _hint(owner: object, name: str) -> str:

@@ -34,6 +34,8 @@ QUALITIES = {"holds": "good", "does not hold": "bad", "not judged": "fair"}
 """Verdict on a quantity of a reference -> quality."""
 PLAIN = 0.01, 1000.0
 """Range of numbers that are written without a power of ten."""
+LEVEL = 1e-3
+"""Difference from the peak pressure, over that, below which a point counts as one at the peak."""
 UNRESOLVED = 1e-3
 """Share of the length of contact below which no place in it is resolved."""
 
@@ -64,7 +66,8 @@ def _peaks(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     infinite = infinite_peaks(record)
     if not infinite and (peak := record["peak"]):
         value = with_unit(with_bar(peak["pressure"], peak_bar(record)), units.stress)
-        words = f"{value} at {peak_place(record, units)}{_unknown_error(record)}"
+        at = "" if _level_zone(record) else "at "
+        words = f"{value} {at}{peak_place(record, units)}{_unknown_error(record)}"
         yield "Peak pressure", f"{words}; per UNDEFORMED length"
     if infinite:
         for bar in bars_of(record, "peak"):
@@ -202,12 +205,26 @@ def pressed_by(record: Record) -> float:
 
 
 def peak_place(record: Record, units: Units) -> str:
-    """Write where the largest pressure acts, if any; what is small beside the shortest contact is zero."""
+    """Write where the largest pressure acts, if any; what is small beside the shortest contact is zero.
+
+    Where the pressure is the same at all points of contact of a zone, the place would be that of round-off.
+    """
     if not record["peak"]:
         return ""
+    if zone := _level_zone(record):
+        return f"all along {'the contact' if len({*record['zone']}) == 1 else zone}"
     lengths = [last - first for first, last in (interval["arc"] for interval in record["intervals"]) if last > first]
     unresolved = UNRESOLVED * min(lengths, default=0.0) / NEGLIGIBLE
     return vector(record["peak"]["at"], units.length, scale=max(coordinate_size(record), unresolved))
+
+
+def _level_zone(record: Record) -> str:
+    """The zone of the largest pressure, if its pressure is the same at several points and at all that are pressed."""
+    pressure, zone = np.array(record["pressure"]), record["zone"]
+    where = zone[int(pressure.argmax())]
+    inside = pressure[np.array([name == where for name in zone])]
+    pressed = inside[inside > NEGLIGIBLE * pressure.max()]
+    return where if len(pressed) > 1 and pressed.min() >= (1 - LEVEL) * pressure.max() else ""
 
 
 def span(interval: Record, size: float, units: Units) -> str:

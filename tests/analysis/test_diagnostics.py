@@ -368,3 +368,16 @@ def test_a_body_that_a_condition_holds_is_not_told_to_be_held():
     assert "units may be mixed" in note
     assert "210" in note
     assert "hold it" not in note
+
+
+@pytest.mark.parametrize(("asked", "noted"), [(0.3, True), (0.100001, True), (0.1, False), (0.01, False)])
+def test_an_accuracy_above_a_tenth_is_noted(asked: float, noted: bool):
+    """By the problem, or by the argument; the note has the number and what to ask for."""
+    problem = bemcontact.load(Path(__file__).parents[2] / "models" / "gallery" / "hertz_small.yaml")
+    for notes in (
+        bemcontact.solve(problem.with_value("accuracy", asked)).notes,
+        bemcontact.solve(problem, accuracy=asked).notes,
+    ):
+        told = [note for note in notes if "accuracy of" in note]
+        assert len(told) == noted
+        assert all(f"{100 * asked:.3g} %" in note and "--accuracy 0.01" in note for note in told)

@@ -3,6 +3,7 @@
 import re
 from decimal import Decimal
 
+import numpy as np
 import pytest
 from accuracies import accuracy, bar
 from hypothesis import example, given
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 
 from bemcontact.problem import Units
 from bemcontact.report.bars import LEAST_SHOWN, accuracy_rows, error_percent, with_bar, without_digits_beyond
-from bemcontact.report.facts import facts, peak_of
+from bemcontact.report.facts import facts, peak_of, peak_place
 
 UNITS = Units(length="cm", force="kN")
 
@@ -150,3 +151,24 @@ def test_a_motion_of_which_nobody_knows_whether_it_turns_has_no_amount_unless_it
 
 def free_motions_of(rotations: tuple[float, ...] | None) -> list[str]:
     return [words for name, words in facts_of_forces(False, [1.0], rotations) if name == "Free motion"]
+
+
+@given(
+    st.lists(st.floats(0.0, 0.4e-3), min_size=2, max_size=6),
+    st.lists(st.floats(0.0, 0.99), max_size=4),
+    st.integers(0, 5),
+    st.sampled_from(("foot", "wall")),
+)
+def test_a_level_pressure_has_no_place(dips: list[float], others: list[float], open_points: int, other_zone: str):
+    """Round-off or an error of the mesh do not choose one; open points and other zones do not matter."""
+    level = [1.0 - dip for dip in dips]
+    pressure = [*level, *others, *[0.0] * open_points]
+    zone = ["foot"] * len(level) + [other_zone] * len(others) + ["foot"] * open_points
+    at = [float(np.argmax(pressure)), 0.0]
+    record = {
+        "peak": {"pressure": max(pressure), "at": at}, "pressure": pressure, "zone": zone,
+        "nodes": [[float(i), 0.0] for i in range(len(zone))], "intervals": [{"arc": [0.0, 9.0]}],
+    }  # fmt: skip
+    pressed_beside = other_zone == "foot" and any(value > 1e-9 for value in others)
+    name = "the contact" if len({*zone}) == 1 else "foot"
+    assert peak_place(record, UNITS) == (f"({at[0]:g}, 0) cm" if pressed_beside else f"all along {name}")

@@ -51,6 +51,14 @@ def test_the_page_is_whole_and_needs_nothing_else(study: Callable[[], Study]):
     assert all(picture["alt"] for picture in pictures)
 
 
+def test_the_page_explains_its_words():
+    """Each of them where it is used: in the note below its table."""
+    page = render(report_of(on_three_meshes()), PICTURES, "name: x")
+    for explained in ("The polish is one exact step", "weights are tributary: each contact point counts with"):
+        assert explained in page
+    assert ("The pressure as a whole is its root mean square" in page) is ("Pressure as a whole" in page)
+
+
 def test_numbers_come_from_the_report_alone():
     """Another peak, difference and eigenvalue in the report are others on the page, and those of the study are gone."""
     report = report_of(on_three_meshes())

@@ -69,7 +69,7 @@ def test_problem_summary_states_the_facts():
 def test_result_summary_states_the_facts(result: analysis.Result):
     answer = printed(text.result_summary(result))
     assert "foot: (0, 0) to (40, 0) mm, 40 mm long" in answer
-    assert "3.00000 ± 0.00003 N/mm² at" in answer
+    assert "3.00000 ± 0.00003 N/mm² all along the contact" in answer
     assert "per UNDEFORMED length" in answer
     assert "(0, 120.0000) ± 0.0012 N/mm, of the rigid surfaces on the body" in answer
     assert "Equations      unique solution proved." in answer

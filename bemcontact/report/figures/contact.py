@@ -15,6 +15,7 @@ from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.bars import with_bar, without_digits_beyond
+from bemcontact.report.facts import LEVEL
 from bemcontact.report.figures.page import (
     BLACK,
     BODY,
@@ -45,8 +46,6 @@ ROOM = 1.5
 """Room for a fan and its number over the length of the fan, where only a part of the body is shown."""
 OVERHANG = 0.14
 """Length of a rigid surface beyond its contact zone, and beyond the body, over the size of what is shown."""
-LEVEL = 1e-3
-"""Difference from the peak pressure, over that, below which a point counts as one at the peak."""
 MANY_ELEMENTS = 36
 """Number of elements from which their nodes alone show the curves."""
 

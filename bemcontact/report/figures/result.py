@@ -12,7 +12,8 @@ from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report.bars import with_bar
-from bemcontact.report.figures.contact import LEVEL, body_extent, draw_contact, draw_deformed
+from bemcontact.report.facts import LEVEL
+from bemcontact.report.figures.contact import body_extent, draw_contact, draw_deformed
 from bemcontact.report.figures.page import (
     BLACK,
     GREY,
