@@ -14,7 +14,7 @@ from bemcontact.checks.arguments import instance_of, real_number, shown
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
-from bemcontact.errors import ProblemError
+from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import Answer, minimize_convex
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
@@ -22,6 +22,9 @@ from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
 from bemcontact.modelling.model_result import ModelResult, judged, read_back, solution_at
 from bemcontact.modelling.parameters import Parameters, Value
 from bemcontact.options import Weights, ensure_whole
+
+WIDE = 1e5
+"""Gaps over the displacements under the load from which a load is light: Clarabel's tolerance takes these digits."""
 
 
 class ContactProblem(cp.Problem):
@@ -245,8 +248,12 @@ class ContactModel(WithHints):
         if chosen is self._pure and (result := self._from_last()) is not None:
             return result
         pure = chosen is self._pure
-        answer = minimize_convex(chosen, max_iterations, leave_point=pure, as_stated=not pure)
-        return self._read_back(chosen, answer)
+        light = _of_light_load(self.contact)
+        try:
+            answer = minimize_convex(chosen, max_iterations, leave_point=pure, as_stated=not pure)
+        except SolverError as error:
+            raise SolverError(". ".join(filter(None, (str(error), light)))) from error
+        return self._read_back(chosen, answer._replace(note=". ".join(filter(None, (answer.note, light)))))
 
     def _from_last(self) -> ModelResult | None:
         """The contact state by a few active-set steps from the last solve; None if they do not lead to one."""
@@ -352,6 +359,17 @@ def ensure_convex(problem: cp.Problem) -> None:
     raise ProblemError(
         f"the model is not convex by cvxpy's rules (DCP) in {bad:.200}; write what was added with convex functions "
         "that are minimized or bounded from above"
+    )
+
+
+def _of_light_load(contact: CondensedContact) -> str:
+    """What to do, if the gaps are so wide beside the displacements under the load that no digits are left of these."""
+    wide = float(np.abs(contact.offset).max(initial=0.0)) / contact.scales.displacement
+    if wide < WIDE:
+        return ""
+    return (
+        f"The load is light: gaps are up to {wide:.0e} times the displacements under it, and the solver's tolerance is "
+        "large beside these. Draw the body where it touches, or leave far points out of the zones"
     )
 
 

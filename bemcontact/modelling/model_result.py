@@ -13,6 +13,7 @@ from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
+from bemcontact.formulations import complementarity
 from bemcontact.formulations.clarabel import STATUSES, Answer
 from bemcontact.formulations.complementarity import escape_note, polish
 
@@ -90,8 +91,27 @@ def read_back(
         iterations=int(statistics.num_iters or 0),
         notes=_notes(problem, answer),
     )
-    result = judged(contact, solution if added else polish(contact, solution), added=added)
-    return replace(result, objective=float(value)) if added else result
+    if added:
+        return replace(judged(contact, solution, added=True), objective=float(value))
+    result = judged(contact, polish(contact, solution), added=False)
+    return result if answer is None or status is Status.ITERATION_LIMIT else _contact_state(contact, result)
+
+
+def _contact_state(contact: CondensedContact, result: ModelResult) -> ModelResult:
+    """The result, if it is a certified contact state, else that of the direct solver, if that is one; with a note.
+
+    Where the load is small beside the gaps, Clarabel's tolerance of the gaps is large beside the displacements.
+    """
+    solution, certificate = result.solution, result.certificate
+    if solution is None or certificate is None or (certificate.certified and solution.status is Status.SOLVED):
+        return result
+    note = "Clarabel broke down; its point led to the contact state"
+    if not certificate.certified:
+        note = "Clarabel's optimum leads to no contact state; that of the direct solver is given"
+        solution = replace(complementarity.solve(contact), formulation=solution.formulation)
+    better = replace(solution, status=Status.SOLVED, notes=(*solution.notes, note))
+    proved = judged(contact, better, added=False)
+    return proved if proved.certificate is not None and proved.certificate.certified else result
 
 
 def _notes(problem: cp.Problem, answer: Answer | None) -> tuple[str, ...]:
