@@ -29,6 +29,8 @@ from bemcontact.formulations.local_solver.working_set import (
     wrong_sign,
 )
 
+REFINEMENTS = 4
+"""Largest number of steps of refinement."""
 CLEAR = 1e3
 """A multiplier of the wrong sign is released without refinement if it exceeds the zero of all by this factor."""
 
@@ -239,12 +241,15 @@ class Descent:
         return False, place
 
     def _refine(self) -> None:
-        """Solve the equations of the working set again from the data, by two steps of refinement."""
+        """Solve the equations of the working set again from the data, by two steps of refinement, or a few more."""
         progress, working, hessian, x = self.progress, self.working, self.hessian, self.progress.x
-        for _ in range(2 if hessian.size else 1):
+        for sweep in range(REFINEMENTS if hessian.size else 1):
             x = working.onto(x)
             if hessian.size:
-                x = x + hessian.newton(working.reduced(progress.statement.H.dot(x) + progress.statement.c))
+                step = hessian.newton(working.reduced(progress.statement.H.dot(x) + progress.statement.c))
+                x = x + step
+                if sweep and largest(step) <= 1e-14 * max(1.0, largest(x)):
+                    break
         progress.place(x)
         once = working.multipliers(progress.gradient, refined=True)
         self.multipliers = working.refined(once)

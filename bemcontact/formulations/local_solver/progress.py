@@ -12,7 +12,7 @@ from bemcontact.formulations.local_solver.statement import EPS, Statement, large
 FINE = 1e-3
 """Factor of the optimality tolerance where each component is compared with its own terms."""
 
-NEAR = 0.03
+NEAR = 2e-3
 """Part of the tolerance of a constraint that may be rounding of a point of which the gradient is known to `FINE`."""
 
 PARALLEL = 1e-10
