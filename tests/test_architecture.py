@@ -291,7 +291,7 @@ BAD = [
     (one_home_for_each_foreign_package, "bemcontact.report.figures", "from rich.table import Table"),
     (one_home_for_each_foreign_package, "bemcontact.bem.kernels", "def f():\n    import numba"),
     (one_home_for_each_foreign_package, "bemcontact.cli", "def f():\n    import meshio"),
-    (no_type_checking_imports, "bemcontact.spec", "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import numpy"),
+    (no_type_checking_imports, "bemcontact.spec", "import typing\nif typing.TYPE_CHECKING:\n    import numpy"),
     (no_relative_imports, "bemcontact.bem.mesh", "from . import kernels"),
     (imports_at_the_top, "bemcontact.bem.mesh", "def f():\n    import numpy"),
     (imports_at_the_top, "bemcontact.spec", "try:\n    import numpy\nexcept ImportError:\n    pass"),

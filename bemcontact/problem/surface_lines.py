@@ -9,7 +9,7 @@ import scipy
 from pydantic import Field, model_validator
 
 from bemcontact.arrays import Array, BoolArray, IntArray
-from bemcontact.problem.boundary import first_meeting
+from bemcontact.problem.loops import first_meeting
 from bemcontact.problem.validation import Point, SpecModel, invalid
 
 ON_CORNER = 1e-9
