@@ -33,6 +33,8 @@ Linear theory leaves out half the square of this change, here 3 % of the length 
 whose end has this slope deflects 3 % less than linear theory says (Bisshopp and Drucker 1945)."""
 LARGE_STRAIN = 1 / 3
 """Strain at the peak pressure that is not small: in a line contact, where the peak is a quarter of Young's modulus."""
+NOTICED = 0.2
+"""Part of these strains from which linear theory is noticeably off: by about as much as the strain."""
 LARGE_TURN = 0.1
 """Rotation of the whole body in radians from which it is named as the cause."""
 LARGE_PART = 0.05
@@ -204,10 +206,13 @@ def large_pressure(body: Body, where: Footprint, boundary: BoundaryState) -> Ite
     least = float(-(boundary.traction.mean(axis=1) * outward).sum(axis=1).max())
     sheared = (pressure - max(least, 0.0)) / E
     strain = max(abs(normal), sheared)
-    if sheared > LARGE or abs(normal) > LARGE_STRAIN:
+    part = max(sheared / LARGE, abs(normal) / LARGE_STRAIN)
+    if part > NOTICED:
+        follows = "displacements are not small, so that the linear theory does not hold"
+        off = f"linear theory is off by about {100 * strain:.2g} % there; error bars do not include this"
         yield (
             f"the peak pressure is {pressure / E:.2g} times Young's modulus, and strains there are about {strain:.2g}: "
-            "displacements are not small, so that the linear theory does not hold"
+            f"{follows if part > 1 else off}"
         )
 
 

@@ -1,5 +1,6 @@
 """Contact points after they have moved: exact gaps, turned normals, and the levers that forces have there."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -10,10 +11,8 @@ from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.problem.conditions import Condition
 from bemcontact.problem.surface_lines import Polyline
-
-UNMOVED = 0.01
-"""Motion of the place of contact, over the length that is pressed, that may come from the mesh."""
 
 
 class Displaced(NamedTuple):
@@ -67,28 +66,59 @@ def _at_points(gaps: SurfaceGaps, points: ContactPoints) -> Array:
 
 
 def load_after(
-    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: Displaced
+    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: Displaced, least: float
 ) -> Array:
-    """Work (k,) in the free motions of what forces gain by the motion: other levers, other directions of pressure."""
-    return _load_of_levers(gaps, body, contact, solution) + _load_of_turns(gaps, body, contact, solution, moved)
+    """Work (k,) in the free motions of what forces gain by the motion: other levers, other directions of pressure.
 
-
-def _load_of_levers(gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution) -> Array:
-    """Work (k,) in the free motions of the moment -θ Σ r·f that forces gain as they turn with the body by θ.
-
-    Distances r are from the centroid of the area, on which a weight acts. A moment that contact balances by pressure
-    that moves by a small part of its length is none: it may come from the mesh.
+    Pressure that balances the other levers by moving by less than a `least` part of its length may come from the mesh.
     """
-    mesh, length = body.mesh, body.mesh.tributary[..., None]
-    x, u = gaps.state.points - mesh.centroid, gaps.state.displacement
-    angle = np.sum(length[..., 0] * (x[..., 0] * u[..., 1] - x[..., 1] * u[..., 0])) / np.sum(length * x**2)
-    flux = length * np.sum(x * mesh.normals, axis=-1, keepdims=True)
-    r = x - 2 / 3 * np.sum(flux * x, axis=(0, 1)) / flux.sum()
-    moment = -angle * float(np.sum(length * gaps.state.traction * r))
+    load = _load_of_turns(gaps, body, contact, solution, moved)
+    force, moment = _gain_of_levers(gaps, body)
     own = contact.weights * (contact.zone == np.arange(len(contact.zone_names))[:, None])
     pressed = own @ (solution.pressure > 0)
-    unseen = abs(moment) <= UNMOVED * pressed[pressed > 0].min() * (contact.weights @ solution.pressure)
-    return body.seen.body.work_of(np.zeros(2), 0.0 if unseen else moment)
+    if abs(moment) <= least * pressed[pressed > 0].min() * (contact.weights @ solution.pressure):
+        return load
+    return load + body.seen.body.work_of(force, moment, about=_centroid(body))
+
+
+def turn_of_body(gaps: SurfaceGaps) -> float:
+    """Turn [rad] nearest to the displacement of the boundary."""
+    mesh = gaps.outline.mesh
+    length, x, u = mesh.tributary, gaps.state.points - mesh.centroid, gaps.state.displacement
+    return float(np.sum(length * (x[..., 0] * u[..., 1] - x[..., 1] * u[..., 0])) / np.sum(length[..., None] * x**2))
+
+
+def _gain_of_levers(gaps: SurfaceGaps, body: Body) -> tuple[Array, float]:
+    """Force (2,) and moment about the centroid that the forces gain as the body turns by θ.
+
+    Their places turn with the body, which adds -θ Σ r·f to the moment. A prescribed pressure turns with its face: it
+    keeps its moment, and its resultant has another direction. A weight acts on the centroid.
+    """
+    mesh, angle = body.mesh, turn_of_body(gaps)
+    length, r = mesh.tributary[..., None], gaps.state.points - _centroid(body)
+    following = [edge for edge, held in _conditions(gaps) if held.pressure is not None]
+    with_face = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in following])[:, None, None]
+    prescribed = body.acting.values.traction
+    normal = np.sum(prescribed * mesh.normals, axis=-1, keepdims=True) * mesh.normals
+    pressure = np.where(with_face, normal, 0.0)
+    x, y = np.sum(length * pressure, axis=(0, 1))
+    dead = gaps.state.traction - pressure
+    return angle * np.array([-y, x]), -angle * float(np.sum(length * dead * r))
+
+
+def _conditions(gaps: SurfaceGaps) -> Iterator[tuple[str, Condition]]:
+    """Conditions of edges, permanent and of load cases."""
+    yield from gaps.problem.conditions.items()
+    for case in gaps.problem.load_cases.values():
+        yield from case.conditions.items()
+
+
+def _centroid(body: Body) -> Array:
+    """Centroid (2,) of the area [L]."""
+    mesh = body.mesh
+    x = mesh.nodes[mesh.elements] - mesh.centroid
+    flux = mesh.tributary[..., None] * np.sum(x * mesh.normals, axis=-1, keepdims=True)
+    return mesh.centroid + 2 / 3 * np.sum(flux * x, axis=(0, 1)) / flux.sum()
 
 
 def _load_of_turns(

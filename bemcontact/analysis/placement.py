@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import null_space
 
-from bemcontact.analysis.displaced import Displaced, displaced, load_after
+from bemcontact.analysis.displaced import Displaced, displaced, load_after, turn_of_body
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.penetration import Misfit, Penetration, tolerated
@@ -33,8 +33,10 @@ NOTED = 0.25
 are mostly a few times smaller than the accuracy."""
 WITHHELD = 0.05
 """Change from which a result is not certified: the curvature is off by a tenth."""
-MOVES_ON = 0.5
-"""Part of a motion by which a body moves on in the second solution, from which it is not held: the steps do not end."""
+MOVES_ON = 0.8
+"""Part of a motion by which a body moves on in the second solution, from which it is not held: the steps do not end.
+
+They are a geometric series. A body that moves back in the second solution is held."""
 NO_SQUARE = 2.0
 """A motion that is so many times the change of the gaps, or the turn of normals times the motion of their places, does
 not come from these, which are of second order."""
@@ -69,7 +71,7 @@ def placement(
         return _off_the_surface(gaps, points, contact, farthest, moved), ()
     overhangs = tuple(_overhangs(gaps, points, contact, beside, pressed, moved))
     moved.change[beside] = 0.0
-    load = load_after(gaps, body, contact, solution, moved)
+    load = load_after(gaps, body, contact, solution, moved, noted(gaps.problem))
     least_load = NO_CHANGE * (contact.weights * solution.pressure) @ abs(contact.rigid_motions)
     change = max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max())
     if change <= NO_CHANGE and np.all(abs(load) <= least_load):
@@ -214,12 +216,14 @@ def _moves_on(
     if again.status is not Status.SOLVED or not contact.free_motions:
         return None
     reach = abs(contact.rigid_motions).max(axis=0)
-    before = abs(solution.rigid_amplitudes) * reach
+    before = solution.rigid_amplitudes * reach
     unseen = null_space(contact.rigid_motions[solution.pressure > 0], rcond=UNSEEN)  # their amplitudes are a rule's
     change = again.rigid_amplitudes - solution.rigid_amplitudes
-    further = abs(change - unseen @ (unseen.T @ change)) * reach
+    further = (change - unseen @ (unseen.T @ change)) * reach * np.where(before < 0, -1.0, 1.0)
+    before = abs(before)
     pressed = np.maximum(solution.pressure, again.pressure) > 0
-    square = max(abs(moved.change[pressed]).max(), abs(moved.turn[pressed]).max() * abs(moved.motion[pressed]).max())
+    turned = abs(moved.turn[pressed]).max() + abs(turn_of_body(gaps))
+    square = max(abs(moved.change[pressed]).max(), turned * abs(moved.motion[pressed]).max())
     least = max(NO_SQUARE * square, NO_CHANGE * contact.scales.displacement)
     held = further < np.maximum(MOVES_ON * before, least)
     if held.all():
@@ -253,10 +257,13 @@ def _forces_changed(
         return None, ()
     i = int(np.argmax(own[number] * solution.pressure))
     zone, motion = contact.zone_names[number], moved.motion[int(np.argmax(np.hypot(*moved.turn.T)))]
+    units = gaps.problem.units
+    gained = _vector(is_now[number] - was[number], units.line_force)
     words = (
-        f"the body moves by {_vector(motion, gaps.problem.units.length)} against a surface, which is not small beside "
-        f"its shape: with the gaps and the directions of the surfaces where the body then is, the force of the surface "
-        f"of '{zone}' changes by {100 * part[number]:.2g} %; {_remedy(gaps, motion)}"
+        f"the body moves by {_vector(motion, units.length)} against a surface, which is not small beside "
+        "its shape: with the gaps and the directions of the surfaces where the body then is, the force of the surface "
+        f"of '{zone}' changes by {100 * part[number]:.2g} %, by {gained}; "
+        f"{_remedy(gaps, motion)}"
     )
     if part[number] < WITHHELD:
         return None, (f"{words}; error bars do not include this",)

@@ -337,7 +337,7 @@ def unit_of(statement: PaperStatement, axis: Values | Table, units: Units) -> st
         case PaperQuantity.PRESSURE | PaperQuantity.PEAK:
             return units.stress
         case PaperQuantity.FORCE:
-            return f"{units.force}/{units.length}" if units.stress else ""
+            return units.line_force
         case PaperQuantity.CONTACT if axis.against == "angle":
             return "°"
         case PaperQuantity.CONTACT | PaperQuantity.LEAST_GAP:

@@ -344,7 +344,9 @@ def _certificate_sentence(
     way_out: str,
 ) -> str:
     """Two or three sentences for an engineer."""
-    sure = "equilibrium alone fixes it" if eigenvalue is None else f"its smallest eigenvalue is {eigenvalue:.2e}"
+    sure = "equilibrium alone fixes the pressure"
+    if eigenvalue is not None:
+        sure = f"the smallest eigenvalue of the compliance is {eigenvalue:.2e}"
     error = "" if relative is None else f" {_bound_sentence(relative, definite)}"
     match kind:
         case CertificateKind.UNIQUE:

@@ -35,6 +35,8 @@ PRESSED_IN = 0.1
 
 MATRICES = 3
 """Number of full matrices of all degrees of freedom that are in memory at the same time."""
+WEDGE = 0.02
+"""Part of a rigid normal along which conditions leave a point free, up to which the point slides into a wedge."""
 IDLE = 1e-7
 """Least normal displacement, over that of the motion, of a motion that opens gaps."""
 
@@ -139,8 +141,22 @@ class Body:
         )
         idle = self.idle_motion if self.relative_load[1].any() else None
         undetermined = f"the loads do no work in the {idle}, which only opens gaps: it is not determined"
-        placed = (*_wholly_behind(self.problem, self.mesh), *_left_out(self.problem))
+        placed = (*_wholly_behind(self.problem, self.mesh), *_left_out(self.problem), *self._wedges())
         return (*placed, *at_zero, *(() if idle is None else (undetermined,)))
+
+    def _wedges(self) -> Iterator[str]:
+        """Note contact points that conditions hold nearly along the rigid normal, and that slide into a wedge."""
+        points = self.points
+        free = np.where(self.loadings[0].values.displacement_given[points.node], 0.0, points.normals)
+        part = np.hypot(*free.T)
+        for i in np.flatnonzero(part < WEDGE).tolist():
+            x, y = self.mesh.nodes[points.node[i]].tolist()
+            zone = [*self.problem.contact_zones][points.zone[i]]
+            yield (
+                f"({x:.5g}, {y:.5g}) is held nearly along the normal of the surface of '{zone}', but for "
+                f"{np.degrees(np.arcsin(part[i])):.2g} degrees: it slides into a wedge, where pressure has no bound; "
+                "hold it along the normal, or let the surface be level there and draw the body curved instead"
+            )
 
 
 def _wholly_behind(problem: Problem, mesh: Mesh) -> Iterator[str]:

@@ -30,6 +30,8 @@ PLACES = {
     "problem.material.poisson_ratio": ("poisson_ratio",),
 }  # fmt: skip
 """Place of a quantity in a result -> its own name and what others call it."""
+CLOSE = 0.8
+"""Likeness of two words, from 0 to 1, from which one may be meant by the other: a slip of one or two letters."""
 OF_A_RESULT = "the result of bemcontact.solve has it as"
 
 
@@ -52,7 +54,8 @@ def _hint(owner: object, name: str) -> str:
     known = {word: place for place, words in PLACES.items() for word in words}
     own = [part for part in dir(owner) if not part.startswith("_")]
     if name.lower() not in known:
-        similar = difflib.get_close_matches(name.lower(), own, 1) or difflib.get_close_matches(name.lower(), known, 1)
+        similar = difflib.get_close_matches(name.lower(), own, 1, CLOSE)
+        similar = similar or difflib.get_close_matches(name.lower(), known, 1, CLOSE)
         if not similar or similar[0] in own:
             return f"did you mean '{similar[0]}'?" if similar else f"there are: {', '.join(sorted(own))}"
         name = similar[0]

@@ -67,6 +67,11 @@ class Units(SpecModel):
         """The label of the unit of stress, such as kN/mm²; empty if a label is missing."""
         return f"{self.force}/{self.length}²" if self.force and self.length else ""
 
+    @property
+    def line_force(self) -> str:
+        """The label of the unit of force per thickness, such as kN/mm; empty if a label is missing."""
+        return f"{self.force}/{self.length}" if self.force and self.length else ""
+
 
 ACCURACY = 0.01
 """Relative accuracy that is asked for by default."""

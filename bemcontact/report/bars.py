@@ -8,7 +8,6 @@ import numpy as np
 from bemcontact.problem import Units
 from bemcontact.report.formatting import (
     number,
-    per_thickness,
     sentence_case,
     vector,
     with_unit,
@@ -164,7 +163,7 @@ def _unit_of_bar(bar: Record, units: Units) -> str:
         case "peak" | "pressure":
             return units.stress
         case "force":
-            return per_thickness(units)
+            return units.line_force
         case "intensity":
             return f"{units.stress}·{units.length}^{bar['note'].rpartition('s^-')[2]}" if units.stress else ""
         case "rotation":

@@ -22,7 +22,6 @@ from bemcontact.report.bars import (
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
     number,
-    per_thickness,
     vector,
     with_unit,
     zero_if_negligible,
@@ -183,7 +182,7 @@ def _tool(record: Record, tool: Record, size: float, pressed: float, moves: floa
     turn = zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)
     turn = turn if not tool["free"][2] or abs(turn) > _least_angle(record) else 0.0
     turned = with_unit(with_bar(turn, _bar_of_motion(record, "rotation", tool["name"])), "rad")
-    force = vector(tool["force_of_body"], per_thickness(units), scale=pressed)
+    force = vector(tool["force_of_body"], units.line_force, scale=pressed)
     moment = with_unit(number(zero_if_negligible(tool["moment_of_body"], pressed * size)), units.force)
     about = vector(tool["point"])
     return (
@@ -251,7 +250,7 @@ def zone_forces(record: Record, units: Units) -> dict[str, str]:
 
 def _force(components: tuple[float, float], record: Record, zone: str | None, units: Units) -> str:
     """Write a force with the error of that of a zone; that of the only zone if none is named."""
-    unit, pressed = per_thickness(units), pressed_by(record)
+    unit, pressed = units.line_force, pressed_by(record)
     bars = [bar for bar in bars_of(record, "force") if zone in (bar["zone"], None)]
     errors = [abs(bar["value"]) * bar["bar"] for bar in bars if bar["value"] and bar["bar"] is not None]
     return _with_error(components, errors[0] if len(errors) == len(bars) == 1 else None, unit, pressed)
@@ -294,7 +293,7 @@ def score_verdict(score: Record) -> str:
 def _unit_of(quantity: str, reference: Record, units: Units) -> str:
     """Label of the unit of a quantity of a reference."""
     if quantity == "resultant":
-        return per_thickness(units)
+        return units.line_force
     if quantity == "peak" or quantity.startswith("pressure"):
         return units.stress
     angle = reference["against"] == "angle" and quantity.endswith("of contact")

@@ -60,11 +60,6 @@ def units_of(contact: CondensedContact) -> Units:
     return Units(length=contact.units.get("length", ""), force=contact.units.get("force", ""))
 
 
-def per_thickness(units: Units) -> str:
-    """Label of a force on a body of unit thickness: kN/cm."""
-    return f"{units.force}/{units.length}" if units.force and units.length else ""
-
-
 def field_on(field: Field, edge: Edge, unit: str = "") -> str:
     """Write the value of a field on an edge, or from where to where it goes: 50.625 kN/cm²; 3 … 5 N/mm²."""
     return with_unit(_range(field.at(edge.points(np.linspace(0, 1, 41)))), unit)
@@ -128,7 +123,7 @@ def tool_in_words(action: ToolAction, units: Units) -> str:
     labels = {"moment": units.force, "rotation": ""}
     ways = (
         ("displaced by", action.displacement, units.length),
-        ("loaded by", action.force, per_thickness(units)),
+        ("loaded by", action.force, units.line_force),
     )
     parts = [
         (

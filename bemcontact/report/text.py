@@ -26,7 +26,6 @@ from bemcontact.report.formatting import (
     deflected_by,
     held_by,
     number,
-    per_thickness,
     plural,
     prescribed,
     reference_in_words,
@@ -70,7 +69,7 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
     for name, tool in problem.tools.items():
         action = tool_in_words(problem.tool_action(name), units)
         add(shown, "Tool", f"{name}, the surface of {' and '.join(tool.zones)}: {action}")
-    total = vector(checked.total_load, per_thickness(units), scale=checked.load_magnitude)
+    total = vector(checked.total_load, units.line_force, scale=checked.load_magnitude)
     add(shown, "Total load", f"{total}, without reactions")
     held = {0: "all rigid motions", 3: "no rigid motion"}
     add(shown, "Held by conditions", held.get(checked.free_motions, "all rigid motions except those below"))

@@ -190,7 +190,7 @@ class GapDesign(Recorded):
                 f"The contact states with the profile are not as designed: pressures differ by {self.difference:.0e} "
                 f"of the peak. {' '.join(state.certificate.words for state in self.after)}"
             )
-        return f"{change_of_goal}{self._elsewhere} {proof} {check}"
+        return f"{change_of_goal}{self._elsewhere} {proof} {check}{self._at_an_end}"
 
     @property
     def _elsewhere(self) -> str:
@@ -199,6 +199,21 @@ class GapDesign(Recorded):
         inside = self.goal is not Goal.PEAK or int(np.argmax(highest.pressure)) in self.points
         return (
             "" if inside else " The largest pressure is now outside of the interval, where the profile cannot lower it."
+        )
+
+    @property
+    def _at_an_end(self) -> str:
+        """Say if contact reaches an end of the zone, where pressures at nodes do not tell that between them."""
+        contact = self.before[0].contact
+        runs = np.unique(contact.run[contact.zone == contact.zone[self.points[0]]])
+        ends = [contact.points_of_run(run)[[0, -1]] for run in runs.tolist() if np.isinf(contact.run_length[run])]
+        reached = sum(bool((state.pressure[np.ravel(ends).astype(int)] > 0).any()) for state in self.after)
+        return (
+            f" Contact reaches an end of the zone in {reached} of {len(self.after)} load states. If the surface or the "
+            "body has a sharp edge there, the pressure at it is infinite with any profile, and all of these numbers "
+            "hold at the contact points of this mesh only."
+            if reached
+            else ""
         )
 
     def surface(self, kind: str = "spline") -> Spline | Polyline:

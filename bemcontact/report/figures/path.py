@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labelled, new_page, plain, short_label
-from bemcontact.report.formatting import number, per_thickness, units_of
+from bemcontact.report.formatting import number, units_of
 from bemcontact.report.verdicts import in_short, overall, path_verdicts
 
 WIDTH, HEIGHT = 5.6, 2.5
@@ -57,7 +57,7 @@ def draw_resultants(axes: Axes, path: ParameterPath) -> None:
     for order, zone in enumerate(zones):
         sizes = [float(np.hypot(*state.resultant[order])) for state in path.states]
         _draw_line(axes, path, sizes, CYCLE[order % len(CYCLE)], plain(zone))
-    axes.set_ylabel(labelled("resultant", per_thickness(units_of(path.contact))))
+    axes.set_ylabel(labelled("resultant", units_of(path.contact).line_force))
     axes.set_ylim(bottom=0)
     if len(zones) > 1:
         axes.legend(frameon=False, fontsize=8.5)
