@@ -28,8 +28,6 @@ UNKNOWN_EXPONENT = 0.01
 NOTHING = 1e-9
 """Motion over the largest displacement that is round-off."""
 
-SAME_PLACE = 1e-9
-"""Distance from the end of an element, over the length of the run, that is none."""
 LEAST_POINTS = 5
 """Points in contact in an interval, those of two elements, below which bisecting elements does not tell the error."""
 TIP_ELEMENTS = 2
@@ -256,20 +254,10 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
                     moved = min(moved, abs(run.length - moved)) if run.closed else moved
                     length = item.end - item.start
                     change = max(moved / length, END * m)
-                    bar = max(estimate.bar(change), estimate.factor * _spacing(run, position) / length)
+                    bar = max(estimate.bar(change), estimate.factor * run.element_at(position) / 2 / length)
                     note = ""
                 yield ErrorBar(quantity=which, zone=name, interval=count, value=position, bar=bar, note=note)
             count += 1
-
-
-def _spacing(run: ZoneRun, position: float) -> float:
-    """Distance of the nodes of a run at a position [L]; where two elements meet, the larger one."""
-    sizes, near = np.diff(run.ends), SAME_PLACE * run.length
-    beside = [
-        (run.ends[:-1] <= at + near) & (run.ends[1:] >= at - near)
-        for at in images(run, position % run.length if run.closed else position)
-    ]
-    return float(sizes[np.any(beside, axis=0)].max(initial=0.0)) / 2
 
 
 def _intensity_bar(difference: MeshDifference, item: Singularity, m: float) -> ErrorBar:

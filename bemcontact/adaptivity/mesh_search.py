@@ -116,7 +116,8 @@ class MeshSearch:
                 for item in case.stretches[run.number]:
                     width = item.end - item.start
                     if item.narrow:
-                        limit = Limit(low=start + item.start, high=start + item.end, size=NARROW * width)
+                        size = NARROW * (width or run.element_at(item.start))  # a point has no width
+                        limit = Limit(low=start + item.start, high=start + item.end, size=size)
                         narrow.append((loop, limit))
                         continue
                     for position, free, after in (

@@ -75,6 +75,13 @@ class ZoneRun:
         x, y = self.edges[i].points(np.array([(at - self.joints[i]) / self.edges[i].length]))[0].tolist()
         return x, y
 
+    def element_at(self, position: float) -> float:
+        """Length [L] of the element at a position; where two elements meet, of the longer one."""
+        same = 100 * SAME * self.length
+        places = images(self, position % self.length if self.closed else position)
+        beside = [(self.ends[:-1] <= at + same) & (self.ends[1:] >= at - same) for at in places]
+        return float(np.diff(self.ends)[np.any(beside, axis=0)].max(initial=0.0))
+
     def fractions(self, ends: Array) -> dict[str, tuple[float, ...]]:
         """Fractions of the length of each edge where elements end inside it, from the positions of all ends."""
         stated, same = {}, SAME * self.length

@@ -304,6 +304,26 @@ def test_stated_elements_are_the_coarsest():
     assert np.diff(mesh).max() <= 1 / 80 * (1 + 1e-9)
 
 
+def test_contact_of_a_point_ends_honestly(monkeypatch: pytest.MonkeyPatch):
+    """A beam on two knife edges touches points, which have no width: elements get shorter until there are too many."""
+    monkeypatch.setattr(adapt, "MOST_UNKNOWNS", 700)
+    outer = [{"name": name, "start": at} for name, at in
+             {"bottom": (-30, 0), "right": (30, 0), "top": (30, 4), "left": (-30, 4)}.items()]  # fmt: skip
+    knives = {
+        name: {"edges": "bottom", "surface": {"kind": "polyline", "points": [(x - 1, -20), (x, 0), (x + 1, -20)]}}
+        for name, x in {"a": -15, "b": 15}.items()
+    }
+    problem = Problem(
+        name="beam on knife edges",
+        material={"young_modulus": 210e3, "poisson_ratio": 0.3},
+        boundary={"outer": outer},
+        conditions={"top": {"traction": {"y": -5}}},
+        contact_zones=knives,
+    )  # pyright: ignore[reportArgumentType]
+    (judged,) = found(problem, 0.01).accuracies
+    assert judged.met is not True
+
+
 def test_a_cap_of_the_unknowns_is_told(monkeypatch: pytest.MonkeyPatch):
     """The best mesh so far with its bars and a reason: never met."""
     monkeypatch.setattr(adapt, "MOST_UNKNOWNS", 300)
