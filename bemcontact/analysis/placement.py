@@ -286,8 +286,8 @@ def _places_changed(
     if len(was) and shifts[number := int(np.argmax(shifts))] >= noted(gaps.problem):
         yield (
             f"with the gaps after the motion of the body, contact of '{was[number].zone}' is elsewhere by "
-            f"{100 * shifts[number]:.2g} % of its length, or more; error bars of its ends and of rotations do not include "
-            "this"
+            f"{100 * shifts[number]:.2g} % of its length, or more; error bars of its ends and of rotations do not "
+            "include this"
         )
 
 

@@ -38,5 +38,5 @@ def test_surfaces_in_words():
 
 
 def test_unit_labels():
-    assert formatting.per_thickness(Units(length="mm", force="N")) == "N/mm"
-    assert formatting.per_thickness(Units(length="mm")) == ""
+    assert Units(length="mm", force="N").line_force == "N/mm"
+    assert Units(length="mm").line_force == ""
