@@ -38,8 +38,8 @@ MOVES_ON = 0.8
 
 They are a geometric series. A body that moves back in the second solution is held."""
 NO_SQUARE = 2.0
-"""A motion that is so many times the change of the gaps, or the turn of normals times the motion of their places, does
-not come from these, which are of second order."""
+"""A motion that is so many times the change of the gaps, or the turn of normals and body times the motion of places,
+does not come from these, which are of second order."""
 UNSEEN = 1e-9
 """Normal displacement of pressed points by a free motion, over the largest one, that is none."""
 NO_CHANGE = 1e-7
