@@ -7,12 +7,13 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.body import Body
-from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.contact_points import ALIKE, ContactPoints
+from bemcontact.bem.rigid_motions import FreeMotions
 from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.conditions import Condition
-from bemcontact.problem.surface_lines import Polyline
+from bemcontact.problem.surface_lines import STEEP, Polyline
 
 
 class Displaced(NamedTuple):
@@ -47,12 +48,15 @@ def displaced(
             continue
         own = contact.zone == number
         there = gaps.exact(zone, at[own] + displacement[own])
-        other = np.sum(there.normals * contact.normals[own], axis=-1) < SAME_FACE
-        beyond = there.gap - linear[own]
+        face, along = points.faces[own], np.sum(there.normals * contact.normals[own], axis=-1)
+        ridge = (np.hypot(*(face - contact.normals[own]).T) > ALIKE) & (along > STEEP)
+        other = ~ridge & (np.sum(there.normals * face, axis=-1) < SAME_FACE)
+        beyond = there.gap / np.where(ridge, along, 1.0) - linear[own]
         grooved = other & (beyond < 0) & isinstance(gaps.surfaces[zone], Polyline)
         found.motion[own] -= gaps.tool_motion(zone, at[own])
-        turned = there.normals + gaps.tool_motion(zone, there.normals) - gaps.tool_motion(zone, np.zeros((1, 2)))
-        found.turn[own] = np.where(other[:, None], 0.0, turned - contact.normals[own])
+        turned = np.where(ridge[:, None], face, there.normals)
+        turned = turned + gaps.tool_motion(zone, turned) - gaps.tool_motion(zone, np.zeros((1, 2)))
+        found.turn[own] = np.where(other[:, None], 0.0, turned - face)
         found.change[own] = np.where(grooved, 0.0, beyond)
         found.distance[own], found.other[own] = there.gap, other
     return found
@@ -68,17 +72,18 @@ def _at_points(gaps: SurfaceGaps, points: ContactPoints) -> Array:
 def load_after(
     gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: Displaced, least: float
 ) -> Array:
-    """Work (k,) in the free motions of what forces gain by the motion: other levers, other directions of pressure.
+    """Work (j,) in all free motions, seen and unseen, of what forces gain by the motion: other levers and directions.
 
     Pressure that balances the other levers by moving by less than a `least` part of its length may come from the mesh.
     """
-    load = _load_of_turns(gaps, body, contact, solution, moved)
+    motions = body.free
+    load = _load_of_turns(gaps, motions, contact, solution, moved)
     force, moment = _gain_of_levers(gaps, body)
     own = contact.weights * (contact.zone == np.arange(len(contact.zone_names))[:, None])
     pressed = own @ (solution.pressure > 0)
     if abs(moment) <= least * pressed[pressed > 0].min() * (contact.weights @ solution.pressure):
         return load
-    return load + body.seen.body.work_of(force, moment, about=_centroid(body))
+    return load + motions.body.work_of(force, moment, about=_centroid(body))
 
 
 def turn_of_body(gaps: SurfaceGaps) -> float:
@@ -122,16 +127,16 @@ def _centroid(body: Body) -> Array:
 
 
 def _load_of_turns(
-    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: Displaced
+    gaps: SurfaceGaps, motions: FreeMotions, contact: CondensedContact, solution: ContactSolution, moved: Displaced
 ) -> Array:
-    """Work (k,) in the free motions of what the pressure gains along the normals of the displaced places."""
+    """Work (j,) in free motions of what the pressure gains along the normals of the displaced places."""
     forces = (contact.weights * solution.pressure)[:, None] * moved.turn
-    work = body.seen.body.work(contact.points, forces)
+    work = motions.body.work(contact.points, forces)
     for number, name in enumerate(contact.tools.names):
         zones = [contact.zone_names.index(zone) for zone in gaps.problem.tools[name].zones]
         own = np.isin(contact.zone, zones)
         x, y = (contact.points[own] - contact.tools.point[number]).T
         fx, fy = forces[own].T
         load = np.array([fx.sum(), fy.sum(), (x * fy - y * fx).sum()])
-        work = work - load @ contact.tools.amplitudes[3 * number : 3 * number + 3]
+        work = work - load @ motions.tools[3 * number : 3 * number + 3]
     return work

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import null_space
+from scipy.linalg import block_diag, null_space
 
 from bemcontact.analysis.displaced import Displaced, displaced, load_after, turn_of_body
 from bemcontact.arrays import Array, BoolArray, IntArray
@@ -72,9 +72,17 @@ def placement(
     overhangs = tuple(_overhangs(gaps, points, contact, beside, pressed, moved))
     moved.change[beside] = 0.0
     load = load_after(gaps, body, contact, solution, moved, noted(gaps.problem))
-    least_load = NO_CHANGE * (contact.weights * solution.pressure) @ abs(contact.rigid_motions)
+    unheld = np.asarray(block_diag(_unheld(contact, solution), np.eye(len(body.unseen))))
+    push = unheld @ (unheld.T @ load)
+    largest = (contact.weights @ solution.pressure) * abs(contact.rigid_motions).max(axis=0, initial=0.0)
+    load = (load - push)[: contact.free_motions]
+    load = np.where(abs(load) > NO_CHANGE * largest, load, 0.0)
+    misfit, pushed = _slides(gaps, points, body, contact, solution, push)
+    if misfit is not None:
+        return misfit, overhangs
+    overhangs = (*overhangs, *pushed)
     change = max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max())
-    if change <= NO_CHANGE and np.all(abs(load) <= least_load):
+    if change <= NO_CHANGE and not load.any():
         return None, overhangs
     there = {"initial_gap": contact.initial_gap + moved.change, "motion_load": contact.motion_load + load}
     again = complementarity.solve(replace(contact, **there))
@@ -87,6 +95,33 @@ def placement(
     if misfit is None and nearby is None:
         said = (*said, *_places_changed(gaps, contact, solution, replace(contact, **there), again))
     return misfit, (*overhangs, *turned, *said)
+
+
+def _unheld(contact: CondensedContact, solution: ContactSolution) -> Array:
+    """Free motions (k, j) that move no point under pressure: an orthonormal basis."""
+    return null_space(contact.rigid_motions[solution.pressure > 0], rcond=UNSEEN)
+
+
+def _slides(
+    gaps: SurfaceGaps, points: ContactPoints, body: Body, contact: CondensedContact, solution: ContactSolution,
+    push: Array,
+) -> tuple[Penetration | None, tuple[str, ...]]:  # fmt: skip
+    """Judge what work forces gain by the motion in free motions that no pressure resists, push (j,)."""
+    total, size = float(contact.weights @ solution.pressure), float(np.linalg.norm(push))
+    if size < noted(gaps.problem) * total:
+        return None, ()
+    motion = body.free.combined(push[:, None] / size).describe()[0]
+    words = (
+        f"no contact holds the {motion}, and the forces push along it: as the body and the surfaces move, levers and "
+        f"directions of forces change, by {100 * size / total:.2g} % of the force of contact; prescribe a displacement "
+        "that holds it"
+    )
+    least = _judged_to(gaps.problem)
+    if size < least * total:
+        return None, (f"{words}; error bars do not include this",)
+    words = f"{words[0].upper()}{words[1:]}."
+    i = int(np.argmax(contact.weights * solution.pressure))
+    return _misfit(gaps, points, contact, i, Misfit.MOVED, size / total, least, words), ()
 
 
 def noted(problem: Problem) -> float:
@@ -217,7 +252,7 @@ def _moves_on(
         return None
     reach = abs(contact.rigid_motions).max(axis=0)
     before = solution.rigid_amplitudes * reach
-    unseen = null_space(contact.rigid_motions[solution.pressure > 0], rcond=UNSEEN)  # their amplitudes are a rule's
+    unseen = _unheld(contact, solution)  # their amplitudes are a rule's
     change = again.rigid_amplitudes - solution.rigid_amplitudes
     further = (change - unseen @ (unseen.T @ change)) * reach * np.where(before < 0, -1.0, 1.0)
     before = abs(before)

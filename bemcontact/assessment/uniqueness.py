@@ -154,8 +154,10 @@ def near_bound(state: NearState, D: Array, M: Array, ell: Array, whole: Definite
     found = np.inf
     for h in np.quantile(g[open_points], NEAR) if start < np.inf and open_points.any() else ():
         near = state.contact_set | (g <= h)
-        on, lever = Definiteness.of(D[near], M[np.ix_(near, near)], ell[near]), _least_singular(rows[near]) - lost
-        if h <= 0 or not on.definite or on.eigenvalue is None or lever <= 0:
+        if h <= 0 or (lever := _least_singular(rows[near]) - lost) <= 0:
+            continue
+        on = Definiteness.of(D[near], M[np.ix_(near, near)], ell[near])
+        if not on.definite or on.eigenvalue is None:
             continue
         B = start
         for _ in range(ROUNDS):

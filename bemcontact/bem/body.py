@@ -65,6 +65,11 @@ class Body:
     unseen: FreeMotions
 
     @cached_property
+    def free(self) -> FreeMotions:
+        """All free motions of body and tools: those seen, then those unseen."""
+        return replace(self.seen, coefficients=np.vstack([self.seen.coefficients, self.unseen.coefficients]))
+
+    @cached_property
     def factors(self) -> Array:
         """Factors of the loadings (1 + c,)."""
         named = self.problem.factors()

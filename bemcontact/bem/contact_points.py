@@ -15,7 +15,7 @@ from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, RigidSurface
 from bemcontact.problem.sight import turned_to
-from bemcontact.problem.surface_lines import Closest, Polyline
+from bemcontact.problem.surface_lines import Faces
 
 PARALLEL = 1e-9
 """Sine of the angle below which the rigid normal lies along a prescribed axis."""
@@ -46,6 +46,7 @@ class ContactPoints:
     arc_position : (n,) arc length along that piece [L]
     run_length : (runs,) perimeter of a piece that closes on itself, else infinity [L]
     normals : (n, 2) of the rigid surface, into the body
+    faces : (n, 2) normals of the faces of the surface, as in `Faces`
     gap : (n,) ε [L]
     element, local, point : (q,) the (element, local node) pairs that carry the pressure of each point
     held_arc : (runs, 2) arc position of the first and the last node of a piece if a condition holds it on the rigid
@@ -62,6 +63,7 @@ class ContactPoints:
     arc_position: Array
     run_length: Array
     normals: Array
+    faces: Array
     gap: Array
     element: IntArray
     local: IntArray
@@ -77,7 +79,7 @@ class ContactPoints:
         none, numbers = np.zeros(0), np.zeros(0, int)
         return cls(
             mesh=mesh, node=numbers, zone=numbers, run=numbers, arc_position=none, run_length=none,
-            normals=np.zeros((0, 2)), gap=none, element=numbers, local=numbers, point=numbers,
+            normals=np.zeros((0, 2)), faces=np.zeros((0, 2)), gap=none, element=numbers, local=numbers, point=numbers,
             held_arc=np.zeros((0, 2)), held_points=np.zeros((0, 2, 2)),
         )  # fmt: skip
 
@@ -150,7 +152,7 @@ def contact_points(
         in_zone, faces = in_zones[number], _faces(problem, zone.surface, mesh, halves, deflections.get(name))
         for elements, closed in _between_corners(mesh, _runs(mesh, in_zone), faces):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
-            gap, normals = faces.along(nodes, closed=closed)
+            gap, normals, lies = faces.along(nodes, closed=closed)
             loose = ~_held_along(normals, values.displacement_given[nodes])
             free = loose & ~(choice[nodes] & ~faces.turned(mesh, elements, closed=closed))
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
@@ -161,7 +163,7 @@ def contact_points(
             pieces.append(
                 _Piece(
                     number, tool_of.get(name), elements, elements, length, goes_on, nodes[free], arc[free],
-                    normals[free], gap[free], held, mesh.nodes[nodes[[0, -1]]],
+                    normals[free], lies[free], gap[free], held, mesh.nodes[nodes[[0, -1]]],
                 )
             )  # fmt: skip
         if not any(len(piece.nodes) for piece in pieces if piece.zone == number) and (in_zone & choice[middles]).any():
@@ -172,17 +174,18 @@ def contact_points(
 
 
 class _NodeFaces(NamedTuple):
-    """Gap (N, 3) [L] and normals (N, 3, 2) before, at and after each node, as in `Faces`; whether the sides differ."""
+    """`Faces` before, at and after each node (N,); whether the sides differ."""
 
     gap: Array
     normals: Array
+    faces: Array
     differs: BoolArray
 
-    def along(self, nodes: IntArray, *, closed: bool) -> Closest:
-        """Gap and normals at the nodes of a piece in order, of that side of each which is on the piece."""
+    def along(self, nodes: IntArray, *, closed: bool) -> tuple[Array, Array, Array]:
+        """Gap, normals and faces at the nodes of a piece in order, of that side of each which is on the piece."""
         side = np.full(len(nodes), 2)
         side[-1] = 2 if closed else 0
-        return Closest(self.gap[nodes, side], self.normals[nodes, side])
+        return self.gap[nodes, side], self.normals[nodes, side], self.faces[nodes, side]
 
     def turned(self, mesh: Mesh, elements: IntArray, *, closed: bool) -> BoolArray:
         """Whether a side of each node of a piece, on its elements in order, is turned to the face there."""
@@ -213,12 +216,11 @@ def _faces(problem: Problem, surface: RigidSurface, mesh: Mesh, halves: Array, d
     if isinstance(surface, DeflectedContour):
         assert deflection is not None
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.behind(deflection))
-    elif isinstance(surface, Polyline):
-        gap, normals = surface.faces(mesh.nodes, *sides_of_nodes(problem, mesh, halves))
+        held = Faces(gap, normals, normals)
     else:
-        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.closest(mesh.nodes))
-    other = np.hypot(*np.moveaxis(normals - normals[:, [2, 0, 0]], 2, 0)) > ALIKE
-    return _NodeFaces(gap, normals, other | (abs(gap - gap[:, [2, 0, 0]]) > ALIKE * mesh.size))
+        held = surface.faces(mesh.nodes, *sides_of_nodes(problem, mesh, halves))
+    other = np.hypot(*np.moveaxis(held.normals - held.normals[:, [2, 0, 0]], 2, 0)) > ALIKE
+    return _NodeFaces(*held, other | (abs(held.gap - held.gap[:, [2, 0, 0]]) > ALIKE * mesh.size))
 
 
 def sides_of_nodes(problem: Problem, mesh: Mesh, halves: Array) -> tuple[Array, Array]:
@@ -258,7 +260,7 @@ def _standing(
         normals, nodes = faces.normals[[node], 1], np.array([node])
         if not _held_along(normals, given[nodes])[0]:
             yield _Piece(
-                zone, tool, elements, elements[:0], np.inf, (False, False), nodes, np.zeros(1), normals,
+                zone, tool, elements, elements[:0], np.inf, (False, False), nodes, np.zeros(1), normals, normals,
                 faces.gap[[node], 1], np.full(2, np.nan), mesh.nodes[[node, node]],
             )  # fmt: skip
 
@@ -292,6 +294,7 @@ class _Piece(NamedTuple):
     nodes: IntArray
     arc: Array
     normals: Array
+    faces: Array
     gap: Array
     held_arc: Array
     held_points: Array
@@ -306,7 +309,7 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
     tool = [piece.tool for piece, size in zip(pieces, sizes, strict=True) for _ in range(size)]
     first_alike = _first_alike(mesh, node, normals, gap, tool)
     own = first_alike == np.arange(len(node))
-    number = (np.cumsum(own) - 1)[first_alike]
+    number = np.where(first_alike < 0, -1, (np.cumsum(own) - 1)[first_alike])
     elements, points = [], []
     for first, piece in zip(np.cumsum([0, *sizes]), pieces, strict=False):
         point_of = np.full(len(mesh.nodes), -1)
@@ -330,6 +333,7 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
         arc_position=np.concatenate([piece.arc for piece in pieces])[own],
         run_length=np.array([piece.length for piece in pieces]),
         normals=normals[own],
+        faces=np.concatenate([piece.faces for piece in pieces])[own],
         gap=gap[own],
         element=element,
         local=local,
@@ -342,14 +346,19 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
 
 
 def _first_alike(mesh: Mesh, node: IntArray, normals: Array, gap: Array, tool: Sequence[str | None]) -> IntArray:
-    """The first point (n,) with the same node, normal, gap and tool: zones that meet on one surface share it."""
+    """The first point (n,) with the same node, normal, gap and tool, which zones that meet on one surface share.
+
+    It is -1 for a point that another one with a smaller gap keeps from touching.
+    """
     first = np.arange(len(node))
     for j in np.flatnonzero(np.bincount(node)[node] > 1).tolist():
-        for i in np.flatnonzero(node[:j] == node[j]).tolist():
-            alike = tool[i] == tool[j] and np.hypot(*(normals[i] - normals[j])) <= ALIKE
-            if alike and abs(gap[i] - gap[j]) <= ALIKE * mesh.size:
-                first[j] = first[i]
-                break
+        same = [i for i in np.flatnonzero(node == node[j]).tolist() if tool[i] == tool[j]]
+        same = [i for i in same if np.hypot(*(normals[i] - normals[j])) <= ALIKE]
+        least = min(gap[i] for i in same)
+        if gap[j] <= least + ALIKE * mesh.size:
+            first[j] = next(i for i in same if gap[i] <= least + ALIKE * mesh.size)
+        else:
+            first[j] = -1
     return first
 
 

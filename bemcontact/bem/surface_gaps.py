@@ -20,7 +20,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, Shape
-from bemcontact.problem.surface_lines import Closest, Polyline, Spline
+from bemcontact.problem.surface_lines import Closest, Faces, Polyline, Spline
 
 NODES = [0, len(SAMPLES) // 2, -1]
 """Which of them are nodes."""
@@ -112,12 +112,12 @@ class SurfaceGaps:
         return {name: zone.surface for name, zone in zones if not isinstance(zone.surface, DeflectedContour)}
 
     @cached_property
-    def held(self) -> dict[str, Closest]:
-        """Gap (m, 3) [L] and normals (m, 3, 2) of the faces that hold the nodes of elements, by zone, as in contact."""
+    def held(self) -> dict[str, Faces]:
+        """Faces that hold the nodes (m, 3) of elements, by zone, as in contact."""
         mesh, side = self.outline.mesh, [2, 0, 0]
         sides = sides_of_nodes(self.problem, mesh, half_lengths(mesh))
         faces = {name: surface.faces(mesh.nodes, *sides) for name, surface in self.surfaces.items()}
-        return {name: Closest(*(part[mesh.elements, side] for part in item)) for name, item in faces.items()}
+        return {name: Faces(*(part[mesh.elements, side] for part in item)) for name, item in faces.items()}
 
     def paired(self, zone: str) -> BoolArray:
         """Whether each element (m,) belongs to a zone, or to another one that pairs it with the same face and tool."""
@@ -131,7 +131,7 @@ class SurfaceGaps:
                 paired |= np.isin(self.state.edge, edges) & ~apart.any(axis=1)
         return paired
 
-    def linear(self, zone: str, elements: IntArray) -> Closest:
+    def linear(self, zone: str, elements: IntArray) -> Faces:
         """Gap (k, q) [L] of elements (k,) as contact sees it, ε + n·(u - w), with the normals n of the undeformed body.
 
         At nodes, ε and n are those of contact points. Between them each place has the face to which it is turned.
@@ -139,10 +139,10 @@ class SurfaceGaps:
         at, held = self.outline.sampled(elements), self.held[zone]
         flat, inward = at.points.reshape(-1, 2), np.repeat(at.inward.reshape(-1, 1, 2), 2, axis=1)
         faces = self.surfaces[zone].faces(flat, inward, np.zeros(len(flat)))
-        gap, normals = faces.gap[:, 0].reshape(at.points.shape[:-1]), faces.normals[:, 0].reshape(at.points.shape)
-        gap[:, NODES], normals[:, NODES] = held.gap[elements], held.normals[elements]
+        gap, normals, lies = (part[:, 0].reshape(at.points.shape[:-1] + part.shape[2:]) for part in faces)
+        gap[:, NODES], normals[:, NODES], lies[:, NODES] = (part[elements] for part in held)
         moved = self._displacement(elements) - self.tool_motion(zone, at.points)
-        return Closest(gap + np.sum(normals * moved, axis=-1), normals)
+        return Faces(gap + np.sum(normals * moved, axis=-1), normals, lies)
 
     def exact(self, zone: str, moved: Array) -> Closest:
         """Distance (...) [L] of displaced places (..., 2) from the displaced surface, and the normals there."""
@@ -202,15 +202,15 @@ class SurfaceGaps:
         # where no node touches, what dips was not seen, and is no contact
         touching = nodes.min(axis=2) <= TOUCHES * nodes.max(axis=2)
         dip = DIP * np.where(self._same(zone, here), nodes, 0.0).max(axis=2) * touching
-        other = np.sum(here.normals * there.normals, axis=-1) < SAME_FACE
+        other = np.sum(here.faces * there.normals, axis=-1) < SAME_FACE
         beyond = other & (-there.gap > self._second_order(zone))
         return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
 
-    def _same(self, zone: str, here: Closest) -> BoolArray:
+    def _same(self, zone: str, here: Faces) -> BoolArray:
         """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""
         if not isinstance(self.surfaces[zone], Polyline):
             return np.ones((*here.gap.shape, len(NODES)), bool)
-        return np.einsum("kqi,kni->kqn", here.normals, here.normals[:, NODES]) > SAME_FACE
+        return np.einsum("kqi,kni->kqn", here.faces, here.faces[:, NODES]) > SAME_FACE
 
     def _depth_in_other(
         self, zone: str, elements: IntArray, ends: Sequence[FaceEnd]

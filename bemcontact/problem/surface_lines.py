@@ -21,6 +21,10 @@ MOST_POINTS = 1000
 SAMPLES = 16
 """Number of starting points for the nearest point, between two points of a spline."""
 NEWTON_STEPS = 60
+LIES_ON = 0.995
+"""Cosine of the angle between the normals of body and face below which a smooth body cannot lie on the face."""
+STEEP = 0.05
+"""Least cosine of the angle between the normals of body and face with which gaps along the former are computed."""
 
 
 class Closest(NamedTuple):
@@ -34,14 +38,22 @@ class Closest(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Gap (k, 3) [L] and unit normals (k, 3, 2) of the faces of a surface that hold points of the boundary of a body.
+    """Faces of a surface that hold points of the boundary of a body.
 
-    The first face is that of the boundary before a point, the last one that of the boundary after it. The face in the
-    middle holds a corner of the body that stands on it, between two others. Nearly everywhere all three are one face.
+    The first of three is that of the boundary before a point, the last one that of the boundary after it. The face in
+    the middle holds a corner of the body that stands on it, between two others. Nearly everywhere all three are one
+    face.
+
+    Parameters
+    ----------
+    gap : (k, 3) [L]
+    normals : (k, 3, 2) unit vectors along which gap and pressure count
+    faces : (k, 3, 2) unit normals of the faces; others than `normals` beside a convex corner that presses on the body
     """
 
     gap: Array
     normals: Array
+    faces: Array
 
 
 class SmoothSurface(SpecModel):
@@ -53,8 +65,8 @@ class SmoothSurface(SpecModel):
 
     def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
         """Find the face that holds points (k, 2) [L], as of `Polyline`."""
-        gap, normals = self.closest(points)
-        return Faces(np.repeat(gap[:, None], 3, axis=1), np.repeat(normals[:, None], 3, axis=1))
+        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(points))
+        return Faces(gap, normals, normals)
 
 
 class Polyline(SpecModel):
@@ -107,15 +119,18 @@ class Polyline(SpecModel):
 
         In a concave corner of the surface each side of a point has the face to which it is turned, although the other
         face may be nearer. A convex corner presses on the body along the normals of the body, as far as they lie
-        between those of its faces: on a smooth boundary if it is there, and on both sides of a re-entrant corner of the
-        body up to the distance `reach` (k,) [L].
+        between those of its faces: a smooth boundary cannot lie on a face that is tilted against it, and touches it
+        beside the corner only. It presses on both sides of a re-entrant corner of the body up to the distance `reach`
+        (k,) [L].
         """
         points, near = np.asarray(points, float), self.closest(points)
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in near)
         if len(self.points) > 2:
             self._hold_in_grooves(points, inward, gap, normals)
-            self._press_on_ridges(points, inward, reach, gap, normals)
-        return Faces(gap, normals)
+        faces = normals.copy()
+        if len(self.points) > 2:
+            self._press_on_ridges(points, inward, reach, Faces(gap, normals, faces))
+        return Faces(gap, normals, faces)
 
     def _hold_in_grooves(self, points: Array, inward: Array, gap: Array, normals: Array) -> None:
         """Put the face to which each side is turned: that of the nearest segment, or of one that rises beside it."""
@@ -139,19 +154,33 @@ class Polyline(SpecModel):
             normals[held, column] = lefts[facing[held, chosen]]
             gap[held, column] = np.einsum("ki,ki->k", offset[held, chosen], normals[held, column])
 
-    def _press_on_ridges(self, points: Array, inward: Array, reach: Array, gap: Array, normals: Array) -> None:
+    def _press_on_ridges(self, points: Array, inward: Array, reach: Array, held: Faces) -> None:
         """Put the normals of the body where a convex corner of the surface presses on it."""
-        corners, _, lefts, _, _ = self.sides
-        which, distance = self._nearest_corner(points)
-        re_entrant = _cross(inward[:, 0], inward[:, 1]) < 0
+        which = self._corner_beside(points)
+        offset, turn = points - self.sides.corners[which + 1], _cross(inward[:, 0], inward[:, 1])
+        distance, re_entrant = np.hypot(*offset.T), turn < 0
         there = distance <= ON_CORNER * self._extent(points)
-        pressed = np.flatnonzero(~self._concave[which] & (there | (re_entrant & (distance <= reach))))
-        before, after = lefts[which[pressed]], lefts[which[pressed] + 1]
-        offset, common = points[pressed] - corners[which[pressed] + 1], inward[pressed].sum(axis=1)
+        pressed = ~self._concave[which] & (there | (turn == 0) | (re_entrant & (distance <= reach)))
+        before, after = self.sides.lefts[which], self.sides.lefts[which + 1]
         for side, column in ((0, 0), (0, 1), (1, 2)):
-            own = np.where(re_entrant[pressed, None], inward[pressed, side], common)
-            normals[pressed, column] = _between(own, after, before)
-            gap[pressed, column] = np.einsum("ki,ki->k", offset, normals[pressed, column])
+            own = np.where(re_entrant[:, None], inward[:, side], inward.sum(axis=1))
+            own = unit_vectors(own, own)
+            pressing, tilted = _between(own, after, before), _dot(held.normals[:, column], own) < LIES_ON
+            over, face = _over(offset, pressing, before, after)
+            opens = over >= abs(_cross(offset, own) * _cross(held.normals[:, column], own)) / 2
+            nearer = pressed & (tilted | opens) & (_dot(pressing - held.normals[:, column], own) > ALIKE)
+            flat = pressed & (there | re_entrant)
+            for here, gap, lies in ((nearer, over, face), (flat, _dot(offset, pressing), pressing)):
+                held.gap[here, column], held.normals[here, column] = gap[here], pressing[here]
+                held.faces[here, column] = lies[here]
+
+    def _corner_beside(self, points: Array) -> IntArray:
+        """Inner corner (k,), counted from 0, that is the nearer end of the segment nearest to each point."""
+        nearest = self._nearest(points)[0]
+        ends = np.stack([nearest, nearest + 1], axis=1)
+        distances = np.hypot(*np.moveaxis(points[:, None] - self.sides.corners[ends], 2, 0))
+        distances[(ends == 0) | (ends == len(self.points) - 1)] = np.inf
+        return ends[np.arange(len(points)), distances.argmin(axis=1)] - 1
 
     def beyond_ends(self, points: Array) -> BoolArray:
         """Whether the surface is nearest to points (k, 2) [L] where it goes on straight beyond its ends."""
@@ -344,6 +373,16 @@ def _coordinates(point: Array) -> str:
 
 def _cross(a: Array, b: Array) -> Array:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def _over(offset: Array, normals: Array, before: Array, after: Array) -> Closest:
+    """Distance (k,) [L] along normals (k, 2) at offsets (k, 2) [L] from a convex corner, and the faces (k, 2) there."""
+    along = np.stack([_dot(offset, face) / np.maximum(_dot(normals, face), STEEP) for face in (before, after)])
+    return Closest(along.max(axis=0), np.where((along[0] >= along[1])[:, None], before, after))
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return np.einsum("ki,ki->k", a, b)
 
 
 def _between(vectors: Array, first: Array, last: Array) -> Array:

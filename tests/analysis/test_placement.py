@@ -350,6 +350,28 @@ def test_a_disc_without_a_couple_rests(slopes):
     assert solve(disc_on_planes(0.0, slopes)).certified
 
 
+def flat_tool_on_a_dome(moment, height, **along):
+    """A dome of radius R below a flat tool with a moment and a pivot so high above its face; and R."""
+    rise, R = 10.0, np.hypot(10, 10)
+    dome = {"name": "dome", "kind": "arc", "center": (0, -rise), "radius": R, "angles": (45, 135)}
+    flat = {"kind": "plane", "point": (0, R - rise), "normal": (0, -1)}
+    lines = [
+        {"name": name, "start": at} for name, at in {"base": (-10, -8), "right": (10, -8), "left": (-10, 0)}.items()
+    ]
+    problem = Problem(
+        name="flat tool on a dome",
+        material=STEEL,
+        boundary={"outer": [*lines[:2], dome, lines[2]]},
+        conditions={"base": {"displacement": {"x": 0, "y": 0}}},
+        contact_zones={"top": {"edges": "dome", "surface": flat}},
+        tools={"flat": {
+            "zones": "top", "point": (0, R - rise + height * R), "force": {"y": -500, "moment": moment},
+            **along}},
+        accuracy=0.03,
+    )  # pyright: ignore[reportArgumentType] # fmt: skip
+    return problem, R
+
+
 @pytest.mark.parametrize("moment", [100.0, 300.0])
 def test_a_flat_tool_that_rolls_on_a_dome_is_held(moment):
     """It turns by M/(F R) until it touches beside the top; it is lifted by a square of that, which is no motion.
@@ -357,31 +379,26 @@ def test_a_flat_tool_that_rolls_on_a_dome_is_held(moment):
     Its force turns with it: the moment gains the height of the pivot, a seventh of R, which is a change of a seventh.
     So the place of contact is off by a seventh of R times the angle, which is said.
     """
-    rise, R = 10.0, np.hypot(10, 10)
-    dome = {"name": "dome", "kind": "arc", "center": (0, -rise), "radius": R, "angles": (45, 135)}
-    flat = {"kind": "plane", "point": (0, R - rise), "normal": (0, -1)}
-    lines = [
-        {"name": name, "start": at} for name, at in {"base": (-10, -8), "right": (10, -8), "left": (-10, 0)}.items()
-    ]
-    result = solve(
-        Problem(
-            name="flat tool on a dome",
-            material=STEEL,
-            boundary={"outer": [*lines[:2], dome, lines[2]]},
-            conditions={"base": {"displacement": {"x": 0, "y": 0}}},
-            contact_zones={"top": {"edges": "dome", "surface": flat}},
-            tools={"flat": {
-                "zones": "top", "point": (0, R - rise + R / 7), "displacement": {"x": 0},
-                "force": {"y": -500, "moment": moment}}},
-            accuracy=0.03,
-        )  # pyright: ignore[reportArgumentType]
-    )  # fmt: skip
+    problem, R = flat_tool_on_a_dome(moment, 1 / 7, displacement={"x": 0})
+    result = solve(problem)
     angle = result.contact.tools.displacement(result.solution.rigid_amplitudes)[0, 2]
     assert angle == pytest.approx(moment / (500 * R), rel=0.03)
     assert result.certified
     (told,) = (float(found[1]) for note in result.notes if (found := re.search(r"elsewhere by ([\d.e+-]+) %", note)))
     touching = result.footprint.intervals[0]
     assert told / 100 == pytest.approx(R * angle / 7 / np.ptp(touching.arc), rel=0.15)
+
+
+@pytest.mark.parametrize(("moment", "certified"), [(10.0, True), (40.0, True), (300.0, False)])
+def test_a_flat_tool_that_may_slide_off_a_dome_is_told(moment, certified):
+    """It turns by the angle M/(F R), and its force pushes it along by this part of it, which nothing holds."""
+    problem, R = flat_tool_on_a_dome(moment, 0.0, force={"x": 0, "y": -500, "moment": moment})
+    result = solve(problem)
+    texts = [*result.notes, *([result.penetration.words] if result.penetration else [])]
+    told = [float(found[1]) / 100 for text in texts if (found := re.search(r"push along it: .* by ([\d.e-]+) %", text))]
+    angle = moment / (500 * R)
+    assert told == ([] if angle < SAID else [pytest.approx(angle, rel=0.05)])
+    assert result.certified is certified
 
 
 @pytest.mark.parametrize("share", [0.004, -0.02, 0.09])

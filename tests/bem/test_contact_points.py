@@ -71,16 +71,35 @@ def test_pressure_of_a_fluid_on_faces_that_fit_the_body(angles, radii, faces, sh
         assert interval.end == pytest.approx(edges[edge + 1]["start"], abs=1e-12)
 
 
-@given(st.floats(0.02, 1.4), st.floats(0.02, 1.4), st.floats(-3, 3))
-def test_a_ridge_presses_on_a_smooth_edge_along_the_normal_of_the_body(left, right, turn):
-    """Whatever its flanks, if they fall away from the body; the gap is the height of the body above the ridge."""
+@given(st.floats(0.02, 1.4), st.floats(0.02, 1.4), st.floats(-0.3, 0.3), st.floats(0, 0.1), st.floats(-3, 3))
+def test_a_ridge_presses_on_a_smooth_edge_along_the_normal_of_the_body(left, right, along, height, turn):
+    """At it and beside it, whatever its flanks, if they fall away from the body: gaps are heights above the surface."""
     flanks = np.array([(-np.cos(left), -np.sin(left)), (0.0, 0.0), (np.cos(right), -np.sin(right))])
     c, s = np.cos(turn), np.sin(turn)
-    line = Polyline(points=tuple(map(tuple, (flanks @ [[c, s], [-s, c]]).tolist())))
-    inward = np.array([-s, c])
-    gap, normals = line.faces(np.zeros((1, 2)), np.tile(inward, (1, 2, 1)), np.zeros(1))
-    np.testing.assert_allclose(normals, np.tile(inward, (1, 3, 1)), atol=1e-12)
-    assert abs(gap).max() <= 1e-15
+    rotate = np.array([[c, s], [-s, c]])
+    line = Polyline(points=tuple(map(tuple, (flanks @ rotate).tolist())))
+    inward = np.array([0.0, 1.0]) @ rotate
+    place = (np.array([[along, height]]) @ rotate, np.tile(inward, (1, 2, 1)), np.zeros(1))
+    gap, normals, _ = line.faces(*place)
+    fall = -along * np.tan(left) if along < 0 else along * np.tan(right)
+    np.testing.assert_allclose(normals, np.tile(inward, (1, 3, 1)), atol=1e-7)
+    np.testing.assert_allclose(gap, height + fall, rtol=1e-7, atol=1e-9)
+
+
+@pytest.mark.parametrize("slope", [0.1, 1.0, 20.0])
+def test_the_force_of_a_knife_is_normal_to_the_body(slope):
+    """Each of two knives takes half the load of a beam, whatever their angle, and nothing along the beam.
+
+    Both zones have all nodes of the edge, but each node only one point: that of the nearer surface.
+    """
+    corners = {"bottom": (-30, 0), "right": (30, 0), "top": (30, 4), "left": (-30, 4)}
+    edges = [{"name": name, "start": at, "elements": 12} for name, at in corners.items()]
+    zones = {f"{x}": (("bottom",), [(x - 9, -9 * slope), (x, 0), (x + 9, -9 * slope)]) for x in (-15, 15)}
+    result = solve(problem_of(edges, zones, 1e-3, accuracy=None))
+    inner = abs(result.contact.points[:, 0]) < 30
+    assert np.count_nonzero(inner) == 2 * 12 - 1
+    forces = result.contact.resultants(result.solution.pressure)
+    np.testing.assert_allclose(forces, [[0.0, 30 * 1e-3]] * 2, atol=1e-12)
 
 
 @given(st.floats(0.3, 2.8), st.floats(0.0, 0.05), st.floats(0.0, 0.05), st.floats(-3, 3))
@@ -92,7 +111,7 @@ def test_a_corner_in_a_groove_has_the_gaps_to_both_faces(angle, first, last, tur
     line = Polyline(points=tuple(map(tuple, (np.array([-down, [0, 0], along]) @ rotate).tolist())))
     faces = np.array([[np.sin(angle), -np.cos(angle)], [0.0, 1.0]])  # into the body, before and after the corner
     place = np.linalg.solve(faces, [first, last])
-    gap, normals = line.faces((place @ rotate)[None], (faces @ rotate)[None], np.zeros(1))
+    gap, normals, _ = line.faces((place @ rotate)[None], (faces @ rotate)[None], np.zeros(1))
     np.testing.assert_allclose(gap[0, [0, 2]], [first, last], atol=1e-12)
     np.testing.assert_allclose(normals[0, [0, 2]], faces @ rotate, atol=1e-12)
 
