@@ -22,7 +22,7 @@ SAMPLES = 16
 """Number of starting points for the nearest point, between two points of a spline."""
 NEWTON_STEPS = 60
 LIES_ON = 0.995
-"""Cosine of the angle between the normals of body and face below which a smooth body cannot lie on the face."""
+"""Cosine of the angle between the normals of body and face from which the body may come to lie on the face."""
 STEEP = 0.05
 """Least cosine of the angle between the normals of body and face with which gaps along the former are computed."""
 
@@ -156,31 +156,34 @@ class Polyline(SpecModel):
 
     def _press_on_ridges(self, points: Array, inward: Array, reach: Array, held: Faces) -> None:
         """Put the normals of the body where a convex corner of the surface presses on it."""
-        which = self._corner_beside(points)
+        which = self._ridge_beside(points)
         offset, turn = points - self.sides.corners[which + 1], _cross(inward[:, 0], inward[:, 1])
         distance, re_entrant = np.hypot(*offset.T), turn < 0
-        there = distance <= ON_CORNER * self._extent(points)
-        pressed = ~self._concave[which] & (there | (turn == 0) | (re_entrant & (distance <= reach)))
+        flat = (which >= 0) & ((distance <= ON_CORNER * self._extent(points)) | (re_entrant & (distance <= reach)))
+        own = np.where(re_entrant[:, None, None], inward[:, [0, 0, 1]], inward.sum(axis=1, keepdims=True))
+        lies = np.einsum("kai,kai->ka", inward, held.normals[:, [0, 2]]) > LIES_ON
+        ends = ~flat & (turn > 0) & (lies[:, 0] != lies[:, 1])  # here one side of a corner of the body lies on a face
+        own[ends] = inward[ends, lies[ends].argmax(axis=1), None]
+        smooth = (which >= 0) & ~flat & ((turn == 0) | ends)
         before, after = self.sides.lefts[which], self.sides.lefts[which + 1]
-        for side, column in ((0, 0), (0, 1), (1, 2)):
-            own = np.where(re_entrant[:, None], inward[:, side], inward.sum(axis=1))
-            own = unit_vectors(own, own)
-            pressing, tilted = _between(own, after, before), _dot(held.normals[:, column], own) < LIES_ON
+        for column in range(3):
+            body = unit_vectors(own[:, column], own[:, column])
+            pressing, tilt = _between(body, after, before), _dot(held.normals[:, column], body)
             over, face = _over(offset, pressing, before, after)
-            opens = over >= abs(_cross(offset, own) * _cross(held.normals[:, column], own)) / 2
-            nearer = pressed & (tilted | opens) & (_dot(pressing - held.normals[:, column], own) > ALIKE)
-            flat = pressed & (there | re_entrant)
-            for here, gap, lies in ((nearer, over, face), (flat, _dot(offset, pressing), pressing)):
+            opens = over >= abs(_cross(offset, body) * _cross(held.normals[:, column], body)) / 2
+            nearer = smooth & ((tilt < LIES_ON) | opens) & (_dot(pressing, body) > tilt + ALIKE)
+            for here, gap, on in ((nearer, over, face), (flat, _dot(offset, pressing), pressing)):
                 held.gap[here, column], held.normals[here, column] = gap[here], pressing[here]
-                held.faces[here, column] = lies[here]
+                held.faces[here, column] = on[here]
 
-    def _corner_beside(self, points: Array) -> IntArray:
-        """Inner corner (k,), counted from 0, that is the nearer end of the segment nearest to each point."""
+    def _ridge_beside(self, points: Array) -> IntArray:
+        """Convex inner corner (k,), counted from 0, that is the nearer end of the nearest segment; -1 if none is."""
         nearest = self._nearest(points)[0]
         ends = np.stack([nearest, nearest + 1], axis=1)
         distances = np.hypot(*np.moveaxis(points[:, None] - self.sides.corners[ends], 2, 0))
-        distances[(ends == 0) | (ends == len(self.points) - 1)] = np.inf
-        return ends[np.arange(len(points)), distances.argmin(axis=1)] - 1
+        distances[~np.pad(~self._concave, 1)[ends]] = np.inf
+        rows, end = np.arange(len(points)), distances.argmin(axis=1)
+        return np.where(np.isfinite(distances[rows, end]), ends[rows, end] - 1, -1)
 
     def beyond_ends(self, points: Array) -> BoolArray:
         """Whether the surface is nearest to points (k, 2) [L] where it goes on straight beyond its ends."""

@@ -86,6 +86,20 @@ def test_a_ridge_presses_on_a_smooth_edge_along_the_normal_of_the_body(left, rig
     np.testing.assert_allclose(gap, height + fall, rtol=1e-7, atol=1e-9)
 
 
+@given(st.floats(1e-3, 0.09), st.floats(0.1, 3), st.floats(-3, 3))
+def test_an_edge_on_a_kinked_floor_has_one_normal_up_to_its_end(slope, along, turn):
+    """The gap has no step beside the end of the edge, which would be an infinite pressure there."""
+    c, s = np.cos(turn), np.sin(turn)
+    rotate = np.array([[c, s], [-s, c]])
+    line = Polyline(
+        points=tuple(map(tuple, (np.array([(-1.0, 0.0), (0.0, 0.0), (4.0, -4 * slope)]) @ rotate).tolist()))
+    )
+    sides = np.array([[(0.0, 1.0), (-1.0, 0.0)], [(0.0, 1.0), (0.0, 1.0)]]) @ rotate
+    gap, normals, _ = line.faces(np.array([[along, 0.0]] * 2) @ rotate, sides, np.zeros(2))
+    np.testing.assert_allclose(normals, np.tile(sides[1, 0], (2, 3, 1)), atol=1e-7)
+    np.testing.assert_allclose(gap, along * slope, rtol=1e-7)
+
+
 @pytest.mark.parametrize("slope", [0.1, 1.0, 20.0])
 def test_the_force_of_a_knife_is_normal_to_the_body(slope):
     """Each of two knives takes half the load of a beam, whatever their angle, and nothing along the beam.
