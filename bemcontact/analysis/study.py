@@ -183,7 +183,8 @@ class Study(Recorded):
     @property
     def heading(self) -> str:
         """What is proved of the solution of the equations, in a few words."""
-        return "penetrates a surface" if self.finest.answer.penetration else self.finest.comparison.heading
+        deepest = self.finest.answer.penetration
+        return self.finest.comparison.heading if deepest is None else str(deepest.kind)
 
     @property
     def verdict(self) -> str:

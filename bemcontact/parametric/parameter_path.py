@@ -77,7 +77,8 @@ class ParameterPath(Leaf):
     end_accuracy: Accuracy
     """Accuracy of the mesh at the end."""
     penetration: Penetration | None = None
-    """Deepest penetration of the boundary at a breakpoint that is not tolerated; null if there is none."""
+    """Deepest penetration of the boundary at a breakpoint that is not tolerated, or else the largest strains there that
+    are not small; null if there are none."""
     penetrates_at: float | None = None
     """Value of the parameter there; null if there is none."""
     said: Internal[tuple[str, ...]] = ()
@@ -110,10 +111,14 @@ class ParameterPath(Leaf):
     def certified(self) -> bool:
         """Whether the path reaches its end, and each state on it is proved to be the contact state, the only one.
 
-        At breakpoints the body penetrates no rigid surface either.
+        At breakpoints the body penetrates no rigid surface either, and strains are small.
         """
-        proved = self.path.complete and self.path.unique and self.path.residual <= RESIDUAL
-        return proved and self.penetration is None
+        return self.proved and self.penetration is None
+
+    @property
+    def proved(self) -> bool:
+        """Whether the path reaches its end, and each state on it is proved to be the only solution of the equations."""
+        return self.path.complete and self.path.unique and self.path.residual <= RESIDUAL
 
     @property
     def holds(self) -> bool:

@@ -38,7 +38,7 @@ from bemcontact.report.formatting import (
     volume_loads,
     with_unit,
 )
-from bemcontact.report.verdicts import Verdict, case_verdicts, path_verdicts, result_verdicts, study_verdicts
+from bemcontact.report.verdicts import Verdict, case_verdicts, overall, path_verdicts, result_verdicts, study_verdicts
 
 MANY = 4
 """Number of points up to which those that enter or leave together are named."""
@@ -128,14 +128,15 @@ def cases_summary(cases: CaseResults) -> RenderableType:
     zones = table_of("load case", "zone", "force on the body", "contact")
     for name, result in cases.results.items():
         record, units = result.to_dict(), units_of(result.contact)
-        style = "" if result.holds else "yellow" if result.certified else "red"
+        verdicts = result_verdicts(result)
         cells = [
             name,
-            result_verdicts(result)[0].word,
+            verdicts[0].word,
             mesh_in_short(result.accuracy.to_dict()),
             peak_of(record, units) if record["intervals"] else "",
             peak_place(record, units),
         ]
+        style = "" if result.holds else {"good": "", "fair": "yellow", "bad": "red"}[overall(verdicts)]
         table.add_row(*map(Text, cells), style=style)
         forces = zone_forces(record, units)
         places = [*contact_intervals(record, units, short=len(forces) > 1)]  # so that lines stay short

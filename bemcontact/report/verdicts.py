@@ -6,6 +6,7 @@ from typing import NamedTuple
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.study import Study
+from bemcontact.assessment.penetration import Misfit
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report.bars import Record, bar_in_words, error_percent, worst_bar
 from bemcontact.report.formatting import certificate_sentence, number, sentence_case
@@ -37,16 +38,17 @@ def in_short(verdicts: Sequence[Verdict]) -> str:
 
 
 def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:
-    """Verdict on the solution of the equations on the mesh, with its sentences, and on what penetrates a surface."""
+    """Verdict on the solution of the equations on the mesh, with its sentences; what does not fit comes first."""
+    good = certificate["kind"] == "unique"
     if penetration is not None:
         sentences = f"{penetration['words']} At the contact points: {words}"
-        return Verdict("Equations", "bad", misfit_in_words(penetration), sentences)
-    return Verdict("Equations", "good" if certificate["kind"] == "unique" else "bad", certificate["heading"], words)
+        return Verdict("Equations", _quality(penetration, good), penetration["kind"], sentences)
+    return Verdict("Equations", "good" if good else "bad", certificate["heading"], words)
 
 
-def misfit_in_words(penetration: Record) -> str:
-    """Name in a few words how a body does not fit a rigid surface."""
-    return "penetrates a surface" if penetration["kind"] == "penetration" else penetration["kind"]
+def _quality(penetration: Record, solved: bool) -> str:
+    """Fair if the equations are solved, and only the theory is too rough."""
+    return "fair" if solved and not Misfit(penetration["kind"]).serious else "bad"
 
 
 def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
@@ -57,8 +59,10 @@ def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
     finest = report["levels"][-1]
     compared = finest["comparison"]
     short = [level["refine"] for level in report["levels"][:-1] if not _proved(level)]
-    direct = compared["reference"]["certified"] and finest["penetration"] is None
+    direct = compared["reference"]["certified"]
     quality = "bad" if not direct else "good" if _proved(finest) and not short else "fair"
+    if finest["penetration"] is not None:
+        quality = _quality(finest["penetration"], direct)
     sentences = [sentence_case(words or report["verdict"])]
     if short:
         meshes = f"coarser mesh{'es' * (len(short) > 1)} (refine {', '.join(map(str, short))})"
@@ -147,8 +151,11 @@ def _shortfall(verdicts: Iterable[Verdict]) -> str:
 
 def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
     """Verdicts on the equations all along a path, and on the mesh at both ends."""
-    word = "unique solution proved" if path.certified else "not proved"
-    yield Verdict("Equations", "good" if path.certified else "bad", word, path_sentence(path))
+    beyond, word = path.penetration, "unique solution proved" if path.certified else "not proved"
+    quality = "good" if path.certified else "bad"
+    if beyond is not None:
+        word, quality = str(beyond.kind), _quality(beyond.to_dict(), path.proved)
+    yield Verdict("Equations", quality, word, path_sentence(path))
     for value, accuracy in zip((path.start, path.end), (path.start_accuracy, path.end_accuracy), strict=True):
         verdict = mesh_verdict(accuracy.to_dict())
         yield verdict._replace(words=f"At {path.key} = {number(value)}. {verdict.words}")

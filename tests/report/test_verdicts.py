@@ -1,10 +1,16 @@
 """Verdicts on the equations and on the mesh: what is written never states more than what is known."""
 
 from accuracies import accuracy, bar
+from markupsafe import escape
+from studies import block
 
+import bemcontact
+from bemcontact.analysis.compare import study
 from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.options import ComparisonOptions
 from bemcontact.report.bars import mesh_in_short
-from bemcontact.report.verdicts import in_short, mesh_verdict, overall
+from bemcontact.report.page import render
+from bemcontact.report.verdicts import in_short, mesh_verdict, overall, result_verdicts, shortfall, study_verdicts
 
 
 def test_mesh_that_meets_the_accuracy():
@@ -41,3 +47,21 @@ def test_an_answer_is_good_only_if_both_verdicts_are():
     qualities = [overall(pair) for pair in ((good, good), (good, fair), (fair, fair), (bad, good), (bad, fair))]
     assert qualities == ["good", "fair", "fair", "bad", "bad"]
     assert in_short((bad, fair)) == "equations: not solved; mesh: not met"
+
+
+def test_an_answer_outside_linear_theory_is_fair_and_said_in_the_same_words_everywhere():
+    """Terminal, page, picture, JSON, exit status and repr: the equations are solved, and the reason is the verdict."""
+    soft = bemcontact.solve(block(material={"young_modulus": 5.0, "poisson_ratio": 0.3}))
+    compared = study(ComparisonOptions.of("qp3"), soft.problem or soft.contact, (1,))
+    assert soft.penetration is not None
+    reason, word = soft.penetration.words, "outside linear theory"
+    page = render(compared.to_dict(), {}, None)
+    for verdicts in (result_verdicts(soft), study_verdicts(compared.to_dict())):
+        assert (verdicts[0].quality, verdicts[0].word, overall(verdicts)) == ("fair", word, "fair")
+        assert verdicts[0].words.startswith(reason)
+    assert (soft.holds, compared.holds, soft.to_dict()["certified"]) == (False, False, False)
+    assert soft.to_dict()["penetration"]["kind"] == compared.to_dict()["heading"] == word
+    assert shortfall(soft).startswith(f"Equations: {word}. {reason}")
+    assert word in repr(soft)
+    assert 'class="verdict fair"' in page
+    assert str(escape(reason)) in page
