@@ -15,6 +15,7 @@ from bemcontact.bem.body import Body
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.problem.problem import Problem
 
 LARGE = 0.25
 """Change of the displacement over the length along which it changes, and pressure over Young's modulus, not small.
@@ -55,7 +56,7 @@ def linear_theory(
     """Judge strains under contact, and displacements of the whole boundary."""
     strain, part = contact_strains(body, boundary, solution.pressure)
     turns = any("rotation" in name for name in contact.motion_names)
-    moved = large_displacements(boundary, turns, body.problem.material.young_modulus)
+    moved = large_displacements(boundary, turns, _modulus(body.problem))
     beyond = _strained(body, contact, solution, where, strain, part) or moved.beyond
     if beyond is not None:
         return Judgment(beyond)
@@ -118,12 +119,12 @@ def _strained(
         words=(
             f"Strains are not small on {100 * share:.0f} % of contact in '{zone}', up to about {strain[i]:.2g} at "
             f"({x:.5g}, {y:.5g}), where the pressure is {solution.pressure[i] / E:.2g} times Young's modulus: linear "
-            f"theory does not hold. {_numbers(E)}"
+            f"theory does not hold. {_numbers(_modulus(body.problem))}"
         ),
     )  # fmt: skip
 
 
-def large_displacements(boundary: BoundaryState, turns: bool, modulus: float) -> Judgment:
+def large_displacements(boundary: BoundaryState, turns: bool, modulus: str) -> Judgment:
     """Find strains, slopes or rotations that are not small on a part of the boundary; translations do not count.
 
     `turns` is whether contact alone holds the body against rotation.
@@ -155,7 +156,7 @@ def large_displacements(boundary: BoundaryState, turns: bool, modulus: float) ->
     )  # fmt: skip
 
 
-def _cause(boundary: BoundaryState, turns: bool, modulus: float) -> str:
+def _cause(boundary: BoundaryState, turns: bool, modulus: str) -> str:
     """What to do about large displacements: hold a body that turns as a whole, else check the numbers."""
     x, u = (
         values.reshape(-1, 2) - values.reshape(-1, 2).mean(axis=0)
@@ -170,10 +171,15 @@ def _cause(boundary: BoundaryState, turns: bool, modulus: float) -> str:
     )
 
 
-def _numbers(modulus: float) -> str:
+def _modulus(problem: Problem) -> str:
+    """Young's modulus with its unit."""
+    return f"{problem.material.young_modulus:.4g} {problem.units.stress}".strip()
+
+
+def _numbers(modulus: str) -> str:
     """Ask for a check of the numbers of the problem."""
     return (
-        f"Units may be mixed: check loads, lengths and Young's modulus, which is {modulus:.4g}; in mm and N it is in "
+        f"Units may be mixed: check loads, lengths and Young's modulus, which is {modulus}; in mm and N it is in "
         "N/mm², 210e3 for steel, and in m and N it is in N/m², 210e9. If all are right, such a body needs a program "
         "for large strains."
     )

@@ -146,7 +146,8 @@ class Body:
         )
         idle = self.idle_motion if self.relative_load[1].any() else None
         undetermined = f"the loads do no work in the {idle}, which only opens gaps: it is not determined"
-        placed = (*_wholly_behind(self.problem, self.mesh), *_left_out(self.problem), *self._wedges())
+        stated = self.problem.units.doubts(self.problem.material.young_modulus)
+        placed = (*stated, *_wholly_behind(self.problem, self.mesh), *_left_out(self.problem), *self._wedges())
         return (*placed, *at_zero, *(() if idle is None else (undetermined,)))
 
     def _wedges(self) -> Iterator[str]:

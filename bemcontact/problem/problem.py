@@ -37,10 +37,10 @@ from bemcontact.problem.load_case import Combination, LoadCase
 from bemcontact.problem.material import Material
 from bemcontact.problem.reference import ReferenceSpec
 from bemcontact.problem.sight import zone_edges
+from bemcontact.problem.units import Units
 from bemcontact.problem.validation import (
     Count,
     Flag,
-    Label,
     Name,
     SpecModel,
     Text,
@@ -50,28 +50,6 @@ from bemcontact.problem.validation import (
 )
 from bemcontact.problem.variant import Variant, issues_of_values
 from bemcontact.problem.wording import unknown_word
-
-
-class Units(SpecModel):
-    """Labels of the units of all numbers. Numbers are not converted."""
-
-    example: ClassVar[str] = "{length: mm, force: N}"
-
-    length: Label = ""
-    """The label of the unit of length, such as mm."""
-    force: Label = ""
-    """The label of the unit of force, such as kN."""
-
-    @property
-    def stress(self) -> str:
-        """The label of the unit of stress, such as kN/mm²; empty if a label is missing."""
-        return f"{self.force}/{self.length}²" if self.force and self.length else ""
-
-    @property
-    def line_force(self) -> str:
-        """The label of the unit of force per thickness, such as kN/mm; empty if a label is missing."""
-        return f"{self.force}/{self.length}" if self.force and self.length else ""
-
 
 ACCURACY = 0.01
 """Relative accuracy that is asked for by default."""

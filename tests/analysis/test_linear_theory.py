@@ -26,7 +26,7 @@ def affine(gradient: np.ndarray, unit: float = 1.0, share: float = 1.0) -> Judgm
         points=points, displacement=moved, traction=moved, edge=np.zeros(100, int), edge_names=("all",),
         force_balance=0.0, equilibrium_slack=0.0,
     )  # fmt: skip
-    return large_displacements(state, turns=True, modulus=1.0)
+    return large_displacements(state, turns=True, modulus="1")
 
 
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
