@@ -39,6 +39,16 @@ class ErrorBar(Leaf):
     note: str = ""
     """Why there is no value or no error bar, or what they mean."""
 
+    def __repr__(self) -> str:
+        """One line: of what it is, its value, and the error, which is relative."""
+        owner = self.zone or self.mover
+        of = f"{self.quantity} of {owner!r}" if owner else self.quantity
+        of += f", interval {self.interval}" if self.interval is not None else ""
+        to = "the value" if self.interval is None else "the length of the interval"
+        value = "no value" if self.value is None else f"value {self.value:.6g}"
+        bar = "bar not known" if self.bar is None else f"bar {self.bar:.2g} relative to {to}"
+        return f"<ErrorBar of {of}: {value}, {bar}{'; ' * bool(self.note)}{self.note}>"
+
     @computed_field
     @property
     def promised(self) -> bool:

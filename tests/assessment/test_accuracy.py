@@ -1,5 +1,6 @@
 """Whether error bars are as small as was asked, and where nothing can be promised."""
 
+from dataclasses import replace
 from math import inf, nextafter
 
 import pytest
@@ -65,3 +66,14 @@ def test_infinite_peaks_that_another_mesh_knows():
 
 def test_knowing_does_not_judge_what_was_not_estimated():
     assert Accuracy(asked=1e-2).knowing(Accuracy.of(1e-2, 3, [bar(value=None, error=None)])).met is None
+
+
+def test_an_error_bar_says_to_what_it_is_relative():
+    """To the value, and of an end of contact to the length of its interval."""
+    assert (
+        repr(bar("peak", 100.0, 0.02, "foot"))
+        == "<ErrorBar of peak of 'foot': value 100, bar 0.02 relative to the value>"
+    )
+    end = ErrorBar(quantity="end", zone="foot", interval=1, value=3.0, bar=None, note="it is at a corner")
+    assert "interval 1: value 3, bar not known; it is at a corner" in repr(end)
+    assert "relative to the length of the interval" in repr(replace(end, bar=0.1))
