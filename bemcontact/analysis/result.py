@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
-from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
 from bemcontact.assessment.penetration import Penetration
@@ -145,9 +145,13 @@ class Result(Recorded):
         return self.certificate.certified and self.penetration is None
 
     @property
-    def holds(self) -> bool:
-        """Whether the equations are certified, and the mesh is as accurate as was asked."""
-        return self.certified and self.accuracy.holds
+    def holds(self) -> bool | None:
+        """Whether the equations are certified, and the mesh is as accurate as was asked.
+
+        None if they are certified, and nothing is said about the mesh: no accuracy was asked for (accuracy: null), or
+        the problem was given condensed, so that neither its mesh nor its boundary was looked at.
+        """
+        return together((self.certified, self.accuracy.holds))
 
     @property
     def touching(self) -> NDArray[np.bool_]:

@@ -139,8 +139,8 @@ def solve(
     Returns
     -------
     Result
-        Check `holds`: whether it is certified and as accurate as was asked. A solver that fails is a `Status`, not an
-        error.
+        Check `holds`: whether it is certified and as accurate as was asked; of a condensed problem `certified`, since
+        nothing is known of its mesh. A solver that fails is a `Status`, not an error.
 
     Raises
     ------

@@ -6,7 +6,7 @@ from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 
 from bemcontact.analysis.result import Result
-from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.comparison import Comparison, ComparisonRecord
 from bemcontact.assessment.convergence import Convergence, convergence
 from bemcontact.assessment.penetration import Penetration
@@ -193,9 +193,12 @@ class Study(Recorded):
         return shown if deepest is None else f"{deepest.words} At the contact points: {shown}"
 
     @property
-    def holds(self) -> bool:
-        """Whether all solutions are certified, and the finest mesh is as accurate as was asked."""
-        return self.certified and self.finest.answer.accuracy.holds
+    def holds(self) -> bool | None:
+        """Whether all solutions are certified, and the finest mesh is as accurate as was asked.
+
+        None if they are certified, and nothing is said about the mesh.
+        """
+        return together((self.certified, self.finest.answer.accuracy.holds))
 
     @cached_property
     def convergence(self) -> Convergence | None:

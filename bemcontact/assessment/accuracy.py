@@ -1,6 +1,6 @@
 """Error bars of a result, and whether they are as small as was asked."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Literal, Self
@@ -79,9 +79,9 @@ class Accuracy(Leaf):
         return replace(judged, met=bool(judged.worst <= asked))
 
     @property
-    def holds(self) -> bool:
-        """Whether the accuracy asked for is met, or none is asked for."""
-        return self.asked is None or bool(self.met)
+    def holds(self) -> bool | None:
+        """Whether the accuracy asked for is met; None if none is asked for, so that nothing is said about the mesh."""
+        return None if self.asked is None else bool(self.met)
 
     @property
     def worst(self) -> float:
@@ -111,6 +111,12 @@ class Accuracy(Leaf):
         kept = [item for item in self.bars if item.quantity != "peak" or item.zone not in known]
         now = replace(self, bars=(*known.values(), *kept))
         return now if self.met is None else replace(now, met=self.asked is not None and now.worst <= self.asked)
+
+
+def together(judged: Iterable[bool | None]) -> bool | None:
+    """Whether all hold: False if one does not, else None if one is not assessed."""
+    found = {*judged}
+    return False if False in found else None if None in found else True
 
 
 NO_MESH = Accuracy(asked=None, reason="a condensed problem has no mesh whose errors could be estimated")

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from pydantic import computed_field
 
-from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.footprint import ContactInterval, Footprint, footprint
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -121,10 +121,16 @@ class ParameterPath(Leaf):
         return self.path.complete and self.path.unique and self.path.residual <= RESIDUAL
 
     @property
-    def holds(self) -> bool:
-        """Whether it is certified, and the accuracy asked is met at both ends, but where nothing presses."""
+    def holds(self) -> bool | None:
+        """Whether it is certified, and the accuracy asked is met at both ends, but where nothing presses.
+
+        None if it is certified, and nothing is said about the mesh.
+        """
         ends = ((self.start_accuracy, self.path.pressure[0]), (self.end_accuracy, self.path.pressure[-1]))
-        return self.certified and all(accuracy.holds or not pressure.any() for accuracy, pressure in ends)
+        of_meshes = (
+            accuracy.holds if accuracy.holds is None or pressure.any() else True for accuracy, pressure in ends
+        )
+        return together((self.certified, *of_meshes))
 
     def value(self, t: float) -> float:
         """The parameter at t of the path; round-off of its ends counts as zero."""

@@ -136,7 +136,7 @@ def cases_summary(cases: CaseResults) -> RenderableType:
             peak_of(record, units) if record["intervals"] else "",
             peak_place(record, units),
         ]
-        style = "" if result.holds else {"good": "", "fair": "yellow", "bad": "red"}[overall(verdicts)]
+        style = "" if result.holds is not False else {"good": "", "fair": "yellow", "bad": "red"}[overall(verdicts)]
         table.add_row(*map(Text, cells), style=style)
         forces = zone_forces(record, units)
         places = [*contact_intervals(record, units, short=len(forces) > 1)]  # so that lines stay short

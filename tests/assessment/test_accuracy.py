@@ -1,11 +1,12 @@
 """Whether error bars are as small as was asked, and where nothing can be promised."""
 
 from dataclasses import replace
+from itertools import product
 from math import inf, nextafter
 
 import pytest
 
-from bemcontact.assessment.accuracy import Accuracy, ErrorBar, Quantity
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar, Quantity, together
 
 
 def bar(
@@ -46,8 +47,16 @@ def test_a_pressure_away_from_infinite_ones_is_promised_without_a_value():
 def test_nothing_holds_where_errors_are_not_known_but_nothing_was_asked():
     """Not estimated is neither met nor not met; it fails only the one who asked."""
     assert Accuracy(asked=None).met is None
-    assert Accuracy(asked=None).holds
-    assert not Accuracy(asked=1e-2, reason="too many unknowns").holds
+    assert Accuracy(asked=None).holds is None
+    assert Accuracy(asked=1e-2, reason="too many unknowns").holds is False
+
+
+def test_several_judgments_hold_together_only_if_all_do():
+    """All triples of the three values: the worst of them, with what is not assessed between."""
+    order = [False, None, True]
+    for three in product(order, repeat=3):
+        assert together(three) is min(three, key=order.index)
+    assert together(()) is True
 
 
 def test_infinite_peaks_that_another_mesh_knows():
