@@ -383,5 +383,24 @@ class Problem(SpecModel):
         ProblemError
             If the path leads nowhere, or the problem with the new value is wrong.
         """
+        return self.with_values({path: value})
+
+    def with_values(self, changes: Mapping[str, Any]) -> Self:
+        """Copy with several values changed at once; only the problem with all of them has to be right.
+
+        Parameters
+        ----------
+        changes : new values by key path, as of `with_value`, made in their order
+
+        Raises
+        ------
+        ProblemError
+            If a path leads nowhere, or the problem with the new values is wrong.
+        """
+        if not isinstance(changes, Mapping):
+            example = "{'material.young_modulus': 70e3, 'material.poisson_ratio': 0.33}"
+            raise ProblemError(f"values by key path are needed, such as {example}; found {shown(changes)}")
         data = self.model_dump()
-        return type(self)(**with_entry(data, existing_path(data, parsed_path(path)), value))
+        for path, value in changes.items():
+            data = with_entry(data, existing_path(data, parsed_path(path)), value)
+        return type(self)(**data)
