@@ -86,7 +86,8 @@ def against_its_force(contact: CondensedContact, solution: ContactSolution) -> I
         if moved[i] @ force[i] < 0 and inside > 0:
             yield (
                 f"the tool '{name}' moves against its force, because its surface is drawn inside the body, by "
-                f"{inside:.3g}; draw it where it touches, and look at it with check --figure: a spline bulges between "
+                f"{inside:.3g} {contact.units.get('length', '')}".rstrip()
+                + "; draw it where it touches, and look at it with check --figure: a spline bulges between "
                 "its points"
             )
 

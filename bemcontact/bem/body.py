@@ -220,7 +220,7 @@ def each_case(body: Body) -> Iterator[Body]:
 def ensure_held(body: Body) -> None:
     """Refuse loads that contact cannot hold, with the `ProblemError` of `body_of`."""
     try:
-        if violation := body.pinned.violation(body.factors, body.forces):
+        if violation := body.pinned.violation(body.factors, body.forces, body.problem.units.model_dump()):
             raise ProblemError(violation)
         _check_support(body)
     except ProblemError as error:
@@ -252,6 +252,7 @@ def _pull(body: Body, pull: FreeMotions) -> str:
     if direction is not None:
         resultant = (body.motion_load(pull.along(0)) @ body.factors + 0.0).tolist()
         load, against = " of ({:.4g}, {:.4g})".format(*resultant), toward(-direction)
+        load += f" {body.problem.units.line_force}".rstrip()
         way = f"{way}, {toward(direction)}"
     return (
         f"the load{load} pulls {who} off {off}: it drives the {way}, which nothing holds; add a load {against} that "
