@@ -156,8 +156,13 @@ def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
     if beyond is not None:
         word, quality = str(beyond.kind), _quality(beyond.to_dict(), path.proved)
     yield Verdict("Equations", quality, word, path_sentence(path))
-    for value, accuracy in zip((path.start, path.end), (path.start_accuracy, path.end_accuracy), strict=True):
+    of_start = path.start, path.reaches[0], path.path.begins_at == 0.0, path.start_accuracy
+    of_end = path.end, path.reaches[1], path.path.ends_at == 1.0, path.end_accuracy
+    for value, last, reached, accuracy in (of_start, of_end):
         verdict = mesh_verdict(accuracy.to_dict())
+        if not reached:
+            words = f"The path ends at {number(last)}, where errors were not estimated."
+            verdict = Verdict("Mesh", "fair", "not reached", words)
         yield verdict._replace(words=f"At {path.key} = {number(value)}. {verdict.words}")
 
 

@@ -1,5 +1,6 @@
 """Verdicts on the equations and on the mesh: what is written never states more than what is known."""
 
+import pytest
 from accuracies import accuracy, bar
 from markupsafe import escape
 from studies import block
@@ -10,7 +11,15 @@ from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.options import ComparisonOptions
 from bemcontact.report.bars import mesh_in_short
 from bemcontact.report.page import render
-from bemcontact.report.verdicts import in_short, mesh_verdict, overall, result_verdicts, shortfall, study_verdicts
+from bemcontact.report.verdicts import (
+    in_short,
+    mesh_verdict,
+    overall,
+    path_verdicts,
+    result_verdicts,
+    shortfall,
+    study_verdicts,
+)
 
 
 def test_mesh_that_meets_the_accuracy():
@@ -65,3 +74,16 @@ def test_an_answer_outside_linear_theory_is_fair_and_said_in_the_same_words_ever
     assert word in repr(soft)
     assert 'class="verdict fair"' in page
     assert str(escape(reason)) in page
+
+
+@pytest.mark.parametrize(("start", "to", "reached"), [(3.0, -2.0, (True, False)), (-2.0, 3.0, (False, True))])
+def test_of_an_end_that_a_path_does_not_reach_no_mesh_is_judged(start: float, to: float, reached: tuple[bool, bool]):
+    """Suction lifts the block: the path ends at zero, and nothing is said of the mesh beyond."""
+    path = bemcontact.follow(block(), "conditions.top.pressure", start=start, to=to)
+    equations, *meshes = path_verdicts(path)
+    assert equations.quality == "bad"
+    assert [mesh.word != "not reached" for mesh in meshes] == [*reached]
+    (beyond,) = (mesh for mesh in meshes if mesh.word == "not reached")
+    assert beyond.quality == "fair"
+    assert "The path ends at 0, where errors were not estimated" in beyond.words
+    assert "at most" not in beyond.words
