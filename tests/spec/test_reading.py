@@ -687,6 +687,13 @@ def test_missing_file_is_refused_with_the_name_of_a_similar_one(tmp_path):
         bemcontact.spec.load(tmp_path / "nowhere" / "block.yaml")
 
 
+def test_a_text_where_a_file_is_needed_and_the_reverse_name_the_other_function():
+    with pytest.raises(SpecError, match=r"load needs the path of a file; found a text .*; bemcontact\.loads reads"):
+        bemcontact.spec.load("name: block\nunits: {length: mm}\n" * 100)
+    with pytest.raises(SpecError, match=r"found the text 'block\.yaml'; bemcontact\.load reads a file"):
+        bemcontact.spec.loads("block.yaml")
+
+
 def test_directory_is_refused(tmp_path):
     with pytest.raises(SpecError, match="is a directory"):
         bemcontact.spec.load(tmp_path)
