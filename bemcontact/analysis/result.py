@@ -22,7 +22,7 @@ from bemcontact.contact.record import (
     solution_record,
     units_record,
 )
-from bemcontact.contact.solution import ContactSolution
+from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
@@ -143,6 +143,14 @@ class Result(Recorded):
     def certified(self) -> bool:
         """Whether this is proved to be the only solution on the mesh, penetrates no surface, and has small strains."""
         return self.certificate.certified and self.penetration is None
+
+    @property
+    def words(self) -> str:
+        """The verdict on the equations in sentences: what does not fit, how the solver ended, what is proved."""
+        status = self.solution.status
+        ending = "" if status is Status.SOLVED else f"The solver: {status.words}. "
+        words = ending + self.certificate.words
+        return words if self.penetration is None else self.penetration.before(words)
 
     @property
     def holds(self) -> bool | None:

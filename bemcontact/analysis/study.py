@@ -190,7 +190,7 @@ class Study(Recorded):
     def verdict(self) -> str:
         """What the comparison on the finest mesh shows, in sentences."""
         deepest, shown = self.finest.answer.penetration, self.finest.comparison.verdict
-        return shown if deepest is None else f"{deepest.words} At the contact points: {shown}"
+        return shown if deepest is None else deepest.before(shown)
 
     @property
     def holds(self) -> bool | None:

@@ -58,6 +58,10 @@ class Penetration(Leaf):
     words: str
     """What is wrong, and what to do, in sentences."""
 
+    def before(self, words: str) -> str:
+        """The words, then what holds of the equations."""
+        return f"{self.words} At the contact points: {words}"
+
     @property
     def as_note(self) -> str:
         """The words as a note, beside another verdict."""

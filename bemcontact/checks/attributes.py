@@ -24,7 +24,7 @@ PLACES = {
     "contact.compliance": ("compliance", "flexibility", "compliance_matrix"),
     "contact.stiffness_rows.K": ("stiffness_rows", "stiffness", "stiffness_matrix"),
     "certified": ("converged", "success", "solved", "is_solved", "optimal", "ok"),
-    "certificate.words": ("verdict", "message", "words"),
+    "words": ("words", "verdict", "message"),
     "accuracy.bars": ("error", "errors", "error_bars", "bars", "tolerance"),
     "problem.material.young_modulus": ("young_modulus",),
     "problem.material.poisson_ratio": ("poisson_ratio",),

@@ -9,7 +9,7 @@ from bemcontact.analysis.study import Study
 from bemcontact.assessment.penetration import Misfit
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report.bars import Record, bar_in_words, error_percent, worst_bar
-from bemcontact.report.formatting import certificate_sentence, number, sentence_case
+from bemcontact.report.formatting import number, sentence_case
 
 
 class Verdict(NamedTuple):
@@ -35,15 +35,6 @@ def overall(verdicts: Sequence[Verdict]) -> str:
 def in_short(verdicts: Sequence[Verdict]) -> str:
     """Verdicts in few words, for a title: ``unique solution proved; error at most 0.4 % (asked 1 %)``."""
     return "; ".join(item.word if item.good else f"{item.of.lower()}: {item.word}" for item in verdicts)
-
-
-def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:
-    """Verdict on the solution of the equations on the mesh, with its sentences; what does not fit comes first."""
-    good = certificate["kind"] == "unique"
-    if penetration is not None:
-        sentences = f"{penetration['words']} At the contact points: {words}"
-        return Verdict("Equations", _quality(penetration, good), penetration["kind"], sentences)
-    return Verdict("Equations", "good" if good else "bad", certificate["heading"], words)
 
 
 def _quality(penetration: Record, solved: bool) -> str:
@@ -100,9 +91,11 @@ def mesh_verdict(accuracy: Record) -> Verdict:
 
 def result_verdicts(result: Result) -> tuple[Verdict, Verdict]:
     """Verdicts on the equations and on the mesh."""
-    words, deepest = certificate_sentence(result.solution, result.certificate), result.penetration
-    proved = equations_verdict(result.certificate.to_dict(), words, deepest.to_dict() if deepest else None)
-    return proved, mesh_verdict(result.accuracy.to_dict())
+    solved, deepest = result.certificate.certified, result.penetration
+    quality, word = "good" if solved else "bad", result.certificate.heading
+    if deepest is not None:
+        quality, word = _quality(deepest.to_dict(), solved), str(deepest.kind)
+    return Verdict("Equations", quality, word, result.words), mesh_verdict(result.accuracy.to_dict())
 
 
 def case_verdicts(cases: CaseResults) -> tuple[Verdict, Verdict]:

@@ -72,6 +72,7 @@ def test_an_answer_outside_linear_theory_is_fair_and_said_in_the_same_words_ever
     assert soft.to_dict()["penetration"]["kind"] == compared.to_dict()["heading"] == word
     assert shortfall(soft).startswith(f"Equations: {word}. {reason}")
     assert word in repr(soft)
+    assert soft.words.startswith(reason)
     assert 'class="verdict fair"' in page
     assert str(escape(reason)) in page
 
