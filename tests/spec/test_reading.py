@@ -195,7 +195,11 @@ BROKEN = {
         "center: [1, 0.5]", "center: [5, 0.5]", "21:7", "boundary.holes[0]", ("outside the outer loop",)
     ),
     "orientation wrong": Broken(
-        "angles: [360, 0]", "angles: [0, 360]", "21:7", "boundary.holes[0]", ("must run clockwise", "exchange")
+        "angles: [360, 0]",
+        "angles: [0, 360]",
+        "21:73",
+        "boundary.holes[0][0].angles",
+        ("must run clockwise", "exchange"),
     ),
     "zero elements": Broken(
         "{name: left, elements: 2}",
