@@ -383,7 +383,7 @@ class Problem(SpecModel):
         ProblemError
             If the path leads nowhere, or the problem with the new value is wrong.
         """
-        return self.with_values({path: value})
+        return self.with_values({text_of_argument(path, "a key path"): value})
 
     def with_values(self, changes: Mapping[str, Any]) -> Self:
         """Copy with several values changed at once; only the problem with all of them has to be right.
