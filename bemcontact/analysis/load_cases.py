@@ -14,6 +14,7 @@ from bemcontact.analysis.solve import (
     ensure_kind,
     mesh_of,
 )
+from bemcontact.assessment.accuracy import together
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.search import with_start_read
@@ -72,9 +73,9 @@ class CaseResults(Recorded):
         return all(result.certified for result in self.results.values())
 
     @property
-    def holds(self) -> bool:
-        """Whether each of them is certified, and as accurate as was asked."""
-        return all(result.holds for result in self.results.values())
+    def holds(self) -> bool | None:
+        """Whether each of them is certified, and as accurate as was asked; None if nothing is said about the mesh."""
+        return together(result.holds for result in self.results.values())
 
     @property
     def infinite(self) -> tuple[str, ...]:

@@ -9,9 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from bemcontact.analysis.linear_theory import Noticed, linear_theory
 from bemcontact.analysis.placement import part_of_path, placement
 from bemcontact.analysis.variation import Variation
 from bemcontact.arrays import Array, BoolArray
+from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.body import Body
 from bemcontact.bem.condense import boundary_state
@@ -21,6 +23,17 @@ from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
+
+
+def misfit(
+    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, where: Footprint
+) -> tuple[Penetration | None, tuple[str, ...]]:
+    """Find what does not fit, or else displacements that are not small; note the rest."""
+    deepest, notes = penetration(gaps, body, contact, solution)
+    beyond, noticed = linear_theory(body, contact, solution, where, gaps.state)
+    if deepest is not None and beyond is not None:
+        return deepest, (*notes, beyond.as_note)
+    return deepest or beyond, (*notes, *(item.words for item in noticed))
 
 
 def penetration(
@@ -60,7 +73,7 @@ def penetration_on_path(
     A state at an end of the path is judged as a solution is.
     """
     outline, worst, at, notes = Outline(problem=varied.problem), None, None, dict[str, list[float]]()
-    last, near = len(path.parameter) - 1, part_of_path(varied.problem)
+    last, near, strained = len(path.parameter) - 1, part_of_path(varied.problem), dict[str, tuple[Noticed, float]]()
     for i, t in enumerate(path.parameter.tolist()):
         value, contact, solution = (1 - t) * start + t * end, path.contact(t), path.breakpoint(i)
         problem = varied.at(value) if varied.path[0] == "contact_zones" else varied.problem
@@ -69,11 +82,21 @@ def penetration_on_path(
         gaps = surface_gaps(problem, state, contact, solution, outline)
         nearby = _peaks_within(path, t - near, t + near) if 0 < i < last else None
         found, said = penetration(gaps, body, contact, solution, nearby)
-        if found is not None and (worst is None or found.depth > worst.depth):
+        beyond, noticed = linear_theory(body, contact, solution, footprint(contact, solution), state)
+        found = found or beyond
+        if found is not None and (worst is None or _order(found) > _order(worst)):
             worst, at = found, value
+        for item in noticed:
+            strained[item.of] = max(strained.get(item.of, (item, value)), (item, value), key=lambda pair: pair[0].size)
         for note in said:
             notes.setdefault(note, []).append(value)
+    notes.update({item.words: [value] for item, value in strained.values()})
     return worst, at, tuple(f"{_where(varied.key, values)}, {note}" for note, values in notes.items())
+
+
+def _order(found: Penetration) -> tuple[bool, float]:
+    """What is worse of two findings on a path."""
+    return found.kind.serious, found.depth
 
 
 def _peaks_within(path: LoadPath, low: float, high: float) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
-from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
 from bemcontact.assessment.penetration import Penetration
@@ -22,7 +22,7 @@ from bemcontact.contact.record import (
     solution_record,
     units_record,
 )
-from bemcontact.contact.solution import ContactSolution
+from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem
@@ -53,7 +53,8 @@ class HeadRecord(Record):
     formulation: FormulationName
     """Statement that was solved."""
     certified: bool
-    """Whether this is proved to be the contact state, and the only one, and the body penetrates no rigid surface."""
+    """Whether this is proved to be the contact state, and the only one, where the body penetrates no rigid surface and
+    strains are small."""
     units: UnitsRecord
     """Labels of the units."""
     dof: int | None
@@ -80,7 +81,8 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     certificate: Certificate
     """Certificate of the solution."""
     penetration: Penetration | None
-    """Where the deformed boundary does not fit a rigid surface; null if it fits, or for a condensed problem."""
+    """Where the deformed boundary does not fit a rigid surface, or strains are not small; null if neither, or for a
+    condensed problem, whose boundary was not looked at."""
     boundary: BoundaryRecord | None
     """State of the whole boundary; null for a condensed problem."""
     seconds: dict[str, float]
@@ -108,7 +110,8 @@ class Result(Recorded):
     footprint: Footprint
     """Contact intervals, peak pressure and resultant; no peak where it is infinite."""
     penetration: Penetration | None
-    """Where the deformed boundary does not fit a rigid surface; None if it fits, or for a condensed problem."""
+    """Where the deformed boundary does not fit a rigid surface, or strains are not small; None if neither, or for a
+    condensed problem, whose boundary was not looked at."""
     boundary: BoundaryState | None
     """Displacement and traction of the whole boundary; None for a condensed problem."""
     degrees_of_freedom: int | None
@@ -130,20 +133,33 @@ class Result(Recorded):
             peak = "infinite peak pressure" if self.footprint.intervals else "no contact"
         equations = self.certificate.heading
         if self.penetration is not None:
-            equations = f"{self.penetration.kind}: '{self.penetration.zone}'"
+            zone = self.penetration.zone
+            equations = f"{self.penetration.kind}: '{zone}'" if zone else str(self.penetration.kind)
         known, accuracy = bool(self.accuracy.bars), self.accuracy
         mesh = f"error at most {100 * accuracy.worst:.2g} %" if known else "error not estimated"
         return f"<Result of {self.contact.name!r} by {self.solution.formulation}: {equations}, {mesh}, {peak}>"
 
     @property
     def certified(self) -> bool:
-        """Whether this is proved to be the only solution of the equations on the mesh, and penetrates no surface."""
+        """Whether this is proved to be the only solution on the mesh, penetrates no surface, and has small strains."""
         return self.certificate.certified and self.penetration is None
 
     @property
-    def holds(self) -> bool:
-        """Whether the equations are certified, and the mesh is as accurate as was asked."""
-        return self.certified and self.accuracy.holds
+    def words(self) -> str:
+        """The verdict on the equations in sentences: what does not fit, how the solver ended, what is proved."""
+        status = self.solution.status
+        ending = "" if status is Status.SOLVED else f"The solver: {status.words}. "
+        words = ending + self.certificate.words
+        return words if self.penetration is None else self.penetration.before(words)
+
+    @property
+    def holds(self) -> bool | None:
+        """Whether the equations are certified, and the mesh is as accurate as was asked.
+
+        None if they are certified, and nothing is said about the mesh: no accuracy was asked for (accuracy: null), or
+        the problem was given condensed, so that neither its mesh nor its boundary was looked at.
+        """
+        return together((self.certified, self.accuracy.holds))
 
     @property
     def touching(self) -> NDArray[np.bool_]:

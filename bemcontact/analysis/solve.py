@@ -9,7 +9,7 @@ from typing import Literal, Unpack
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
 from bemcontact.analysis.diagnostics import diagnostics
-from bemcontact.analysis.penetration import penetration
+from bemcontact.analysis.penetration import misfit
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.certificate import certify
@@ -139,8 +139,8 @@ def solve(
     Returns
     -------
     Result
-        Check `holds`: whether it is certified and as accurate as was asked. A solver that fails is a `Status`, not an
-        error.
+        Check `holds`: whether it is certified and as accurate as was asked; of a condensed problem `certified`, since
+        nothing is known of its mesh. A solver that fails is a `Status`, not an error.
 
     Raises
     ------
@@ -239,12 +239,12 @@ def assessed(
         where, deepest, unseen = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
         if boundary is not None and condensation is not None:
             gaps = surface_gaps(condensation.body.problem, boundary, contact, solution)
-            deepest, unseen = penetration(gaps, condensation.body, contact, solution)
+            deepest, unseen = misfit(gaps, condensation.body, contact, solution, where)
         notes = (
             *contact.notes,
             *solution.notes,
             *unseen,
-            *diagnostics(contact, solution, where, None if condensation is None else condensation.body, boundary),
+            *diagnostics(contact, solution, where, None if condensation is None else condensation.body),
         )
     gap = contact.initial_gap + solution.displacement
     return Result(

@@ -6,7 +6,7 @@ from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 
 from bemcontact.analysis.result import Result
-from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.comparison import Comparison, ComparisonRecord
 from bemcontact.assessment.convergence import Convergence, convergence
 from bemcontact.assessment.penetration import Penetration
@@ -183,18 +183,22 @@ class Study(Recorded):
     @property
     def heading(self) -> str:
         """What is proved of the solution of the equations, in a few words."""
-        return "penetrates a surface" if self.finest.answer.penetration else self.finest.comparison.heading
+        deepest = self.finest.answer.penetration
+        return self.finest.comparison.heading if deepest is None else str(deepest.kind)
 
     @property
     def verdict(self) -> str:
         """What the comparison on the finest mesh shows, in sentences."""
         deepest, shown = self.finest.answer.penetration, self.finest.comparison.verdict
-        return shown if deepest is None else f"{deepest.words} At the contact points: {shown}"
+        return shown if deepest is None else deepest.before(shown)
 
     @property
-    def holds(self) -> bool:
-        """Whether all solutions are certified, and the finest mesh is as accurate as was asked."""
-        return self.certified and self.finest.answer.accuracy.holds
+    def holds(self) -> bool | None:
+        """Whether all solutions are certified, and the finest mesh is as accurate as was asked.
+
+        None if they are certified, and nothing is said about the mesh.
+        """
+        return together((self.certified, self.finest.answer.accuracy.holds))
 
     @cached_property
     def convergence(self) -> Convergence | None:

@@ -1,6 +1,6 @@
 """Error bars of a result, and whether they are as small as was asked."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Literal, Self
@@ -39,6 +39,16 @@ class ErrorBar(Leaf):
     note: str = ""
     """Why there is no value or no error bar, or what they mean."""
 
+    def __repr__(self) -> str:
+        """One line: of what it is, its value, and the error, which is relative."""
+        owner = self.zone or self.mover
+        of = f"{self.quantity} of {owner!r}" if owner else self.quantity
+        of += f", interval {self.interval}" if self.interval is not None else ""
+        to = "the value" if self.interval is None else "the length of the interval"
+        value = "no value" if self.value is None else f"value {self.value:.6g}"
+        bar = "bar not known" if self.bar is None else f"bar {self.bar:.2g} relative to {to}"
+        return f"<ErrorBar of {of}: {value}, {bar}{'; ' * bool(self.note)}{self.note}>"
+
     @computed_field
     @property
     def promised(self) -> bool:
@@ -69,9 +79,9 @@ class Accuracy(Leaf):
         return replace(judged, met=bool(judged.worst <= asked))
 
     @property
-    def holds(self) -> bool:
-        """Whether the accuracy asked for is met, or none is asked for."""
-        return self.asked is None or bool(self.met)
+    def holds(self) -> bool | None:
+        """Whether the accuracy asked for is met; None if none is asked for, so that nothing is said about the mesh."""
+        return None if self.asked is None else bool(self.met)
 
     @property
     def worst(self) -> float:
@@ -101,6 +111,12 @@ class Accuracy(Leaf):
         kept = [item for item in self.bars if item.quantity != "peak" or item.zone not in known]
         now = replace(self, bars=(*known.values(), *kept))
         return now if self.met is None else replace(now, met=self.asked is not None and now.worst <= self.asked)
+
+
+def together(judged: Iterable[bool | None]) -> bool | None:
+    """Whether all hold: False if one does not, else None if one is not assessed."""
+    found = {*judged}
+    return False if False in found else None if None in found else True
 
 
 NO_MESH = Accuracy(asked=None, reason="a condensed problem has no mesh whose errors could be estimated")

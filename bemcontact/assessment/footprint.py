@@ -41,6 +41,11 @@ class ContactInterval(Leaf):
         """Arc positions of both ends on the piece of boundary [L]; across its seam they go on counting."""
         return self.start_arc, self.end_arc
 
+    @property
+    def length(self) -> float:
+        """Length along the boundary [L]."""
+        return self.end_arc - self.start_arc
+
 
 @dataclass(frozen=True, kw_only=True)
 class Peak(Leaf):

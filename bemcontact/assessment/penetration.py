@@ -1,4 +1,7 @@
-"""Penetration of a rigid surface by the deformed boundary, anywhere on it: how much is tolerated, and what is said."""
+"""Why the solution of the equations is not that of contact: what is tolerated, and what is said.
+
+The deformed boundary may penetrate a rigid surface anywhere, or displacements are not small.
+"""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -13,11 +16,17 @@ ROUND_OFF = 1e-9
 
 
 class Misfit(StrEnum):
-    """How the deformed boundary does not fit a rigid surface."""
+    """What is wrong, as the verdict names it."""
 
-    PENETRATION = "penetration"
+    PENETRATION = "penetrates a surface"
     OFF = "pressure off the surface"
     MOVED = "large motion"
+    NOT_SMALL = "outside linear theory"
+
+    @property
+    def serious(self) -> bool:
+        """Whether the solution contradicts contact; outside linear theory it is one, of a theory that is too rough."""
+        return self is not Misfit.NOT_SMALL
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,25 +34,38 @@ class Penetration(Leaf):
     """Where the deformed boundary does not fit a rigid surface, beyond what the discretization explains.
 
     It penetrates the surface, or pressure acts where the displacements take the body off the surface, or the
-    displacements change the gap so much that the pressure is wrong.
+    displacements change the gap so much that the pressure is wrong. Or displacements are not small, so that linear
+    theory does not hold.
     """
 
     kind: Misfit = Misfit.PENETRATION
-    """What does not fit: penetration, pressure off the surface, or a large motion."""
+    """What is wrong, in the words of the verdict: a penetration, pressure off the surface, a large motion, or
+    displacements that are not small."""
     depth: float
-    """Depth of the penetration, distance from the surface, or largest change of the gap by the motion [L]."""
+    """Depth of the penetration, distance from the surface, or largest change of the gap by the motion [L]; outside
+    linear theory the largest strain, or change of the displacement over the length, a number."""
     allowed: float
-    """Depth or distance that is tolerated: a hundredth of the displacement; of a large motion zero [L]."""
+    """Depth or distance that is tolerated: a hundredth of the displacement; of a large motion zero [L]. Outside linear
+    theory the least number that is not small."""
     at: Pair
     """Undeformed place (x, y) [L]."""
     edge: str
     """Name of the edge."""
     zone: str
-    """Name of the contact zone of the surface."""
+    """Name of the contact zone of the surface; empty of displacements that are not small."""
     paired: bool
     """Whether the edge belongs to that zone."""
     words: str
     """What is wrong, and what to do, in sentences."""
+
+    def before(self, words: str) -> str:
+        """The words, then what holds of the equations."""
+        return f"{self.words} At the contact points: {words}"
+
+    @property
+    def as_note(self) -> str:
+        """The words as a note, beside another verdict."""
+        return self.words[0].lower() + self.words[1:].removesuffix(".")
 
 
 def tolerated(contact: CondensedContact, largest: float, size: float) -> float:

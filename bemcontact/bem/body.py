@@ -146,7 +146,8 @@ class Body:
         )
         idle = self.idle_motion if self.relative_load[1].any() else None
         undetermined = f"the loads do no work in the {idle}, which only opens gaps: it is not determined"
-        placed = (*_wholly_behind(self.problem, self.mesh), *_left_out(self.problem), *self._wedges())
+        stated = self.problem.units.doubts(self.problem.material.young_modulus)
+        placed = (*stated, *_wholly_behind(self.problem, self.mesh), *_left_out(self.problem), *self._wedges())
         return (*placed, *at_zero, *(() if idle is None else (undetermined,)))
 
     def _wedges(self) -> Iterator[str]:
@@ -219,7 +220,7 @@ def each_case(body: Body) -> Iterator[Body]:
 def ensure_held(body: Body) -> None:
     """Refuse loads that contact cannot hold, with the `ProblemError` of `body_of`."""
     try:
-        if violation := body.pinned.violation(body.factors, body.forces):
+        if violation := body.pinned.violation(body.factors, body.forces, body.problem.units.model_dump()):
             raise ProblemError(violation)
         _check_support(body)
     except ProblemError as error:
@@ -251,6 +252,7 @@ def _pull(body: Body, pull: FreeMotions) -> str:
     if direction is not None:
         resultant = (body.motion_load(pull.along(0)) @ body.factors + 0.0).tolist()
         load, against = " of ({:.4g}, {:.4g})".format(*resultant), toward(-direction)
+        load += f" {body.problem.units.line_force}".rstrip()
         way = f"{way}, {toward(direction)}"
     return (
         f"the load{load} pulls {who} off {off}: it drives the {way}, which nothing holds; add a load {against} that "

@@ -8,6 +8,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
+from bemcontact.checks.attributes import WithHints
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.curves import Edge
@@ -177,7 +178,7 @@ class BoundaryValues:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class BoundaryState:
+class BoundaryState(WithHints):
     """Displacement and traction on the boundary, element by element; traction may jump between elements."""
 
     points: Array

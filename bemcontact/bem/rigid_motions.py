@@ -19,6 +19,10 @@ HELD = 1e-9
 SIDEWAYS = 0.01
 """Component of a unit vector from which it is named."""
 
+FAR = 3.0
+"""Distance of a pole from the middle, over half the size of the body, from which points move nearly alike: their
+motions differ by no more than a third from that of the middle."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RigidMotions:
@@ -72,7 +76,10 @@ class RigidMotions:
         pole = self.center + self.radius / c * np.array([-b, a])
         x, y = np.where(abs(pole) > 1e-5 * self.radius, pole, 0.0)  # the middle of the nodes depends on the mesh
         sense = "counterclockwise" if c > 0 else "clockwise"
-        return f"rotation {sense} about ({x:.4g}, {y:.4g})"
+        turn, way = f"rotation {sense} about ({x:.4g}, {y:.4g})", np.hypot(a, b)
+        if way <= FAR * abs(c):
+            return turn
+        return f"{turn}, which is far off: nearly a translation along ({a / way:.4g}, {b / way:.4g})"
 
 
 def toward(direction: Array) -> str:

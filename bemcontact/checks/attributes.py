@@ -24,12 +24,42 @@ PLACES = {
     "contact.compliance": ("compliance", "flexibility", "compliance_matrix"),
     "contact.stiffness_rows.K": ("stiffness_rows", "stiffness", "stiffness_matrix"),
     "certified": ("converged", "success", "solved", "is_solved", "optimal", "ok"),
-    "certificate.words": ("verdict", "message", "words"),
+    "words": ("words", "verdict", "message"),
     "accuracy.bars": ("error", "errors", "error_bars", "bars", "tolerance"),
     "problem.material.young_modulus": ("young_modulus",),
     "problem.material.poisson_ratio": ("poisson_ratio",),
 }  # fmt: skip
 """Place of a quantity in a result -> its own name and what others call it."""
+_PLACE = ("point", "points", "place", "position", "positions", "location", "where", "node", "x", "y", "coordinates")
+_ERROR = ("error", "errors", "relative", "relative_error", "tolerance", "uncertainty", "sigma", "error_bar",
+          "error_bars", "bars")  # fmt: skip
+_PEAK = ("value", "peak", "max", "p", "p_max", "pmax", "max_pressure", "maximum_pressure", "peak_pressure", "stress")
+PARTS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
+    "Peak": {"at": _PLACE, "pressure": _PEAK},
+    "ErrorBar": {
+        "bar, which is relative": _ERROR,
+        "value": (*_PEAK[1:], "force", "forces", "pressure", "displacement", "magnitude", "start", "end", "motion"),
+        "at": _PLACE,
+        "quantity": ("name", "kind", "what"),
+    },
+    "ContactInterval": {
+        "start and end": ("ends", *_PLACE),
+        "length": ("width", "half_width", "contact_length", "contact_width", "contact_area", "size"),
+    },
+    "Accuracy": {
+        "bars, one of each quantity": (*_PEAK, "force", "forces", "pressure", "displacement", "start", "end", "ends",
+                                       "motion", "rotation", "intensity", "error_bar", "error_bars", "errors"),
+        "worst": ("error", "max_error", "largest", "largest_error", "relative_error", "value", "tolerance"),
+        "met": ("ok", "success", "converged", "status"),
+    },
+    "Resultant": {"force": ("value", "x", "y", "forces", "total_force", "contact_force"), "moment": ("torque",),
+                  "line_point": _PLACE},
+    "BoundaryState": {"points": (*_PLACE, "nodes", "mesh"), "displacement": ("u", "displacements", "deformation"),
+                      "traction": ("stress", "stresses", "tractions", "pressure", "t")},
+}  # fmt: skip
+"""Class of a part of a result -> what it has, and what others call it there."""
+HOMES = {"ErrorBar": "accuracy.bars", "ContactInterval": "footprint.intervals", "BoundaryState": "boundary"}
+"""Class of a part of a result -> where it is itself, to which nobody is sent who has it."""
 CLOSE = 0.8
 """Likeness of two words, from 0 to 1, from which one may be meant by the other: a slip of one or two letters."""
 OF_A_RESULT = "the result of bemcontact.solve has it as"
@@ -51,7 +81,11 @@ setattr(WithHints, "__getattr__", _missing)  # noqa: B010 (in the class it would
 
 def _hint(owner: object, name: str) -> str:
     """Say where a quantity is: by another name, in another place, under a similar name; else list the names."""
-    known = {word: place for place, words in PLACES.items() for word in words}
+    for place, words in PARTS.get(type(owner).__name__, {}).items():
+        if name.lower() in words:
+            return f"use {place}"
+    home = HOMES.get(type(owner).__name__)
+    known = {word: place for place, words in PLACES.items() for word in words if place != home}
     own = [part for part in dir(owner) if not part.startswith("_")]
     if name.lower() not in known:
         similar = difflib.get_close_matches(name.lower(), own, 1, CLOSE)

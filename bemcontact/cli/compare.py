@@ -64,7 +64,7 @@ def compare(
         return CommandOutput(
             summary=lambda: text.study_summary(study),
             json=study.to_json,
-            holds=study.holds,
+            holds=study.holds is not False,
             verdict=study_shortfall(study),
         )
 

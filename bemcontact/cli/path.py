@@ -69,7 +69,7 @@ def path(
         return CommandOutput(
             summary=lambda: text.path_summary(followed),
             json=followed.to_json,
-            holds=followed.holds,
+            holds=followed.holds is not False,
             verdict=path_shortfall(followed),
         )
 

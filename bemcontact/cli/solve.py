@@ -65,7 +65,7 @@ def solve(
             return CommandOutput(
                 summary=lambda: text.cases_summary(results),
                 json=results.to_json,
-                holds=results.holds,
+                holds=results.holds is not False,
                 verdict=shortfall(results),
             )
         several = options.starts or 1
@@ -80,7 +80,7 @@ def solve(
         return CommandOutput(
             summary=lambda: text.result_summary(result),
             json=result.to_json,
-            holds=result.holds,
+            holds=result.holds is not False,
             verdict=shortfall(result),
         )
 

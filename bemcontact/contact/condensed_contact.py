@@ -300,7 +300,7 @@ class CondensedContact(WithHints, MotionAlgebra):
 
     def balanced(self) -> Self:
         """Refuse loads along a motion that nothing resists, with a `ProblemError`."""
-        if violation := self.pinned.violation(*self._acting):
+        if violation := self.pinned.violation(*self._acting, self.units):
             raise ProblemError(violation)
         return self
 

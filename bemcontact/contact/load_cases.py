@@ -3,6 +3,7 @@
 Their factors, displacements and forces enter the gap without contact, q = ε + Δ1, and the load in ℓᵀp = -load linearly.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple, Self
@@ -183,15 +184,21 @@ class Pinned:
         x, y, moment = forces.T.reshape(-1, 3).T
         return float(self.magnitude @ abs(factors) + (np.hypot(x, y) + abs(moment) / self.length).sum())
 
-    def violation(self, factors: Array, forces: Array) -> str | None:
-        """Describe a motion that the loads drive and nothing resists; None if the loads balance, as of `total`."""
+    def violation(self, factors: Array, forces: Array, units: Mapping[str, str] | None = None) -> str | None:
+        """Describe a motion that the loads drive and nothing resists; None if the loads balance, as of `total`.
+
+        `units` are the labels of the units of length and force.
+        """
+        length, force = ((units or {}).get(key, "") for key in ("length", "force"))
         driven = np.atleast_2d(forces.T).sum(axis=0)
         work, total = self.load @ factors + self.tools.T @ driven, self.total(factors, forces)
         for motion, turns, done in zip(self.motions, self.turns, work, strict=True):
             if abs(done) > BALANCED * total * (self.length if turns else 1.0):
+                unit = force if turns else f"{force}/{length}" if force and length else ""
+                size = f"{'moment' if turns else 'resultant'} {done:.6g} {unit}".strip()
                 return (
-                    f"nothing holds {motion}, and the loads act along it ({'moment' if turns else 'resultant'} "
-                    f"{done:.6g}); prescribe a displacement that holds it, or balance the loads"
+                    f"nothing holds {motion}, and the loads act along it ({size}); prescribe a displacement that holds "
+                    "it, or balance the loads"
                 )
         return None
 

@@ -286,7 +286,10 @@ def escape_note(contact: CondensedContact) -> str | None:
 def escape_words(contact: CondensedContact, motion: Array) -> str:
     """Describe the motion (k,), dimensionless, in which the load pulls the body off its support."""
     parts = zip(motion / np.abs(motion).max(), contact.motion_names, strict=True)
-    terms = ", ".join(f"{part:+.3g} x {name}" for part, name in parts if abs(part) > NAMED)
+    moved = [(part, name) for part, name in parts if abs(part) > NAMED]
+    terms = ", ".join(f"{part:+.3g} x {name}" for part, name in moved)
+    if len(moved) == 1:
+        terms = f"the {moved[0][1]}{', backwards' if moved[0][0] < 0 else ''}"
     return f"the load pulls the body off its support, in a motion that nothing holds: {terms}"
 
 

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from pydantic import computed_field
 
-from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.footprint import ContactInterval, Footprint, footprint
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -77,7 +77,8 @@ class ParameterPath(Leaf):
     end_accuracy: Accuracy
     """Accuracy of the mesh at the end."""
     penetration: Penetration | None = None
-    """Deepest penetration of the boundary at a breakpoint that is not tolerated; null if there is none."""
+    """Deepest penetration of the boundary at a breakpoint that is not tolerated, or else the largest strains there that
+    are not small; null if there are none."""
     penetrates_at: float | None = None
     """Value of the parameter there; null if there is none."""
     said: Internal[tuple[str, ...]] = ()
@@ -110,16 +111,26 @@ class ParameterPath(Leaf):
     def certified(self) -> bool:
         """Whether the path reaches its end, and each state on it is proved to be the contact state, the only one.
 
-        At breakpoints the body penetrates no rigid surface either.
+        At breakpoints the body penetrates no rigid surface either, and strains are small.
         """
-        proved = self.path.complete and self.path.unique and self.path.residual <= RESIDUAL
-        return proved and self.penetration is None
+        return self.proved and self.penetration is None
 
     @property
-    def holds(self) -> bool:
-        """Whether it is certified, and the accuracy asked is met at both ends, but where nothing presses."""
+    def proved(self) -> bool:
+        """Whether the path reaches its end, and each state on it is proved to be the only solution of the equations."""
+        return self.path.complete and self.path.unique and self.path.residual <= RESIDUAL
+
+    @property
+    def holds(self) -> bool | None:
+        """Whether it is certified, and the accuracy asked is met at both ends, but where nothing presses.
+
+        None if it is certified, and nothing is said about the mesh.
+        """
         ends = ((self.start_accuracy, self.path.pressure[0]), (self.end_accuracy, self.path.pressure[-1]))
-        return self.certified and all(accuracy.holds or not pressure.any() for accuracy, pressure in ends)
+        of_meshes = (
+            accuracy.holds if accuracy.holds is None or pressure.any() else True for accuracy, pressure in ends
+        )
+        return together((self.certified, *of_meshes))
 
     def value(self, t: float) -> float:
         """The parameter at t of the path; round-off of its ends counts as zero."""

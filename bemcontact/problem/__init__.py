@@ -22,7 +22,6 @@ from bemcontact.problem.load_case import LoadCase as LoadCase
 from bemcontact.problem.material import Material as Material
 from bemcontact.problem.problem import MeshDensity as MeshDensity
 from bemcontact.problem.problem import Problem as Problem
-from bemcontact.problem.problem import Units as Units
 from bemcontact.problem.reference import Crack as Crack
 from bemcontact.problem.reference import FlatPunch as FlatPunch
 from bemcontact.problem.reference import Hertz as Hertz
@@ -40,4 +39,5 @@ from bemcontact.problem.rigid_surface import Shape as Shape
 from bemcontact.problem.surface_lines import Closest as Closest
 from bemcontact.problem.surface_lines import Polyline as Polyline
 from bemcontact.problem.surface_lines import Spline as Spline
+from bemcontact.problem.units import Units as Units
 from bemcontact.problem.variant import Variant as Variant

@@ -27,7 +27,17 @@ def gap_issues(path: KeyPath, loop: Loop, size: float) -> Iterator[Issue]:
             message = f"the loop is open: {_where(loop, gap)}; '{loop[i].name}' runs the wrong way round: give {text}"
             yield Issue(path=(*path, i, *_start_key(loop[i])), message=message)
         return
-    hint = _hint_of_arcs(loop, gaps, size) or _hint_of_order(loop, size)
+    arcs = _other_arcs_of(loop, gaps, size)
+    if 0 < len(arcs) < len(gaps):
+        for i, text in arcs.items():
+            where = " and ".join(_where(loop, gap) for gap in (i, (i + 1) % len(loop)) if gap in gaps)
+            closes = "which closes the loop" if len(arcs) == 1 else "which closes the loop with the other changes"
+            message = f"the loop is open: {where}; give '{loop[i].name}' {text}, {closes}"
+            message += _hint_of_radians(loop, i)
+            yield Issue(path=(*path, i, text.partition(":")[0]), message=message)
+        return
+    changes = " and ".join(f"'{loop[i].name}' {text}" for i, text in arcs.items())
+    hint = f"; or give {changes}, which closes the loop" if arcs else _hint_of_order(loop, size)
     for i in gaps:
         message = f"the loop is open: {_where(loop, i)}; {_remedy(loop, i)}{hint}{_hint_of_radians(loop, i)}"
         yield Issue(path=(*path, i, *_start_key(loop[i])), message=message)
@@ -100,18 +110,18 @@ def _yaml(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else f"{value:.12g}"
 
 
-def _hint_of_arcs(loop: Loop, gaps: Sequence[int], size: float) -> str:
-    """Say which other radius, center or angles of an arc close the loop; empty if none do."""
-    changed, texts = [*loop], list[str]()
+def _other_arcs_of(loop: Loop, gaps: Sequence[int], size: float) -> dict[int, str]:
+    """Arcs with the other radius, center or angles that close the loop, by position; empty if none do."""
+    changed, texts = [*loop], dict[int, str]()
     for i in dict.fromkeys(j % len(loop) for gap in gaps for j in (gap, gap - 1)):
         edge, ends = loop[i], (loop[i - 1].own_ends()[1], loop[(i + 1) % len(loop)].own_ends()[0])
         for other, text in _other_arcs(edge, *ends) if isinstance(edge, Arc) else ():
             start, end = other.own_ends()
             if _joins(ends[0], start, size) and _joins(end, ends[1], size):
                 changed[i] = other
-                texts.append(f"'{edge.name}' {text}")
+                texts[i] = text
                 break
-    return "" if not texts or _gaps(changed, size) else f"; or give {' and '.join(texts)}, which closes the loop"
+    return {} if _gaps(changed, size) else texts
 
 
 def _other_arcs(arc: Arc, start: Point | None, end: Point | None) -> Iterator[tuple[AnyEdge, str]]:

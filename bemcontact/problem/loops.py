@@ -135,7 +135,8 @@ def _orientations(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> 
             message = "a hole must run clockwise, but runs counterclockwise; "
         else:
             continue
-        yield Issue(path=path, message=message + _how_to_reverse(loop))
+        where = (*path, 0, "angles") if len(loop) == 1 else path
+        yield Issue(path=where, message=message + _how_to_reverse(loop))
 
 
 def _how_to_reverse(loop: Sequence[Edge]) -> str:

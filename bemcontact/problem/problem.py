@@ -37,10 +37,10 @@ from bemcontact.problem.load_case import Combination, LoadCase
 from bemcontact.problem.material import Material
 from bemcontact.problem.reference import ReferenceSpec
 from bemcontact.problem.sight import zone_edges
+from bemcontact.problem.units import Units
 from bemcontact.problem.validation import (
     Count,
     Flag,
-    Label,
     Name,
     SpecModel,
     Text,
@@ -50,28 +50,6 @@ from bemcontact.problem.validation import (
 )
 from bemcontact.problem.variant import Variant, issues_of_values
 from bemcontact.problem.wording import unknown_word
-
-
-class Units(SpecModel):
-    """Labels of the units of all numbers. Numbers are not converted."""
-
-    example: ClassVar[str] = "{length: mm, force: N}"
-
-    length: Label = ""
-    """The label of the unit of length, such as mm."""
-    force: Label = ""
-    """The label of the unit of force, such as kN."""
-
-    @property
-    def stress(self) -> str:
-        """The label of the unit of stress, such as kN/mm²; empty if a label is missing."""
-        return f"{self.force}/{self.length}²" if self.force and self.length else ""
-
-    @property
-    def line_force(self) -> str:
-        """The label of the unit of force per thickness, such as kN/mm; empty if a label is missing."""
-        return f"{self.force}/{self.length}" if self.force and self.length else ""
-
 
 ACCURACY = 0.01
 """Relative accuracy that is asked for by default."""
@@ -405,5 +383,24 @@ class Problem(SpecModel):
         ProblemError
             If the path leads nowhere, or the problem with the new value is wrong.
         """
+        return self.with_values({text_of_argument(path, "a key path"): value})
+
+    def with_values(self, changes: Mapping[str, Any]) -> Self:
+        """Copy with several values changed at once; only the problem with all of them has to be right.
+
+        Parameters
+        ----------
+        changes : new values by key path, as of `with_value`, made in their order
+
+        Raises
+        ------
+        ProblemError
+            If a path leads nowhere, or the problem with the new values is wrong.
+        """
+        if not isinstance(changes, Mapping):
+            example = "{'material.young_modulus': 70e3, 'material.poisson_ratio': 0.33}"
+            raise ProblemError(f"values by key path are needed, such as {example}; found {shown(changes)}")
         data = self.model_dump()
-        return type(self)(**with_entry(data, existing_path(data, parsed_path(path)), value))
+        for path, value in changes.items():
+            data = with_entry(data, existing_path(data, parsed_path(path)), value)
+        return type(self)(**data)

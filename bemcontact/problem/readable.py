@@ -9,8 +9,9 @@ from bemcontact.problem.cross_checks import mesh_issues
 from bemcontact.problem.key_path import RawValue
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.material import Material
-from bemcontact.problem.problem import MeshDensity, Problem, Units
+from bemcontact.problem.problem import MeshDensity, Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
+from bemcontact.problem.units import Units
 from bemcontact.problem.validation import SpecModel
 
 Part = TypeVar("Part", bound=SpecModel)

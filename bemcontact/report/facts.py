@@ -16,6 +16,7 @@ from bemcontact.report.bars import (
     _rounded,
     _unit_of_bar,
     bars_of,
+    error_percent,
     infinite_peaks,
     with_bar,
 )
@@ -26,6 +27,7 @@ from bemcontact.report.formatting import (
     with_unit,
     zero_if_negligible,
 )
+from bemcontact.report.peak_places import LEVEL, equal_peaks, level_zones
 
 RESIDUALS = ("penetration", "tension", "complementarity", "equilibrium", "force_balance")
 """Residuals that are listed."""
@@ -33,8 +35,8 @@ QUALITIES = {"holds": "good", "does not hold": "bad", "not judged": "fair"}
 """Verdict on a quantity of a reference -> quality."""
 PLAIN = 0.01, 1000.0
 """Range of numbers that are written without a power of ten."""
-LEVEL = 1e-3
-"""Difference from the peak pressure, over that, below which a point counts as one at the peak."""
+MOST_PLACES = 3
+"""Number of places of the largest pressure that are named."""
 UNRESOLVED = 1e-3
 """Share of the length of contact below which no place in it is resolved."""
 
@@ -64,9 +66,11 @@ def _peaks(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     """Write the largest pressure; where that of a zone is infinite, each zone by itself."""
     infinite = infinite_peaks(record)
     if not infinite and (peak := record["peak"]):
-        value = with_unit(with_bar(peak["pressure"], peak_bar(record)), units.stress)
-        at = "" if _level_zone(record) else "at "
-        words = f"{value} {at}{peak_place(record, units)}{_unknown_error(record)}"
+        value, place = with_unit(with_bar(peak["pressure"], peak_bar(record)), units.stress), peak_place(record, units)
+        at = "" if place.startswith("all along") else "at "
+        equal = f", equal within {error_percent(max(peak_bar(record) or 0.0, LEVEL))}"
+        equal *= len(_peak_places(record, units)) > 1
+        words = f"{value} {at}{place}{equal}{_unknown_error(record)}"
         yield "Peak pressure", f"{words}; per UNDEFORMED length"
     if infinite:
         for bar in bars_of(record, "peak"):
@@ -204,26 +208,32 @@ def pressed_by(record: Record) -> float:
 
 
 def peak_place(record: Record, units: Units) -> str:
-    """Write where the largest pressure acts, if any; what is small beside the shortest contact is zero.
+    """Write where the largest pressure acts, if any."""
+    places = _peak_places(record, units)
+    return " and ".join(filter(None, (", ".join(places[:-1]), *places[-1:])))
 
-    Where the pressure is the same at all points of contact of a zone, the place would be that of round-off.
+
+def _peak_places(record: Record, units: Units) -> list[str]:
+    """Places where the largest pressure acts, if any; what is small beside the shortest contact is zero.
+
+    All places are named where it is equal within its error. Where the pressure is the same at all points of contact of
+    a zone, the place would be that of round-off.
     """
     if not record["peak"]:
-        return ""
-    if zone := _level_zone(record):
-        return f"all along {'the contact' if len({*record['zone']}) == 1 else zone}"
+        return []
+    error, several = peak_bar(record) or 0.0, len({*record["zone"]}) > 1
     lengths = [last - first for first, last in (interval["arc"] for interval in record["intervals"]) if last > first]
     unresolved = UNRESOLVED * min(lengths, default=0.0) / NEGLIGIBLE
-    return vector(record["peak"]["at"], units.length, scale=max(coordinate_size(record), unresolved))
-
-
-def _level_zone(record: Record) -> str:
-    """The zone of the largest pressure, if its pressure is the same at several points and at all that are pressed."""
-    pressure, zone = np.array(record["pressure"]), record["zone"]
-    where = zone[int(pressure.argmax())]
-    inside = pressure[np.array([name == where for name in zone])]
-    pressed = inside[inside > NEGLIGIBLE * pressure.max()]
-    return where if len(pressed) > 1 and pressed.min() >= (1 - LEVEL) * pressure.max() else ""
+    scale = max(coordinate_size(record), unresolved)
+    level = level_zones(record, error)
+    places = [f"all along {zone if several else 'the contact'}" for zone in level]
+    for i in equal_peaks(record, error):
+        if record["zone"][i] not in level:
+            places.append(vector(record["nodes"][i], units.length, scale=scale))
+    places = [*dict.fromkeys(places)]
+    if len(places) > MOST_PLACES:
+        places = [*places[: MOST_PLACES - 1], f"{len(places) - MOST_PLACES + 1} more places"]
+    return places
 
 
 def span(interval: Record, size: float, units: Units) -> str:

@@ -5,10 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.assessment.certificate import Certificate
 from bemcontact.assessment.contender import Contender
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.solution import ContactSolution, LocalSearch, Penalty, Status
+from bemcontact.contact.solution import LocalSearch, Penalty
 from bemcontact.problem import (
     Circle,
     Condition,
@@ -162,12 +161,6 @@ def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
         for name, condition in surface.conditions.items()
     ]
     return "; ".join([*conditions, *_volume_loads(surface.loads, problem)])
-
-
-def certificate_sentence(solution: ContactSolution, certificate: Certificate) -> str:
-    """Certificate of a solution in sentences, after the status if the solver did not succeed."""
-    ending = "" if solution.status is Status.SOLVED else f"The solver: {solution.status.words}. "
-    return ending + certificate.words
 
 
 def plural(noun: str, count: int) -> str:

@@ -38,7 +38,7 @@ from bemcontact.report.formatting import (
     volume_loads,
     with_unit,
 )
-from bemcontact.report.verdicts import Verdict, case_verdicts, path_verdicts, result_verdicts, study_verdicts
+from bemcontact.report.verdicts import Verdict, case_verdicts, overall, path_verdicts, result_verdicts, study_verdicts
 
 MANY = 4
 """Number of points up to which those that enter or leave together are named."""
@@ -128,14 +128,15 @@ def cases_summary(cases: CaseResults) -> RenderableType:
     zones = table_of("load case", "zone", "force on the body", "contact")
     for name, result in cases.results.items():
         record, units = result.to_dict(), units_of(result.contact)
-        style = "" if result.holds else "yellow" if result.certified else "red"
+        verdicts = result_verdicts(result)
         cells = [
             name,
-            result_verdicts(result)[0].word,
+            verdicts[0].word,
             mesh_in_short(result.accuracy.to_dict()),
             peak_of(record, units) if record["intervals"] else "",
             peak_place(record, units),
         ]
+        style = "" if result.holds is not False else {"good": "", "fair": "yellow", "bad": "red"}[overall(verdicts)]
         table.add_row(*map(Text, cells), style=style)
         forces = zone_forces(record, units)
         places = [*contact_intervals(record, units, short=len(forces) > 1)]  # so that lines stay short
@@ -224,6 +225,18 @@ RIGHT = frozenset({
 """Columns of numbers."""
 
 
+CONTENDERS = (
+    "objective: 0 at the contact state. difference: of the pressure from the direct solution, over the peak; "
+    "unpolished: the same before the last exact step."
+)
+CURVATURE = (
+    "Numbers of positive, zero and negative eigenvalues: of the whole Hessian, and reduced to what may change where "
+    "the search starts and where it ends. convex in equilibrium: where forces balance, each minimum is the least of "
+    "all; μ is the penalty of QP2."
+)
+"""What the columns of the tables of a comparison mean, below them."""
+
+
 def list_of_facts() -> Table:
     """Make a list of facts: name and value."""
     facts = Table.grid(padding=(0, 2))
@@ -278,14 +291,14 @@ def study_summary(study: Study) -> RenderableType:
         add(shown, "Note", note)
     for verdict in study_verdicts(study.to_dict()):
         add_verdict(shown, verdict)
-    scores = _score_table(level, units_of(answer.contact))
-    tables = [
-        _contender_table(compared),
-        _curvature_table(compared),
-        scores,
-        _mesh_table(study),
-    ]
-    parts = [part for table in tables if table.row_count for part in (table, "")]
+    tables = {
+        _contender_table(compared): CONTENDERS,
+        _curvature_table(compared): CURVATURE,
+        _score_table(level, units_of(answer.contact)): "",
+        _mesh_table(study): "",
+    }
+    shown_tables = ((table, words) for table, words in tables.items() if table.row_count)
+    parts = [part for table, words in shown_tables for part in (table, *([Text(words, "dim")] * bool(words)), "")]
     return Group(Text(study.name, "bold"), Text(_compared_how(study), "dim"), "", *parts, shown)
 
 
@@ -315,7 +328,7 @@ def _contender_table(compared: Comparison) -> Table:
 
 def _curvature_table(compared: Comparison) -> Table:
     """List how many eigenvalues are positive, zero and negative where a local solver searched."""
-    table = table_of("signs + 0 -", "whole Hessian", "reduced, start", "reduced, end", "convex in equilibrium")
+    table = table_of("eigenvalues", "whole Hessian", "reduced, start", "reduced, end", "convex in equilibrium")
     for item in compared.contenders:
         search = item.solution.search if item.solution else None
         if search is None:

@@ -6,9 +6,10 @@ from typing import NamedTuple
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.study import Study
+from bemcontact.assessment.penetration import Misfit
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report.bars import Record, bar_in_words, error_percent, worst_bar
-from bemcontact.report.formatting import certificate_sentence, number, sentence_case
+from bemcontact.report.formatting import number, sentence_case
 
 
 class Verdict(NamedTuple):
@@ -36,17 +37,9 @@ def in_short(verdicts: Sequence[Verdict]) -> str:
     return "; ".join(item.word if item.good else f"{item.of.lower()}: {item.word}" for item in verdicts)
 
 
-def equations_verdict(certificate: Record, words: str, penetration: Record | None = None) -> Verdict:
-    """Verdict on the solution of the equations on the mesh, with its sentences, and on what penetrates a surface."""
-    if penetration is not None:
-        sentences = f"{penetration['words']} At the contact points: {words}"
-        return Verdict("Equations", "bad", misfit_in_words(penetration), sentences)
-    return Verdict("Equations", "good" if certificate["kind"] == "unique" else "bad", certificate["heading"], words)
-
-
-def misfit_in_words(penetration: Record) -> str:
-    """Name in a few words how a body does not fit a rigid surface."""
-    return "penetrates a surface" if penetration["kind"] == "penetration" else penetration["kind"]
+def _quality(penetration: Record, solved: bool) -> str:
+    """Fair if the equations are solved, and only the theory is too rough."""
+    return "fair" if solved and not Misfit(penetration["kind"]).serious else "bad"
 
 
 def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
@@ -57,8 +50,10 @@ def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
     finest = report["levels"][-1]
     compared = finest["comparison"]
     short = [level["refine"] for level in report["levels"][:-1] if not _proved(level)]
-    direct = compared["reference"]["certified"] and finest["penetration"] is None
+    direct = compared["reference"]["certified"]
     quality = "bad" if not direct else "good" if _proved(finest) and not short else "fair"
+    if finest["penetration"] is not None:
+        quality = _quality(finest["penetration"], direct)
     sentences = [sentence_case(words or report["verdict"])]
     if short:
         meshes = f"coarser mesh{'es' * (len(short) > 1)} (refine {', '.join(map(str, short))})"
@@ -96,9 +91,11 @@ def mesh_verdict(accuracy: Record) -> Verdict:
 
 def result_verdicts(result: Result) -> tuple[Verdict, Verdict]:
     """Verdicts on the equations and on the mesh."""
-    words, deepest = certificate_sentence(result.solution, result.certificate), result.penetration
-    proved = equations_verdict(result.certificate.to_dict(), words, deepest.to_dict() if deepest else None)
-    return proved, mesh_verdict(result.accuracy.to_dict())
+    solved, deepest = result.certificate.certified, result.penetration
+    quality, word = "good" if solved else "bad", result.certificate.heading
+    if deepest is not None:
+        quality, word = _quality(deepest.to_dict(), solved), str(deepest.kind)
+    return Verdict("Equations", quality, word, result.words), mesh_verdict(result.accuracy.to_dict())
 
 
 def case_verdicts(cases: CaseResults) -> tuple[Verdict, Verdict]:
@@ -147,10 +144,18 @@ def _shortfall(verdicts: Iterable[Verdict]) -> str:
 
 def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
     """Verdicts on the equations all along a path, and on the mesh at both ends."""
-    word = "unique solution proved" if path.certified else "not proved"
-    yield Verdict("Equations", "good" if path.certified else "bad", word, path_sentence(path))
-    for value, accuracy in zip((path.start, path.end), (path.start_accuracy, path.end_accuracy), strict=True):
+    beyond, word = path.penetration, "unique solution proved" if path.certified else "not proved"
+    quality = "good" if path.certified else "bad"
+    if beyond is not None:
+        word, quality = str(beyond.kind), _quality(beyond.to_dict(), path.proved)
+    yield Verdict("Equations", quality, word, path_sentence(path))
+    of_start = path.start, path.reaches[0], path.path.begins_at == 0.0, path.start_accuracy
+    of_end = path.end, path.reaches[1], path.path.ends_at == 1.0, path.end_accuracy
+    for value, last, reached, accuracy in (of_start, of_end):
         verdict = mesh_verdict(accuracy.to_dict())
+        if not reached:
+            words = f"The path ends at {number(last)}, where errors were not estimated."
+            verdict = Verdict("Mesh", "fair", "not reached", words)
         yield verdict._replace(words=f"At {path.key} = {number(value)}. {verdict.words}")
 
 

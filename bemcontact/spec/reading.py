@@ -60,6 +60,11 @@ def load(path: str | os.PathLike[str], overrides: Changes = (), variant: str | N
     if not isinstance(path, str | os.PathLike) or not isinstance(os.fspath(path), str):
         hint = "bemcontact.loads reads a text, and bemcontact.Problem(**parts) takes a mapping"
         raise SpecError(f"load needs the path of a file; found {shown(path)}; {hint}")
+    if "\n" in os.fspath(path) and not os.path.exists(path):
+        raise SpecError(
+            f"load needs the path of a file; found a text of several lines, {shown(path)}; bemcontact.loads reads the "
+            "text of a problem"
+        )
     return loads(text_of(path), os.fspath(path), overrides, variant)
 
 
@@ -402,4 +407,6 @@ def _check_mapping(document: Document, name: str) -> None:
         raise SpecError(error_text(document.messages))
     if document.data is None:
         raise SpecError(f"{name}:1:1: the file is empty; {needs}")
-    raise SpecError(f"{document.places[()].value.text}: {needs}; found {described(document.data)}")
+    a_path = isinstance(document.data, str) and document.data.endswith((".yaml", ".yml"))
+    hint = "; bemcontact.load reads a file" * a_path
+    raise SpecError(f"{document.places[()].value.text}: {needs}; found {described(document.data)}{hint}")

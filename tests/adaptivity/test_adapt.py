@@ -281,7 +281,7 @@ def test_a_stated_mesh_is_judged_unless_no_accuracy_is_asked_for():
     (judged,) = meshed(block).accuracies
     assert (judged.asked, judged.met, judged.holds, judged.passes) == (0.01, True, True, 1)
     (unjudged,) = meshed(block.with_value("accuracy", None)).accuracies
-    assert (unjudged.asked, unjudged.met, unjudged.holds, unjudged.bars) == (None, None, True, ())
+    assert (unjudged.asked, unjudged.met, unjudged.holds, unjudged.bars) == (None, None, None, ())
     assert unjudged.reason
 
 

@@ -3,7 +3,6 @@
 Loads that balance, and growth within a clearance: no contact, exactly, and sane numbers in any units.
 """
 
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +14,8 @@ from scipy.optimize import brentq
 from tool_problems import BETWEEN, made
 
 import bemcontact
-from bemcontact.analysis.diagnostics import LARGE, LARGE_PART, large_displacements
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.solve import condense, solve
-from bemcontact.bem.mesh import BoundaryState
 from bemcontact.errors import ProblemError
 from bemcontact.problem import Problem
 from bemcontact.report.facts import facts
@@ -284,90 +281,6 @@ def test_residue_of_the_mesh_is_no_load(share: float, counts: tuple[int, int]):
 def test_balanced_loads_do_not_press_a_body_onto_its_support(weight: float):
     with pytest.raises(ProblemError, match="no load presses it onto its support"):
         solve(pipe(1.0, weight), "complementarity")
-
-
-def affine(gradient: np.ndarray, unit: float = 1.0, share: float = 1.0) -> list[str]:
-    """Notes on the displacement A x of a square of 4 x 25 elements, on a share of its boundary."""
-    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * unit
-    ends = np.concatenate([a + np.linspace(0, 1, 26)[:-1, None] * (b - a) for a, b in pairwise(corners)])
-    after = np.roll(ends, -1, axis=0)
-    points = np.stack([ends, (ends + after) / 2, after], axis=1)
-    moved = points @ gradient.T + unit
-    moved[int(share * 100) :] = 0.0
-    state = BoundaryState(
-        points=points, displacement=moved, traction=moved, edge=np.zeros(100, int), edge_names=("all",),
-        force_balance=0.0, equilibrium_slack=0.0,
-    )  # fmt: skip
-    return [*large_displacements(state)]
-
-
-@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
-@pytest.mark.parametrize("shape", [((0, -1), (1, 0)), ((1, 0), (0, 1)), ((0, 1), (0, 0))])
-def test_large_rotations_strains_and_shears_are_noted_and_translations_are_not(shape: tuple, unit: float):
-    """The displacement A x changes by |A t| of the length along a side in the direction t."""
-    assert affine(np.array(shape) * LARGE * 0.99, unit) == []
-    (note,) = affine(np.array(shape) * LARGE * 1.01, unit)
-    assert f"on {50 if shape[1] == (0, 0) else 100} % of the boundary" in note
-
-
-def test_a_few_elements_with_large_displacements_are_not_noted():
-    assert affine(np.eye(2), share=LARGE_PART - 0.01) == []
-    assert affine(np.eye(2), share=LARGE_PART + 0.01) != []
-
-
-@pytest.mark.parametrize(("load", "notes"), [(0.24, 0), (0.26, 2)])
-def test_a_block_under_a_large_pressure_has_notes(load: float, notes: int):
-    """Uniaxial stress: the strain of the sides, a third of the boundary, is the pressure over Young's modulus."""
-    edges = [{"name": name, "start": start, "elements": 4} for name, start in
-             (("bottom", [0, 0]), ("right", [2, 0]), ("top", [2, 1]), ("left", [0, 1]))]  # fmt: skip
-    problem = Problem(
-        name="block",
-        material={"young_modulus": 7.0, "poisson_ratio": 0.3, "state": "plane_stress"},
-        boundary={"outer": edges},
-        conditions={"left": {"displacement": {"x": 0}}, "top": {"pressure": 7 * load}},
-        contact_zones={"foot": {"edges": "bottom", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
-    )
-    found = [note for note in bemcontact.solve(problem, "complementarity").notes if "not small" in note]
-    assert len(found) == notes
-
-
-@pytest.mark.parametrize(("nu", "notes"), [(0.4999, 0), (0.3, 1)])
-def test_a_large_pressure_all_round_is_noted_only_if_it_strains(nu: float, notes: int):
-    """Uniaxial strain e = p (1 + nu) (1 - 2 nu) / (E (1 - nu)) by statics and Hooke's law; here p = E."""
-    edges = [{"name": name, "start": start, "elements": 4} for name, start in
-             (("bottom", [0, 0]), ("right", [2, 0]), ("top", [2, 1]), ("left", [0, 1]))]  # fmt: skip
-    problem = Problem(
-        name="block in a groove",
-        material={"young_modulus": 7.0, "poisson_ratio": nu},
-        boundary={"outer": edges},
-        conditions={
-            "left": {"displacement": {"x": 0}}, "right": {"displacement": {"x": 0}}, "top": {"pressure": 7.0}
-        },
-        contact_zones={"foot": {"edges": "bottom", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
-    )  # fmt: skip
-    found = [note for note in bemcontact.solve(problem, "complementarity").notes if "peak pressure" in note]
-    assert len(found) == notes
-
-
-def test_a_body_that_a_condition_holds_is_not_told_to_be_held():
-    """Young's modulus in other units than the load: the message states it, and asks for no other condition."""
-    edges = [{"name": name, "start": start, "elements": 8} for name, start in
-             (("bottom", [0, 0]), ("right", [9, 0]), ("top", [9, 1]), ("left", [0, 1]))]  # fmt: skip
-    problem = Problem(
-        name="beam",
-        material={"young_modulus": 210.0, "poisson_ratio": 0.3},
-        boundary={"outer": edges},
-        conditions={"left": {"displacement": {"x": 0, "y": 0}}, "top": {"pressure": 1.0}},
-        contact_zones={"foot": {"edges": "bottom", "surface": {"kind": "plane", "point": [0, -40], "normal": [0, 1]}}},
-    )
-    (note,) = [
-        note
-        for note in bemcontact.solve(problem, "complementarity").notes
-        if note.startswith("displacements are not small")
-    ]
-    assert "units may be mixed" in note
-    assert "210" in note
-    assert "hold it" not in note
 
 
 @pytest.mark.parametrize(("asked", "noted"), [(0.3, True), (0.100001, True), (0.1, False), (0.01, False)])

@@ -62,7 +62,7 @@ def test_states_of_a_path_are_those_of_the_problem_itself(cantilever: Problem, k
 
 
 def test_gravity_is_a_parameter(cylinder: Problem):
-    heavy = cylinder.with_value("loads.gravity", {"density": 1.0, "acceleration": [0, -1.0]})
+    heavy = cylinder.with_value("loads.gravity", {"density": 0.01, "acceleration": [0, -1.0]})
     found = follow(heavy, "loads.gravity.acceleration[1]", -10.0)
     assert (found.start, found.certified) == (-1.0, True)
     problem = bemcontact.condense(heavy.with_value("loads.gravity.acceleration[1]", -4.0))

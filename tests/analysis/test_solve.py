@@ -315,6 +315,16 @@ def test_saved_problem_gives_the_same(cylinder, tmp_path):
     assert (result.solution.pressure == bemcontact.solve(condensed).solution.pressure).all()
     assert result.boundary is None
     assert result.to_dict()["boundary"] is None
+    assert result.certified
+    assert result.holds is None  # nothing is known of its mesh
+
+
+def test_holds_says_no_more_than_was_assessed(cylinder):
+    """With an accuracy: whether it is met. With none, or condensed: not assessed, which is neither."""
+    for accuracy, holds in ((0.5, True), (1e-9, False), (None, None)):
+        result = bemcontact.solve(cylinder.with_value("mesh.adapt", False), accuracy=accuracy)
+        assert result.certified
+        assert result.holds is result.accuracy.met is holds
 
 
 def test_result_as_numbers(cylinder):

@@ -1,10 +1,12 @@
 """Whether error bars are as small as was asked, and where nothing can be promised."""
 
+from dataclasses import replace
+from itertools import product
 from math import inf, nextafter
 
 import pytest
 
-from bemcontact.assessment.accuracy import Accuracy, ErrorBar, Quantity
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar, Quantity, together
 
 
 def bar(
@@ -45,8 +47,16 @@ def test_a_pressure_away_from_infinite_ones_is_promised_without_a_value():
 def test_nothing_holds_where_errors_are_not_known_but_nothing_was_asked():
     """Not estimated is neither met nor not met; it fails only the one who asked."""
     assert Accuracy(asked=None).met is None
-    assert Accuracy(asked=None).holds
-    assert not Accuracy(asked=1e-2, reason="too many unknowns").holds
+    assert Accuracy(asked=None).holds is None
+    assert Accuracy(asked=1e-2, reason="too many unknowns").holds is False
+
+
+def test_several_judgments_hold_together_only_if_all_do():
+    """All triples of the three values: the worst of them, with what is not assessed between."""
+    order = [False, None, True]
+    for three in product(order, repeat=3):
+        assert together(three) is min(three, key=order.index)
+    assert together(()) is True
 
 
 def test_infinite_peaks_that_another_mesh_knows():
@@ -65,3 +75,14 @@ def test_infinite_peaks_that_another_mesh_knows():
 
 def test_knowing_does_not_judge_what_was_not_estimated():
     assert Accuracy(asked=1e-2).knowing(Accuracy.of(1e-2, 3, [bar(value=None, error=None)])).met is None
+
+
+def test_an_error_bar_says_to_what_it_is_relative():
+    """To the value, and of an end of contact to the length of its interval."""
+    assert (
+        repr(bar("peak", 100.0, 0.02, "foot"))
+        == "<ErrorBar of peak of 'foot': value 100, bar 0.02 relative to the value>"
+    )
+    end = ErrorBar(quantity="end", zone="foot", interval=1, value=3.0, bar=None, note="it is at a corner")
+    assert "interval 1: value 3, bar not known; it is at a corner" in repr(end)
+    assert "relative to the length of the interval" in repr(replace(end, bar=0.1))

@@ -5,7 +5,7 @@ import pytest
 from tool_problems import FREE, HELD, ROLLER, WEDGE, Spec, made
 
 from bemcontact.bem.body import Body, body_of
-from bemcontact.bem.rigid_motions import FreeMotions, RigidMotions, toward
+from bemcontact.bem.rigid_motions import FAR, FreeMotions, RigidMotions, toward
 
 WIDE = {"table": FREE["contact_zones"]["table"], "press": {
     "edges": ["head", "top"], "surface": FREE["contact_zones"]["punch"]["surface"]}}  # fmt: skip
@@ -177,3 +177,18 @@ def test_directions_have_the_words_of_their_components(size):
             angle = np.radians(90 * quarter + degrees)
             number = 2 * quarter + (degrees > 0.5) + (degrees > 89)
             assert toward(size * np.array([np.cos(angle), np.sin(angle)])) == words[number % 8]
+
+
+@pytest.mark.parametrize("far", [0.0, 1.0, 2.9, 3.1, 42.0, -42.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_pole_that_is_far_away_is_said_to_be_nearly_a_translation(far: float, sign: float):
+    """With the pole at (1 - 3 far, 2) the middle (1, 2) moves up or down, and any point of the body within a third."""
+    motion = RigidMotions(coefficients=sign * np.array([[0.0, far, 1.0]]), center=np.array([1.0, 2]), radius=3.0)
+    (told,) = motion.describe()
+    sense = "counterclockwise" if sign > 0 else "clockwise"
+    assert told.startswith(f"rotation {sense} about ({1 - 3 * far:.4g}, 2)")
+    assert told.endswith(f"nearly a translation along (0, {sign * np.sign(far):.0f})") is (abs(far) > FAR)
+    points = np.array([1.0, 2]) + 3.0 * np.array([[-1, 0], [1, 0], [0, 1]])
+    moved, middle = (motion.displacement(at)[..., 0] for at in (points, np.array([[1.0, 2]])))
+    if abs(far) > FAR:
+        assert np.linalg.norm(moved - middle, axis=1).max() <= abs(far) / FAR

@@ -14,7 +14,7 @@ import pytest
 from tool_problems import FREE, FREE_CASES, made
 
 import bemcontact
-from bemcontact.checks.attributes import OF_A_RESULT, PLACES, WithHints
+from bemcontact.checks.attributes import OF_A_RESULT, PARTS, PLACES, WithHints
 
 GALLERY = Path(__file__).parents[2] / "models" / "gallery"
 WORDS = [word for words in PLACES.values() for word in words]
@@ -26,15 +26,20 @@ def objects() -> dict[str, Any]:
     model = bemcontact.model(result.contact)
     cases = bemcontact.solve_cases(made(FREE, **FREE_CASES))
     parts = {"contact": result.contact, "solution": result.solution, "footprint": result.footprint}
-    return {"result": result, **parts, "model": model, "of a model": model.solve(), "cases": cases}
+    where, accuracy = result.footprint, result.accuracy
+    small = {"peak": where.peak, "interval": where.intervals[0], "resultant": where.resultant}
+    small |= {"accuracy": accuracy, "bar": accuracy.bars[0], "boundary": result.boundary}
+    return {"result": result, **parts, **small, "model": model, "of a model": model.solve(), "cases": cases}
 
 
-NAMES = ("result", "contact", "solution", "footprint", "model", "of a model", "cases")
+SMALL = ("peak", "interval", "resultant", "accuracy", "bar", "boundary")
+NAMES = ("result", "contact", "solution", "footprint", *SMALL, "model", "of a model", "cases")
 
 
 def hints(name: str) -> Iterator[tuple[str, str]]:
     """Each word that an object does not have, and the sentence that it gets."""
-    for word in WORDS:
+    own = PARTS.get(type(objects()[name]).__name__, {})
+    for word in (*WORDS, *(word for words in own.values() for word in words)):
         if not hasattr(objects()[name], word):
             with pytest.raises(AttributeError) as error:
                 getattr(objects()[name], word)
@@ -48,9 +53,21 @@ def test_each_place_that_is_named_is_there(name: str):
         assert text.startswith(f"{type(owner).__name__} has no '{word}'; ")
         _, use, place = text.partition("; use ")
         if use:
-            eval(f"owner.{place}", {"owner": owner})
+            for one in re.split(" and ", place.partition(",")[0]):
+                eval(f"owner.{one}", {"owner": owner})
         else:
-            assert f"; {OF_A_RESULT} " in text
+            assert f"; {OF_A_RESULT} " in text or "; there are: " in text
+
+
+def test_no_part_is_sent_back_to_itself():
+    """What an error bar, a peak or an interval has of its own is named, not the place of all of them."""
+    result = objects()["result"]
+    homes = {"peak": "footprint.peak", "bar": "accuracy.bars", "interval": "footprint.intervals"}
+    homes |= {"accuracy": "accuracy", "resultant": "footprint.resultant", "boundary": "boundary"}
+    assert {type(objects()[name]).__name__ for name in SMALL} == {*PARTS}
+    for name, home in homes.items():
+        assert all(not f"{text} ".endswith(f"{OF_A_RESULT} {home} ") for _, text in hints(name)), name
+        assert eval(f"result.{home}", {"result": result}) is not None
 
 
 def test_a_result_has_all_of_them():
@@ -69,6 +86,12 @@ def test_a_result_has_all_of_them():
         ("contact", "stiffness", "stiffness_rows"),
         ("contact", "max_pressure", "peak"),
         ("model", "force", "resultant"),
+        ("peak", "point", "at"),
+        ("bar", "error", "bar, which is relative"),
+        ("interval", "ends", "start and end"),
+        ("interval", "width", "length"),
+        ("accuracy", "peak", "bars, one of each quantity"),
+        ("boundary", "nodes", "points"),
     ],
 )
 def test_words_of_users_lead_to_the_quantity(name: str, wrong: str, place: str):

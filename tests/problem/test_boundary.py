@@ -91,7 +91,7 @@ def test_error_of_an_open_loop_gives_both_points_and_the_distance():
 
 def test_all_gaps_are_reported_with_the_end_to_leave_out():
     arc = Arc(name="arc", center=(0, 0), radius=1, angles=(0, 90), elements=2)
-    lines = [Line(name="down", start=(0, 0.9), end=(0, 0), elements=1), Line(name="along", end=(0.9, 0), elements=1)]
+    lines = [Line(name="down", start=(0, 0.9), end=(0, 0), elements=1), Line(name="along", end=(0.8, 0), elements=1)]
     first, second = issues(outer=[arc, *lines])
     assert first.startswith("outer[0].angles: the loop is open: 'arc' starts at (1, 0), but 'along'")
     assert "leave the end of 'along' out" in first
@@ -174,7 +174,7 @@ def test_all_loops_with_the_wrong_orientation_are_reported():
     ]
     outer, hole = issues(outer=backwards, holes=[[circle(angles=(0, 360))]])
     assert_states(outer, "outer: … must run counterclockwise, but runs clockwise; list its edges … opposite order")
-    assert_states(hole, "holes[0]: … must run clockwise, but runs counterclockwise; exchange its two angles")
+    assert_states(hole, "holes[0][0].angles: … must run clockwise, but runs counterclockwise; exchange its two angles")
 
 
 def test_holes_are_inside_the_body():

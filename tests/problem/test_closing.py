@@ -83,11 +83,14 @@ def test_the_radius_center_or_angles_that_close_the_loop_are_given(n, key, chang
     wrong = {"radius": RADIUS * (1 + change), "center": (change, -change), "angles": (first, last + 30 * change)}[key]
     right = f"{RADIUS:.12g}" if key == "radius" else values(loop[i], key).partition(": ")[2]
     loop[i] = loop[i].model_copy(update={key: wrong})
-    messages = " ".join(message for _, message in issues(loop))
+    found = issues(loop)
+    messages = " ".join(message for _, message in found)
     if key != "center":
-        assert f"or give 'e{i}' {key}: {right}, which closes the loop" in messages
+        assert f"give 'e{i}' {key}: {right}, which closes the loop" in messages
     else:
-        assert f"or give 'e{i}' center: [" in messages
+        assert f"give 'e{i}' center: [" in messages
+    if key != "angles":  # both ends are off: one mistake, at the arc
+        assert [where for where, _ in found] == [i]
 
 
 @settings(max_examples=8, deadline=None)

@@ -83,6 +83,22 @@ def test_with_value_makes_a_new_problem(path, value, found):
     assert problem == Problem(**parts())
 
 
+def test_values_that_must_agree_are_changed_at_once():
+    """A Poisson ratio of 0.5 is refused in plane strain, where the body is incompressible, and is right in a sheet."""
+    problem = Problem(**parts())
+    thin = {"material.state": "plane_stress", "material.poisson_ratio": 0.5}
+    with pytest.raises(ProblemError, match="plane strain"):
+        problem.with_value("material.poisson_ratio", 0.5)
+    assert problem.with_values(thin).material.poisson_ratio == 0.5
+    assert problem.with_values({}) == problem
+    later = {"mesh": {"refine": 2}, "mesh.refine": 3}  # in their order
+    assert problem.with_values(later).mesh.refine == 3
+    assert problem.with_values(dict(reversed([*later.items()]))).mesh.refine == 2
+    for wrong in ([("mesh.refine", 2)], "mesh.refine=2", None):
+        with pytest.raises(ProblemError, match="values by key path are needed"):
+            problem.with_values(wrong)  # pyright: ignore[reportArgumentType]
+
+
 def test_with_value_checks_the_new_problem():
     with pytest.raises(ProblemError, match=r"^material\.poisson_ratio: must be greater than -1 and less than 0\.5"):
         Problem(**parts()).with_value("material.poisson_ratio", 0.7)

@@ -114,6 +114,7 @@ def facts_of_forces(
     record = {
         "nodes": [[float(place), 0.0] for place in range(len(forces))], "zone": ["foot"] * len(forces),
         "intervals": [{"zone": "foot", "start": [0.0, 0.0], "end": [9.0, 0.0], "arc": [0.0, 9.0]}] * any(forces),
+        "run": [0] * len(forces), "arc_position": [float(place) for place in range(len(forces))],
         "tributary_lengths": forces, "pressure": [1.0] * len(forces), "normals": [[0.0, 1.0]] * len(forces),
         "peak": None if infinite or not any(forces) else {"pressure": 1.0, "at": [0.0, 0.0]},
         "resultant": (1e-14 * total, total), "resultant_moment": 3.0 * total,
@@ -168,6 +169,8 @@ def test_a_level_pressure_has_no_place(dips: list[float], others: list[float], o
     record = {
         "peak": {"pressure": max(pressure), "at": at}, "pressure": pressure, "zone": zone,
         "nodes": [[float(i), 0.0] for i in range(len(zone))], "intervals": [{"arc": [0.0, 9.0]}],
+        "run": [0] * len(zone), "arc_position": [float(i) for i in range(len(zone))],
+        "tributary_lengths": [0.4] * len(zone),
     }  # fmt: skip
     pressed_beside = other_zone == "foot" and any(value > 1e-9 for value in others)
     name = "the contact" if len({*zone}) == 1 else "foot"

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from messages import assert_states
 from rich.console import Console, RenderableType
+from studies import on_one_mesh
 from tool_problems import BETWEEN, FREE, FREE_CASES, HELD, HELD_CASES, made, not_met
 
 import bemcontact
@@ -389,3 +390,17 @@ def test_check_shows_the_factors_of_the_acting_case():
     assert "temperature change 20 … 50 (-0.5 heat)" in told
     assert "punch, the surface of punch: loaded by y = -61, moment = 0.2" in told
     assert "table, the surface of table: displaced by y = 0.004, rotation = 0.00065" in told
+
+
+def test_the_words_of_the_tables_of_a_comparison_are_explained_below_them():
+    """Each column whose name is no plain word."""
+    told = " ".join(printed(text.study_summary(on_one_mesh())).split())
+    for word in (
+        "objective:",
+        "difference:",
+        "unpolished:",
+        "Hessian, and reduced to",
+        "convex in equilibrium:",
+        "μ is",
+    ):
+        assert word in told

@@ -1,10 +1,25 @@
 """Verdicts on the equations and on the mesh: what is written never states more than what is known."""
 
+import pytest
 from accuracies import accuracy, bar
+from markupsafe import escape
+from studies import block
 
+import bemcontact
+from bemcontact.analysis.compare import study
 from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.options import ComparisonOptions
 from bemcontact.report.bars import mesh_in_short
-from bemcontact.report.verdicts import in_short, mesh_verdict, overall
+from bemcontact.report.page import render
+from bemcontact.report.verdicts import (
+    in_short,
+    mesh_verdict,
+    overall,
+    path_verdicts,
+    result_verdicts,
+    shortfall,
+    study_verdicts,
+)
 
 
 def test_mesh_that_meets_the_accuracy():
@@ -41,3 +56,35 @@ def test_an_answer_is_good_only_if_both_verdicts_are():
     qualities = [overall(pair) for pair in ((good, good), (good, fair), (fair, fair), (bad, good), (bad, fair))]
     assert qualities == ["good", "fair", "fair", "bad", "bad"]
     assert in_short((bad, fair)) == "equations: not solved; mesh: not met"
+
+
+def test_an_answer_outside_linear_theory_is_fair_and_said_in_the_same_words_everywhere():
+    """Terminal, page, picture, JSON, exit status and repr: the equations are solved, and the reason is the verdict."""
+    soft = bemcontact.solve(block(material={"young_modulus": 5.0, "poisson_ratio": 0.3}))
+    compared = study(ComparisonOptions.of("qp3"), soft.problem or soft.contact, (1,))
+    assert soft.penetration is not None
+    reason, word = soft.penetration.words, "outside linear theory"
+    page = render(compared.to_dict(), {}, None)
+    for verdicts in (result_verdicts(soft), study_verdicts(compared.to_dict())):
+        assert (verdicts[0].quality, verdicts[0].word, overall(verdicts)) == ("fair", word, "fair")
+        assert verdicts[0].words.startswith(reason)
+    assert (soft.holds, compared.holds, soft.to_dict()["certified"]) == (False, False, False)
+    assert soft.to_dict()["penetration"]["kind"] == compared.to_dict()["heading"] == word
+    assert shortfall(soft).startswith(f"Equations: {word}. {reason}")
+    assert word in repr(soft)
+    assert soft.words.startswith(reason)
+    assert 'class="verdict fair"' in page
+    assert str(escape(reason)) in page
+
+
+@pytest.mark.parametrize(("start", "to", "reached"), [(3.0, -2.0, (True, False)), (-2.0, 3.0, (False, True))])
+def test_of_an_end_that_a_path_does_not_reach_no_mesh_is_judged(start: float, to: float, reached: tuple[bool, bool]):
+    """Suction lifts the block: the path ends at zero, and nothing is said of the mesh beyond."""
+    path = bemcontact.follow(block(), "conditions.top.pressure", start=start, to=to)
+    equations, *meshes = path_verdicts(path)
+    assert equations.quality == "bad"
+    assert [mesh.word != "not reached" for mesh in meshes] == [*reached]
+    (beyond,) = (mesh for mesh in meshes if mesh.word == "not reached")
+    assert beyond.quality == "fair"
+    assert "The path ends at 0, where errors were not estimated" in beyond.words
+    assert "at most" not in beyond.words

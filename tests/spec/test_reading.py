@@ -195,7 +195,11 @@ BROKEN = {
         "center: [1, 0.5]", "center: [5, 0.5]", "21:7", "boundary.holes[0]", ("outside the outer loop",)
     ),
     "orientation wrong": Broken(
-        "angles: [360, 0]", "angles: [0, 360]", "21:7", "boundary.holes[0]", ("must run clockwise", "exchange")
+        "angles: [360, 0]",
+        "angles: [0, 360]",
+        "21:73",
+        "boundary.holes[0][0].angles",
+        ("must run clockwise", "exchange"),
     ),
     "zero elements": Broken(
         "{name: left, elements: 2}",
@@ -685,6 +689,13 @@ def test_missing_file_is_refused_with_the_name_of_a_similar_one(tmp_path):
         bemcontact.spec.load(tmp_path / "blok.yaml")
     with pytest.raises(SpecError, match="there is no directory"):
         bemcontact.spec.load(tmp_path / "nowhere" / "block.yaml")
+
+
+def test_a_text_where_a_file_is_needed_and_the_reverse_name_the_other_function():
+    with pytest.raises(SpecError, match=r"load needs the path of a file; found a text .*; bemcontact\.loads reads"):
+        bemcontact.spec.load("name: block\nunits: {length: mm}\n" * 100)
+    with pytest.raises(SpecError, match=r"found the text 'block\.yaml'; bemcontact\.load reads a file"):
+        bemcontact.spec.loads("block.yaml")
 
 
 def test_directory_is_refused(tmp_path):

@@ -23,6 +23,7 @@ from bemcontact.report.figures.page import (
     Piece,
     ceiling,
     cut_off,
+    distance_label,
     labelled,
     legend_below,
     pieces_of,
@@ -188,7 +189,7 @@ class _Along:
 
     def finish(self, axes: Axes) -> None:
         """Name the axis, and the pieces if there are several."""
-        axes.set_xlabel(labelled("distance along the contact zone", units_of(self.contact).length))
+        axes.set_xlabel(distance_label(self.contact, self.pieces))
         if len(self.pieces) > 1:
             self._name_pieces(axes)
         legend_below(axes)

@@ -23,6 +23,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import escaped_lines
 from bemcontact.files import output
 from bemcontact.options import FormulationName
+from bemcontact.report.formatting import number, units_of, with_unit
 
 FORMATS = (".png", ".svg", ".pdf")
 """Endings of the files that can be written."""
@@ -151,6 +152,8 @@ def cut_off(axes: Axes, top: float, zones: Sequence[str]) -> None:
     axes.set_title(f"infinite in {where}: cut off", loc="right", pad=16, fontsize=8.5, color=BLACK)
 
 
+SEAM = 1e-9
+"""Round-off of a perimeter, relative to it."""
 PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 
 
@@ -196,6 +199,18 @@ def pieces_of(contact: CondensedContact, touching: BoolArray) -> Iterator[Piece]
             label += f" ({contact.points[index[0], 0]:.3g}, {contact.points[index[0], 1]:.3g}) on"
         index, arc = _once_round(contact, index, touching[index])
         yield Piece(label=label, order=order, index=index, arc=arc, run=run)
+
+
+def distance_label(contact: CondensedContact, pieces: Sequence[Piece]) -> str:
+    """Label of the axis along some pieces; it explains distances beyond the length of one that closes on itself."""
+    unit = units_of(contact).length
+    rounds = (float(contact.run_length[piece.run]) for piece in pieces)
+    beyond = [length for piece, length in zip(pieces, rounds, strict=True) if piece.arc[-1] > length * (1 + SEAM)]
+    label = labelled("distance along the contact zone", unit)
+    if not beyond:
+        return label
+    around = plain(with_unit(number(beyond[0]), unit))
+    return f"{label}\nfrom {around} on it goes round again"
 
 
 def _once_round(contact: CondensedContact, index: IntArray, touching: BoolArray) -> tuple[IntArray, Array]:

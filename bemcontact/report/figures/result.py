@@ -22,6 +22,7 @@ from bemcontact.report.figures.page import (
     Piece,
     ceiling,
     cut_off,
+    distance_label,
     labelled,
     new_page,
     pieces_of,
@@ -157,7 +158,7 @@ def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> 
     intervals = [*_intervals(result, pieces)]
     for name, ends in intervals:
         axes.hlines(0, *ends, color=colours[name], linewidth=3 + 3 * list(colours)[::-1].index(name), zorder=2)
-    axes.set_xlabel(labelled("distance along the contact zone", units_of(result.contact).length))
+    axes.set_xlabel(distance_label(contact, pieces))
     axes.spines[["top", "right"]].set_visible(False)
     axes.xaxis.set_major_locator(round_ticks(7))
     _zoom(axes, pieces, [ends for _, ends in intervals], values)
@@ -236,7 +237,7 @@ def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
     if len(labels) > 1:
         axes.set_title("; ".join(labels), loc="left", fontsize=9, color=GREY)
     axes.axhline(0, color=GREY, linewidth=0.8)
-    axes.set_xlabel(labelled("distance along the contact zone", units_of(first.contact).length))
+    axes.set_xlabel(distance_label(first.contact, pieces))
     axes.set_ylabel(labelled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
     axes.legend(frameon=False, fontsize=8.5)
     if cases.infinite:

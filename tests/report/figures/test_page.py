@@ -8,6 +8,7 @@ import matplotlib.colors
 import matplotlib.image
 import numpy as np
 import pytest
+from contact_meshes import ring
 from drawings import beam_over_a_circle, block_in_a_corner
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -16,12 +17,13 @@ from studies import (
     on_one_mesh,
 )
 
+import bemcontact
 from bemcontact.analysis import solve as analysis
 from bemcontact.bem import mesh
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Problem
 from bemcontact.report import figures
-from bemcontact.report.figures.page import pieces_of
+from bemcontact.report.figures.page import distance_label, pieces_of
 
 
 @settings(deadline=None)
@@ -123,3 +125,11 @@ def test_a_picture_has_no_background_and_paths_are_rounded():
     assert "fill: none" in patch
     assert not re.search(r' d="[^"]*\d\.\d{3}', text)
     assert "screen and (prefers-color-scheme: dark)" in text
+
+
+@pytest.mark.parametrize(("seam", "beyond"), [(0.0, False), (90.0, True)])
+def test_distances_beyond_once_round_are_explained(seam: float, beyond: bool):
+    """Contact across the seam of a closed zone is drawn in one piece; 20 π is the length of the bore."""
+    result = bemcontact.solve(ring(seam))
+    label = distance_label(result.contact, [*pieces_of(result.contact, result.touching)])
+    assert ("from 62.832 on it goes round again" in label) is beyond

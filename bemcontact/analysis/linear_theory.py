@@ -1,0 +1,185 @@
+"""Whether displacements are as small as linear theory supposes: strains under contact, and the whole boundary.
+
+Error bars compare meshes, and the certificate is of the linear equations. Neither sees an error of the theory.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bemcontact.analysis.diagnostics import points_in
+from bemcontact.arrays import Array
+from bemcontact.assessment.footprint import Footprint
+from bemcontact.assessment.penetration import Misfit, Penetration
+from bemcontact.bem.body import Body
+from bemcontact.bem.mesh import BoundaryState
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
+from bemcontact.problem.problem import Problem
+
+LARGE = 0.25
+"""Change of the displacement over the length along which it changes, and pressure over Young's modulus, not small.
+
+Linear theory leaves out half the square of this change, here 3 % of the length and an eighth of a strain; a cantilever
+whose end has this slope deflects 3 % less than linear theory says (Bisshopp and Drucker 1945)."""
+LARGE_ROTATION = 0.5
+"""Rotation in radians from which linear theory means little: it leaves out an eighth of lengths, and the cantilever
+deflects 10 % less. The surface beside a line contact turns by more than the strain in it, so that it needs more."""
+LARGE_STRAIN = 1 / 3
+"""Strain at the peak pressure that is not small: in a line contact, where the peak is a quarter of Young's modulus."""
+NOTICED = 0.2
+"""Part of these strains from which linear theory is noticeably off: by about as much as the strain."""
+LARGE_TURN = 0.1
+"""Rotation of the whole body in radians from which it is named as the cause."""
+LARGE_PART = 0.05
+"""Share of a contact, or of the boundary, on which strains may be large: singular corners and tips of slits."""
+
+
+class Noticed(NamedTuple):
+    """A note on displacements that are noticeable, with their size, a number, and what it is of."""
+
+    of: str
+    size: float
+    words: str
+
+
+class Judgment(NamedTuple):
+    """Where linear theory does not hold, or notes on where it is noticeably off."""
+
+    beyond: Penetration | None = None
+    noticed: tuple[Noticed, ...] = ()
+
+
+def linear_theory(
+    body: Body, contact: CondensedContact, solution: ContactSolution, where: Footprint, boundary: BoundaryState
+) -> Judgment:
+    """Judge strains under contact, and displacements of the whole boundary."""
+    strain, part = contact_strains(body, boundary, solution.pressure)
+    turns = any("rotation" in name for name in contact.motion_names)
+    moved = large_displacements(boundary, turns, _modulus(body.problem))
+    beyond = _strained(body, contact, solution, where, strain, part) or moved.beyond
+    if beyond is not None:
+        return Judgment(beyond)
+    i = int(np.argmax(solution.pressure))
+    if where.peak is None or part[i] <= NOTICED:
+        return moved
+    times = where.peak.pressure / body.problem.material.young_modulus
+    words = (
+        f"the peak pressure is {times:.2g} times Young's modulus, and strains there are about {strain[i]:.2g}: linear "
+        f"theory is off by about {100 * strain[i]:.2g} % there; error bars do not include this"
+    )
+    return Judgment(noticed=(Noticed("strain", float(strain[i]), words), *moved.noticed))
+
+
+def contact_strains(body: Body, boundary: BoundaryState, pressure: Array) -> tuple[Array, Array]:
+    """Strains (n,) at contact points, and what part (n,) they are of large ones.
+
+    The strain along the normal follows from the pressure and from the strain along the boundary. Shear below the
+    surface is measured by the difference of the pressure from the least on the boundary, if that is none of tension: a
+    pressure that acts all round shears nothing, however large it is.
+    """
+    material, mesh = body.problem.material, body.mesh
+    E, nu = material.young_modulus, material.poisson_ratio
+    along, change = (values[:, 2] - values[:, 0] for values in (boundary.points, boundary.displacement))
+    length = np.hypot(*along.T)
+    of_node, elements = np.zeros((2, len(mesh.nodes)))
+    np.add.at(of_node, mesh.elements, ((along * change).sum(axis=1) / length**2)[:, None])
+    np.add.at(elements, mesh.elements, 1.0)
+    tangential = (of_node / np.maximum(elements, 1.0))[body.points.node]
+    if material.state == "plane_strain":
+        normal = -(pressure * (1 + nu) * (1 - 2 * nu) / E + nu * tangential) / (1 - nu)
+    else:
+        normal = -(pressure * (1 - nu**2) / E + nu * tangential)
+    outward = along[:, ::-1] * (1, -1) / length[:, None]
+    least = float(-(boundary.traction.mean(axis=1) * outward).sum(axis=1).max())
+    sheared = (pressure - max(least, 0.0)) / E
+    return np.maximum(abs(normal), sheared), np.maximum(sheared / LARGE, abs(normal) / LARGE_STRAIN)
+
+
+def _strained(
+    body: Body, contact: CondensedContact, solution: ContactSolution, where: Footprint, strain: Array, part: Array
+) -> Penetration | None:
+    """Find the contact with the largest strains of those that are large on more than a small part of it."""
+    pressed = contact.pressed(solution.pressure, solution.displacement)
+    found, E = list[tuple[float, int, float]](), body.problem.material.young_modulus
+    for interval in where.intervals:
+        own = pressed & points_in(contact, interval)
+        share = contact.weights[own & (part > 1)].sum() / max(contact.weights[own].sum(), np.finfo(float).tiny)
+        if share > LARGE_PART:
+            i = int(np.argmax(np.where(own, part, 0.0)))
+            found.append((part[i], i, share))
+    if not found:
+        return None
+    _, i, share = max(found)
+    (x, y), zone = contact.points[i].tolist(), contact.zone_names[contact.zone[i]]
+    element = body.points.element[np.flatnonzero(body.points.point == i)[0]]
+    return Penetration(
+        kind=Misfit.NOT_SMALL, depth=float(strain[i]), allowed=LARGE, at=(x, y),
+        edge=body.mesh.edge_names[body.mesh.edge[element]], zone=zone, paired=True,
+        words=(
+            f"Strains are not small on {100 * share:.0f} % of contact in '{zone}', up to about {strain[i]:.2g} at "
+            f"({x:.5g}, {y:.5g}), where the pressure is {solution.pressure[i] / E:.2g} times Young's modulus: linear "
+            f"theory does not hold. {_numbers(_modulus(body.problem))}"
+        ),
+    )  # fmt: skip
+
+
+def large_displacements(boundary: BoundaryState, turns: bool, modulus: str) -> Judgment:
+    """Find strains, slopes or rotations that are not small on a part of the boundary; translations do not count.
+
+    `turns` is whether contact alone holds the body against rotation.
+    """
+    along, change = (values[:, 2] - values[:, 0] for values in (boundary.points, boundary.displacement))
+    length = np.hypot(*along.T)
+    gradient = np.hypot(*change.T) / length
+    stretch = abs(np.sum(along * change, axis=1)) / length**2
+    turn = abs(along[:, 0] * change[:, 1] - along[:, 1] * change[:, 0]) / length**2
+    not_small, beyond = gradient > LARGE, np.maximum(stretch / LARGE, turn / LARGE_ROTATION) > 1
+    part, withheld = (length[where].sum() / length.sum() for where in (not_small, beyond))
+    if part <= LARGE_PART:
+        return Judgment()
+    i, largest = int(np.argmax(gradient)), float(gradient.max())
+    fact = (
+        f"isplacements are not small: on {100 * part:.0f} % of the boundary they change by more than {LARGE:g} of the "
+        f"length along it, by strain or rotation, and up to {largest:.2g}"
+    )
+    cause = _cause(boundary, turns, modulus)
+    if withheld <= LARGE_PART:
+        off = f"linear theory is off by half the square of this, up to {50 * largest**2:.2g} % of lengths there"
+        return Judgment(noticed=(Noticed("displacement", largest, f"d{fact}: {off}. {cause.removesuffix('.')}"),))
+    x, y = boundary.points[i, 1].tolist()
+    return Judgment(
+        Penetration(
+            kind=Misfit.NOT_SMALL, depth=largest, allowed=LARGE, at=(x, y), zone="", paired=False,
+            edge=boundary.edge_names[boundary.edge[i]], words=f"D{fact}. Linear theory does not hold. {cause}",
+        )
+    )  # fmt: skip
+
+
+def _cause(boundary: BoundaryState, turns: bool, modulus: str) -> str:
+    """What to do about large displacements: hold a body that turns as a whole, else check the numbers."""
+    x, u = (
+        values.reshape(-1, 2) - values.reshape(-1, 2).mean(axis=0)
+        for values in (boundary.points, boundary.displacement)
+    )
+    turn = float(np.sum(x[:, 0] * u[:, 1] - x[:, 1] * u[:, 0]) / np.sum(x**2))
+    if not turns or abs(turn) <= LARGE_TURN:
+        return _numbers(modulus)
+    return (
+        f"The body turns by {turn:.2g} rad ({np.degrees(turn):.0f} degrees): hold it against rotation by a condition "
+        "or by another contact zone, or draw it as it is after most of this rotation."
+    )
+
+
+def _modulus(problem: Problem) -> str:
+    """Young's modulus with its unit."""
+    return f"{problem.material.young_modulus:.4g} {problem.units.stress}".strip()
+
+
+def _numbers(modulus: str) -> str:
+    """Ask for a check of the numbers of the problem."""
+    return (
+        f"Units may be mixed: check loads, lengths and Young's modulus, which is {modulus}; in mm and N it is in "
+        "N/mm², 210e3 for steel, and in m and N it is in N/m², 210e9. If all are right, such a body needs a program "
+        "for large strains."
+    )
