@@ -250,8 +250,9 @@ def first_order(progress: Progress, working: BoolArray, multipliers: Array, zero
     values = statement.values(progress.x)
     slack = 2.0 * progress.slack
     feasible = np.count_nonzero(statement.violation(values) <= slack) == slack.size
-    stationary = largest(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero
     size = np.abs(multipliers)
+    rounding = 4.0 * EPS * (size[:n] + size[n:].dot(statement.absolute[2]))
+    stationary = np.abs(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero + rounding
     sides = statement.sides_reached(values, slack)
     held = sides != 0
     wrong = np.where(held, sides * multipliers, size)
@@ -262,7 +263,7 @@ def first_order(progress: Progress, working: BoolArray, multipliers: Array, zero
     tolerated = 2.0 * zeros
     tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
     return FirstOrder(
-        holds=feasible and stationary and np.count_nonzero(wrong <= tolerated) == zeros.size,
+        holds=feasible and np.count_nonzero(stationary) == n and np.count_nonzero(wrong <= tolerated) == zeros.size,
         strong=strong,
         weak=held & ~strong & active,
         sides=sides,
