@@ -342,7 +342,10 @@ def _of_ray(program: IntegerProgram, x: Array, ray: Array, sides: NDArray[np.int
     terms = float((np.abs(H) @ np.abs(x) + np.abs(program.c)) @ np.abs(d))
     if abs(curvature) <= CLOSE * product and gradient @ d < -CLEAR * terms:
         return Verdict.RIGHT
-    return Verdict.WEAK_RAY if _falls_from_somewhere(program, exact) else _unbounded_at_all(program)
+    least = _least_slope(program, exact)
+    if -CLEAR <= least < -CLOSE:
+        return Verdict.UNSETTLED
+    return Verdict.WEAK_RAY if least < 0.0 else _unbounded_at_all(program)
 
 
 def _falls_without_end(program: IntegerProgram, point: Row | None, d: Row) -> bool:
@@ -357,20 +360,20 @@ def _falls_without_end(program: IntegerProgram, point: Row | None, d: Row) -> bo
     return point is not None and slope + _product(bent, point) < 0
 
 
-def _falls_from_somewhere(program: IntegerProgram, d: Row) -> bool:
-    """Whether the objective falls without end along the direction from some feasible point, by linear programming."""
+def _least_slope(program: IntegerProgram, d: Row) -> float:
+    """Least slope along a straight recession direction from any feasible point, by linear programming; else 0."""
     n, along = program.c.size, [_product(row, d) for row in _exact(program.normals)]
     bent = [_product(row, d) for row in _exact(program.H)]
     stays = all(v >= 0 or low == -np.inf for v, low in zip(along, program.lower, strict=True))
     stays = stays and all(v <= 0 or high == np.inf for v, high in zip(along, program.upper, strict=True))
     if not stays or _product(bent, d) != 0:
-        return False
+        return 0.0
     high, low = np.isfinite(program.upper[n:]), np.isfinite(program.lower[n:])
     A, b = np.vstack([program.A[high], -program.A[low]]), np.r_[program.upper[n:][high], -program.lower[n:][low]]
     bounds = list(zip(program.lower[:n], program.upper[:n], strict=True))
     least = linprog([float(v) for v in bent], A if len(A) else None, b if len(A) else None, bounds=bounds)
     slope = float(_product(_exact(program.c[None])[0], d))
-    return least.status == 3 or (least.status == 0 and least.fun + slope < -CLEAR)
+    return {0: (least.fun or 0.0) + slope, 3: -np.inf}.get(least.status, 0.0)
 
 
 def _feasible_point(program: IntegerProgram, x: Array, d: Row, sides: NDArray[np.int8]) -> Row | None:

@@ -14,7 +14,7 @@ from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, examine, first_order
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
-from bemcontact.formulations.local_solver.progress import PARALLEL, Progress
+from bemcontact.formulations.local_solver.progress import FINER, PARALLEL, Progress
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 from bemcontact.formulations.local_solver.statement import (
     EPS,
@@ -28,8 +28,6 @@ from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest
 
 FAILURES = 6
 """Largest number of restarts with new factors after a claim failed its check."""
-FINER = 1e-2
-"""Factor of the tolerance of phase one after each failure."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +85,10 @@ def run_phases(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
         end = _second_phase(progress, descent)
         if isinstance(end, Finding):
             return end, start
-        sides, failures = end.sides, failures + end.failed
+        sides = end.sides
+        if end.failed:
+            failures += 1
+            progress.tighten()
         if progress.exhausted:
             break
     status = QPStatus.ITERATION_LIMIT if progress.exhausted else QPStatus.NUMERICAL_FAILURE

@@ -191,7 +191,7 @@ def _search_faces(reduced: Array, weak: Array, lost: float, faces: int) -> tuple
 
 WEAK = 10.0
 """A multiplier is strong if it exceeds its zero by this factor."""
-DOUBT = 0.03
+DOUBT = 0.003
 """A multiplier of the wrong sign is more than likely rounding if it exceeds its zero by this factor."""
 
 
@@ -249,7 +249,7 @@ def first_order(progress: Progress, working: BoolArray, multipliers: Array, zero
     statement, n = progress.statement, progress.x.size
     values = statement.values(progress.x)
     slack = 2.0 * progress.slack
-    feasible = np.count_nonzero(statement.violation(values) <= slack) == slack.size
+    feasible = np.count_nonzero(statement.violation(values) <= progress.allowed) == slack.size
     size = np.abs(multipliers)
     rounding = 4.0 * EPS * (size[:n] + size[n:].dot(statement.absolute[2]))
     stationary = np.abs(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero + rounding
