@@ -191,8 +191,11 @@ def _search_faces(reduced: Array, weak: Array, lost: float, faces: int) -> tuple
 
 WEAK = 10.0
 """A multiplier is strong if it exceeds its zero by this factor."""
-DOUBT = 0.003
-"""A multiplier of the wrong sign is more than likely rounding if it exceeds its zero by this factor."""
+DOUBT, DOUBT_OF_ROUGH = 0.03, 0.003
+"""A multiplier of the wrong sign is more than likely rounding if it exceeds its zero by this factor.
+
+The second is for multipliers with a zero above that of the gradient, as nearly dependent rows have.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -268,7 +271,7 @@ def first_order(progress: Progress, working: BoolArray, multipliers: Array, zero
         weak=held & ~strong & active,
         sides=sides,
         size=size,
-        doubtful=bool((wrong > DOUBT * zeros).any()),
+        doubtful=bool((wrong > np.where(zeros > progress.zero, DOUBT_OF_ROUGH, DOUBT) * zeros).any()),
     )
 
 
@@ -333,7 +336,7 @@ def _noise(statement: Statement, y: Array) -> Array:
     """Bound of the rounding in each component of [I; A]ᵀy, from its terms and the entries of its column (n,)."""
     n, A = statement.c.size, statement.absolute[2]
     size = np.abs(y)
-    of_terms = 1e-11 * max(10, n) * (size[:n] + size[n:] @ A)
+    of_terms = 1e-13 * max(10, n) * (size[:n] + size[n:] @ A)
     return np.maximum(of_terms, 4.0 * EPS * A.max(axis=0, initial=0.0) * float(size[n:].sum()))
 
 

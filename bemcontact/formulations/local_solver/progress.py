@@ -18,8 +18,8 @@ NEAR = 2e-3
 PARALLEL = 1e-10
 """A unit direction whose product with a normal is below this does not meet the constraint, except on a long step."""
 
-OWN_TERMS = 1e-7
-"""Largest violation of a constraint at a claim, relative to its own bound and terms, which may be far below one."""
+OWN, OF_TERMS = 1e-7, 1e-3
+"""Largest violation of a constraint at a claim, relative to its own bound or to a part of its terms."""
 
 FINER = 1e-2
 """Factor of tolerances of phase one and of constraints after each claim that failed."""
@@ -107,8 +107,9 @@ class Progress:
     def allowed(self) -> Array:
         """Violation of each constraint that a claim may leave (n + m,): a small part of its own terms too."""
         size = np.abs(self.x)
-        terms = np.concatenate([size, self.statement.absolute[2].dot(size)]) + self.statement.bound_size
-        return np.minimum(2.0 * self.slack, np.maximum(OWN_TERMS * terms, self.sharp))
+        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
+        own = OWN * np.maximum(self.statement.bound_size, OF_TERMS * terms)
+        return np.minimum(2.0 * self.slack, np.maximum(own, self.sharp))
 
     def tighten(self) -> None:
         """Reduce the tolerance of the constraints, after a claim failed."""
