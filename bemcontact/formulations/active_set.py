@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, powers_of_two
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
@@ -56,8 +56,7 @@ class ContactBlock:
     @cached_property
     def _units(self) -> Array:
         """Powers of two near the sizes of the columns (|A| + k,): small tributary weights make no matrix singular."""
-        sizes = np.abs(self.matrix).max(axis=0)
-        return np.exp2(np.rint(np.log2(np.where(sizes > 0, sizes, 1.0))))
+        return powers_of_two(np.abs(self.matrix).max(axis=0))
 
     @cached_property
     def _lu(self) -> LU:

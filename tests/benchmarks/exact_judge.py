@@ -115,7 +115,7 @@ def _multipliers(gradient: Array, equal: Array, inwards: Array) -> tuple[Array, 
 
 
 def _null_space(rows: Array) -> Array:
-    """Orthonormal columns; singular values below 1e-9 are none, unless they are more than rounding: then by fractions."""
+    """Orthonormal columns; a singular value below 1e-9 is none, or is decided by fractions if it is no rounding."""
     if len(rows) == 0:
         return np.eye(rows.shape[1])
     _, sizes, V = np.linalg.svd(rows)
@@ -193,7 +193,9 @@ def _exact_point(program: IntegerProgram, x: Array) -> Row | None:
 def _stationary(program: IntegerProgram, guess: Row, held: list[tuple[int, float]]) -> tuple[Row, Row] | None:
     """Multipliers and a point where the constraints are at these bounds and the gradient is that of the multipliers."""
     numbers, G, k = [number for number, _ in held], program.normals, len(held)
-    rows = [[*[Fraction(0)] * k, *row, Fraction(float(b))] for row, (_, b) in zip(_exact(G[numbers]), held, strict=True)]
+    rows = [
+        [*[Fraction(0)] * k, *row, Fraction(float(b))] for row, (_, b) in zip(_exact(G[numbers]), held, strict=True)
+    ]
     for i, row in enumerate(_exact(program.H)):
         of_rows = [-Fraction(float(G[number, i])) for number in numbers]
         rows.append([*of_rows, *row, -Fraction(float(program.c[i]))])

@@ -1,6 +1,5 @@
 """Dense factorizations of the local solver, called directly from LAPACK and BLAS."""
 
-from math import fsum
 from typing import Any
 
 import numpy as np
@@ -49,22 +48,6 @@ def row_lengths(rows: Array) -> Array:
     length = np.sqrt(np.einsum("ij,ij->i", rows, rows))
     length[length == 0.0] = 1.0
     return length
-
-
-def exact_remainders(right: Array, rows: Array, x: Array) -> Array:
-    """The components of right - rows x without rounding but the last, by Dekker's products of halves of numbers."""
-    products = rows * x
-    (upper, lower), (high, low) = _halves(rows), _halves(x)
-    lost = lower * low - (((products - upper * high) - lower * high) - upper * low)
-    terms = np.column_stack([right, -products, -lost])
-    return np.array([fsum(row) for row in terms.tolist()]) if np.isfinite(terms).all() else right - rows.dot(x)
-
-
-def _halves(numbers: Array) -> tuple[Array, Array]:
-    """Each number as the sum of two of half as many digits."""
-    shifted = 134217729.0 * numbers  # 2**27 + 1
-    upper = shifted - (shifted - numbers)
-    return upper, numbers - upper
 
 
 def unit_rows(rows: Array) -> tuple[Array, Array]:

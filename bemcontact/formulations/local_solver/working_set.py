@@ -17,10 +17,9 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, exact_remainders
 from bemcontact.formulations.local_solver.factorizations import (
     add_rank_one,
-    exact_remainders,
     independent_rows,
     inverse_triangle,
     orthogonal,
