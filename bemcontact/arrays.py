@@ -1,8 +1,9 @@
-"""Types of arrays, the reading of arrays that users give, and read-only arrays in frozen dataclasses."""
+"""Types of arrays, the reading of arrays that users give, read-only arrays, and remainders without rounding."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from decimal import Decimal
+from math import fsum
 from numbers import Real
 from typing import Any
 
@@ -16,6 +17,9 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 ComplexArray = NDArray[np.complex128]
+
+BLOCK = 256
+"""Rows of which products are held at a time."""
 
 Shape = tuple[int | None, ...]
 """Shape of an array that is needed; None is any length."""
@@ -130,3 +134,29 @@ def _described(value: Any, array: NDArray[Any]) -> str:
     """What was found instead of numbers."""
     kinds = {"b": "truth values", "c": "complex numbers", "U": "texts", "S": "bytes", "f": "numbers with fractions"}
     return f"{kinds.get(array.dtype.kind, 'other objects')} ({shown(value)})"
+
+
+def exact_remainders(right: Array, rows: Array, x: Array) -> Array:
+    """The components of right - rows x, each rounded once: Dekker's products of halves of numbers, and exact sums."""
+    remainders = right - rows @ x
+    high, low = _halves(x)
+    for first in range(0, len(rows), BLOCK):
+        part = slice(first, first + BLOCK)
+        products, (upper, lower) = rows[part] * x, _halves(rows[part])
+        lost = lower * low - (((products - upper * high) - lower * high) - upper * low)
+        terms = np.column_stack([right[part], -products, -lost])
+        if np.isfinite(terms).all():
+            remainders[part] = [fsum(row) for row in terms.tolist()]
+    return remainders
+
+
+def _halves(numbers: Array) -> tuple[Array, Array]:
+    """Each number as the sum of two of half as many digits."""
+    shifted = (2.0**27 + 1.0) * numbers
+    upper = shifted - (shifted - numbers)
+    return upper, numbers - upper
+
+
+def powers_of_two(sizes: Array) -> Array:
+    """The power of two near each size, by which numbers are divided without rounding; 1 for zero."""
+    return np.exp2(np.rint(np.log2(np.where(sizes > 0, sizes, 1.0))))

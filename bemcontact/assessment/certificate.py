@@ -20,7 +20,9 @@ its contact set and brought into equilibrium by the smallest change. What round-
 that over the least lever of the points that carry, and is added. Where these lack one direction, the amplitudes a may
 be changed in it until the first gap beside closes: this point carries the round-off, and no work is done. Where they
 lack more, others must carry by pressures z >= 0 that linear programs bound: then yᵀ(Dδ - s) = zᵀDδ, and
-|S⁻¹e| <= |Ss|/λ + √(zᵀDδ/λ).
+|S⁻¹e| <= |Ss|/λ + √(zᵀDδ/λ). Where the round-off of ordinary sums leaves the answer open, δ and ℓᵀy are added again
+without rounding, and the energy bounds the change: with x² = eᵀKe, K = sym(DM) and s known but for round-off r,
+x <= √(sᵀK⁻¹s) + |r|ᵀg and |eᵢ| <= gᵢx, gᵢ² = (K⁻¹)ᵢᵢ on the space. In soft directions K⁻¹ is small.
 
 This sharpens Pang's bound for strongly monotone problems, (1 + ‖DM‖)/λ·|min(p, Dδ)| (Math. Oper. Res. 12(3), 1987,
 474-484), which does not carry over to bodies with free motions: a small pressure on a body lifted off its support has a
@@ -30,16 +32,14 @@ Where λ is not positive, `uniqueness` may still exclude all states outside of a
 more than one.
 """
 
-import math
 from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import linprog
 
 from bemcontact.arrays import Array
 from bemcontact.assessment.definiteness import EPS, Definiteness
+from bemcontact.assessment.equations import TIE, Equations, balanced, round_off_of_equilibrium
 from bemcontact.assessment.residual import Residuals
 from bemcontact.assessment.uniqueness import NearState, effective_eigenvalue, near_bound
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -55,11 +55,6 @@ POSITION_OPEN = (
     " This is proved of the pressures, which are zero; nothing determines the position of what is free: "
     "the one given is one of many."
 )
-NEWTON_STEPS = 20
-TIE = 1e-6
-"""Relative difference of gaps that round-off may decide."""
-SAFE = 2.0
-"""Factor of what linear programs say of pressures: more than they can be off."""
 LOCAL = (FormulationName.QP1, FormulationName.QP2)
 """Formulations whose solver starts somewhere and may end in a local minimum."""
 DIRECT = "--formulation complementarity"
@@ -124,14 +119,18 @@ def certify(
     The tolerance is on penetration, tension, complementarity, equilibrium (12) and balance. Where the peak pressure is
     above T, gaps are judged relative to the displacement that goes with it, and never below their round-off.
     """
-    stiff = Definiteness.of(*_scaled_compliance(contact), contact.equilibrium)
+    equations = Equations.of(contact)
+    stiff = Definiteness.of(equations.weights, equations.compliance, contact.equilibrium)
     eigenvalue, definite = stiff.eigenvalue, stiff.definite
-    bound = _error_bound(contact, solution, stiff)
-    unique = definite or bound is not None
     peak = contact.peak(solution.pressure)
     violation = _violation(residuals, tolerance, max(1.0, peak / contact.scales.pressure))
+    bound = _bound_by(equations, contact, solution, stiff)
+    enough = LARGEST_BOUND * (peak or contact.scales.pressure)
+    if not violation and (definite if bound is None else bound > enough):
+        bound = _sharper(bound, contact, solution)
+    unique = definite or bound is not None
     kind = CertificateKind.UNIQUE if unique else CertificateKind.LOCAL
-    if unique and (bound is None or bound > LARGEST_BOUND * (peak or contact.scales.pressure)):
+    if unique and (bound is None or bound > enough):
         kind = CertificateKind.OPEN
     kind = CertificateKind.NOT_A_SOLUTION if violation else kind
     relative = bound / peak if bound is not None and peak > 0 else None
@@ -150,36 +149,38 @@ def certify(
     )
 
 
-def _scaled_compliance(contact: CondensedContact) -> tuple[Array, Array]:
-    """D = J/max J (n,) and M T/U (n, n)."""
-    U, T = contact.scales
-    return contact.weights / contact.weights.max(), contact.compliance * (T / U)
+def _sharper(bound: float | None, contact: CondensedContact, solution: ContactSolution) -> float | None:
+    """The bound that follows from sums without rounding, if it is less."""
+    equations = Equations.of(contact, exact=True)
+    stiff = Definiteness.of(equations.weights, equations.compliance, contact.equilibrium)
+    better = _bound_by(equations, contact, solution, stiff)
+    return min((found for found in (bound, better) if found is not None), default=None)
 
 
-def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: Definiteness) -> float | None:
+def _bound_by(
+    equations: Equations, contact: CondensedContact, solution: ContactSolution, stiff: Definiteness
+) -> float | None:
     """|p - y| + max Sᵢ |Ss|/λ, as in the module's docstring, in units of pressure; s includes the round-off of δ.
 
     If the compliance is not definite, λ is that of `uniqueness`; None if there is none.
     """
-    U, T = contact.scales
-    D, M = _scaled_compliance(contact)
+    U, T = equations.units
+    D, M = equations.weights, equations.compliance
     p = solution.pressure / T
     gap = (contact.initial_gap + solution.displacement) / U
-    y = _balanced(contact, p, p > gap)
+    y = balanced(equations, p, p > gap)
     if y is None:
         return None
-    q, R = contact.offset / U, contact.rigid_motions
-    a = contact.amplitudes_of(gap - q - M @ y)
-    delta = q + M @ y + R @ a
-    s = D * np.where(y > 0, delta, np.minimum(delta, 0.0))
-    round_off = len(D) * EPS * D * (np.abs(q) + np.abs(M) @ y + np.abs(R) @ np.abs(a))
-    imbalance, beside, tilted = _round_off_of_equilibrium(contact, y, np.maximum(D * delta, 0.0), round_off)
+    a = contact.amplitudes_of(gap - equations.offset - M @ y)
+    delta, round_off = equations.gaps(y, a)
+    s, round_off = D * np.where(y > 0, delta, np.minimum(delta, 0.0)), D * round_off
+    imbalance, beside, tilted = round_off_of_equilibrium(equations, y, np.maximum(D * delta, 0.0), round_off)
     if imbalance == np.inf:
         return None
     off = float(np.linalg.norm(p - y)) + imbalance
     if stiff.eigenvalue is None:
         return off * T * (1 + 4 * EPS)
-    round_off += D * np.linalg.norm(M, axis=1) * imbalance
+    of_gaps, round_off = round_off, round_off + D * np.linalg.norm(M, axis=1) * imbalance
     work = np.where(y > 0, 0.0, np.maximum(D * delta - round_off, 0.0))
     lacking = beside.any() or tilted is not None
     least = D * delta if tilted is None else np.minimum(D * delta, (1 - TIE) * tilted - TIE * np.abs(D * delta))
@@ -187,9 +188,11 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: De
     residual = np.abs(s) + round_off
     beside_work = float(beside @ (np.maximum(D * delta, 0.0) + round_off))
     bound = stiff.largest_change(residual, beside_work) if stiff.definite else np.inf
+    if equations.exact and stiff.definite and not lacking:
+        bound = min(bound, _by_energy(equations, stiff, y, delta, of_gaps, imbalance))
     if bound <= LARGEST_BOUND * y.max() or lacking:
         return (off + bound) * T * (1 + 4 * EPS) if bound < np.inf else None
-    ell, spread = _unit_rows(contact)[0], 1.0
+    ell, spread = equations.equilibrium, 1.0
     if contact.free_motions:
         ell, spread = np.linalg.qr(ell)[0], float(np.linalg.cond(ell))
     state = NearState(
@@ -202,110 +205,19 @@ def _error_bound(contact: CondensedContact, solution: ContactSolution, stiff: De
     return (off + bound) * T * (1 + 4 * EPS) if bound < np.inf else None
 
 
-def _round_off_of_equilibrium(
-    contact: CondensedContact, y: Array, gaps: Array, round_off: Array
-) -> tuple[float, Array, Array | None]:
-    """How far y (n,) may be from exact balance: the least change of points that carry which takes ℓᵀy + load away.
+def _by_energy(
+    equations: Equations, stiff: Definiteness, y: Array, delta: Array, round_off: Array, imbalance: float
+) -> float:
+    """Bound of the change of a pressure in exact equilibrium, which is a known step from y, as the energy limits it.
 
-    Points side by side carry a moment by large pressures only. A point whose pressure is no more than that error may
-    not carry at all. Infinite if some load is carried by round-off only. With it the pressures (n,) of points without
-    pressure that this takes where those that carry lack directions; or, if they lack one, the gaps Dδ (n,) that are
-    left where the body tilts onto one such point, whichever the direction. `gaps` are Dδ (n,) with their round-off.
+    What round-off does in a soft direction, as by turning a body about a short edge, changes pressures little.
     """
-    least, change, beside, tilted = -1.0, 0.0, np.zeros(len(y)), None
-    if not contact.free_motions:
-        return change, beside, tilted
-    ell, load = _unit_rows(contact)
-    while change < np.inf and (least < 0 or ((y > least) & (y <= change)).any()):
-        least = change
-        carried = np.where(y > least, y, 0.0)
-        left = np.abs(_imbalance(ell, carried, load)) + 2 * EPS * (np.abs(ell).T @ carried + np.abs(load))
-        size, beside, tilted = _least_change(ell, y > least, left, gaps, round_off)
-        change = max(change, size + float(np.linalg.norm(y - carried)))
-    return change, np.where(y > 0, 0.0, beside), tilted
-
-
-def _imbalance(ell: Array, y: Array, load: Array) -> Array:
-    """ℓᵀy + load (k,): sums without rounding of products that are each rounded once."""
-    return np.array(
-        [math.fsum([*(column * y).tolist(), part]) for column, part in zip(ell.T, load.tolist(), strict=True)]
-    )
-
-
-def _least_change(
-    ell: Array, carries: NDArray[np.bool_], left: Array, gaps: Array, round_off: Array
-) -> tuple[float, Array, Array | None]:
-    """Bound of the least pressures that carry loads up to left (k,), infinity if none do; the rest as is returned.
-
-    Points that carry may lose pressure. Where their rows of ℓ (n, k) lack directions, others gain pressure.
-    """
-    lost, beside = len(ell) * EPS, np.zeros(len(ell))
-    if not left.any():
-        return 0.0, beside, None
-    _, sizes, axes = np.linalg.svd(ell[carries])
-    if (rank := int(np.count_nonzero(sizes > lost))) == ell.shape[1]:
-        return float(np.linalg.norm(np.linalg.pinv(ell[carries], rcond=0.0), axis=1) @ left), beside, None
-    if rank == ell.shape[1] - 1:
-        return _tilted(ell, carries, left, gaps, round_off, axes[-1])
-    columns, size = np.vstack([ell, -ell[carries]]).T, 0.0
-    for load, part in zip(np.eye(len(left))[left > 0], left[left > 0], strict=True):
-        ends = [linprog(np.ones(columns.shape[1]), A_eq=columns, b_eq=sign * load) for sign in (1.0, -1.0)]
-        if any(end.status != 0 for end in ends):
-            return np.inf, beside, None
-        size += float(max(end.fun for end in ends)) * part
-        beside += np.maximum(*(end.x[: len(ell)] for end in ends)) * part
-    return SAFE * size, SAFE * beside, None
-
-
-def _tilted(
-    ell: Array, carries: NDArray[np.bool_], left: Array, gaps: Array, round_off: Array, lacking: Array
-) -> tuple[float, Array, Array | None]:
-    """As `_least_change` where one direction (k,) is lacking: in it the body tilts onto the point that it meets first.
-
-    The points that carry do not see this motion, and no other gap becomes negative, so that no work is done.
-    """
-    lost, lever, size = len(ell) * EPS, ell @ lacking, 0.0
-    inverse = np.linalg.norm(np.linalg.pinv(ell[carries], rcond=lost), axis=1)
-    tilted = np.full(len(ell), np.inf)
-    if np.abs(lacking) @ left <= lost * np.linalg.norm(left):
-        return float(inverse @ left), np.zeros(len(ell)), None
-    for sign in (1.0, -1.0):
-        may = ~carries & (sign * lever > 2 * lost)
-        if not may.any():
-            return np.inf, np.zeros(len(ell)), None
-        rest = gaps - sign * lever * (gaps[may] / (sign * lever[may])).min()
-        met = may & (rest <= TIE * gaps + 2 * round_off)
-        pressure = float(np.abs(lacking) @ left / np.abs(lever[met]).min())
-        size = max(size, pressure + float(inverse @ (left + np.abs(ell[met]).max(axis=0) * pressure)))
-        tilted = np.minimum(tilted, np.where(carries, np.inf, rest))
-    return SAFE * size, np.zeros(len(ell)), tilted
-
-
-def _unit_rows(contact: CondensedContact) -> tuple[Array, Array]:
-    """ℓ (n, k) with columns of unit length, and the load (k,) over T to match."""
-    length = np.linalg.norm(contact.equilibrium, axis=0)
-    return contact.equilibrium / length, contact.motion_load / (length * contact.scales.pressure)
-
-
-def _balanced(contact: CondensedContact, p: Array, touching: NDArray[np.bool_]) -> Array | None:
-    """A scaled pressure near p in equilibrium: zero off the contact set, or without that if the set carries no load."""
-    ell, load = _unit_rows(contact)
-    y = _nearest_balanced(p, touching, ell, load)
-    return _nearest_balanced(p, np.ones_like(touching), ell, load) if y is None else y
-
-
-def _nearest_balanced(p: Array, contact_set: NDArray[np.bool_], ell: Array, load: Array) -> Array | None:
-    """The y >= 0 nearest to p with ℓᵀy = -load and y = 0 off the contact set: y = max(p + ℓ b, 0), Newton on b (k,)."""
-    b = np.zeros(len(load))
-    for _ in range(NEWTON_STEPS):
-        y = np.where(contact_set, np.maximum(p + ell @ b, 0.0), 0.0)
-        imbalance = ell.T @ y + load
-        touching = ell[y > 0]
-        if np.abs(imbalance).max(initial=0.0) <= 1e-14 * (1.0 + np.abs(p).sum()):
-            y[y > 0] -= np.linalg.lstsq(touching.T, _imbalance(ell, y, load), rcond=None)[0]
-            return np.maximum(y, 0.0)
-        b -= np.linalg.lstsq(touching.T @ touching, imbalance, rcond=None)[0]
-    return None
+    D, M = equations.weights, equations.compliance
+    step, left = equations.step_to_balance(y, imbalance)
+    moved = D * (delta + M @ step)
+    round_off = round_off + D * np.linalg.norm(M, axis=1) * left
+    lost = np.where((y > 0) | (moved < round_off), round_off, 0.0)
+    return stiff.change_by_energy(np.where(y > 0, moved, np.minimum(moved, 0.0)), lost)
 
 
 def _violation(residuals: Residuals, tolerance: float, size: float) -> str:

@@ -4,13 +4,16 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from scipy.linalg import eigvalsh
+from scipy.linalg import eigvalsh, solve_triangular
 
 from bemcontact.arrays import Array
 
 EPS = float(np.finfo(float).eps)
 LEAST_COMPLIANCE = 1e-10
 """Fraction of ‖M‖∞ below which the compliance of a point may be what round-off leaves of zero."""
+
+SURE = 1.0 + 1e-6
+"""Factor of a bound by triangular factors: more than their round-off."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -22,6 +25,10 @@ class Definiteness:
     """Norms (n,) of the rows of an orthonormal basis of the space: zero where equilibrium fixes the pressure."""
     eigenvalue: float | None
     certain: float
+    form: Array
+    """S sym(DM) S on the space (m, m)."""
+    space: Array
+    """An orthonormal basis of the space (n, m)."""
 
     @property
     def definite(self) -> bool:
@@ -37,18 +44,36 @@ class Definiteness:
         S, n = 1 / np.sqrt(D * np.maximum(M.diagonal(), LEAST_COMPLIANCE)), len(D)
         ell = S[:, None] * ell
         if ell.shape[1] >= n:
-            return cls(scales=S, reach=np.zeros(n), eigenvalue=None, certain=np.inf)
+            none = np.zeros((n, 0))
+            return cls(scales=S, reach=np.zeros(n), eigenvalue=None, certain=np.inf, form=none[:0], space=none)
         A, spread, reach = S[:, None] * (D[:, None] * M) * S, 1.0, np.ones(n)
-        K, terms = (A + A.T) / 2, (np.abs(A) + np.abs(A).T) / 2
+        K, terms, Z = (A + A.T) / 2, (np.abs(A) + np.abs(A).T) / 2, np.eye(n)
         if ell.shape[1]:
             ell = ell / np.linalg.norm(ell, axis=0)
             Z, spread = np.linalg.qr(ell, mode="complete")[0][:, ell.shape[1] :], float(np.linalg.cond(ell))
             K, reach = Z.T @ K @ Z, np.minimum(np.linalg.norm(Z, axis=1) + n * EPS * spread, 1.0)
         smallest = float(eigvalsh(K, subset_by_index=(0, 0))[0])
         round_off = n * EPS * spread * float(terms.sum(axis=1).max())
-        return cls(scales=S, reach=reach, eigenvalue=smallest, certain=smallest - round_off)
+        return cls(scales=S, reach=reach, eigenvalue=smallest, certain=smallest - round_off, form=K, space=Z)
 
     def largest_change(self, s: Array, work: float = 0.0) -> float:
         """Change of a pressure, at most, by forces up to s (n,) and work w: max Sᵢ|Zᵢ|(|ZᵀSs|/λ + √(w/λ))."""
         part = min(np.linalg.norm(self.scales * s), self.reach @ (self.scales * s))
         return float((self.scales * self.reach).max() * (part / self.certain + np.sqrt(work / self.certain)))
+
+    def change_by_energy(self, s: Array, lost: Array) -> float:
+        """As `largest_change` for forces s (n,) known but for `lost`: what they do in soft directions is small there.
+
+        With K the form, x² = eᵀK e <= x √(sᵀK⁻¹s), and a component of e is at most x times the root of that of K⁻¹.
+        """
+        size, round_off = len(self.form), (self.eigenvalue or 0.0) - self.certain
+        if not 2 * round_off < (self.eigenvalue or 0.0):
+            return np.inf
+        try:
+            factor = np.linalg.cholesky(self.form - 2 * round_off * np.eye(size))
+        except np.linalg.LinAlgError:
+            return np.inf
+        inverse = solve_triangular(factor, self.space.T, lower=True)
+        reach = self.scales * np.linalg.norm(inverse, axis=0)
+        x = np.linalg.norm(inverse @ (self.scales * s)) + reach @ lost
+        return SURE * float(reach.max() * x)

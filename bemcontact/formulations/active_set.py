@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, powers_of_two
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
@@ -54,9 +54,14 @@ class ContactBlock:
         return self.contact.compliance[:, self.points]
 
     @cached_property
+    def _units(self) -> Array:
+        """Powers of two near the sizes of the columns (|A| + k,): small tributary weights make no matrix singular."""
+        return powers_of_two(np.abs(self.matrix).max(axis=0))
+
+    @cached_property
     def _lu(self) -> LU:
-        """The factors; `SingularSystemError` if the matrix is singular to working precision."""
-        lu = LU.of(self.matrix)
+        """The factors of the matrix in these units; `SingularSystemError` if it is singular to working precision."""
+        lu = LU.of(self.matrix / self._units)
         if lu.reciprocal_condition < len(self.matrix) * EPS:
             raise SingularSystemError(
                 "the points in contact do not determine their pressures and the position of the body: the equations of "
@@ -66,7 +71,10 @@ class ContactBlock:
 
     def inverse(self, right: Array) -> Array:
         """Solve for right sides (|A| + k,) or (|A| + k, m), with one step of iterative refinement."""
-        return self._lu.solve(right, lambda x: right - self.matrix @ x) if right.size else right
+        if not right.size:
+            return right
+        units = self._units if right.ndim == 1 else self._units[:, None]
+        return self._lu.solve(right, lambda x: right - self.matrix @ (x / units)) / units
 
     def solve(self, *given: Change) -> tuple[Array, Array, Array]:
         """Solve for m offsets with their loads: p (m, n), zero off A, of either sign; δ (m, n), zero on A; a (m, k)."""

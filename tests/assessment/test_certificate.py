@@ -100,6 +100,29 @@ def test_pressure_that_equilibrium_fixes_is_no_obstacle(seed):
     assert certificate.relative_error_bound < 1e-6
 
 
+@pytest.mark.parametrize("k", [0, 1])
+@pytest.mark.parametrize("seed", range(4))
+def test_body_that_turns_easily_is_certified(seed, k):
+    """A turn 1e10 to 1e12 times as compliant as the rest, as about a short held edge: the bound holds, and is small."""
+    rng, n = np.random.default_rng(seed), 8
+    A, lever = rng.standard_normal((n, n)), np.sort(rng.uniform(-1, 1, n))
+    J, R = rng.uniform(0.3, 1.5, n), np.ones((n, k))
+    local, turn = A @ A.T + np.eye(n), 10.0 ** rng.uniform(10, 12)
+    M = (local + turn * np.outer(lever, lever)) * J
+    p = np.append(rng.uniform(0.5, 1.5, 3), np.zeros(n - 3))
+    load = -(J[:, None] * R).T @ p
+    problem = CondensedContact.from_compliance(M, 3 * (p == 0) - M @ p, J, rigid_motions=R, motion_load=load)
+    exact, solution = exact_pressure(problem), complementarity.solve(problem)
+    certificate = judged(problem, solution)
+    assert exact is not None
+    assert certificate.certified
+    for size in (0.0, 1e-14, 1e-12):
+        other = moved(problem, solution, size * rng.standard_normal(n), np.zeros(k))
+        bound = judged(problem, other).error_bound
+        assert bound is not None
+        assert max(abs(Fraction(u) - v) for u, v in zip(other.pressure, exact, strict=True)) <= bound
+
+
 @pytest.mark.parametrize("distance", [1e-2, 1e-5, 1e-8, 1e-11])
 @pytest.mark.parametrize("seed", range(5))
 def test_points_side_by_side_carry_a_moment_to_less_accuracy(seed, distance):

@@ -157,8 +157,10 @@ def test_a_direct_solver_that_fails_is_no_contact_state_to_compare_with():
 
 
 def test_round_off_leaves_nearly_singular_problems_open():
-    """M = ones + 1e-13 I: (1, 0) meets all conditions, but so does (1 - s, s) to 1e-13 s."""
-    contact = CondensedContact.from_compliance(np.ones((2, 2)) + 1e-13 * np.eye(2), [-1.0, -0.5])
+    """M = a aᵀ + 3e-14 I: along aᵀv = 0 pressures change by 1e-2, and gaps by 3e-16, which is their last digit."""
+    a = np.array([1.0, 1.3, 0.7, 0.3])
+    M = np.outer(a, a) + 3e-14 * np.eye(4)
+    contact = CondensedContact.from_compliance(M, -M @ np.array([0.3, 0.4, 0.5, 0.6]))
     result = comparing.compare(contact, ["qp1"])
     assert result.reference.verdict.outcome is Outcome.LEFT_OPEN
     assert "round-off leaves open" in result.verdict

@@ -30,7 +30,7 @@ class Verdict(StrEnum):
     FALSE_MINIMIZER = "false minimizer"
     FALSE_UNBOUNDED = "false unbounded"
     FALSE_INFEASIBLE = "false infeasible"
-    WEAK_RAY = "unbounded, with a ray that hardly falls"
+    WEAK_RAY = "unbounded, with a ray or a point that hardly shows it"
     UNSETTLED = "not settled by the judge"
     NO_CLAIM = "no claim"
 
@@ -40,7 +40,7 @@ def judge(program: IntegerProgram, units: Units, result: QPResult) -> Verdict:
     x = units.columns * result.x
     if result.status is QPStatus.LOCAL_MINIMIZER:
         verdict = _of_minimizer(program, x)
-        exact = verdict if verdict is Verdict.RIGHT else _at_working_set(program, x, result.working_set)
+        exact = verdict if verdict is Verdict.RIGHT else _at_working_set(program, units, x, result.working_set)
         return verdict if exact is Verdict.UNSETTLED else exact
     if result.status is QPStatus.UNBOUNDED and result.ray is not None:
         return _of_ray(program, x, units.columns * result.ray, result.working_set)
@@ -115,11 +115,24 @@ def _multipliers(gradient: Array, equal: Array, inwards: Array) -> tuple[Array, 
 
 
 def _null_space(rows: Array) -> Array:
-    """Orthonormal columns, of small whole numbers: singular values below 1e-9 are none."""
+    """Orthonormal columns; a singular value below 1e-9 is none, or is decided by fractions if it is no rounding."""
     if len(rows) == 0:
         return np.eye(rows.shape[1])
     _, sizes, V = np.linalg.svd(rows)
+    if ((sizes > 1e-15 * sizes[0]) & (sizes < 1e-6 * sizes[0])).any():
+        return _exact_null_space(rows)
     return V[int(np.sum(sizes > CLOSE)) :].T
+
+
+def _exact_null_space(rows: Array) -> Array:
+    """The null space of the rows as they are, by one solution in fractions for each free unknown."""
+    homogeneous, found = [[*row, Fraction(0)] for row in _exact(rows)], []
+    for unit in np.eye(rows.shape[1]):
+        solution = solved_exactly(homogeneous, unit.size, [Fraction(float(v)) for v in unit])
+        found.append([float(v) for v in solution or []])
+    basis = np.array([d for d in found if any(d)]).reshape(-1, rows.shape[1])
+    U, sizes, _ = np.linalg.svd(basis.T / np.abs(basis).max(axis=1, initial=0.0), full_matrices=False)
+    return U[:, sizes > 1e-15 * sizes.max(initial=0.0)]
 
 
 def _exactly(program: IntegerProgram, x: Array) -> Verdict:
@@ -135,7 +148,7 @@ def _exactly(program: IntegerProgram, x: Array) -> Verdict:
     if _multipliers(gradient, equal, inwards)[1] > 1e-8 * max(1.0, float(np.abs(gradient).max())):
         return Verdict.FALSE_MINIMIZER
     exact_gradient = [
-        sum((Fraction(int(h)) * v for h, v in zip(row, point, strict=True)), Fraction(int(b)))
+        sum((Fraction(float(h)) * v for h, v in zip(row, point, strict=True)), Fraction(float(b)))
         for row, b in zip(program.H, program.c, strict=True)
     ]
     rows = [*_exact(equal), exact_gradient]
@@ -146,7 +159,7 @@ def _of_cone(H: Array, rows: list[Row], inwards: Array) -> Verdict:
     """Whether {d : rows d = 0, inwards d >= 0} has a direction of negative curvature, sought on all its faces."""
     floats = np.array([[float(v) for v in row] for row in rows]).reshape(len(rows), H.shape[0])
     sizes = np.abs(floats).max(axis=1, initial=0.0)
-    floats = floats / np.where(sizes > 0.0, sizes, 1.0)[:, None]
+    floats = floats / np.exp2(np.rint(np.log2(np.where(sizes > 0.0, sizes, 1.0))))[:, None]  # which changes no digit
     doubtful = False
     for count in range(min(len(inwards), H.shape[0]) + 1):
         for face in combinations(range(len(inwards)), count):
@@ -180,18 +193,20 @@ def _exact_point(program: IntegerProgram, x: Array) -> Row | None:
 def _stationary(program: IntegerProgram, guess: Row, held: list[tuple[int, float]]) -> tuple[Row, Row] | None:
     """Multipliers and a point where the constraints are at these bounds and the gradient is that of the multipliers."""
     numbers, G, k = [number for number, _ in held], program.normals, len(held)
-    rows = [[*[Fraction(0)] * k, *row, Fraction(int(b))] for row, (_, b) in zip(_exact(G[numbers]), held, strict=True)]
+    rows = [
+        [*[Fraction(0)] * k, *row, Fraction(float(b))] for row, (_, b) in zip(_exact(G[numbers]), held, strict=True)
+    ]
     for i, row in enumerate(_exact(program.H)):
-        of_rows = [-Fraction(int(G[number, i])) for number in numbers]
-        rows.append([*of_rows, *row, -Fraction(int(program.c[i]))])
+        of_rows = [-Fraction(float(G[number, i])) for number in numbers]
+        rows.append([*of_rows, *row, -Fraction(float(program.c[i]))])
     solution = solved_exactly(rows, k + len(guess), [Fraction(0)] * k + guess)
     return None if solution is None else (solution[:k], solution[k:])
 
 
-def _at_working_set(program: IntegerProgram, x: Array, sides: NDArray[np.int8]) -> Verdict:
-    """Judge the exact point of the working set in fractions, if it is feasible and next to x: closer than `CLEAR`."""
+def _at_working_set(program: IntegerProgram, units: Units, x: Array, sides: NDArray[np.int8]) -> Verdict:
+    """Judge the exact point of the working set in fractions, if it is feasible and x is where it is in these units."""
     solution = _stationary(program, [Fraction(float(v)) for v in x], _held(program, sides))
-    if solution is None or not _is_near(solution[1], x):
+    if solution is None or not (_is_near(solution[1], x) or _is_where_stated(program, units, x, sides)):
         return Verdict.UNSETTLED
     (multipliers, point), G = solution, program.normals
     bounds = _exact_bounds(program, point)
@@ -207,6 +222,19 @@ def _at_working_set(program: IntegerProgram, x: Array, sides: NDArray[np.int8]) 
         return Verdict.FALSE_MINIMIZER if falls else Verdict.UNSETTLED
     weak = sizes == 0
     return _of_cone(program.H, _exact(G[~weak | equal]), np.vstack([G[at_lower & weak], -G[at_upper & weak]]))
+
+
+def _is_where_stated(program: IntegerProgram, units: Units, x: Array, sides: NDArray[np.int8]) -> bool:
+    """Whether x is next to the point of the working set of the program in these units, the rounding of which moves it.
+
+    Powers of ten are no doubles, and rows that are parallel up to 1e-5 move a point by 1e5 times their rounding.
+    """
+    H, c, A, cl, cu, bl, bu = program.stated(units)
+    stated = IntegerProgram(H=H, c=c, A=A, lower=np.concatenate([bl, cl]), upper=np.concatenate([bu, cu]))
+    solution = _stationary(stated, [Fraction(float(v)) for v in x / units.columns], _held(stated, sides))
+    if solution is None:
+        return False
+    return _is_near([v * Fraction(float(unit)) for v, unit in zip(solution[1], units.columns, strict=True)], x)
 
 
 def _is_near(point: Row, x: Array) -> bool:
@@ -287,7 +315,7 @@ def solved_exactly(rows: list[Row], unknowns: int, guess: Row) -> Row | None:
 
 def _exact(rows: Array) -> list[Row]:
     """Whole numbers as fractions."""
-    return [[Fraction(int(v)) for v in row] for row in rows]
+    return [[Fraction(float(v)) for v in row] for row in rows]
 
 
 def _product(a: Row, b: Row) -> Fraction:
@@ -316,7 +344,10 @@ def _of_ray(program: IntegerProgram, x: Array, ray: Array, sides: NDArray[np.int
     terms = float((np.abs(H) @ np.abs(x) + np.abs(program.c)) @ np.abs(d))
     if abs(curvature) <= CLOSE * product and gradient @ d < -CLEAR * terms:
         return Verdict.RIGHT
-    return _unbounded_at_all(program)
+    least = _least_slope(program, exact)
+    if -CLEAR <= least < -CLOSE:
+        return Verdict.UNSETTLED
+    return Verdict.WEAK_RAY if least < 0.0 else _unbounded_at_all(program)
 
 
 def _falls_without_end(program: IntegerProgram, point: Row | None, d: Row) -> bool:
@@ -331,13 +362,29 @@ def _falls_without_end(program: IntegerProgram, point: Row | None, d: Row) -> bo
     return point is not None and slope + _product(bent, point) < 0
 
 
+def _least_slope(program: IntegerProgram, d: Row) -> float:
+    """Least slope along a straight recession direction from any feasible point, by linear programming; else 0."""
+    n, along = program.c.size, [_product(row, d) for row in _exact(program.normals)]
+    bent = [_product(row, d) for row in _exact(program.H)]
+    stays = all(v >= 0 or low == -np.inf for v, low in zip(along, program.lower, strict=True))
+    stays = stays and all(v <= 0 or high == np.inf for v, high in zip(along, program.upper, strict=True))
+    if not stays or _product(bent, d) != 0:
+        return 0.0
+    high, low = np.isfinite(program.upper[n:]), np.isfinite(program.lower[n:])
+    A, b = np.vstack([program.A[high], -program.A[low]]), np.r_[program.upper[n:][high], -program.lower[n:][low]]
+    bounds = list(zip(program.lower[:n], program.upper[:n], strict=True))
+    least = linprog([float(v) for v in bent], A if len(A) else None, b if len(A) else None, bounds=bounds)
+    slope = float(_product(_exact(program.c[None])[0], d))
+    return {0: (least.fun or 0.0) + slope, 3: -np.inf}.get(least.status, 0.0)
+
+
 def _feasible_point(program: IntegerProgram, x: Array, d: Row, sides: NDArray[np.int8]) -> Row | None:
     """An exact feasible point next to x, or a little further along the ray d, with the working set at its bounds."""
     lower, upper, size = program.lower[: x.size], program.upper[: x.size], max(1.0, float(np.abs(x).max()))
     clipped = np.where(np.abs(x - lower) < CLOSE, lower, np.where(np.abs(x - upper) < CLOSE, upper, x))
     for held in (_held(program, sides), _active(program, x, CLEAR)[2], _active(program, x, CLOSE)[2]):
         rows = _exact(program.normals[[number for number, _ in held]])
-        rows = [[*row, Fraction(int(bound))] for row, (_, bound) in zip(rows, held, strict=True)]
+        rows = [[*row, Fraction(float(bound))] for row, (_, bound) in zip(rows, held, strict=True)]
         for guess in (clipped, x):
             point = solved_exactly(rows, x.size, [Fraction(float(v)) for v in guess])
             for step in (Fraction(0), Fraction(NEAR * size)):
@@ -381,7 +428,7 @@ def _of_certificate(program: IntegerProgram, of_rows: Array) -> Verdict:
         bound = low if y > 0 else high
         if y and np.isinf(bound):
             break
-        total += y * Fraction(int(bound)) if y else 0
+        total += y * Fraction(float(bound)) if y else 0
     else:
         if total > 0:
             return Verdict.RIGHT

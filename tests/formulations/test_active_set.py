@@ -1,5 +1,7 @@
 """The primal-dual iteration: exact where it settles, harmless where it cannot."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -58,6 +60,24 @@ def test_coincident_points_share_the_load():
     M = np.array([[1.0, 1.0], [1.0, 1.0]])
     p, _ = solve_active_set(plain(M, np.array([-1.0, -1.0])), np.array([True, True]))
     assert p[0] == pytest.approx(p[1], rel=1e-14)
+
+
+@pytest.mark.parametrize("power", [0, 20, 60])
+def test_small_weights_make_no_set_singular(power):
+    """Weights smaller by powers of two, pressures larger by the same: the same forces, in each digit."""
+    rng, n = np.random.default_rng(power), 6
+    B, units = rng.standard_normal((n, n)), 2.0 ** -rng.integers(0, power + 1, n)
+    whole = ScaledContact(
+        compliance=B @ B.T + np.eye(n),
+        offset=-np.ones(n),
+        rigid_motions=rng.uniform(0.5, 1.0, (n, 1)),
+        motion_load=-np.ones(1),
+        weights=np.ones(n),
+    )
+    small = replace(whole, compliance=whole.compliance * units, weights=units)
+    (p, a), (of_small, same) = (solve_active_set(contact, np.ones(n, bool)) for contact in (whole, small))
+    assert np.array_equal(of_small * units, p)
+    assert np.array_equal(same, a)
 
 
 def test_first_set_of_a_free_body_is_laid_by_least_squares():

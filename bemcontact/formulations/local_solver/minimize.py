@@ -14,7 +14,7 @@ from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, examine, first_order
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
-from bemcontact.formulations.local_solver.progress import Progress
+from bemcontact.formulations.local_solver.progress import FINER, PARALLEL, Progress
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 from bemcontact.formulations.local_solver.statement import (
     EPS,
@@ -28,8 +28,6 @@ from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest
 
 FAILURES = 6
 """Largest number of restarts with new factors after a claim failed its check."""
-FINER = 1e-2
-"""Factor of the tolerance of phase one after each failure."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +85,10 @@ def run_phases(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
         end = _second_phase(progress, descent)
         if isinstance(end, Finding):
             return end, start
-        sides, failures = end.sides, failures + end.failed
+        sides = end.sides
+        if end.failed:
+            failures += 1
+            progress.tighten()
         if progress.exhausted:
             break
     status = QPStatus.ITERATION_LIMIT if progress.exhausted else QPStatus.NUMERICAL_FAILURE
@@ -104,6 +105,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
         ray = cleaned_ray(progress, outcome.ray)
         if ray is None:
             return Restart(sides=descent.working.sides, failed=True)
+        _inwards(progress, ray)
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     if outcome.ending is Ending.INACCURATE:
         return Restart(sides=descent.working.sides, failed=True)
@@ -112,6 +114,15 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
     if not conditions.holds:
         return Restart(sides=descent.working.sides, failed=True)
     return _second_order(progress, descent, conditions, multipliers)
+
+
+def _inwards(progress: Progress, ray: Array) -> None:
+    """Move along the ray until it no longer reduces a violation; a violation within tolerance may be a large part."""
+    speed = np.abs(progress.statement.values(ray))
+    steps = progress.statement.violation(progress.values) / speed
+    step = steps[speed > PARALLEL].max(initial=0.0)
+    if step > 0.0:
+        progress.place(progress.x + step * ray)
 
 
 def _second_order(
@@ -132,6 +143,7 @@ def _second_order(
         ray = cleaned_ray(progress, direction)
         if ray is None:
             return Restart(sides=descent.working.sides, failed=True)
+        _inwards(progress, ray)
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     slope, curved = float(progress.gradient @ direction), float(direction @ progress.statement.H @ direction)
     rounding = 100.0 * EPS * float(progress.terms(direction[:0], progress.statement.A[:0]) @ np.abs(direction))

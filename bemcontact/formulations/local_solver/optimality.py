@@ -191,8 +191,11 @@ def _search_faces(reduced: Array, weak: Array, lost: float, faces: int) -> tuple
 
 WEAK = 10.0
 """A multiplier is strong if it exceeds its zero by this factor."""
-DOUBT = 0.03
-"""A multiplier of the wrong sign is more than likely rounding if it exceeds its zero by this factor."""
+DOUBT, DOUBT_OF_ROUGH = 0.03, 0.003
+"""A multiplier of the wrong sign is more than likely rounding if it exceeds its zero by this factor.
+
+The second is for multipliers with a zero above that of the gradient, as nearly dependent rows have.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -249,9 +252,10 @@ def first_order(progress: Progress, working: BoolArray, multipliers: Array, zero
     statement, n = progress.statement, progress.x.size
     values = statement.values(progress.x)
     slack = 2.0 * progress.slack
-    feasible = np.count_nonzero(statement.violation(values) <= slack) == slack.size
-    stationary = largest(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero
+    feasible = np.count_nonzero(statement.violation(values) <= progress.allowed) == slack.size
     size = np.abs(multipliers)
+    rounding = 4.0 * EPS * (size[:n] + size[n:].dot(statement.absolute[2]))
+    stationary = np.abs(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero + rounding
     sides = statement.sides_reached(values, slack)
     held = sides != 0
     wrong = np.where(held, sides * multipliers, size)
@@ -262,12 +266,12 @@ def first_order(progress: Progress, working: BoolArray, multipliers: Array, zero
     tolerated = 2.0 * zeros
     tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
     return FirstOrder(
-        holds=feasible and stationary and np.count_nonzero(wrong <= tolerated) == zeros.size,
+        holds=feasible and np.count_nonzero(stationary) == n and np.count_nonzero(wrong <= tolerated) == zeros.size,
         strong=strong,
         weak=held & ~strong & active,
         sides=sides,
         size=size,
-        doubtful=bool((wrong > DOUBT * zeros).any()),
+        doubtful=bool((wrong > np.where(zeros > progress.zero, DOUBT_OF_ROUGH, DOUBT) * zeros).any()),
     )
 
 
@@ -332,7 +336,7 @@ def _noise(statement: Statement, y: Array) -> Array:
     """Bound of the rounding in each component of [I; A]ᵀy, from its terms and the entries of its column (n,)."""
     n, A = statement.c.size, statement.absolute[2]
     size = np.abs(y)
-    of_terms = 1e-11 * max(10, n) * (size[:n] + size[n:] @ A)
+    of_terms = 1e-13 * max(10, n) * (size[:n] + size[n:] @ A)
     return np.maximum(of_terms, 4.0 * EPS * A.max(axis=0, initial=0.0) * float(size[n:].sum()))
 
 

@@ -176,6 +176,7 @@ class Descent:
         self.dropped: int | None = None
         self.changed = self.broken = False
         self.whole = self.idle = 0
+        self._moved = 0.0
         self._refused: set[int] = set()
         self.multipliers = self.zeros = self._refinement = progress.x[:0]
         self.working = working
@@ -220,34 +221,47 @@ class Descent:
         """Whether to take a Newton step, and if not, the place of a constraint to drop, if there is one."""
         # A quick test uses one tolerance for all components. If it finds nothing clear, the point is refined and each
         # component has its own tolerance. After three full Newton steps the remaining reduced gradient is rounding.
-        progress, working = self.progress, self.working
+        progress, working, hessian = self.progress, self.working, self.hessian
         n, least = working.free.size, progress.least_index
         loose = self.whole < 3 and working.number < n
         if loose:
             reduced = multipliers[:n] * working.free
             rounding = 10.0 * EPS * largest(multipliers[n:])
-            if reduced.dot(reduced) > max(0.1 * progress.zero, rounding) ** 2:
+            large = reduced.dot(reduced) > max(0.1 * progress.zero, rounding) ** 2
+            if large and not self._rests(hessian.newton(progress.gradient)):
                 return True, None
-        place = wrong_sign(working, self._allowed(multipliers), CLEAR * progress.zero, least_index=least)
+        clear = max(CLEAR, largest(working.N)) * progress.zero  # N carries the rounding of the gradient to multipliers
+        place = wrong_sign(working, self._allowed(multipliers), clear, least_index=least)
         if place is not None:
             return False, place
         self._refine()
         multipliers, zeros = self.multipliers, self.zeros
-        if loose and (np.abs(multipliers[:n] * working.free) > zeros[:n]).any():
+        large = loose and (np.abs(multipliers[:n] * working.free) > zeros[:n]).any()
+        if large and not self._rests(hessian.newton(progress.gradient)):
             return True, None
         place = wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
         if place is None and self._sharpened():
             place = wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
         return False, place
 
+    def _rests(self, step: Array) -> bool:
+        """Whether a step from the start is no more than rounding, since the start is an answer of this solver."""
+        progress, working = self.progress, self.working
+        if progress.lines:
+            return False
+        terms = progress.terms(working.multipliers(progress.gradient)[step.size :], working.W)
+        rounding = 10.0 * EPS * np.maximum(np.abs(progress.x), self._reach(terms))
+        return np.count_nonzero(np.abs(step) > np.maximum(rounding, self._moved)) == 0
+
     def _refine(self) -> None:
         """Solve the equations of the working set again from the data, by two steps of refinement, or a few more."""
         progress, working, hessian, x = self.progress, self.working, self.hessian, self.progress.x
+        self._moved = 0.0
         for sweep in range(REFINEMENTS if hessian.size else 1):
             x = working.onto(x)
             if hessian.size:
                 step = hessian.newton(working.reduced(progress.statement.H.dot(x) + progress.statement.c))
-                x = x + step
+                x, self._moved = x + step, largest(step)
                 if sweep and largest(step) <= 1e-14 * max(1.0, largest(x)):
                     break
         progress.place(x)
@@ -288,6 +302,8 @@ class Descent:
         block = nearest(progress, along, length, working.held, working)
         if block is None or block.step > 1.0:
             self.changed, self.whole = False, self.whole + 1
+            if self._rests(direction):
+                return
             self._advance(along, length, 1.0, 0.5 * slope, None)
         else:
             step = block.step

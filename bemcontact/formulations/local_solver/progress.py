@@ -18,6 +18,12 @@ NEAR = 2e-3
 PARALLEL = 1e-10
 """A unit direction whose product with a normal is below this does not meet the constraint, except on a long step."""
 
+OWN, OF_TERMS = 1e-7, 1e-3
+"""Largest violation of a constraint at a claim, relative to its own bound or to a part of its terms."""
+
+FINER = 1e-2
+"""Factor of tolerances of phase one and of constraints after each claim that failed."""
+
 LOST = EPS
 """A component that was never larger than this, relative to the point or to one, is the rounding of directions."""
 
@@ -96,6 +102,19 @@ class Progress:
         size = np.abs(self.x)
         terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
         return np.maximum(NEAR * self._slack, 100.0 * EPS * terms)
+
+    @property
+    def allowed(self) -> Array:
+        """Violation of each constraint that a claim may leave (n + m,): a small part of its own terms too."""
+        size = np.abs(self.x)
+        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
+        own = OWN * np.maximum(self.statement.bound_size, OF_TERMS * terms)
+        return np.minimum(2.0 * self.slack, np.maximum(own, self.sharp))
+
+    def tighten(self) -> None:
+        """Reduce the tolerance of the constraints, after a claim failed."""
+        self._slack = FINER * self._slack
+        self.place(self.x)
 
     @property
     def objective(self) -> float:

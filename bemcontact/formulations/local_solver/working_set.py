@@ -17,7 +17,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, exact_remainders
 from bemcontact.formulations.local_solver.factorizations import (
     add_rank_one,
     independent_rows,
@@ -25,7 +25,7 @@ from bemcontact.formulations.local_solver.factorizations import (
     orthogonal,
     unit_rows,
 )
-from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, Progress
+from bemcontact.formulations.local_solver.progress import FINE, PARALLEL, STALLED, Progress
 from bemcontact.formulations.local_solver.statement import EPS, Sides, Statement, largest
 
 EQUALITY = 2
@@ -37,6 +37,9 @@ DEPENDENT = 1e-9
 
 ALIKE = 1e-12
 """Limit, in place of `DEPENDENT`, for a constraint that enters after it blocked a step, if N has all its digits."""
+
+FEW_DIGITS = 1e-12
+"""Relative rounding of a component of a point on rows beyond which their remainders are computed without rounding."""
 
 SHARP, WEAR = 1e-12, 1e-8
 """Relative size of a refinement above which refinements are needed, and above which N is computed again."""
@@ -274,7 +277,11 @@ class WorkingSet:
         if self.size == 0:
             return x
         ids, W, N = self.constraints()
-        return x + N.dot(targets[ids] - W.dot(x))
+        near = x + N.dot(targets[ids] - W.dot(x))
+        lost = EPS * np.abs(N).dot(np.abs(W).dot(np.abs(near)))
+        if not np.count_nonzero(lost > FEW_DIGITS * np.abs(near)):
+            return near
+        return near + N.dot(exact_remainders(targets[ids], W, near))
 
 
 def supporting(progress: Progress, sides: Sides) -> Sides:
@@ -302,8 +309,9 @@ def supporting(progress: Progress, sides: Sides) -> Sides:
         return sides
     if residual > progress.zero:
         return sides
-    strong = multipliers[: active.size] > progress.zero
-    strong[equal] |= multipliers[active.size :] > progress.zero
+    fine = FINE * progress.zero  # a multiplier may be decisive by its own terms
+    strong = multipliers[: active.size] > fine
+    strong[equal] |= multipliers[active.size :] > fine
     needed = (strong | equal).nonzero()[0]  # an equality is held anyway, so it comes before what has no multiplier
     first = np.zeros(active.size, dtype=bool)
     first[needed[independent_rows(normals[needed], strong[needed], DEPENDENT)]] = True

@@ -1,9 +1,12 @@
 """The updated working set and reduced Hessian against what defines them, after many changes."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from bemcontact.arrays import exact_remainders
 from bemcontact.formulations.local_solver.factorizations import orthogonal
 from bemcontact.formulations.local_solver.phase_two import ReducedHessian
 from bemcontact.formulations.local_solver.statement import Statement
@@ -187,3 +190,30 @@ def test_the_pivoted_factorisation_gives_both_spaces():
     assert_allclose(Q.T @ Q, np.eye(4), atol=1e-15)
     assert_allclose(Y @ T, rows[kept].T, atol=1e-15)
     assert_allclose(rows @ Z, 0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize("level", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_point_on_nearly_parallel_rows_has_all_its_digits(seed, level):
+    """Rows parallel up to the level, on which whole numbers meet: each component is that of the exact point."""
+    rng, n = np.random.default_rng(seed), 4
+    first, point = rng.integers(-2, 3, (2, n)).astype(float) + np.eye(2, n), rng.integers(-3, 4, n).astype(float)
+    A = np.vstack([first, np.rint(first / level) + rng.integers(-1, 2, (2, n)) + 2 * np.eye(2, n, 2)])
+    bounds = np.concatenate([np.full(n, np.inf), A @ point])
+    data = Statement(H=np.eye(n), c=np.zeros(n), A=A, lower=-bounds, upper=bounds)
+    working = WorkingSet(data, np.array([0] * n + [1] * n, dtype=np.int8))
+    assert working.size == n
+    assert_allclose(working.onto(working.onto(rng.standard_normal(n))), point, rtol=0.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_remainders_are_those_of_fractions(seed):
+    """Sizes from 1e-12 to 1e12 that cancel: the nearest number to the remainder in fractions."""
+    rng = np.random.default_rng(seed)
+    rows, x = rng.standard_normal((3, 7)) * 10.0 ** rng.integers(-6, 7, (3, 7)), 10.0 ** rng.uniform(-6, 6, 7)
+    right = rows @ x
+    exact = [
+        Fraction(b) - sum(Fraction(a) * Fraction(v) for a, v in zip(row, x.tolist(), strict=True))
+        for b, row in zip(right.tolist(), rows.tolist(), strict=True)
+    ]
+    assert exact_remainders(right, rows, x).tolist() == [float(value) for value in exact]
