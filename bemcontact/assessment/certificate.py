@@ -39,7 +39,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.assessment.definiteness import EPS, Definiteness
-from bemcontact.assessment.equations import TIE, Equations, balanced, round_off_of_equilibrium
+from bemcontact.assessment.equations import TIE, ContactEquations, balanced, round_off_of_equilibrium
 from bemcontact.assessment.residual import Residuals
 from bemcontact.assessment.uniqueness import NearState, effective_eigenvalue, near_bound
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -119,7 +119,7 @@ def certify(
     The tolerance is on penetration, tension, complementarity, equilibrium (12) and balance. Where the peak pressure is
     above T, gaps are judged relative to the displacement that goes with it, and never below their round-off.
     """
-    equations = Equations.of(contact)
+    equations = ContactEquations.of(contact)
     stiff = Definiteness.of(equations.weights, equations.compliance, contact.equilibrium)
     eigenvalue, definite = stiff.eigenvalue, stiff.definite
     peak = contact.peak(solution.pressure)
@@ -151,14 +151,14 @@ def certify(
 
 def _sharper(bound: float | None, contact: CondensedContact, solution: ContactSolution) -> float | None:
     """The bound that follows from sums without rounding, if it is less."""
-    equations = Equations.of(contact, exact=True)
+    equations = ContactEquations.of(contact, exact=True)
     stiff = Definiteness.of(equations.weights, equations.compliance, contact.equilibrium)
     better = _bound_by(equations, contact, solution, stiff)
     return min((found for found in (bound, better) if found is not None), default=None)
 
 
 def _bound_by(
-    equations: Equations, contact: CondensedContact, solution: ContactSolution, stiff: Definiteness
+    equations: ContactEquations, contact: CondensedContact, solution: ContactSolution, stiff: Definiteness
 ) -> float | None:
     """|p - y| + max Sᵢ |Ss|/λ, as in the module's docstring, in units of pressure; s includes the round-off of δ.
 
@@ -206,7 +206,7 @@ def _bound_by(
 
 
 def _by_energy(
-    equations: Equations, stiff: Definiteness, y: Array, delta: Array, round_off: Array, imbalance: float
+    equations: ContactEquations, stiff: Definiteness, y: Array, delta: Array, round_off: Array, imbalance: float
 ) -> float:
     """Bound of the change of a pressure in exact equilibrium, which is a known step from y, as the energy limits it.
 

@@ -26,7 +26,7 @@ SAFE = 2.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Equations:
+class ContactEquations:
     """δ = q + M y + R a with weights D, and ℓᵀy = -load, in units of a gap and a pressure.
 
     Parameters
@@ -95,7 +95,7 @@ class Equations:
 
 
 def round_off_of_equilibrium(
-    equations: Equations, y: Array, gaps: Array, round_off: Array
+    equations: ContactEquations, y: Array, gaps: Array, round_off: Array
 ) -> tuple[float, Array, Array | None]:
     """How far y (n,) may be from exact balance: the least change of points that carry which takes ℓᵀy + load away.
 
@@ -167,13 +167,13 @@ def _tilted(
     return SAFE * size, np.zeros(len(ell)), tilted
 
 
-def balanced(equations: Equations, p: Array, touching: NDArray[np.bool_]) -> Array | None:
+def balanced(equations: ContactEquations, p: Array, touching: NDArray[np.bool_]) -> Array | None:
     """A scaled pressure near p in equilibrium: zero off the contact set, or without that if the set carries no load."""
     y = _nearest_balanced(equations, p, touching)
     return _nearest_balanced(equations, p, np.ones_like(touching)) if y is None else y
 
 
-def _nearest_balanced(equations: Equations, p: Array, contact_set: NDArray[np.bool_]) -> Array | None:
+def _nearest_balanced(equations: ContactEquations, p: Array, contact_set: NDArray[np.bool_]) -> Array | None:
     """The y >= 0 nearest to p with ℓᵀy = -load and y = 0 off the contact set: y = max(p + ℓ b, 0), Newton on b (k,)."""
     ell, load = equations.equilibrium, equations.load
     b = np.zeros(len(load))
