@@ -223,11 +223,16 @@ class FirstOrder:
         n = statement.c.size
         free, weak = (~self.strong[:n]).nonzero()[0], self.weak.nonzero()[0]
         inwards = np.where(self.sides[weak] == 1, -1.0, 1.0)
+        equal = statement.A[self.strong[n:]][:, free]
+        # what a row of one entry holds would be large beside the curvatures of the others
+        while (single := np.count_nonzero(equal, axis=1) <= 1).any():
+            held = equal[single].any(axis=0)
+            free, equal = free[~held], equal[~single][:, ~held]
         fixed, rows = weak[weak < n], weak[weak >= n] - n
         normals = np.zeros((weak.size, free.size))
-        normals[np.arange(fixed.size), free.searchsorted(fixed)] = 1.0
+        normals[: fixed.size] = fixed[:, None] == free
         normals[fixed.size :] = statement.A[rows][:, free]
-        return CriticalCone(free=free, equal=statement.A[self.strong[n:]][:, free], weak=inwards[:, None] * normals)
+        return CriticalCone(free=free, equal=equal, weak=inwards[:, None] * normals)
 
     def stricter(self, along: Array, blocking: int) -> "FirstOrder":
         """Doubtful conditions of a smaller cone, without a direction on which the objective does not clearly fall.

@@ -268,6 +268,23 @@ def test_flat_direction_with_a_slope_is_an_unbounded_ray():
     assert_allclose(result.ray, [0.0, 1.0], atol=1e-12)
 
 
+def test_a_variable_that_a_row_holds_hides_no_falling_cone():
+    """At (-2, -2, 0) the gradient is zero; dHd falls where d2/d1 is from 1 to 1 + 1e-7/2, and d3 = 0 by a row.
+
+    The units of the third variable make its terms a million times larger than those of the others.
+    """
+    columns, rise = np.array([10.0, 1e-5, 1e3]), 1e5
+    H = rise * np.array([[2.0, 1.0, 1.0], [1.0, -4.0, -3.0], [1.0, -3.0, 0.0]]) * np.outer(columns, columns)
+    A = np.array(
+        [[-2, 2, 0], [-2e7, 19999999, 0], [0, 0, 2], [-1e7, -2e7, -1], [2, 0, 0], [-19999999, 2e7, 0]]
+    )  # fmt: skip
+    low, high = [-INF, 2.0, 0.0, -INF, -INF, -6.0], [INF, 5.0, 0.0, INF, -4.0, INF]
+    upper = np.array([-2.0, -2.0, INF]) / columns
+    result = minimize_qp(H, rise * columns * [6.0, -6.0, -4.0], A * columns, low, high, [-INF] * 3, upper)
+    x, y, _ = result.x * columns
+    assert result.status is not QPStatus.LOCAL_MINIMIZER or (x + 2) ** 2 + (y + 2) ** 2 > 1e-12
+
+
 @pytest.mark.parametrize("size", [5, 8])
 def test_the_horn_form_is_copositive_and_the_bounded_search_states_when_it_stops(size):
     """Horn's form (Hall and Newman 1963) is copositive, but not a sum of a semidefinite and a nonnegative one."""
