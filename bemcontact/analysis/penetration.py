@@ -14,15 +14,17 @@ from bemcontact.analysis.placement import part_of_path, placement
 from bemcontact.analysis.variation import Variation
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import Footprint, footprint
-from bemcontact.assessment.penetration import ROUND_OFF, Penetration, penetration_in_words, tolerated
+from bemcontact.assessment.penetration import ROUND_OFF, Misfit, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.body import Body
 from bemcontact.bem.condense import boundary_state
+from bemcontact.bem.contact_points import runs
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
+from bemcontact.problem.loops import first_meeting
 
 
 def misfit(
@@ -61,8 +63,55 @@ def penetration(
         notes += _behind(gaps, zone, found.behind)
         notes += () if worst else _excused(gaps, zone, found.excused, found.xi, allowed)
         notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
+    worst = worst or _through_itself(gaps)
     misplaced, said = (None, ()) if worst else placement(gaps, body, contact, solution, nearby)
     return worst or misplaced, (*notes, *said)
+
+
+def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
+    """Find two parts of the displaced boundary that cross: chords of half elements first, then finer ones."""
+    state, mesh = gaps.state, gaps.outline.mesh
+    loops = [elements for elements, _ in runs(mesh, np.ones(len(mesh.elements), bool))]
+    chords = [(state.points + state.displacement)[elements][:, :2].reshape(-1, 2) for elements in loops]
+    if _crossing(chords, gaps) is None:
+        return None
+    places = [gaps.moved(elements) for elements in loops]
+    meeting = _crossing([item[:, :-1].reshape(-1, 2) for item in places], gaps)
+    if meeting is None:
+        return None
+    elements, near = np.concatenate(loops), np.concatenate(places) - meeting
+    distance = np.hypot(*np.moveaxis(near, 2, 0))
+    order = elements[np.argsort(distance.min(axis=1))]
+    one = int(order[0])
+    other = int(next(i for i in order if i not in (one, mesh.before[one], mesh.elements[one, 2])))
+    first, second = (
+        gaps.outline.sampled(np.array([i])).points[0][distance[elements == i].argmin()] for i in (one, other)
+    )
+    edges = [state.edge_names[state.edge[i]] for i in (one, other)]
+    x, y = first.tolist()
+    crossing = " and ".join(f"'{edge}'" for edge in edges) if len(set(edges)) > 1 else f"two parts of '{edges[0]}'"
+    return Penetration(
+        kind=Misfit.ITSELF, depth=float(np.hypot(*(first - second))), allowed=0.0, at=(x, y), edge=edges[0], zone="",
+        paired=False,
+        words=(
+            f"The body penetrates itself at ({x:.5g}, {y:.5g}), where {crossing} cross after the motion. Contact of a "
+            "body with itself is not computed: parts that should press on each other pass through. Reduce the load to "
+            "that at which they meet, or take half of the body, with a rigid plane in the middle of the slot, if it is "
+            "symmetric."
+        ),
+    )  # fmt: skip
+
+
+def _crossing(loops: Sequence[Array], gaps: SurfaceGaps) -> Array | None:
+    """First point (2,) at which closed lines (k, 2) cross themselves or one another."""
+    tolerance = ROUND_OFF * gaps.problem.boundary.size
+    closed = [np.vstack([points, points[:1]]) for points in loops]
+    for i, line in enumerate(closed):
+        for j, other in enumerate(closed[: i + 1]):
+            point = first_meeting(line, other, tolerance, itself=i == j)
+            if point is not None:
+                return point
+    return None
 
 
 def penetration_on_path(

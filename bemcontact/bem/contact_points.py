@@ -150,7 +150,7 @@ def contact_points(
     middles = mesh.elements[:, 1]
     for number, (name, zone) in enumerate(problem.contact_zones.items()):
         in_zone, faces = in_zones[number], _faces(problem, zone.surface, mesh, halves, deflections.get(name))
-        for elements, closed in _between_corners(mesh, _runs(mesh, in_zone), faces):
+        for elements, closed in _between_corners(mesh, runs(mesh, in_zone), faces):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
             gap, normals, lies = faces.along(nodes, closed=closed)
             loose = ~_held_along(normals, values.displacement_given[nodes])
@@ -362,7 +362,7 @@ def _first_alike(mesh: Mesh, node: IntArray, normals: Array, gap: Array, tool: S
     return first
 
 
-def _runs(mesh: Mesh, in_zone: BoolArray) -> Iterator[tuple[IntArray, bool]]:
+def runs(mesh: Mesh, in_zone: BoolArray) -> Iterator[tuple[IntArray, bool]]:
     """Unbroken pieces of a zone: their elements in order, and whether the piece closes on itself."""
     after = mesh.elements[:, 2]
     before = mesh.before

@@ -166,7 +166,11 @@ class SurfaceGaps:
 
     def distance(self, zone: str, elements: IntArray) -> Array:
         """Distance (k, q) [L] of displaced places of elements (k,) from the displaced surface."""
-        return self.exact(zone, self.outline.sampled(elements).points + self._displacement(elements)).gap
+        return self.exact(zone, self.moved(elements)).gap
+
+    def moved(self, elements: IntArray) -> Array:
+        """Displaced places (k, q, 2) [L] of elements (k,)."""
+        return self.outline.sampled(elements).points + self._displacement(elements)
 
     def intrusion(self, zone: str) -> Intrusion:
         """How deep each element is in the surface of a zone, beyond what interpolation between its nodes explains.

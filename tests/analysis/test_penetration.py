@@ -442,3 +442,36 @@ def test_a_spot_where_no_node_touches_is_seen_however_far_the_nodes_are():
     assert not result.certified
     assert result.penetration is not None
     assert result.penetration.zone == "stop"
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.floats(0.2, 0.8), st.floats(0.2, 3.0), st.floats(0, 6.28), st.sampled_from([1e-3, 1.0, 1e3]))
+@example(0.5, 0.97, 0.0, 1.0)
+@example(0.5, 1.03, 0.0, 1.0)
+def test_a_slot_that_closes_is_found(low, share, turn, size):
+    """The mouth of a fork closes by what its prongs, which are thick beams, bend; the load is a share of that.
+
+    The body is linear: at the share one the gap at the mouth is zero.
+    """
+    c, s = np.cos(turn), np.sin(turn)
+    rotate = size * np.array([[c, s], [-s, c]])
+    drawn = 0.05
+    corners = np.array([(0, 0), (10, 0), (10, 4), (3, 4), (3, 4 + drawn), (10, 4 + drawn), (10, 8), (0, 8)])
+    prong = 3 + 7 * low
+
+    def fork(pressure):
+        corners_of = np.insert(corners, 7, [(prong, 8)], axis=0) @ rotate
+        zones = {"floor": ("0", {"kind": "plane", "point": (0, 0), "normal": rotate[1].tolist()})}
+        return solve(block(corners_of.tolist(), zones, {"6": {"pressure": pressure}}, elements=4))
+
+    def mouth(result):
+        points = result.boundary.points + result.boundary.displacement
+        upper, lower = (points[result.boundary.edge == edge] for edge in (4, 2))
+        return float((upper[-1, 2] - lower[0, 0]) @ rotate[1]) / size**2
+
+    closing = drawn - mouth(fork(1e-3))
+    result = fork(share * 1e-3 * drawn / closing)
+    assert mouth(result) == pytest.approx(drawn * (1 - share), abs=1e-6 * drawn)
+    itself = result.penetration is not None and result.penetration.kind is Misfit.ITSELF
+    assert itself is (share > 1)
+    assert not (itself and result.certified)

@@ -87,7 +87,9 @@ def test_objective_of_a_local_search_is_that_of_the_program(formulation, options
         values = of(stopped, "objective")
         np.testing.assert_array_equal(values, of(whole, "objective")[: len(values)])
         x = np.concatenate([stopped.displacement / U, stopped.pressure / T])
-        assert values[-1] == pytest.approx(program.value(x), abs=1e-14 * (1 + largest))
+        terms = abs(x) @ abs(program.hessian) @ abs(x) / 2 + abs(program.linear) @ abs(x)
+        rounding = len(x) * np.finfo(float).eps * terms
+        assert values[-1] == pytest.approx(program.value(x), abs=1e-14 * (1 + largest) + rounding)
         assert stopped.iterations == limit
 
 
