@@ -34,6 +34,8 @@ def misfit(
     deepest, notes = penetration(gaps, body, contact, solution)
     beyond, noticed = linear_theory(body, contact, solution, where, gaps.state)
     if deepest is not None and beyond is not None:
+        if deepest.kind is Misfit.ITSELF:  # large strains fold the boundary
+            deepest, beyond = beyond, deepest
         return deepest, (*notes, beyond.as_note)
     return deepest or beyond, (*notes, *(item.words for item in noticed))
 

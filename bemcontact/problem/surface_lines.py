@@ -156,34 +156,42 @@ class Polyline(SpecModel):
 
     def _press_on_ridges(self, points: Array, inward: Array, reach: Array, held: Faces) -> None:
         """Put the normals of the body where a convex corner of the surface presses on it."""
-        which = self._ridge_beside(points)
-        offset, turn = points - self.sides.corners[which + 1], _cross(inward[:, 0], inward[:, 1])
-        distance, re_entrant = np.hypot(*offset.T), turn < 0
-        flat = (which >= 0) & ((distance <= ON_CORNER * self._extent(points)) | (re_entrant & (distance <= reach)))
-        own = np.where(re_entrant[:, None, None], inward[:, [0, 0, 1]], inward.sum(axis=1, keepdims=True))
+        ridges, distances = self._ridges_beside(points)
+        turn, lefts = _cross(inward[:, 0], inward[:, 1]), self.sides.lefts
+        own = np.where((turn < 0)[:, None, None], inward[:, [0, 0, 1]], inward.sum(axis=1, keepdims=True))
         lies = np.einsum("kai,kai->ka", inward, held.normals[:, [0, 2]]) > LIES_ON
-        ends = ~flat & (turn > 0) & (lies[:, 0] != lies[:, 1])  # here one side of a corner of the body lies on a face
+        ends = (turn > 0) & (lies[:, 0] != lies[:, 1])  # here one side of a corner of the body lies on a face
         own[ends] = inward[ends, lies[ends].argmax(axis=1), None]
-        smooth = (which >= 0) & ~flat & ((turn == 0) | ends)
-        before, after = self.sides.lefts[which], self.sides.lefts[which + 1]
+        own = unit_vectors(own.reshape(-1, 2), own.reshape(-1, 2)).reshape(own.shape)
+        within = [_dot(_between(own[:, 1], lefts[i + 1], lefts[i]), own[:, 1]) for i in ridges.T]
+        within = np.where(np.isfinite(distances), np.transpose(within), -np.inf)
+        near = distances <= np.where(turn < 0, reach, 0.0)[:, None] + ON_CORNER * self._extent(points)
+        flat, smooth = near.any(axis=1), ((turn == 0) | ends) & np.isfinite(distances).any(axis=1)
+        chosen = np.where(flat, distances.argmin(axis=1), within.argmax(axis=1))
+        which = ridges[np.arange(len(points)), chosen]
+        before, after, offset = lefts[which], lefts[which + 1], points - self.sides.corners[which + 1]
         for column in range(3):
-            body = unit_vectors(own[:, column], own[:, column])
+            body = own[:, column]
             pressing, tilt = _between(body, after, before), _dot(held.normals[:, column], body)
             over, face = _over(offset, pressing, before, after)
             opens = over >= abs(_cross(offset, body) * _cross(held.normals[:, column], body)) / 2
-            nearer = smooth & ((tilt < LIES_ON) | opens) & (_dot(pressing, body) > tilt + ALIKE)
+            inside = _dot(pressing, body) >= 1 - ALIKE
+            tilted = (tilt < LIES_ON) & (_dot(pressing, body) >= LIES_ON)
+            nearer = smooth & ~flat & (tilted | (inside & opens & (tilt < 1 - ALIKE)))
             for here, gap, on in ((nearer, over, face), (flat, _dot(offset, pressing), pressing)):
                 held.gap[here, column], held.normals[here, column] = gap[here], pressing[here]
                 held.faces[here, column] = on[here]
 
-    def _ridge_beside(self, points: Array) -> IntArray:
-        """Convex inner corner (k,), counted from 0, that is the nearer end of the nearest segment; -1 if none is."""
+    def _ridges_beside(self, points: Array) -> tuple[IntArray, Array]:
+        """Inner corners (k, 2), counted from 0, at the ends of the nearest segment; distance [L], infinite of others.
+
+        Others are those that are not convex.
+        """
         nearest = self._nearest(points)[0]
         ends = np.stack([nearest, nearest + 1], axis=1)
         distances = np.hypot(*np.moveaxis(points[:, None] - self.sides.corners[ends], 2, 0))
         distances[~np.pad(~self._concave, 1)[ends]] = np.inf
-        rows, end = np.arange(len(points)), distances.argmin(axis=1)
-        return np.where(np.isfinite(distances[rows, end]), ends[rows, end] - 1, -1)
+        return np.clip(ends - 1, 0, len(self.points) - 3), distances
 
     def beyond_ends(self, points: Array) -> BoolArray:
         """Whether the surface is nearest to points (k, 2) [L] where it goes on straight beyond its ends."""
