@@ -65,7 +65,8 @@ def penetration(
         notes += _behind(gaps, zone, found.behind)
         notes += () if worst else _excused(gaps, zone, found.excused, found.xi, allowed)
         notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
-    worst = worst or _through_itself(gaps)
+    if worst is None or not worst.paired:  # an edge that is not in a zone may be there through the body itself
+        worst = _through_itself(gaps) or worst
     misplaced, said = (None, ()) if worst else placement(gaps, body, contact, solution, nearby)
     return worst or misplaced, (*notes, *said)
 

@@ -158,15 +158,11 @@ class Polyline(SpecModel):
         """Put the normals of the body where a convex corner of the surface presses on it."""
         ridges, distances = self._ridges_beside(points)
         turn, lefts = _cross(inward[:, 0], inward[:, 1]), self.sides.lefts
-        own = np.where((turn < 0)[:, None, None], inward[:, [0, 0, 1]], inward.sum(axis=1, keepdims=True))
-        lies = np.einsum("kai,kai->ka", inward, held.normals[:, [0, 2]]) > LIES_ON
-        ends = (turn > 0) & (lies[:, 0] != lies[:, 1])  # here one side of a corner of the body lies on a face
-        own[ends] = inward[ends, lies[ends].argmax(axis=1), None]
-        own = unit_vectors(own.reshape(-1, 2), own.reshape(-1, 2)).reshape(own.shape)
+        own, straight = _pressed_normals(inward, turn, held)
         within = [_dot(_between(own[:, 1], lefts[i + 1], lefts[i]), own[:, 1]) for i in ridges.T]
         within = np.where(np.isfinite(distances), np.transpose(within), -np.inf)
         near = distances <= np.where(turn < 0, reach, 0.0)[:, None] + ON_CORNER * self._extent(points)
-        flat, smooth = near.any(axis=1), ((turn == 0) | ends) & np.isfinite(distances).any(axis=1)
+        flat, smooth = near.any(axis=1), straight & np.isfinite(distances).any(axis=1)
         chosen = np.where(flat, distances.argmin(axis=1), within.argmax(axis=1))
         which = ridges[np.arange(len(points)), chosen]
         before, after, offset = lefts[which], lefts[which + 1], points - self.sides.corners[which + 1]
@@ -384,6 +380,18 @@ def _coordinates(point: Array) -> str:
 
 def _cross(a: Array, b: Array) -> Array:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def _pressed_normals(inward: Array, turn: Array, held: Faces) -> tuple[Array, BoolArray]:
+    """Normals (k, 3, 2) of the body against which corners press, and whether (k,) a smooth side of it is pressed.
+
+    At a corner of the body of which one side lies on a face it is that side.
+    """
+    own = np.where((turn < 0)[:, None, None], inward[:, [0, 0, 1]], inward.sum(axis=1, keepdims=True))
+    lies = np.einsum("kai,kai->ka", inward, held.normals[:, [0, 2]]) > LIES_ON
+    ends = (turn > 0) & (lies[:, 0] != lies[:, 1])
+    own[ends] = inward[ends, lies[ends].argmax(axis=1), None]
+    return unit_vectors(own.reshape(-1, 2), own.reshape(-1, 2)).reshape(own.shape), (turn == 0) | ends
 
 
 def _over(offset: Array, normals: Array, before: Array, after: Array) -> Closest:

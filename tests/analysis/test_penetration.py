@@ -448,10 +448,12 @@ def test_a_spot_where_no_node_touches_is_seen_however_far_the_nodes_are():
 @given(st.floats(0.2, 0.8), st.floats(0.2, 3.0), st.floats(0, 6.28), st.sampled_from([1e-3, 1.0, 1e3]))
 @example(0.5, 0.97, 0.0, 1.0)
 @example(0.5, 1.03, 0.0, 1.0)
+@example(0.5, 150.0, 0.0, 1.0)
 def test_a_slot_that_closes_is_found(low, share, turn, size):
     """The mouth of a fork closes by what its prongs, which are thick beams, bend; the load is a share of that.
 
-    The body is linear: at the share one the gap at the mouth is zero.
+    The body is linear: at the share one the gap at the mouth is zero. Where a prong goes through the other one and the
+    floor, the floor is not named: strains are not small.
     """
     c, s = np.cos(turn), np.sin(turn)
     rotate = size * np.array([[c, s], [-s, c]])
@@ -472,6 +474,7 @@ def test_a_slot_that_closes_is_found(low, share, turn, size):
     closing = drawn - mouth(fork(1e-3))
     result = fork(share * 1e-3 * drawn / closing)
     assert mouth(result) == pytest.approx(drawn * (1 - share), abs=1e-6 * drawn)
-    itself = result.penetration is not None and result.penetration.kind is Misfit.ITSELF
-    assert itself is (share > 1)
-    assert not (itself and result.certified)
+    kind = None if result.penetration is None else result.penetration.kind
+    expected = Misfit.ITSELF if share < 10 else Misfit.NOT_SMALL
+    assert (kind is expected) is (share > 1)
+    assert share < 1 or not result.certified
