@@ -16,6 +16,8 @@ from bemcontact.problem.problem import Problem
 NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
 NOT_ESTIMATED = "the errors of this mesh were not estimated"
 MOST_PASSES = 14
+HOPELESS, STALLED = 1.0, 4
+"""Error that ends the search where it did not halve, and the passes that it had for that."""
 MOST_FAILURES = 3
 """Number of first meshes that may have no contact state."""
 MOST_UNKNOWNS = 4000
@@ -115,6 +117,7 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
     assert asked is not None
     search = mesh_search(problem)
     best: Meshed | None = None
+    errors: list[float] = []
     reason = f"no better mesh was found in {MOST_PASSES} passes"
     for number in range(1, MOST_PASSES + 1):
         try:
@@ -147,6 +150,10 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
         best = now if best is None or now.worst <= best.worst else best
         if all(item.met for item in best.accuracies):
             return best
+        errors.append(now.worst)
+        if best.worst > HOPELESS and len(errors) > STALLED and best.worst > errors[-1 - STALLED] / 2:
+            reason = f"the error did not halve in {STALLED} passes"
+            break
         search.layers = search.with_counts(search.ends_of_contact(fine)[0])
         search.refine(differences, singular)
     return _unsolved(search.mesh(1), asked, reason) if best is None else best.because(reason)

@@ -125,12 +125,12 @@ class Polyline(SpecModel):
         """
         points, near = np.asarray(points, float), self.closest(points)
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in near)
-        if len(self.points) > 2:
-            self._hold_in_grooves(points, inward, gap, normals)
-        faces = normals.copy()
-        if len(self.points) > 2:
-            self._press_on_ridges(points, inward, reach, Faces(gap, normals, faces))
-        return Faces(gap, normals, faces)
+        if len(self.points) == 2:
+            return Faces(gap, normals, normals)
+        self._hold_in_grooves(points, inward, gap, normals)
+        held = Faces(gap, normals, normals.copy())
+        self._press_on_ridges(points, inward, reach, held)
+        return held
 
     def _hold_in_grooves(self, points: Array, inward: Array, gap: Array, normals: Array) -> None:
         """Put the face to which each side is turned: that of the nearest segment, or of one that rises beside it."""
