@@ -25,6 +25,8 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
             "-W",
             "--keep-going",
             "-q",
+            "-D",
+            "html_theme=basic",
             "-d",
             folder / "doctrees",
             ".docs",
