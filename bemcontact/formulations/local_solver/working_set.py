@@ -194,13 +194,13 @@ class WorkingSet:
         outside = normal
         for _ in range(2):
             outside = (outside - outside.dot(self.N).dot(self.W)) * self.free
-        return self._is_rounding(float(outside.dot(outside)), float(normal.dot(normal)))
+        return self._is_rounding(float(outside.dot(outside)))
 
-    def _is_rounding(self, outside: float, whole: float = 1.0) -> bool:
-        """Whether the squared length of a normal outside the span is none, beside that of the whole normal."""
-        if outside > DEPENDENT**2 * whole:
+    def _is_rounding(self, outside: float) -> bool:
+        """Whether the squared length of a normal outside the span is none."""
+        if outside > DEPENDENT**2:
             return False
-        return outside <= max(ALIKE, 10.0 * EPS * largest(self.N)) ** 2 * whole
+        return outside <= max(ALIKE, 10.0 * EPS * largest(self.N)) ** 2
 
     def fix(self, direction: Array, kind: int) -> None:
         """Add a temporary row, with a direction of the null space as its normal."""
