@@ -30,11 +30,14 @@ from bemcontact.problem.loops import first_meeting
 def misfit(
     gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, where: Footprint
 ) -> tuple[Penetration | None, tuple[str, ...]]:
-    """Find what does not fit, or else displacements that are not small; note the rest."""
+    """Find what does not fit, or else displacements that are not small; note the rest.
+
+    Strains that are not small fold the boundary, and those above one tell nothing of where the body is.
+    """
     deepest, notes = penetration(gaps, body, contact, solution)
     beyond, noticed = linear_theory(body, contact, solution, where, gaps.state)
     if deepest is not None and beyond is not None:
-        if deepest.kind is Misfit.ITSELF:  # large strains fold the boundary
+        if deepest.kind is Misfit.ITSELF or beyond.depth > 1:
             deepest, beyond = beyond, deepest
         return deepest, (*notes, beyond.as_note)
     return deepest or beyond, (*notes, *(item.words for item in noticed))

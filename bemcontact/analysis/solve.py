@@ -12,7 +12,7 @@ from bemcontact.analysis.diagnostics import diagnostics
 from bemcontact.analysis.penetration import misfit
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import NO_MESH, Accuracy
-from bemcontact.assessment.certificate import certify
+from bemcontact.assessment.certificate import CertificateKind, certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
 from bemcontact.bem.condense import Condensation, boundary_state
@@ -237,7 +237,7 @@ def assessed(
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
         where, deepest, unseen = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
-        if boundary is not None and condensation is not None:
+        if boundary is not None and condensation is not None and certificate.kind is not CertificateKind.NOT_A_SOLUTION:
             gaps = surface_gaps(condensation.body.problem, boundary, contact, solution)
             deepest, unseen = misfit(gaps, condensation.body, contact, solution, where)
         notes = (

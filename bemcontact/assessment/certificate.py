@@ -144,7 +144,7 @@ def certify(
         error_bound=bound,
         relative_error_bound=relative,
         violation=violation,
-        words=_certificate_sentence(kind, violation, eigenvalue, definite, relative, advice(solution))
+        words=_certificate_sentence(kind, violation, eigenvalue, definite, relative, solution)
         + POSITION_OPEN * open_position,
     )
 
@@ -237,10 +237,10 @@ def _violation(residuals: Residuals, tolerance: float, size: float) -> str:
 def _why_unique(eigenvalue: float | None, definite: bool) -> str:
     """Which other states are excluded, and why, as a clause."""
     if eigenvalue is None:
-        return "equilibrium alone fixes the pressure, so no other state exists"
+        return "no other state exists, because equilibrium alone fixes the pressure"
     size = f"(its smallest eigenvalue is {eigenvalue:.2e})"
     if definite:
-        return f"the compliance is positive definite {size}, so no other state exists"
+        return f"no other state exists, because the compliance is positive definite {size}"
     return (
         "the load and the gaps exclude all states outside the error bound, although the compliance is not positive "
         f"definite {size}"
@@ -253,7 +253,7 @@ def _certificate_sentence(
     eigenvalue: float | None,
     definite: bool,
     relative: float | None,
-    way_out: str,
+    solution: ContactSolution,
 ) -> str:
     """Two or three sentences for an engineer."""
     sure = "equilibrium alone fixes the pressure"
@@ -276,8 +276,10 @@ def _certificate_sentence(
                 f"far from this one, satisfy them too ({sure}).{error} Take away parts of the zones that cannot touch, "
                 "look in the mesh for very short elements, and check units: loads, lengths and Young's modulus."
             )
+        case CertificateKind.NOT_A_SOLUTION if solution.status is Status.INFEASIBLE:
+            return advice(solution)
         case CertificateKind.NOT_A_SOLUTION:
-            return f"This is not the contact state: {violation}.{error} {way_out}"
+            return f"This is not the contact state: {violation}.{error} {advice(solution)}"
 
 
 def _bound_sentence(relative: float, definite: bool) -> str:
@@ -290,7 +292,7 @@ def advice(solution: ContactSolution) -> str:
     """Say in a sentence what to try where a solution is not the contact state, with options of the command line."""
     match solution.status:
         case Status.INFEASIBLE:
-            return "Check that loads and conditions press the body onto its support, or refine the mesh (--refine 2)."
+            return "Check that loads and conditions press the body onto its support, and not off an end of it."
         case Status.UNBOUNDED:
             return "Take the tributary weights."
         case Status.ITERATION_LIMIT:

@@ -30,6 +30,14 @@ from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Circle, DeflectedContour
 from bemcontact.problem.sight import zone_edges
 
+TURNED = {
+    "plane": "its normal points to the body",
+    "circle": "the body is 'outside' or 'inside'",
+    "polyline": "the body is on the left of its points",
+    "spline": "the body is on the left of its points",
+}
+"""How each kind of surface is turned to the body."""
+
 PRESSED_IN = 0.1
 """Interference over the size of a body up to which a disk is pressed into a hole, not drawn at a wrong place."""
 
@@ -147,7 +155,7 @@ class Body:
         idle = self.idle_motion if self.relative_load[1].any() else None
         undetermined = f"the loads do no work in the {idle}, which only opens gaps: it is not determined"
         stated = self.problem.units.doubts(self.problem.material.young_modulus)
-        placed = (*stated, *_wholly_behind(self.problem, self.mesh), *_left_out(self.problem), *self._wedges())
+        placed = (*stated, *_left_out(self.problem), *self._wedges())
         return (*placed, *at_zero, *(() if idle is None else (undetermined,)))
 
     def _wedges(self) -> Iterator[str]:
@@ -165,16 +173,24 @@ class Body:
             )
 
 
-def _wholly_behind(problem: Problem, mesh: Mesh) -> Iterator[str]:
-    """Note each rigid surface that has the whole body behind it, except a hole that a disk is pressed into."""
+def _ensure_before_surfaces(problem: Problem, mesh: Mesh) -> None:
+    """Refuse a rigid surface that has the whole body behind it, except a hole that a disk is pressed into.
+
+    A tool may be there before it is displaced.
+    """
+    with_tools = {zone for tool in problem.tools.values() for zone in tool.zones}
     for name, zone in problem.contact_zones.items():
-        if isinstance(zone.surface, DeflectedContour):
+        if isinstance(zone.surface, DeflectedContour) or name in with_tools:
             continue
         gap = zone.surface.closest(mesh.nodes).gap
         pressed_in = isinstance(zone.surface, Circle) and -gap.min() < PRESSED_IN * mesh.size
         if gap.max() < 0 and not pressed_in:
             depth = f"{-gap.min():.3g} {problem.units.length}".strip()
-            yield f"the whole body lies behind the surface of '{name}', up to {depth} deep; is its position right?"
+            message = (
+                f"the whole body lies behind this surface, up to {depth} deep; move the surface, or turn it to the "
+                f"body: {TURNED[zone.surface.kind]}"
+            )
+            raise ProblemError(Issue(path=("contact_zones", name, "surface"), message=message))
 
 
 def _left_out(problem: Problem) -> Iterator[str]:
@@ -190,12 +206,13 @@ def _left_out(problem: Problem) -> Iterator[str]:
 def body_of(problem: Problem) -> Body:
     """Mesh a problem, spread its conditions over the mesh, and check whether contact can hold the body.
 
-    `ProblemError` if the loads that act pull the body off its support, move it in a way that nothing holds, or do not
+    `ProblemError` if the whole body is behind a surface; if the loads that act pull the body off its support, move it in a way that nothing holds, or do not
     press it on; or if the conditions of a deflected contour do not hold the body. A problem with load cases of
     which none acts is meshed without this check.
     """
     mesh = build(problem)
     ensure_memory(MATRICES * 8 * mesh.degrees_of_freedom**2)
+    _ensure_before_surfaces(problem, mesh)
     permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
     added = [loading.values for loading in cases]
     points = contact_points(problem, mesh, permanent.values, deflections(problem, mesh), added)

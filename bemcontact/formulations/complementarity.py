@@ -229,7 +229,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     carried = replace(body, motion_load=body.motion_load - loose_load(body))
     search = _search(carried, options.max_iterations)
     if search.status is Status.INFEASIBLE:
-        note = "the path of pivots ended on a ray that proves that no pressure will do"
+        note = "Lemke's method ended on a ray, which proves that no pressure satisfies the conditions"
         empty = _without_contact(contact, note)
         return replace(empty, solver=search.method, iterations=search.iterations, history=search.history)
     p, u_n, a = unscaled(contact, search.end.pressure, search.end.amplitudes)

@@ -162,7 +162,7 @@ def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
 def path_sentence(path: ParameterPath) -> str:
     """Certificate of a path in sentences."""
     first, last = map(number, path.reaches)
-    exact = f"The largest natural residual at a breakpoint is {path.residual:.0e}."
+    exact = f"The conditions of contact hold to {path.residual:.0e} at each breakpoint (natural residual)."
     notes = (f"{sentence_case(note)}." for note in path.notes)
     if path.certified:
         proved = f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
