@@ -126,7 +126,10 @@ def _motion_bars(estimate: _Estimate, m: float, largest: float) -> Iterator[Erro
         return  # nothing determines them
     contact, p = answer.condensation.contact, answer.solution.pressure
     least = angle_of_round_off(contact.points, contact.normals, p > 0)
+    undetermined = {name for item in estimate.difference.pair for name in item.solution.undetermined}
     for one, two in zip(*map(_motions, estimate.difference.pair), strict=True):
+        if any(name == one.mover or name.endswith(f" of the tool '{one.mover}'") for name in undetermined):
+            continue  # chosen by a rule
         value = estimate.value(one.size, two.size)
         turns = one.quantity == "rotation"
         if abs(value) * (size if turns else 1.0) > NOTHING * largest and not (turns and abs(value) <= least):
@@ -196,7 +199,9 @@ def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Seque
     both = [*zip((estimate.difference.coarse, estimate.difference.fine), estimate.difference.pair, strict=True)]
     peaks = [float(answer.pressure[number].max()) for _, answer in both]
     if its:
-        yield ErrorBar(quantity="peak", zone=name, value=None, bar=None, note=_infinite(its))
+        worst = max(its, key=lambda item: item.exponent).place
+        at = estimate.difference.fine.runs[worst.run].point(worst.position)
+        yield ErrorBar(quantity="peak", zone=name, value=None, bar=None, at=at, note=_infinite(its))
     else:
         bar = estimate.bar(max(_change(*peaks), PEAK * m), smooth=True) + logarithmic_rise(estimate.difference, name)
         yield ErrorBar(quantity="peak", zone=name, value=estimate.value(*peaks), bar=bar)

@@ -26,6 +26,8 @@ ACROSS = 0.5
 """Cosine of the largest angle to the inward normal under which a part of the boundary faces another one."""
 SAMPLES = 800
 """Samples of the whole boundary, and of an edge under a rigid surface."""
+MOST_HALVINGS = 40
+"""Halvings of the part of an edge with its sharpest bend, in the search for how sharp it is."""
 LEAST_SAMPLES = 24
 """Samples of an edge."""
 IN_CACHE = 64
@@ -107,6 +109,12 @@ def _curvature(edge: Edge, start: float) -> Iterator[Limit]:
     """Limits by which no element turns by more than `TURN`."""
     at = np.linspace(0, 1, LEAST_SAMPLES + 1)
     angle = edge.curve.tangent_angle(at)
+    for _ in range(MOST_HALVINGS):
+        bends = np.flatnonzero(np.abs(np.diff(angle)) > TURN)
+        if not len(bends):
+            break
+        at = np.insert(at, bends + 1, (at[bends] + at[bends + 1]) / 2)
+        angle = edge.curve.tangent_angle(at)
     for (low, high), turn in zip(pairwise(at), np.abs(np.diff(angle)), strict=True):
         if turn > 0:
             size = (high - low) * edge.length / turn * TURN

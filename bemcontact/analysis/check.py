@@ -1,5 +1,6 @@
 """A problem before it is solved: its mesh, its loads, and what holds the body."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,8 +53,15 @@ def check(problem: Problem) -> CheckedProblem:
         held_by_contact=tuple(body.seen.describe()),
         total_load=(float(x), float(y)),
         load_magnitude=float(body.pinned.total(body.factors, body.forces)),
-        notes=tuple(body.notes),
+        notes=(*body.notes, *_idle(body)),
     )
+
+
+def _idle(body: Body) -> Iterator[str]:
+    """Note a motion that no load works in."""
+    idle = body.idle_motion if body.relative_load[1].any() else None
+    if idle is not None:
+        yield f"the loads do no work in the {idle}, which only opens gaps: it is not determined"
 
 
 def _smallest_gap(body: Body, zone: int) -> float:

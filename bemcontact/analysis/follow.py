@@ -67,8 +67,9 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     on_mesh, found = _on_mesh(problem, key, begin, end)
     varied = Variation(on_mesh, key)
     path = load_path(*(replace(contact, name=problem.title) for contact in between(varied, begin, end)))
-    deepest, at, said = penetration_on_path(varied, path, begin, end)
     first, last = (_accuracy(varied, value, found.get(value), bool(found)) for value in (begin, end))
+    infinite = bool(first.infinite or last.infinite)
+    deepest, at, said = penetration_on_path(varied, path, begin, end, infinite=infinite)
     return ParameterPath(
         key=key, start=begin, end=end, path=path, start_accuracy=first, end_accuracy=last,
         penetration=deepest, penetrates_at=at, said=said,

@@ -24,7 +24,10 @@ from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
-from bemcontact.problem.loops import first_meeting
+from bemcontact.problem.loops import first_meeting, signed_area
+
+DETAIL = 1e-4
+"""Length over the size of the body of parts of its boundary that may fold: the tip of a notch."""
 
 
 def misfit(
@@ -75,14 +78,24 @@ def penetration(
 
 
 def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
-    """Find two parts of the displaced boundary that cross: chords of half elements first, then finer ones."""
+    """Find two parts of the displaced boundary that cross: chords of half elements first, then finer ones.
+
+    A thin hole may turn inside out as a whole, and cross nowhere.
+    """
     state, mesh = gaps.state, gaps.outline.mesh
     loops = [elements for elements, _ in runs(mesh, np.ones(len(mesh.elements), bool))]
-    chords = [(state.points + state.displacement)[elements][:, :2].reshape(-1, 2) for elements in loops]
-    if _crossing(chords, gaps) is None:
+    drawn, chords = (
+        [values[elements][:, :2].reshape(-1, 2) for elements in loops]
+        for values in (state.points, state.points + state.displacement)
+    )
+    inverted = [signed_area(one) * signed_area(other) < 0 for one, other in zip(drawn, chords, strict=True)]
+    if not any(inverted) and _crossing(chords, gaps) is None:
         return None
     places = [gaps.moved(elements) for elements in loops]
     meeting = _crossing([item[:, :-1].reshape(-1, 2) for item in places], gaps)
+    if any(inverted):
+        turned = chords[inverted.index(True)]
+        meeting = turned[np.hypot(*(turned - drawn[inverted.index(True)]).T).argmax()]
     if meeting is None:
         return None
     elements, near = np.concatenate(loops), np.concatenate(places) - meeting
@@ -108,10 +121,21 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
     )  # fmt: skip
 
 
+def _without_details(line: Array, length: float) -> Array:
+    """The line (k, 2) with no two points inside one part of this length."""
+    along = np.append(0.0, np.hypot(*np.diff(line, axis=0).T).cumsum())
+    _, kept = np.unique(np.floor(along / length), return_index=True)
+    return line[np.union1d(kept, [len(line) - 1])]
+
+
 def _crossing(loops: Sequence[Array], gaps: SurfaceGaps) -> Array | None:
-    """First point (2,) at which closed lines (k, 2) cross themselves or one another."""
-    tolerance = ROUND_OFF * gaps.problem.boundary.size
-    closed = [np.vstack([points, points[:1]]) for points in loops]
+    """First point (2,) at which closed lines (k, 2) cross themselves or one another.
+
+    At the tip of a notch strains are not small: neighbors that fold there do not count.
+    """
+    size = gaps.problem.boundary.size
+    tolerance = ROUND_OFF * size
+    closed = [_without_details(np.vstack([points, points[:1]]), DETAIL * size) for points in loops]
     for i, line in enumerate(closed):
         for j, other in enumerate(closed[: i + 1]):
             point = first_meeting(line, other, tolerance, itself=i == j)
@@ -121,11 +145,11 @@ def _crossing(loops: Sequence[Array], gaps: SurfaceGaps) -> Array | None:
 
 
 def penetration_on_path(
-    varied: Variation, path: LoadPath, start: float, end: float
+    varied: Variation, path: LoadPath, start: float, end: float, *, infinite: bool
 ) -> tuple[Penetration | None, float | None, tuple[str, ...]]:
     """Find the deepest penetration at the breakpoints of a path between two values, and the value there; note the rest.
 
-    A state at an end of the path is judged as a solution is.
+    A state at an end of the path is judged as a solution is. Of an `infinite` peak no strain is told.
     """
     outline, worst, at, notes = Outline(problem=varied.problem), None, None, dict[str, list[float]]()
     last, near, strained = len(path.parameter) - 1, part_of_path(varied.problem), dict[str, tuple[Noticed, float]]()
@@ -137,7 +161,7 @@ def penetration_on_path(
         gaps = surface_gaps(problem, state, contact, solution, outline)
         nearby = _peaks_within(path, t - near, t + near) if 0 < i < last else None
         found, said = penetration(gaps, body, contact, solution, nearby)
-        beyond, noticed = linear_theory(body, contact, solution, footprint(contact, solution), state)
+        beyond, noticed = linear_theory(body, contact, solution, footprint(contact, solution, infinite=infinite), state)
         found = found or beyond
         if found is not None and (worst is None or _order(found) > _order(worst)):
             worst, at = found, value

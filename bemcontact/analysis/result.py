@@ -66,6 +66,8 @@ class HeadRecord(Record):
 class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     """Solution of a contact problem and all quantities recomputed from it; lists are by contact point."""
 
+    holds: bool | None
+    """Whether it is certified and the mesh is as accurate as was asked; null if nothing is said about the mesh."""
     accuracy: Accuracy
     """Accuracy of the mesh: error bars, and whether they are as small as was asked."""
     weights: Weights
@@ -215,6 +217,7 @@ class Result(Recorded):
             **dict(contact_record(self.contact)),
             **dict(solution_record(self.contact, self.solution)),
             **dict(footprint_record(self.footprint)),
+            holds=self.holds,
             accuracy=self.accuracy,
             weights=self.weights,
             objective=self.objective,

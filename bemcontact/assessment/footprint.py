@@ -79,6 +79,8 @@ class Footprint(WithHints):
     """Largest pressure; None without contact, or if it is infinite."""
     resultant: Resultant
     """Resultant of the contact pressure."""
+    forces: dict[str, Pair]
+    """Force (x, y) of the rigid surface of each zone on the body, Σ w p n, per thickness [p L]."""
 
 
 class FootprintRecord(Record):
@@ -88,6 +90,8 @@ class FootprintRecord(Record):
     """Force (x, y) of the rigid surfaces on the body, per thickness [p L]."""
     resultant_moment: float
     """Its moment about the origin, counterclockwise, per thickness [p L²]."""
+    forces: dict[str, Pair]
+    """Force (x, y) of the rigid surface of each zone on the body, per thickness [p L]."""
     intervals: tuple[ContactInterval, ...]
     """Contact intervals, zone by zone; empty without contact."""
     peak: Peak | None
@@ -99,6 +103,7 @@ def footprint_record(footprint: Footprint) -> FootprintRecord:
     return FootprintRecord(
         resultant=footprint.resultant.force,
         resultant_moment=footprint.resultant.moment,
+        forces=footprint.forces,
         intervals=footprint.intervals,
         peak=footprint.peak,
     )
@@ -121,6 +126,10 @@ def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite:
         ),
         peak=None if infinite else _peak(contact, solution.pressure),
         resultant=_resultant(contact, solution.pressure),
+        forces={
+            name: (x, y)
+            for name, (x, y) in zip(contact.zone_names, contact.resultants(solution.pressure).tolist(), strict=True)
+        },
     )
 
 

@@ -152,11 +152,9 @@ class Body:
             f"the {motion} moves no contact point and has no load: it is held at zero"
             for motion in self.unseen.describe()
         )
-        idle = self.idle_motion if self.relative_load[1].any() else None
-        undetermined = f"the loads do no work in the {idle}, which only opens gaps: it is not determined"
         stated = self.problem.units.doubts(self.problem.material.young_modulus)
         placed = (*stated, *_left_out(self.problem), *self._wedges())
-        return (*placed, *at_zero, *(() if idle is None else (undetermined,)))
+        return (*placed, *at_zero)
 
     def _wedges(self) -> Iterator[str]:
         """Note contact points that conditions hold nearly along the rigid normal, and that slide into a wedge."""
@@ -206,9 +204,9 @@ def _left_out(problem: Problem) -> Iterator[str]:
 def body_of(problem: Problem) -> Body:
     """Mesh a problem, spread its conditions over the mesh, and check whether contact can hold the body.
 
-    `ProblemError` if the whole body is behind a surface; if the loads that act pull the body off its support, move it in a way that nothing holds, or do not
-    press it on; or if the conditions of a deflected contour do not hold the body. A problem with load cases of
-    which none acts is meshed without this check.
+    `ProblemError` if the whole body is behind a surface; if the loads that act pull the body off its support, move it
+    in a way that nothing holds, or do not press it on; or if the conditions of a deflected contour do not hold the
+    body. A problem with load cases of which none acts is meshed without this check.
     """
     mesh = build(problem)
     ensure_memory(MATRICES * 8 * mesh.degrees_of_freedom**2)

@@ -106,6 +106,8 @@ class SolutionRecord(Record):
     """Angle of each free rigid motion, in radians and in the sense of its name, which is counterclockwise for a body or
     a tool that turns alone, so that clockwise is negative; zero in a translation; null if unknown.
     Displacements are small in linear elasticity: the angle is the displacement over the distance from the center."""
+    undetermined: tuple[str, ...]
+    """Names of the free rigid motions that contact leaves open; their amplitudes are chosen by a rule."""
     pressure: Vector
     """Normal traction per undeformed length, positive in compression [p]."""
     gap: Vector
@@ -133,6 +135,7 @@ def solution_record(contact: CondensedContact, solution: ContactSolution) -> Sol
         status=solution.status,
         rigid_amplitudes=solution.rigid_amplitudes,
         rotations=contact.rotations(solution.rigid_amplitudes),
+        undetermined=solution.undetermined,
         pressure=solution.pressure,
         gap=contact.initial_gap + solution.displacement,
         normal_displacement=solution.displacement,

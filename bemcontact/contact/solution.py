@@ -131,6 +131,7 @@ class ContactSolution(WithHints):
     smallest_eigenvalue : of the scaled Hessian on the equilibrium space, where the formulation looked at it
     search : how a local solver came to its end, if one was used
     history : how the solver got there, in the order in which it happened; the polish adds nothing
+    undetermined : names of free motions that contact leaves open; their amplitudes follow a rule
     notes : what a person should know
     """
 
@@ -145,6 +146,7 @@ class ContactSolution(WithHints):
     smallest_eigenvalue: float | None = None
     search: LocalSearch | None = None
     history: tuple[Trace, ...] = ()
+    undetermined: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

@@ -49,14 +49,15 @@ def with_chosen_position(
     if not body.residual(p, a) <= ACCEPTED:
         return solution
     p, u_n, a = unscaled(contact, p, a)
-    named = [name for name, way in zip(contact.motion_names, ways, strict=True) if way]
+    named = tuple(name for name, way in zip(contact.motion_names, ways, strict=True) if way)
     note = (
         f"not determined: the {' and the '.join(named)}; the position that is given has the least normal displacement "
         "of the contact points; state a load or a displacement that holds it, if it matters"
     )
     return replace(
-        solution, pressure=p, displacement=u_n, rigid_amplitudes=a, notes=tuple(dict.fromkeys((*solution.notes, note)))
-    )
+        solution, pressure=p, displacement=u_n, rigid_amplitudes=a, undetermined=named,
+        notes=tuple(dict.fromkeys((*solution.notes, note))),
+    )  # fmt: skip
 
 
 def _unseen(body: ScaledContact, held: BoolArray) -> Array:

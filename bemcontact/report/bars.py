@@ -97,7 +97,7 @@ def with_error(value: float, error: float) -> str:
 def _rounded(values: Sequence[float], error: float) -> tuple[list[str], str, int]:
     """Numbers and their error over a power of ten: the error rounded up, and no number with a digit beyond it."""
     largest = max(map(abs, values))
-    power = int(np.floor(np.log10(largest))) if largest else 0
+    power = int(np.floor(np.log10(max(largest, error))))
     power = 0 if -4 <= power < 6 else power
     error = max(error, LEAST_SHOWN * largest) / 10.0**power
     first = int(np.floor(np.log10(error) + ROUND_OFF))

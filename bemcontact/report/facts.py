@@ -74,10 +74,15 @@ def _peaks(record: Record, units: Units) -> Iterator[tuple[str, str]]:
         yield "Peak pressure", f"{words}; per UNDEFORMED length"
     if infinite:
         for bar in bars_of(record, "peak"):
-            written = (
-                bar["note"] if bar["value"] is None else with_unit(with_bar(bar["value"], bar["bar"]), units.stress)
-            )
-            yield "Peak pressure", f"of {bar['zone']}: {written}"
+            yield "Peak pressure", f"of {bar['zone']}: {_peak_of_zone(bar, record, units)}"
+
+
+def _peak_of_zone(bar: Record, record: Record, units: Units) -> str:
+    """Write the largest pressure of a zone with its error, or where and why it is infinite."""
+    if bar["value"] is not None:
+        return with_unit(with_bar(bar["value"], bar["bar"]), units.stress)
+    place = bar["at"] and vector(bar["at"], units.length, scale=coordinate_size(record))
+    return f"infinite at {place}: {bar['note'].removeprefix('infinite ')}" if place else bar["note"]
 
 
 def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
@@ -145,6 +150,9 @@ def _amount(record: Record, motion: int, units: Units) -> str:
     if angles is None:
         return ""
     angle = angles[motion]
+    if record["motion_names"][motion] in record["undetermined"]:
+        chosen = with_unit(number(angle or moved), "rad" if angle else units.length)
+        return f": not determined; chosen is {chosen}"
     bar = _bar_of_motion(record, "rotation" if angle else "motion", record["motion_names"][motion])
     unit = "rad" if angle else units.length
     return f": {with_unit(with_bar(abs(angle) if angle else moved, bar), unit)}"
@@ -250,12 +258,7 @@ def span(interval: Record, size: float, units: Units) -> str:
 
 def zone_forces(record: Record, units: Units) -> dict[str, str]:
     """Write the force of each rigid surface on the body with its error: ``{"foot": "(0, 3.00) ± 0.02 N/mm"}``."""
-    forces = np.multiply(record["tributary_lengths"], record["pressure"])[:, None] * np.array(record["normals"])
-    zones = np.array(record["zone"])
-    return {
-        zone: _force(forces[zones == zone].sum(axis=0).tolist(), record, zone, units)
-        for zone in dict.fromkeys(record["zone"])
-    }
+    return {zone: _force(force, record, zone, units) for zone, force in record["forces"].items()}
 
 
 def _force(components: tuple[float, float], record: Record, zone: str | None, units: Units) -> str:

@@ -37,6 +37,7 @@ from bemcontact.report.formatting import (
     vector,
     volume_loads,
     with_unit,
+    zero_if_negligible,
 )
 from bemcontact.report.verdicts import Verdict, case_verdicts, overall, path_verdicts, result_verdicts, study_verdicts
 
@@ -70,7 +71,8 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
         action = tool_in_words(problem.tool_action(name), units)
         add(shown, "Tool", f"{name}, the surface of {' and '.join(tool.zones)}: {action}")
     total = vector(checked.total_load, units.line_force, scale=checked.load_magnitude)
-    add(shown, "Total load", f"{total}, without reactions")
+    without = " and tools" if problem.tools else ""
+    add(shown, "Total load", f"{total}, without reactions{without}")
     held = {0: "all rigid motions", 3: "no rigid motion"}
     add(shown, "Held by conditions", held.get(checked.free_motions, "all rigid motions except those below"))
     for motion in checked.held_by_contact:
@@ -175,7 +177,8 @@ def _zone_table(checked: CheckedProblem) -> Table:
     table = table_of("contact zone", "edges", "points", "smallest gap", "rigid surface")
     for name, zone in checked.problem.contact_zones.items():
         gap = checked.gaps[name]
-        smallest = with_unit(number(checked.smallest_gaps[name]), checked.problem.units.length)
+        least = zero_if_negligible(checked.smallest_gaps[name], checked.problem.boundary.size)
+        smallest = with_unit(number(least), checked.problem.units.length)
         edges, surface = ", ".join(checked.problem.edges_of(name)), surface_in_words(zone.surface)
         table.add_row(*map(Text, (name, edges, f"{len(gap)}", smallest, surface)))
     return table

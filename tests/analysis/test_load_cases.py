@@ -115,7 +115,7 @@ def test_notes_are_those_of_the_case():
     for name in ("down", "aside", "both"):
         told = together.results[name].notes
         assert told == bemcontact.solve(stated.with_case(name)).notes
-        assert any("it is not determined" in note for note in told) is (name == "down")
+        assert any("not determined: the translation" in note for note in told) is (name == "down")
 
 
 @cache

@@ -478,3 +478,23 @@ def test_a_slot_that_closes_is_found(low, share, turn, size):
     expected = Misfit.ITSELF if share < 10 else Misfit.NOT_SMALL
     assert (kind is expected) is (share > 1)
     assert share < 1 or not result.certified
+
+
+@pytest.mark.parametrize("share", [0.85, 1.25])
+@pytest.mark.parametrize("thin", [1e-2, 1e-4])
+def test_a_thin_hole_that_turns_inside_out_is_found(share, thin):
+    """An elliptical hole stays an ellipse, and its sides meet everywhere at once, at p = E' b / 2a (Inglis 1913)."""
+    E, a, half = 210e3, 1.0, 10.0
+    corners = {"bottom": (-half, -half), "right": (half, -half), "top": (half, half), "left": (-half, half)}
+    hole = {"name": "hole", "kind": "ellipse", "center": (0, 0), "semi_axes": (a, thin * a), "angles": (0, -360)}
+    problem = Problem(
+        name="plate", accuracy=0.05, material={"young_modulus": E, "poisson_ratio": 0.3},
+        boundary={"outer": [{"name": name, "start": at} for name, at in corners.items()], "holes": [[hole]]},
+        conditions={"top": {"pressure": share * E / (1 - 0.3**2) * thin / 2}},
+        contact_zones={"floor": {"edges": "bottom", "surface": {
+            "kind": "plane", "point": (0, -half), "normal": (0, 1)}}},
+    )  # pyright: ignore  # fmt: skip
+    result = solve(problem)
+    kind = None if result.penetration is None else result.penetration.kind
+    assert kind is (Misfit.ITSELF if share > 1 else None)
+    assert result.certified is (share < 1)

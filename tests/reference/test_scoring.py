@@ -172,7 +172,9 @@ def test_mean_square_is_that_of_the_tributary_lengths():
 def test_where_nothing_touches_nothing_holds():
     problem = bemcontact.loads(BLOCK)
     contact = bemcontact.condense(problem)
-    nothing = Footprint(intervals=(), peak=None, resultant=Resultant(force=(0.0, 0.0), moment=0.0, line_point=None))
+    nothing = Footprint(
+        intervals=(), peak=None, resultant=Resultant(force=(0.0, 0.0), moment=0.0, line_point=None), forces={}
+    )
     found = score(expected(problem, contact), contact, nothing, np.zeros(contact.size))
     assert not any(item.holds for item in found)
     ends = [item for item in found if "of contact" in item.quantity]

@@ -134,7 +134,7 @@ def test_sections_without_content_are_left_out():
 @pytest.mark.parametrize(
     ("study", "says"),
     [
-        (on_one_mesh, "so no other state exists"),
+        (on_one_mesh, "o other state exists, because"),
         (not_unique, "proved to be a solution, but not the only one"),
     ],
 )

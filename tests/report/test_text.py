@@ -327,8 +327,8 @@ def test_of_several_zones_the_force_of_each_is_reported():
 def test_a_force_has_no_digit_beyond_its_error(bar: float, x: float, y: float):
     """The error that is written is not smaller than the bar, and twice it at most; the force is within half a digit."""
     record = {
-        "zone": ["foot"], "tributary_lengths": [1.0], "pressure": [np.hypot(x, y)], "intervals": [{"zone": "foot"}],
-        "normals": [[x / np.hypot(x, y), y / np.hypot(x, y)]],
+        "forces": {"foot": (x, y)}, "intervals": [{"zone": "foot"}], "tributary_lengths": [1.0],
+        "pressure": [np.hypot(x, y)],
         "accuracy": {"bars": [{"quantity": "force", "zone": "foot", "value": np.hypot(x, y), "bar": bar}]},
     }  # fmt: skip
     written = zone_forces(record, Units())["foot"]
