@@ -226,8 +226,9 @@ def _infinite(its: Sequence[Singularity]) -> str:
         return "infinite where contact reaches the end of its zone: a corner of the surface, or else a zone too short"
     if any(item.exponent == 0 for item in its):
         return (
-            "infinite like a logarithm, or nearly so: at a kink of the surface, or at a corner of the body because of "
-            "its angle, a shear load beside the contact, or a surface at an angle to the edge"
+            "infinite like a logarithm, or nearly so: at a kink of the surface or the body (draw a curve as arcs or a "
+            "spline, not as lines), or at a corner because of its angle, a shear load beside the contact, or a surface "
+            "at an angle to the edge"
         )
     return "infinite at a corner or a kink"
 

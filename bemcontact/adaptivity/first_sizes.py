@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from bemcontact.arrays import Array
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, Polyline, RigidSurface, Shape
+from bemcontact.problem.validation import Point
 
 TURN = pi / 6
 """Angle [rad] by which an element may turn."""
@@ -26,6 +28,8 @@ ACROSS = 0.5
 """Cosine of the largest angle to the inward normal under which a part of the boundary faces another one."""
 SAMPLES = 800
 """Samples of the whole boundary, and of an edge under a rigid surface."""
+AT_END = 1e-6
+"""Distance over the length of an edge up to which a place is an end of it."""
 MOST_HALVINGS = 40
 """Halvings of the part of an edge with its sharpest bend, in the search for how sharp it is."""
 LEAST_SAMPLES = 24
@@ -144,7 +148,7 @@ def surface_sizes(problem: Problem, outline: SizedOutline) -> tuple[dict[int, li
                 if edge.name in problem.edges_of(name):
                     start = loop.start_of[edge.name]
                     limits.setdefault(number, []).extend(_near(edge, start, zone.surface))
-                    for fraction in surface_corners(edge, zone.surface):
+                    for fraction, _ in surface_corners(edge, zone.surface):
                         place = start + fraction * edge.length
                         marks.setdefault(number, []).append(place)
                         limits[number].append(Limit(low=place, high=place, size=AT_CORNER * edge.length))
@@ -178,11 +182,30 @@ def _gaps(edge: Edge, surface: Shape, fractions: Array) -> Array:
     return surface.closest(edge.points(np.clip(fractions, 0, 1).ravel())).gap.reshape(fractions.shape)
 
 
-def surface_corners(edge: Edge, surface: RigidSurface) -> Iterator[float]:
-    """Fractions of the length where an edge is nearest to a corner of a polyline, if that is inside."""
+class SurfaceCorner(NamedTuple):
+    """Where an edge is nearest to a corner of a polyline.
+
+    Parameters
+    ----------
+    fraction : of the length of the edge
+    turn : angle by which the polyline turns away from the body [rad]
+    """
+
+    fraction: float
+    turn: float
+
+
+def surface_corners(edge: Edge, surface: RigidSurface, *, at_ends: bool = False) -> Iterator[SurfaceCorner]:
+    """Where an edge is nearest to a corner of a polyline, if that is inside or, if wanted, right at an end."""
     if not isinstance(surface, Polyline):
         return
-    for corner in surface.points[1:-1]:
+    for corner, turn in zip(surface.points[1:-1], surface.turns.tolist(), strict=True):
         fraction = edge.curve.fraction_at(corner)
-        if 1e-6 < fraction < 1 - 1e-6:
-            yield fraction
+        if AT_END < fraction < 1 - AT_END or (at_ends and _is_opposite(edge, round(fraction), corner)):
+            yield SurfaceCorner(fraction, turn)
+
+
+def _is_opposite(edge: Edge, end: int, corner: Point) -> bool:
+    """Whether a corner is opposite to an end of an edge."""
+    at = np.array([float(end)])
+    return abs(float((np.array(corner) - edge.points(at)[0]) @ edge.directions(at)[0])) < AT_END * edge.length

@@ -8,7 +8,7 @@ import numpy as np
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved
 from bemcontact.adaptivity.first_sizes import surface_corners
 from bemcontact.adaptivity.wedge_exponents import Face, contact_face, slow_change, wedge_exponents
-from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
+from bemcontact.adaptivity.zone_runs import CORNER, ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 
 GROWING = 1.04, 1.9
@@ -32,6 +32,8 @@ On a half-plane p s^α is a polynomial in s; beside other corners it has other p
 """
 SHARP = 1e-4
 """Rounding of a corner over the contact up to which its pressure must be right."""
+STRAIGHT = 1e-9
+"""Angle of a kink that is none [rad]."""
 SAME = 1e-6
 """Distance of two places over the length of their run up to which they are one."""
 
@@ -48,6 +50,8 @@ class ContactPlace:
     """Whether contact reaches the end of its zone there."""
     corner: bool = False
     """Whether the boundary or the surface has a corner there."""
+    kink: float = 0.0
+    """Angle by which surface and body, both as drawn, turn away from each other there [rad]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,13 +184,24 @@ def _rise(difference: MeshDifference, place: ContactPlace) -> float:
     if not at > 0:
         return 0.0
     wedge, loads = _wedge_at(fine, answer, run, place.position)
+    _, length = contact_beside(run, answer.stretches[run.number], place.position)
+    size = max(float(fine.weights[elements].sum(axis=1).min()) / (length or run.length), SHARP)
+    if all(face.contact for face in wedge[2]) and abs(wedge[1] - np.pi) < CORNER:
+        return max(0.0, (at + _slope(fine, place.kink) * np.log(size / SHARP)) / peak - 1)
     change = slow_change(*wedge, loads)
     if change is None:
         return 0.0
-    _, length = contact_beside(run, answer.stretches[run.number], place.position)
-    size = max(float(fine.weights[elements].sum(axis=1).min()) / (length or run.length), SHARP)
     sharp = max(change.at(face, at, SHARP / size) for face in range(2) if wedge[2][face].contact)
     return max(0.0, sharp / peak - 1)
+
+
+def _slope(solved: Solved, kink: float) -> float:
+    """Growth of the pressure [p] under a blunt kink with the logarithm of the distance: E* / 2π times the angle.
+
+    Johnson, "Contact Mechanics" (1985), section 5.2: p = (E*/π) cot α arcosh(a/x) under a blunt wedge.
+    """
+    material = solved.body.problem.material
+    return 2 * material.shear_modulus / (1 - material.effective_poisson_ratio) * kink / (2 * np.pi)
 
 
 def _wedge_at(
@@ -229,13 +244,23 @@ def _places(difference: MeshDifference) -> Iterator[ContactPlace]:
                     at = position % run.length if run.closed else position
                     end = not run.closed and min(at, run.length - at) <= 1e-9 * run.length
                     yield ContactPlace(run=run.number, zone=run.zone, position=at, end=end, corner=not end)
-        for position, corner in zip(run.joints, run.corner, strict=True):
-            if corner and (run.closed or 0 < position < run.length):
-                yield ContactPlace(run=run.number, zone=run.zone, position=float(position), corner=True)
-        surface = coarse.body.problem.contact_zones[run.zone].surface
-        for edge, start in zip(run.edges, run.joints, strict=False):
-            for fraction in surface_corners(edge, surface):
-                yield ContactPlace(run=run.number, zone=run.zone, position=start + fraction * edge.length, corner=True)
+        kinks = dict(_turns_of_surface(coarse, run))
+        for position, turn in zip(run.joints.tolist(), run.turn.tolist(), strict=True):
+            same = [at for at in kinks if abs(at - position) <= SAME * run.length]
+            turn += max((kinks.pop(at) for at in same), default=0.0)
+            if same or abs(turn) > STRAIGHT:
+                kinks[position] = turn
+        for position, kink in kinks.items():
+            if run.closed or 0 < position < run.length:
+                yield ContactPlace(run=run.number, zone=run.zone, position=position, corner=True, kink=kink)
+
+
+def _turns_of_surface(solved: Solved, run: ZoneRun) -> Iterator[tuple[float, float]]:
+    """Position of each corner of the surface on a run, and how the surface turns away from the body there [rad]."""
+    surface = solved.body.problem.contact_zones[run.zone].surface
+    for edge, start in zip(run.edges, run.joints, strict=False):
+        for fraction, turn in surface_corners(edge, surface, at_ends=True):
+            yield float(start + fraction * edge.length), turn
 
 
 def elements_at(solved: Solved, run: ZoneRun, position: float) -> IntArray:

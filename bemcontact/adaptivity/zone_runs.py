@@ -34,7 +34,8 @@ class ZoneRun:
     closed : whether the last edge ends where the first begins
     arc : (m + 1,) arc length of the elements up to each element end, as contact points have it
     breakpoints : of each edge, fractions of its length where its elements begin and end
-    corner : (k + 1,) whether the boundary turns sharply at each joint of the k edges; false at the ends of an open run
+    turn : (k + 1,) angle by which the boundary turns to the left, where the body is, at each joint of the k edges [rad];
+        zero at the ends of an open run
     beside : the edges before and after the piece; none if it is closed
     """
 
@@ -44,7 +45,7 @@ class ZoneRun:
     closed: bool
     arc: Array
     breakpoints: tuple[Array, ...]
-    corner: BoolArray
+    turn: Array
     beside: tuple[Edge, ...]
 
     @property
@@ -56,6 +57,11 @@ class ZoneRun:
     def joints(self) -> Array:
         """Positions (k + 1,) where edges begin and end."""
         return np.concatenate([[0.0], np.cumsum([edge.length for edge in self.edges])])
+
+    @property
+    def corner(self) -> BoolArray:
+        """Whether the boundary turns sharply at each joint (k + 1,)."""
+        return np.abs(np.sin(self.turn)) >= CORNER
 
     @cached_property
     def ends(self) -> Array:
@@ -102,9 +108,6 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
         edges = tuple(problem.edge(name) for name in names)
         closed = bool(np.isfinite(points.run_length[number]))
         breakpoints = tuple(edge.breakpoints(problem.mesh.refine) for edge in edges)
-        firsts = np.cumsum([0, *(len(fractions) - 1 for fractions in breakpoints[:-1])])
-        corner = np.append(np.abs(mesh.turns[elements[firsts]]) >= CORNER, closed)
-        corner[[0, -1]] &= closed and corner[0]
         outside = mesh.before[elements[0]], mesh.elements[elements[-1], 2]
         yield ZoneRun(
             number=number,
@@ -113,9 +116,18 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
             closed=closed,
             arc=np.concatenate([[0.0], np.cumsum(lengths[elements])]),
             breakpoints=breakpoints,
-            corner=corner,
+            turn=_turns(edges, closed=closed),
             beside=() if closed else tuple(problem.edge(mesh.edge_names[mesh.edge[i]]) for i in outside),
         )
+
+
+def _turns(edges: Sequence[Edge], *, closed: bool) -> Array:
+    """Angle by which the boundary turns to the left where each edge begins and the last one ends [rad]."""
+    begins, ends = (np.array([edge.directions(np.array([at]))[0] for edge in edges]) for at in (0.0, 1.0))
+    before, after = np.vstack([ends[-1:], ends]), np.vstack([begins, begins[:1]])
+    turns = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=1))
+    turns[[0, -1]] *= closed
+    return turns
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -74,7 +74,7 @@ def _smallest_gap(body: Body, zone: int) -> float:
     own = np.unique(points.element[points.zone[points.point] == zone])
     for edge in map(problem.edge, problem.edges_of(name)):
         ends, first = edge.breakpoints(problem.mesh.refine), np.argmax(mesh.edge == mesh.edge_names.index(edge.name))
-        nearest = [*nearest_places(edge, surface)[0], *surface_corners(edge, surface)]
+        nearest = [*nearest_places(edge, surface)[0], *(corner.fraction for corner in surface_corners(edge, surface))]
         if inside := [at for at in nearest if first + np.searchsorted(ends, at) - 1 in own]:
             least = float(surface.closest(edge.points(np.array(inside))).gap.min(initial=least))
     return least

@@ -198,10 +198,15 @@ class Polyline(SpecModel):
         return ((nearest == 0) & (along < -slack)) | ((nearest == last) & (along > length + slack))
 
     @cached_property
+    def turns(self) -> Array:
+        """Angle [rad] by which the line turns away from the body at each of its inner corners (s - 1,)."""
+        before, after = self.sides.directions[:-1], self.sides.directions[1:]
+        return np.arctan2(-_cross(before, after), _dot(before, after))
+
+    @cached_property
     def _concave(self) -> BoolArray:
         """Whether the line turns towards the body at each of its inner corners."""
-        directions = self.sides.directions
-        return _cross(directions[:-1], directions[1:]) > 0
+        return self.turns < 0
 
     def _concave_beside(self, segment: IntArray) -> BoolArray:
         """Whether the line turns towards the body (2, k) where each segment (k,) starts, and where it ends."""

@@ -119,7 +119,8 @@ def test_curvatures_of_body_and_surface_add():
 def test_corners_of_a_polyline_are_ends_of_elements():
     kinked = {"kind": "polyline", "points": [[-10, 0], [12, 0], [31, -0.1], [60, -1]]}
     problem = block(40, 20, kinked)
-    corners = [*surface_corners(problem.edge("bottom"), problem.contact_zones["floor"].surface)]
+    surface = problem.contact_zones["floor"].surface
+    corners = [corner.fraction for corner in surface_corners(problem.edge("bottom"), surface)]
     assert corners == pytest.approx([12 / 40, 31 / 40], rel=1e-9)
     ends = first_mesh(problem).edge("bottom").breakpoints(1)
     for fraction in corners:

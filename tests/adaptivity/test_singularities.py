@@ -8,7 +8,7 @@ import pytest
 
 from bemcontact.adaptivity.adapt import meshed
 from bemcontact.adaptivity.fields import solved
-from bemcontact.adaptivity.singularities import ContactPlace, Singularity, Watch, _History, _nearest
+from bemcontact.adaptivity.singularities import ContactPlace, Singularity, Watch, _History, _nearest, _slope
 from bemcontact.problem import Problem
 from bemcontact.spec import load
 
@@ -129,3 +129,38 @@ def test_a_logarithm_is_told_or_in_the_error_bar(shear: float, accuracy: float, 
     (peak,) = (bar for bar in found.bars if bar.quantity == "peak")
     assert (peak.value is None) == infinite
     assert peak.bar is None or peak.bar * peak.value >= 4 * shear / np.pi * np.log(10)
+
+
+def on_polyline(points: list[tuple[float, float]], accuracy: float | None, elements: int | None = None) -> Problem:
+    """A block of 40 x 15 between smooth walls, pressed on a polyline below it."""
+    corners, wall = {"bottom": (0, 0), "right": (40, 0), "top": (40, 15), "left": (0, 15)}, {"displacement": {"x": 0}}
+    return Problem.model_validate({
+        "name": "block", "accuracy": accuracy, "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+        "boundary": {"outer": [{"name": key, "start": at, "elements": elements} for key, at in corners.items()]},
+        "conditions": {"top": {"pressure": 20}, "left": wall, "right": wall},
+        "contact_zones": {"floor": {"edges": "bottom", "surface": {"kind": "polyline", "points": points}}},
+    })  # fmt: skip
+
+
+def on_a_ridge(turn: float, elements: int) -> float:
+    """Pressure at a corner of this angle, pressed on a body with elements of equal lengths."""
+    sides = [(0.0, -20 * np.tan(turn / 2)), (20.0, 0.0), (40.0, -20 * np.tan(turn / 2))]
+    return float(solved(on_polyline(sides, None, elements)).answers[0].pressure.max())
+
+
+def test_under_a_blunt_corner_the_pressure_grows_like_the_logarithm():
+    """By E*/2π times the angle and ln 2 each time that the elements are cut in two (Johnson 1985, section 5.2)."""
+    turn = 5e-4
+    first, second, third = (on_a_ridge(turn, count) for count in (30, 60, 120))
+    each = _slope(solved(on_polyline([(0, 0), (20, 0), (40, 0)], None, 4)), turn) * np.log(2)
+    assert second - first == pytest.approx(each, rel=0.03)
+    assert third - second == pytest.approx(each, rel=0.01)
+
+
+@pytest.mark.parametrize(("facets", "accuracy"), [(100, 0.1), (40, 0.01)])
+def test_a_curve_drawn_as_lines_has_infinite_peaks_whatever_is_asked(facets: int, accuracy: float):
+    """A mesh that does not resolve facets sees a round surface, with a peak that is finite and of no meaning."""
+    angles = np.radians(np.linspace(135, 45, facets + 1))
+    circle = np.column_stack([20 + 50 * np.cos(angles), 50 * (np.sin(angles) - 1)])
+    (judged,) = meshed(on_polyline([(x, y) for x, y in circle.tolist()], accuracy)).accuracies
+    assert judged.infinite == ("floor",)
