@@ -34,7 +34,7 @@ class ZoneRun:
     closed : whether the last edge ends where the first begins
     arc : (m + 1,) arc length of the elements up to each element end, as contact points have it
     breakpoints : of each edge, fractions of its length where its elements begin and end
-    turn : (k + 1,) angle by which the boundary turns to the left, where the body is, at each joint of the k edges [rad];
+    turn : (k + 1,) angle by which the boundary turns to the left, into the body, at each joint of the k edges [rad];
         zero at the ends of an open run
     beside : the edges before and after the piece; none if it is closed
     """
