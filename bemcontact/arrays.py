@@ -1,6 +1,6 @@
 """Types of arrays, the reading of arrays that users give, read-only arrays, and remainders without rounding."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
 from decimal import Decimal
 from math import fsum
@@ -18,8 +18,8 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 ComplexArray = NDArray[np.complex128]
 
-BLOCK = 256
-"""Rows of which products are held at a time."""
+BLOCK = 32
+"""Rows of which products are held at a time, so that they stay in the cache."""
 
 Shape = tuple[int | None, ...]
 """Shape of an array that is needed; None is any length."""
@@ -139,15 +139,39 @@ def _described(value: Any, array: NDArray[Any]) -> str:
 def exact_remainders(right: Array, rows: Array, x: Array) -> Array:
     """The components of right - rows x, each rounded once: Dekker's products of halves of numbers, and exact sums."""
     remainders = right - rows @ x
-    high, low = _halves(x)
-    for first in range(0, len(rows), BLOCK):
-        part = slice(first, first + BLOCK)
-        products, (upper, lower) = rows[part] * x, _halves(rows[part])
-        lost = lower * low - (((products - upper * high) - lower * high) - upper * low)
+    for part, products, lost in _exact_products(rows, x):
         terms = np.column_stack([right[part], -products, -lost])
         if np.isfinite(terms).all():
             remainders[part] = [fsum(row) for row in terms.tolist()]
     return remainders
+
+
+def fine_remainders(right: Array, rows: Array, x: Array) -> Array:
+    """The components of right - rows x as of numbers with twice as many digits, in a tenth of the time of exact ones.
+
+    Sums of two numbers leave their rounding behind (Knuth), which is added at the end.
+    """
+    remainders = right - rows @ x
+    for part, products, lost in _exact_products(rows, x):
+        sums, rounding = np.column_stack([right[part], -products]), -lost.sum(axis=1)
+        while (half := sums.shape[1] // 2) > 0:
+            one, other, rest = sums[:, :half], sums[:, half : 2 * half], sums[:, 2 * half :]
+            sums = one + other
+            added = sums - one
+            rounding += ((one - (sums - added)) + (other - added)).sum(axis=1)
+            sums = np.hstack([sums, rest]) if rest.size else sums
+        better = sums[:, 0] + rounding
+        remainders[part] = np.where(np.isfinite(better), better, remainders[part])
+    return remainders
+
+
+def _exact_products(rows: Array, x: Array) -> Iterator[tuple[slice, Array, Array]]:
+    """Products (k, n) of some rows with x, and what rounding took from each."""
+    high, low = _halves(x)
+    for first in range(0, len(rows), BLOCK):
+        part = slice(first, first + BLOCK)
+        products, (upper, lower) = rows[part] * x, _halves(rows[part])
+        yield part, products, lower * low - (((products - upper * high) - lower * high) - upper * low)
 
 
 def _halves(numbers: Array) -> tuple[Array, Array]:

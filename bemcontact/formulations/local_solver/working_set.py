@@ -17,7 +17,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, BoolArray, exact_remainders
+from bemcontact.arrays import Array, BoolArray, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import (
     add_rank_one,
     independent_rows,
@@ -39,7 +39,7 @@ ALIKE = 1e-12
 """Limit, in place of `DEPENDENT`, for a constraint that enters after it blocked a step, if N has all its digits."""
 
 FEW_DIGITS = 1e-12
-"""Relative rounding of a component of a point on rows beyond which their remainders are computed without rounding."""
+"""Relative rounding of a component of a point on rows beyond which remainders are computed with twice the digits."""
 
 SHARP, WEAR = 1e-12, 1e-8
 """Relative size of a refinement above which refinements are needed, and above which N is computed again."""
@@ -281,7 +281,7 @@ class WorkingSet:
         lost = EPS * np.abs(N).dot(np.abs(W).dot(np.abs(near)))
         if not np.count_nonzero(lost > FEW_DIGITS * np.abs(near)):
             return near
-        return near + N.dot(exact_remainders(targets[ids], W, near))
+        return near + N.dot(fine_remainders(targets[ids], W, near))
 
 
 def supporting(progress: Progress, sides: Sides) -> Sides:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from bemcontact.arrays import exact_remainders
+from bemcontact.arrays import exact_remainders, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import orthogonal
 from bemcontact.formulations.local_solver.phase_two import ReducedHessian
-from bemcontact.formulations.local_solver.statement import Statement
+from bemcontact.formulations.local_solver.statement import EPS, Statement
 from bemcontact.formulations.local_solver.working_set import TEMPORARY, WorkingSet
 
 
@@ -217,3 +217,10 @@ def test_remainders_are_those_of_fractions(seed):
         for b, row in zip(right.tolist(), rows.tolist(), strict=True)
     ]
     assert exact_remainders(right, rows, x).tolist() == [float(value) for value in exact]
+    terms = np.abs(right) + np.abs(rows) @ np.abs(x)
+    off = [
+        abs(Fraction(found) - value)
+        for found, value in zip(fine_remainders(right, rows, x).tolist(), exact, strict=True)
+    ]
+    half_a_digit = EPS / 2 * np.abs(np.array(exact, float))
+    assert (np.array(off, float) <= half_a_digit * (1 + 1e-9) + 100 * EPS**2 * terms).all()
