@@ -142,12 +142,29 @@ def exact_remainders(right: Array, rows: Array, x: Array) -> Array:
     high, low = _halves(x)
     for first in range(0, len(rows), BLOCK):
         part = slice(first, first + BLOCK)
-        products, (upper, lower) = rows[part] * x, _halves(rows[part])
-        lost = lower * low - (((products - upper * high) - lower * high) - upper * low)
-        terms = np.column_stack([right[part], -products, -lost])
+        products = rows[part] * x
+        terms = np.column_stack([right[part], -products, -_lost(products, _halves(rows[part]), (high, low))])
         if np.isfinite(terms).all():
             remainders[part] = [fsum(row) for row in terms.tolist()]
     return remainders
+
+
+def product_remainders(one: Array, other: Array) -> Array:
+    """What rounding takes from the products of two arrays."""
+    return _lost(one * other, _halves(one), _halves(other))
+
+
+def sum_remainders(one: Array, other: Array) -> Array:
+    """What rounding takes from the sums of two arrays."""
+    total = one + other
+    part = total - one
+    return (one - (total - part)) + (other - part)
+
+
+def _lost(products: Array, one: tuple[Array, Array], other: tuple[Array, Array]) -> Array:
+    """What rounding took from products of numbers, of which the halves are given."""
+    (upper, lower), (high, low) = one, other
+    return lower * low - (((products - upper * high) - lower * high) - upper * low)
 
 
 def _halves(numbers: Array) -> tuple[Array, Array]:
