@@ -156,10 +156,8 @@ def fine_remainders(right: Array, rows: Array, x: Array) -> Array:
         sums, rounding = np.column_stack([right[part], -products]), -lost.sum(axis=1)
         while (half := sums.shape[1] // 2) > 0:
             one, other, rest = sums[:, :half], sums[:, half : 2 * half], sums[:, 2 * half :]
-            sums = one + other
-            added = sums - one
-            rounding += ((one - (sums - added)) + (other - added)).sum(axis=1)
-            sums = np.hstack([sums, rest]) if rest.size else sums
+            rounding += sum_remainders(one, other).sum(axis=1)
+            sums = np.hstack([one + other, rest]) if rest.size else one + other
         better = sums[:, 0] + rounding
         remainders[part] = np.where(np.isfinite(better), better, remainders[part])
     return remainders
@@ -170,8 +168,26 @@ def _exact_products(rows: Array, x: Array) -> Iterator[tuple[slice, Array, Array
     high, low = _halves(x)
     for first in range(0, len(rows), BLOCK):
         part = slice(first, first + BLOCK)
-        products, (upper, lower) = rows[part] * x, _halves(rows[part])
-        yield part, products, lower * low - (((products - upper * high) - lower * high) - upper * low)
+        products = rows[part] * x
+        yield part, products, _lost(products, _halves(rows[part]), (high, low))
+
+
+def product_remainders(one: Array, other: Array) -> Array:
+    """What rounding takes from the products of two arrays."""
+    return _lost(one * other, _halves(one), _halves(other))
+
+
+def sum_remainders(one: Array, other: Array) -> Array:
+    """What rounding takes from the sums of two arrays."""
+    total = one + other
+    part = total - one
+    return (one - (total - part)) + (other - part)
+
+
+def _lost(products: Array, one: tuple[Array, Array], other: tuple[Array, Array]) -> Array:
+    """What rounding took from products of numbers, of which the halves are given."""
+    (upper, lower), (high, low) = one, other
+    return lower * low - (((products - upper * high) - lower * high) - upper * low)
 
 
 def _halves(numbers: Array) -> tuple[Array, Array]:

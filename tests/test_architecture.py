@@ -136,8 +136,8 @@ def imports_at_the_top(name: str, tree: ast.Module) -> Iterator[str]:
         if node in tree.body:
             continue
         for target in imported(node):
-            # so that `bemcontact --help` answers without the numerical half
-            may = within(name, "bemcontact.cli")
+            # so that `bemcontact --help` answers without the numerical half, and an interrupt of it without a traceback
+            may = within(name, "bemcontact.cli") or name == "bemcontact.__main__"
             late = target.split(".")[0] in SLOW or (may and within(target, "bemcontact"))
             if not late:
                 yield f"{name} imports {target} away from the top"

@@ -1,8 +1,8 @@
 """The equations of contact in dimensionless numbers with their round-off, and pressures in equilibrium.
 
 Ordinary sums know δ = q + M y + R a to n ε (|q| + |M||y| + |R||a|). Where a body turns easily, about a short edge that
-holds it, the terms are far larger than δ. Then they are added without rounding, of the numbers as they are: units are
-powers of two.
+holds it, the terms are far larger than δ. Then they are added without rounding, of the numbers as they are stored:
+units are powers of two, and what rounding takes from q = ε + Δ1 and ℓ = J R is added too.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from bemcontact.arrays import Array, exact_remainders, powers_of_two
+from bemcontact.arrays import Array, exact_remainders, powers_of_two, product_remainders, sum_remainders
 from bemcontact.assessment.definiteness import EPS
 from bemcontact.contact.condensed_contact import CondensedContact
 
@@ -35,6 +35,7 @@ class ContactEquations:
     weights : (n,) D, the largest about one
     compliance, offset, rigid_motions : M (n, n) with ‖M‖∞ about one, q (n,), R (n, k)
     equilibrium, load : ℓ (n, k) with columns of length about one, and the load (k,) to match
+    offset_rest, equilibrium_rest : what rounding took from q = ε + Δ1 and from the products ℓ = J R; zero if not exact
     exact : whether all units are powers of two, and sums are rounded once
     """
 
@@ -45,6 +46,8 @@ class ContactEquations:
     rigid_motions: Array
     equilibrium: Array
     load: Array
+    offset_rest: Array
+    equilibrium_rest: Array
     exact: bool
 
     @classmethod
@@ -53,6 +56,10 @@ class ContactEquations:
         rounded = powers_of_two if exact else np.asarray
         U, T = (float(unit) for unit in rounded(np.array(contact.scales)))
         length = rounded(np.linalg.norm(contact.equilibrium, axis=0))
+        offset_rest, ell_rest = np.zeros_like(contact.offset), np.zeros_like(contact.equilibrium)
+        if exact:
+            offset_rest = sum_remainders(contact.initial_gap, contact.free_displacement)
+            ell_rest = product_remainders(contact.weights[:, None], contact.rigid_motions)
         return cls(
             units=(U, T),
             weights=contact.weights / rounded(contact.weights.max()),
@@ -61,6 +68,8 @@ class ContactEquations:
             rigid_motions=contact.rigid_motions,
             equilibrium=contact.equilibrium / length,
             load=contact.motion_load / (length * T),
+            offset_rest=offset_rest / U,
+            equilibrium_rest=ell_rest / length,
             exact=exact,
         )
 
@@ -70,13 +79,14 @@ class ContactEquations:
         if not self.exact:
             terms = np.abs(q) + np.abs(M) @ y + np.abs(R) @ np.abs(a)
             return q + M @ y + R @ a, len(D) * EPS * terms
-        delta = exact_remainders(q, -np.hstack([M, R]), np.concatenate([y, a]))
+        columns = np.hstack([self.offset_rest[:, None], M, R])
+        delta = exact_remainders(q, -columns, np.concatenate([[1.0], y, a]))
         return delta, 2 * EPS * (np.abs(delta) + np.abs(R) @ np.abs(a))
 
     def imbalance(self, y: Array) -> tuple[Array, Array]:
         """ℓᵀy + load (k,), and its round-off where the numbers are not exact."""
         ell, load = self.equilibrium, self.load
-        left = exact_remainders(load, -ell.T, y)
+        left = exact_remainders(load, -np.hstack([ell.T, self.equilibrium_rest.T]), np.concatenate([y, y]))
         if self.exact:
             return left, EPS * np.abs(left)
         return left, 2 * EPS * (np.abs(ell).T @ y + np.abs(load))

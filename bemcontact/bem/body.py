@@ -41,6 +41,8 @@ TURNED = {
 PRESSED_IN = 0.1
 """Interference over the size of a body up to which a disk is pressed into a hole, not drawn at a wrong place."""
 
+BEHIND = 1e-9
+"""Distance over the size of a body that is round-off, where the body lies behind a surface and touches it."""
 MATRICES = 3
 """Number of full matrices of all degrees of freedom that are in memory at the same time."""
 WEDGE = 0.02
@@ -182,7 +184,7 @@ def _ensure_before_surfaces(problem: Problem, mesh: Mesh) -> None:
             continue
         gap = zone.surface.closest(mesh.nodes).gap
         pressed_in = isinstance(zone.surface, Circle) and -gap.min() < PRESSED_IN * mesh.size
-        if gap.max() < 0 and not pressed_in:
+        if gap.max() <= BEHIND * mesh.size and gap.min() < -BEHIND * mesh.size and not pressed_in:
             depth = f"{-gap.min():.3g} {problem.units.length}".strip()
             message = (
                 f"the whole body lies behind this surface, up to {depth} deep; move the surface, or turn it to the "

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from bemcontact.arrays import Array, BoolArray
-from bemcontact.errors import SingularSystemError
+from bemcontact.arrays import Array, BoolArray, real_array
+from bemcontact.errors import ProblemError, SingularSystemError
 
 INTERFERENCE = 1e-6
 """Fraction of the largest gap from which there is interference: the accuracy of a linear program."""
@@ -103,12 +103,11 @@ class MotionAlgebra:
 
     def amplitudes_of(self, displacement: Array) -> Array:
         """(ℓᵀR)⁻¹ ℓᵀu (k,): the a with which R a is nearest to u (n,) in the least squares of the weights."""
-        ell = self.equilibrium
-        return self._solved(ell.T @ displacement)
+        return self._solved(self.equilibrium.T @ _rows(displacement, "displacement", len(self.weights)))
 
     def balancing(self, load: Array) -> Array:
         """p0 = -R (ℓᵀR)⁻¹ load (n,): the pressure of least weighted square with ℓᵀp = -load, of either sign."""
-        return -self.rigid_motions @ self._solved(load)
+        return -self.rigid_motions @ self._solved(_rows(load, "load", self.rigid_motions.shape[1]))
 
     def _solved(self, right: Array) -> Array:
         """(ℓᵀR)⁻¹ times a right side; `SingularSystemError` if the motions are singular to working precision."""
@@ -127,7 +126,15 @@ class MotionAlgebra:
 
     def imbalance(self, pressure: Array) -> Array:
         """ℓᵀp + load (k,), which is zero in equilibrium."""
-        return self.equilibrium.T @ pressure + self.motion_load
+        return self.equilibrium.T @ _rows(pressure, "pressure", len(self.weights)) + self.motion_load
+
+
+def _rows(values: Array, what: str, count: int) -> Array:
+    """Read an array of so many rows, which a solver that failed may have left infinite."""
+    array = real_array(values, what, finite=False)
+    if array.shape[:1] != (count,):
+        raise ProblemError(f"{what} has shape {array.shape} where {count} rows are needed")
+    return array
 
 
 class Gauge(NamedTuple):

@@ -123,6 +123,35 @@ def test_body_that_turns_easily_is_certified(seed, k):
         assert max(abs(Fraction(u) - v) for u, v in zip(other.pressure, exact, strict=True)) <= bound
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_rounding_of_the_sums_that_are_stored_is_counted(seed):
+    """The gap without contact is ε + Δ1: where the body turns easily, what this sum loses is an error of pressures."""
+    rng, n = np.random.default_rng(seed), 4
+    A, lever, J = rng.standard_normal((n, n)), rng.standard_normal(n), rng.uniform(0.3, 1.5, n)
+    M = (A @ A.T + np.eye(n) + 1e12 * np.outer(lever, lever)) * J
+    problem = CondensedContact.from_compliance(M, -M @ rng.uniform(0.1, 1.5, n), J)
+    apart = rng.uniform(0.3, 2) * rng.standard_normal(n) * np.abs(problem.offset).max()
+    problem = replace(problem, initial_gap=problem.offset + apart, free_displacement=-apart)
+    solution, exact = complementarity.solve(problem), exact_pressure(problem)
+    bound = judged(problem, solution).error_bound
+    assert exact is not None
+    assert bound is not None
+    assert max(abs(Fraction(u) - v) for u, v in zip(solution.pressure.tolist(), exact, strict=True)) <= bound
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_load_that_no_pressures_carry_is_not_certified(seed):
+    """A point carries alone at the edge of what points can carry: without rounding ℓ = J R, the load is beyond it."""
+    rng, n, k = np.random.default_rng(seed), 5, 3
+    J, R = rng.uniform(0.1, 1, n), rng.standard_normal((n, k))
+    p = 1.0 * (np.arange(n) == 0)
+    problem = CondensedContact.from_compliance(
+        np.eye(n), rng.uniform(0.1, 1, n) * (p == 0) - p, J, rigid_motions=R, motion_load=-(J[:, None] * R).T @ p
+    )
+    certificate = judged(problem, complementarity.solve(problem))
+    assert exact_pressure(problem) is not None or not certificate.certified
+
+
 @pytest.mark.parametrize("distance", [1e-2, 1e-5, 1e-8, 1e-11])
 @pytest.mark.parametrize("seed", range(5))
 def test_points_side_by_side_carry_a_moment_to_less_accuracy(seed, distance):

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -71,6 +72,36 @@ def test_version_is_stated():
     answer = run("--version")
     assert answer.exit_code == 0
     assert answer.stdout.startswith("bemcontact")
+
+
+INTERRUPTS_IMPORTS = """
+import os, signal, sys
+class Finder:
+    def find_spec(name, path, target=None):
+        if name == "bemcontact.cli":
+            os.kill(os.getpid(), signal.SIGINT)
+sys.meta_path.insert(0, Finder)
+from bemcontact.__main__ import run_program
+sys.argv = ["bemcontact", "--version"]
+run_program()
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "status"), [("", -signal.SIGINT), ("signal.signal(signal.SIGINT, signal.SIG_IGN)", 0)]
+)
+def test_an_interrupt_of_the_imports_is_no_traceback(before: str, status: int):
+    """The program ends as the signal ends programs, which shells call 130; where it is ignored, it stays ignored."""
+    program = f"import signal\n{before}{INTERRUPTS_IMPORTS}"
+    root = str(Path(bemcontact.__file__).parents[1])
+    answer = subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": root},
+    )
+    assert (answer.returncode, answer.stderr) == (status, "")
 
 
 def test_a_closed_pipe_is_no_traceback(block: Path):

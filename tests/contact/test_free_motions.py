@@ -7,7 +7,7 @@ import pytest
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import MotionAlgebra, angle_of_round_off
-from bemcontact.errors import SingularSystemError
+from bemcontact.errors import ProblemError, SingularSystemError
 
 
 @pytest.fixture(params=[0, 1, 3])
@@ -39,6 +39,17 @@ def test_balancing_pressure_is_in_equilibrium(motions: MotionAlgebra):
 def test_amplitudes_of_a_motion_are_its_own(motions: MotionAlgebra):
     a = np.arange(1.0, 1 + len(motions.motion_load))
     np.testing.assert_allclose(motions.amplitudes_of(motions.rigid_motions @ a), a, rtol=1e-12)
+
+
+@pytest.mark.parametrize("method", ["imbalance", "balancing", "amplitudes_of"])
+@pytest.mark.parametrize(
+    "given",
+    [None, 1.0, "x", [1, [2, 3]], {"a": 1}, 10**400, np.ones(5), np.ma.masked_array(np.ones(8), np.arange(8) < 1)],
+    ids=["None", "number", "text", "ragged", "mapping", "large", "size", "masked"],
+)
+def test_what_is_no_array_of_the_size_is_refused(method: str, given: object, motions: MotionAlgebra):
+    with pytest.raises(ProblemError, match=r"pressure|load|displacement"):
+        getattr(motions, method)(given)
 
 
 def test_forces_and_order_of_points():
