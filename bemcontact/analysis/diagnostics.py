@@ -163,7 +163,8 @@ def beyond_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
             x, y = beyond[0]
             yield (
                 f"contact in {name} at ({x:.5g}, {y:.5g}) is with the straight continuation of its {zone.surface.kind} "
-                "beyond its first or last point: the line has no ends; if the surface ends there, add a point that leads away"
+                "beyond its first or last point: the line has no ends; if the surface ends there, add a point that "
+                "leads away"
             )
 
 
