@@ -5,16 +5,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import pi
-from typing import NamedTuple
 
 import numpy as np
 
 from bemcontact.adaptivity.sizes import Limit, Loop
 from bemcontact.arrays import Array
 from bemcontact.problem.curves import Edge
+from bemcontact.problem.nearness import gaps, nearest_places, surface_corners
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour, Polyline, RigidSurface, Shape
-from bemcontact.problem.validation import Point
+from bemcontact.problem.rigid_surface import DeflectedContour, Shape
 
 TURN = pi / 6
 """Angle [rad] by which an element may turn."""
@@ -27,9 +26,7 @@ OPPOSED = -0.3
 ACROSS = 0.5
 """Cosine of the largest angle to the inward normal under which a part of the boundary faces another one."""
 SAMPLES = 800
-"""Samples of the whole boundary, and of an edge under a rigid surface."""
-AT_END = 1e-6
-"""Distance over the length of an edge up to which a place is an end of it."""
+"""Samples of the whole boundary."""
 MOST_HALVINGS = 40
 """Halvings of the part of an edge with its sharpest bend, in the search for how sharp it is."""
 LEAST_SAMPLES = 24
@@ -40,8 +37,6 @@ NARROW = 0.01
 """Least element over its edge where a surface comes near."""
 AT_CORNER = 0.1
 """Element at a corner of the rigid surface over its edge."""
-FOCUS = 5
-"""Times that the samples are made finer about a least gap, each by a tenth."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -157,55 +152,10 @@ def surface_sizes(problem: Problem, outline: SizedOutline) -> tuple[dict[int, li
 
 def _near(edge: Edge, start: float, surface: Shape) -> Iterator[Limit]:
     """Limits at each local least of the initial gap: half of the radius of the relative curvature."""
-    middle, step = nearest_places(edge, surface)
+    middle, step = nearest_places(edge.curve, surface)
     step = max(step, 1e-4)
-    three = _gaps(edge, surface, middle[:, None] + step * np.array([-1.0, 0.0, 1.0]))
+    three = gaps(edge.curve, surface, middle[:, None] + step * np.array([-1.0, 0.0, 1.0]))
     curvature = (three[:, 0] - 2 * three[:, 1] + three[:, 2]) / (step * edge.length) ** 2
     for place, bend in zip(start + middle * edge.length, curvature, strict=True):
         if bend > 0:
             yield Limit(low=place, high=place, size=float(max(0.5 / bend, NARROW * edge.length)))
-
-
-def nearest_places(edge: Edge, surface: Shape) -> tuple[Array, float]:
-    """Fractions (k,) of the length inside an edge where the initial gap is locally least, and their accuracy."""
-    at = np.linspace(0, 1, SAMPLES + 1)
-    gap, step = _gaps(edge, surface, at), float(at[1])
-    middle = at[1:-1][(gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])]
-    for _ in range(FOCUS):
-        fine = np.clip(middle[:, None] + step * np.linspace(-1, 1, 21), 0, 1)
-        middle, step = fine[np.arange(len(fine)), _gaps(edge, surface, fine).argmin(axis=1)], step / 5
-    return middle, step
-
-
-def _gaps(edge: Edge, surface: Shape, fractions: Array) -> Array:
-    """Initial gap at fractions of the length of an edge, of any shape; beyond its ends that of the ends."""
-    return surface.closest(edge.points(np.clip(fractions, 0, 1).ravel())).gap.reshape(fractions.shape)
-
-
-class SurfaceCorner(NamedTuple):
-    """Where an edge is nearest to a corner of a polyline.
-
-    Parameters
-    ----------
-    fraction : of the length of the edge
-    turn : angle by which the polyline turns away from the body [rad]
-    """
-
-    fraction: float
-    turn: float
-
-
-def surface_corners(edge: Edge, surface: RigidSurface, *, at_ends: bool = False) -> Iterator[SurfaceCorner]:
-    """Where an edge is nearest to a corner of a polyline, if that is inside or, if wanted, right at an end."""
-    if not isinstance(surface, Polyline):
-        return
-    for corner, turn in zip(surface.points[1:-1], surface.turns.tolist(), strict=True):
-        fraction = edge.curve.fraction_at(corner)
-        if AT_END < fraction < 1 - AT_END or (at_ends and _is_opposite(edge, round(fraction), corner)):
-            yield SurfaceCorner(fraction, turn)
-
-
-def _is_opposite(edge: Edge, end: int, corner: Point) -> bool:
-    """Whether a corner is opposite to an end of an edge."""
-    at = np.array([float(end)])
-    return abs(float((np.array(corner) - edge.points(at)[0]) @ edge.directions(at)[0])) < AT_END * edge.length

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from bemcontact.adaptivity.adapt import first_mesh
-from bemcontact.adaptivity.first_sizes import nearest_places, surface_corners
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, body_of, deflections, each_case, ensure_held
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.problem import DeflectedContour, Problem
+from bemcontact.problem.nearness import nearest_places, surface_corners
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -74,7 +74,8 @@ def _smallest_gap(body: Body, zone: int) -> float:
     own = np.unique(points.element[points.zone[points.point] == zone])
     for edge in map(problem.edge, problem.edges_of(name)):
         ends, first = edge.breakpoints(problem.mesh.refine), np.argmax(mesh.edge == mesh.edge_names.index(edge.name))
-        nearest = [*nearest_places(edge, surface)[0], *(corner.fraction for corner in surface_corners(edge, surface))]
+        corners = (corner.fraction for corner in surface_corners(edge, surface))
+        nearest = [*nearest_places(edge.curve, surface).fractions, *corners]
         if inside := [at for at in nearest if first + np.searchsorted(ends, at) - 1 in own]:
             least = float(surface.closest(edge.points(np.array(inside))).gap.min(initial=least))
     return least

@@ -8,10 +8,14 @@ import numpy as np
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.mesh import Mesh, build
+from bemcontact.problem.nearness import nearest_places
 from bemcontact.problem.problem import Problem
+from bemcontact.problem.rigid_surface import DeflectedContour, Plane
 
 SAMPLES = np.linspace(-1.0, 1.0, 17)
-"""Local coordinates at which the boundary is compared with a surface."""
+"""Local coordinates at which the boundary is compared with a surface; some are moved, see `Outline.local`."""
+NODES = [0, len(SAMPLES) // 2, -1]
+"""Which of them are nodes."""
 
 
 class Places(NamedTuple):
@@ -23,7 +27,7 @@ class Places(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Outline:
-    """The curves of the edges under the elements of a mesh; places at `SAMPLES` are computed once."""
+    """The curves of the edges under the elements of a mesh; the places of samples are computed once."""
 
     problem: Problem
     samples: dict[int, tuple[Array, Array]] = field(default_factory=dict)
@@ -40,6 +44,30 @@ class Outline:
         number = np.repeat(np.arange(len(ends)), [len(item) - 1 for item in ends])
         return number, np.concatenate([np.column_stack([item[:-1], item[1:]]) for item in ends])
 
+    @cached_property
+    def local(self) -> Array:
+        """Local coordinates (m, 17) of the samples of each element.
+
+        They are `SAMPLES`, but where the boundary is nearest to a surface the next one is moved there: what is
+        narrower than an element would be between them.
+        """
+        of_edge, fractions = self._elements
+        local, free = np.tile(SAMPLES, (len(of_edge), 1)), np.ones((len(of_edge), len(SAMPLES)), bool)
+        free[:, NODES] = False
+        surfaces = [zone.surface for zone in self.problem.contact_zones.values()]
+        shapes = [surface for surface in surfaces if not isinstance(surface, DeflectedContour | Plane)]
+        for number, edge in enumerate(self.problem.boundary.edges):
+            own = np.flatnonzero(of_edge == number)
+            for shape in shapes:
+                for place in nearest_places(edge.curve, shape).fractions:
+                    element = own[min(int(np.searchsorted(fractions[own, 1], place)), len(own) - 1)]
+                    first, last = fractions[element]
+                    xi = 2 * (place - first) / (last - first) - 1
+                    away = np.where(free[element] & (SAMPLES * xi > 0), np.abs(SAMPLES - xi), np.inf)
+                    if away.min() < 2 * SAMPLES[-1] / NODES[1]:
+                        local[element, away.argmin()], free[element, away.argmin()] = xi, False
+        return np.sort(local, axis=1)
+
     def places(self, elements: IntArray, xi: Array) -> Places:
         """Places at the local coordinates ξ (k, q) of elements (k,)."""
         of_edge, fractions = self._elements
@@ -54,12 +82,12 @@ class Outline:
         return Places(points, inward)
 
     def sampled(self, elements: IntArray) -> Places:
-        """Places at `SAMPLES` of elements (k,)."""
+        """Places at the samples of elements (k,)."""
         if not len(elements):
             return Places(*np.zeros((2, 0, len(SAMPLES), 2)))
         missing = np.array([i for i in elements.tolist() if i not in self.samples], int)
         if len(missing):
-            new = self.places(missing, np.tile(SAMPLES, (len(missing), 1)))
+            new = self.places(missing, self.local[missing])
             self.samples.update(zip(missing.tolist(), zip(*new, strict=True), strict=True))
         points, inward = zip(*(self.samples[i] for i in elements.tolist()), strict=True)
         return Places(np.array(points), np.array(inward))

@@ -15,15 +15,13 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.contact_points import ALIKE, half_lengths, sides_of_nodes
 from bemcontact.bem.mesh import BoundaryState
-from bemcontact.bem.outline import SAMPLES, Outline
+from bemcontact.bem.outline import NODES, Outline
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, Shape
 from bemcontact.problem.surface_lines import Closest, Faces, Polyline, Spline
 
-NODES = [0, len(SAMPLES) // 2, -1]
-"""Which of them are nodes."""
 CHUNK = 8192
 """Number of places whose distance from a surface is computed at a time."""
 FLUSH = 1e-6
@@ -191,7 +189,9 @@ class SurfaceGaps:
             else:
                 depths, behind[elements], hidden = self._depth_in_other(zone, elements, ends)
             deepest = depths.argmax(axis=1)
-            depth[elements], xi[elements] = depths[np.arange(len(elements)), deepest], SAMPLES[deepest]
+            depth[elements], xi[elements] = (
+                part[np.arange(len(elements)), deepest] for part in (depths, self.outline.local[elements])
+            )
         excused = ~paired & (depth <= self._second_order(zone))
         return Intrusion(
             depth=np.where(excused, -np.inf, depth), xi=xi, behind=behind, excused=np.where(excused, depth, -np.inf),
@@ -302,8 +302,8 @@ class SurfaceGaps:
         yield from distances[distances > flush]
 
     def _displacement(self, elements: IntArray) -> Array:
-        """Displacement (k, q, 2) [L] at `SAMPLES` of elements (k,)."""
-        return reference_element.values(SAMPLES) @ self.state.displacement[elements]
+        """Displacement (k, q, 2) [L] at the samples of elements (k,)."""
+        return reference_element.values(self.outline.local[elements]) @ self.state.displacement[elements]
 
     def _second_order(self, zone: str) -> float:
         """Depth [L] by which linear theory may be off: (difference of displacements)² over the size of the body.

@@ -350,6 +350,28 @@ def test_a_surface_between_nodes_is_seen():
     assert not [*penetrations(answer, answer.answers[0])]
 
 
+@pytest.mark.parametrize(("radius", "at"), [(0.05, 73.7), (0.1, 61.8034), (0.2, 120.0)])
+def test_a_rod_far_thinner_than_the_first_elements_is_found(radius: float, at: float):
+    """A plate of 200 x 20 sags onto a rod: the peak of Hertz theory for the force, p² = F E*/(π R)."""
+    corners = [("bottom", 0, 0), ("right", 200, 0), ("top", 200, 20), ("left", 0, 20)]
+    rod = {"kind": "circle", "center": [at, -radius - 0.003], "radius": radius, "body": "outside"}
+    clamped = {"displacement": {"x": 0, "y": 0}}
+    problem = Problem.model_validate(
+        {
+            "name": "rod",
+            "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": name, "start": [x, y]} for name, x, y in corners]},
+            "conditions": {"right": clamped, "left": clamped, "top": {"pressure": 0.2}},
+            "contact_zones": {"rod": {"edges": "bottom", "surface": rod}},
+        }
+    )
+    result = solve(problem, accuracy=0.02)
+    assert result.accuracy.met
+    peak, (_, force) = result.footprint.peak, result.footprint.forces["rod"]
+    assert peak is not None
+    assert peak.pressure**2 == pytest.approx(force * 210e3 / 0.91 / (pi * radius), rel=0.04)
+
+
 def indented_by_a_pin() -> Problem:
     """A clamped block with a pin of radius 2 at 17.3 in its face of 80, 0.2 deep."""
     corners = [("bottom", -40, 0), ("right", 40, 0), ("top", 40, 50), ("left", -40, 50)]

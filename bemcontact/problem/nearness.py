@@ -1,0 +1,77 @@
+"""Where an edge of the body is nearest to a rigid surface."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from bemcontact.arrays import Array
+from bemcontact.problem.curves import Curve, Edge
+from bemcontact.problem.rigid_surface import RigidSurface, Shape
+from bemcontact.problem.surface_lines import Polyline
+from bemcontact.problem.validation import Point
+
+SAMPLES = 800
+"""Samples of an edge."""
+FOCUS = 5
+"""Times that the samples are made finer about a least gap, each by a fifth."""
+AT_END = 1e-6
+"""Distance over the length of an edge up to which a place is an end of it."""
+
+
+class NearestPlaces(NamedTuple):
+    """Where the initial gap is locally least.
+
+    Parameters
+    ----------
+    fractions : (k,) of the length of the edge, inside it
+    accuracy : of the fractions
+    """
+
+    fractions: Array
+    accuracy: float
+
+
+def nearest_places(curve: Curve, surface: Shape) -> NearestPlaces:
+    """Find where the initial gap is locally least inside an edge."""
+    at = np.linspace(0, 1, SAMPLES + 1)
+    gap, step = gaps(curve, surface, at), float(at[1])
+    middle = at[1:-1][(gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])]
+    for _ in range(FOCUS):
+        fine = np.clip(middle[:, None] + step * np.linspace(-1, 1, 21), 0, 1)
+        middle, step = fine[np.arange(len(fine)), gaps(curve, surface, fine).argmin(axis=1)], step / 5
+    return NearestPlaces(middle, step)
+
+
+def gaps(curve: Curve, surface: Shape, fractions: Array) -> Array:
+    """Initial gap [L] at fractions of the length of an edge, of any shape; beyond its ends that of the ends."""
+    return surface.closest(curve.at(np.clip(fractions, 0, 1).ravel())).gap.reshape(fractions.shape)
+
+
+class SurfaceCorner(NamedTuple):
+    """Where an edge is nearest to a corner of a polyline.
+
+    Parameters
+    ----------
+    fraction : of the length of the edge
+    turn : angle by which the polyline turns away from the body [rad]
+    """
+
+    fraction: float
+    turn: float
+
+
+def surface_corners(edge: Edge, surface: RigidSurface, *, at_ends: bool = False) -> Iterator[SurfaceCorner]:
+    """Where an edge is nearest to a corner of a polyline, if that is inside or, if wanted, right at an end."""
+    if not isinstance(surface, Polyline):
+        return
+    for corner, turn in zip(surface.points[1:-1], surface.turns.tolist(), strict=True):
+        fraction = edge.curve.fraction_at(corner)
+        if AT_END < fraction < 1 - AT_END or (at_ends and _is_opposite(edge, round(fraction), corner)):
+            yield SurfaceCorner(fraction, turn)
+
+
+def _is_opposite(edge: Edge, end: int, corner: Point) -> bool:
+    """Whether a corner is opposite to an end of an edge."""
+    at = np.array([float(end)])
+    return abs(float((np.array(corner) - edge.points(at)[0]) @ edge.directions(at)[0])) < AT_END * edge.length
