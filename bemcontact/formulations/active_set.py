@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy
 
 from bemcontact.arrays import Array, BoolArray, IntArray, powers_of_two
 from bemcontact.contact.load_cases import Change
@@ -118,6 +119,19 @@ def first_active_set(contact: ScaledContact) -> BoolArray:
     if not R.shape[1]:
         return contact.offset < 0
     return contact.offset <= R @ contact.amplitudes_of(contact.offset)
+
+
+def resting_points(contact: ScaledContact) -> BoolArray:
+    """Points (n,) on which the body would come to rest if it were rigid: where its loads have done the most work.
+
+    There are as many as it has free motions, or fewer; none where no pressure carries its load. A round body with free
+    motions may have equal gaps all around, so that only its load says where it touches.
+    """
+    R = contact.rigid_motions
+    if not R.shape[1]:
+        return np.zeros(len(R), bool)
+    work = scipy.optimize.linprog(-contact.motion_load, A_ub=-R, b_ub=contact.offset, bounds=(None, None))
+    return work.ineqlin.marginals < 0 if work.success else np.zeros(len(R), bool)
 
 
 def primal_dual(contact: ScaledContact, active: BoolArray, limit: int | None = None) -> ActiveSetEnd:

@@ -14,11 +14,11 @@ import scipy
 from numpy.typing import ArrayLike
 from scipy.linalg import qr
 
-from bemcontact.arrays import Array, BoolArray, IntArray, real_array
+from bemcontact.arrays import Array, BoolArray, IntArray, powers_of_two, real_array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual
+from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual, resting_points
 from bemcontact.formulations.open_position import with_chosen_position
 from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
 from bemcontact.options import FormulationName, SolveOptions, options_of
@@ -34,6 +34,7 @@ ACCEPTED = 1e-11
 BALANCED = 1e-12
 """Fraction of the load, by its norm, that may remain without support before the load counts as impossible to carry."""
 POLISH_STEPS = 10
+EQUILIBRATIONS = 10
 NAMED = 1e-9
 """Least share of a motion that a sentence names."""
 
@@ -60,25 +61,31 @@ class LemkeEnd:
 def lemke(M: Array, q: Array, covering: Array | None = None, limit: int | None = None) -> LemkeEnd:
     """Follow the solutions of w = q + M z + d z0 from a large z0 down to z0 = 0.
 
-    Solve for the values of the basic variables anew: that is more accurate than the pivots are.
+    Solve for the values of the basic variables anew: that is more accurate than the pivots are. Rows and columns are
+    scaled alike until the largest number of each is near one, for short elements make numbers of M that are smaller
+    than the round-off of others; q is scaled to one.
 
     Parameters
     ----------
-    M, q : (n, n) and (n,), of size one: the tolerances are absolute
-    covering : (n,) d > 0. The default, row sums of |M| plus max|q|, takes two pivots for the families of Murty and of
-        Fathi; d = (1, 2, 4, ...) takes 2ⁿ for Murty's.
+    M, q : (n, n) and (n,)
+    covering : (n,) d > 0. The default, row sums of |M| plus max|q| once scaled, takes two pivots for the families of
+        Murty and of Fathi; d = (1, 2, 4, ...) takes 2ⁿ for Murty's.
     limit : of pivots, default 1000 + 50 n
     """
     n = len(q)
     if (q >= 0).all():
         return LemkeEnd(status=Status.SOLVED, active=np.zeros(n, bool), covers=())
-    d = np.abs(M).sum(axis=1) + np.abs(q).max() if covering is None else covering
+    factors = equilibrating(M)
+    M, q = factors[:, None] * M * factors, factors * q
+    unit = float(powers_of_two(np.abs(q).max()))
+    q = q / unit
+    d = np.abs(M).sum(axis=1) + np.abs(q).max() if covering is None else factors * covering
     limit = 1000 + 50 * n if limit is None else limit
     basis, covers = _Basis(M, q, d), []
     entering, column, row = basis.cover, -d, basis.leaving_row(d)
     while row is not None and len(covers) < limit:
         left = basis.exchange(row, entering, column)
-        covers.append(basis.cover_value)
+        covers.append(unit * basis.cover_value)
         if left == basis.cover:
             return LemkeEnd(status=Status.SOLVED, active=basis.active, covers=tuple(covers))
         entering = left + n if left < n else left - n
@@ -86,6 +93,19 @@ def lemke(M: Array, q: Array, covering: Array | None = None, limit: int | None =
         row = basis.leaving_row(column)
     status = Status.ITERATION_LIMIT if row is not None else _end_of_ray(M, q, basis, entering, column)
     return LemkeEnd(status=status, active=basis.active, covers=tuple(covers))
+
+
+def equilibrating(M: Array) -> Array:
+    """Powers of two (n,), for rows and columns alike, by which the largest number of each becomes one, nearly.
+
+    D. Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices", RAL-TR-2001-034.
+    """
+    size, factors = np.abs(M), np.ones(len(M))
+    for _ in range(EQUILIBRATIONS):
+        scaled = factors[:, None] * size * factors
+        largest = np.maximum(scaled.max(axis=0), scaled.max(axis=1))
+        factors /= np.sqrt(np.where(largest > 0, largest, 1.0))
+    return powers_of_two(factors)
 
 
 class _Basis:
@@ -340,21 +360,23 @@ class _SearchEnd:
 
 
 def _search(contact: ScaledContact, pivot_limit: int | None) -> _SearchEnd:
-    """Primal-dual active set; if it cycles, Lemke's method, and the active set again from its end."""
-    first = primal_dual(contact, first_active_set(contact))
-    if first.residual <= ACCEPTED:
-        history = traces_in_turn(("residual", first.residuals))
-        return _SearchEnd(end=first, status=Status.SOLVED, method=ACTIVE_SET, history=history)
+    """Primal-dual active set from two starts; if it cycles, Lemke's method, and the active set again from its end."""
+    ends = list[ActiveSetEnd]()
+    for start in (first_active_set, resting_points) if contact.motion_load.size else (first_active_set,):
+        ends.append(primal_dual(contact, start(contact)))
+        if ends[-1].residual <= ACCEPTED:
+            history = traces_in_turn(*(("residual", end.residuals) for end in ends))
+            return _SearchEnd(end=ends[-1], status=Status.SOLVED, method=ACTIVE_SET, history=history)
     matrix, vector, exchanged = standard_form(contact)
     path = lemke(matrix, vector, limit=pivot_limit)
-    second = primal_dual(contact, path.active ^ exchanged, POLISH_STEPS)
+    last = primal_dual(contact, path.active ^ exchanged)
     history = traces_in_turn(
-        ("residual", first.residuals), ("infeasibility", path.covers), ("residual", second.residuals)
+        *(("residual", end.residuals) for end in ends), ("infeasibility", path.covers), ("residual", last.residuals)
     )
-    if second.residual <= ACCEPTED:
-        return _SearchEnd(end=second, status=Status.SOLVED, method=LEMKE, history=history)
+    if last.residual <= ACCEPTED:
+        return _SearchEnd(end=last, status=Status.SOLVED, method=LEMKE, history=history)
     status = Status.NUMERICAL_FAILURE if path.status is Status.SOLVED else path.status
-    best = min(first, second, key=lambda end: end.residual)
+    best = min(*ends, last, key=lambda end: end.residual)
     return _SearchEnd(end=best, status=status, method=LEMKE, history=history)
 
 

@@ -32,7 +32,7 @@ from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.formulations.active_set import EPS, ContactBlock
-from bemcontact.formulations.complementarity import lemke
+from bemcontact.formulations.complementarity import equilibrating, lemke
 from bemcontact.formulations.open_position import farthest
 from bemcontact.formulations.scaling import ScaledContact
 
@@ -200,22 +200,18 @@ class Tangent:
         (pressure,), (gap,), (amplitudes,) = self.held.solve(change)
         vector = np.append(pressure[points[:b]], gap[points[b:]])
         vector[np.abs(vector) <= STILL * size_of_terms(change, pressure, amplitudes)] = 0.0
-        scale = _scale(N, b)
-        rows = scale * self.contact.weights[points]
-        matrix, vector = rows[:, None] * N * scale, rows * vector
-        end = lemke(matrix / (np.abs(matrix).max() or 1.0), vector / (np.abs(vector).max() or 1.0))
+        rows = self.contact.weights[points]
+        matrix, vector = rows[:, None] * N, rows * vector
+        end = lemke(matrix, vector)
         if end.status is not Status.SOLVED:
             raise ProblemError(NO_WAY)
-        if not self.unique and eigvalsh(matrix + matrix.T)[0] <= len(matrix) * EPS * np.abs(matrix).max():
-            raise ProblemError(NOT_UNIQUE)
+        if not self.unique:
+            factors = equilibrating(matrix)
+            matrix = factors[:, None] * matrix * factors
+            if eigvalsh(matrix + matrix.T)[0] <= len(matrix) * EPS * np.abs(matrix).max():
+                raise ProblemError(NOT_UNIQUE)
         loaded = points[end.active ^ (np.arange(len(points)) < b)]
         return ContactBlock(contact=self.contact, points=np.sort(np.append(self.strong, loaded)))
-
-
-def _scale(N: Array, b: int) -> Array:
-    """Factors (m,) of the rows and columns of N by which pressures and gaps in it are of one size."""
-    compliance = np.abs(N[b:, b:]).max(initial=0.0) or 1.0 / (np.abs(N).max() or 1.0)
-    return np.where(np.arange(len(N)) < b, np.sqrt(compliance), 1.0 / np.sqrt(compliance))
 
 
 def size_of_terms(change: Change, pressure: Array, amplitudes: Array) -> float:

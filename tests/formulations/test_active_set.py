@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.formulations.active_set import first_active_set, primal_dual, solve_active_set
+from bemcontact.formulations.active_set import first_active_set, primal_dual, resting_points, solve_active_set
 from bemcontact.formulations.scaling import ScaledContact, scaled
 
 
@@ -19,6 +19,23 @@ def test_exact_in_one_step_from_the_right_set():
     end = primal_dual(problem, np.array([True, False]))
     assert end.steps == 1
     assert end.residual <= 1e-16
+
+
+def test_a_rigid_body_rests_on_what_is_under_its_load():
+    """A disk with the same gap all around falls onto two points beside the line of its load."""
+    angles = np.radians(np.arange(5.0, 360.0, 10.0))
+    problem = scaled(
+        CondensedContact.from_compliance(
+            np.eye(36), np.ones(36), rigid_motions=np.column_stack([np.cos(angles), np.sin(angles)]),
+            motion_load=np.array([0.0, -1.0]),
+        )
+    )  # fmt: skip
+    assert not first_active_set(problem).any()
+    touching = np.rad2deg(angles[resting_points(problem)])
+    np.testing.assert_allclose(touching, [85.0, 95.0])
+    end = primal_dual(problem, resting_points(problem))
+    assert end.residual <= 1e-15
+    assert not resting_points(plain(np.eye(2), np.ones(2))).any()
 
 
 def test_m_matrix_is_solved_within_n_plus_one_steps():
