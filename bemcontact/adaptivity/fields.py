@@ -124,10 +124,18 @@ def solved(problem: Problem) -> Solved:
 
 def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> CaseAnswer:
     """Solve the contact problem of one load case."""
-    contact, body = condensation.contact, condensation.body
-    solution = complementarity.solve(contact)
+    solution = complementarity.solve(condensation.contact)
     if solution.status is not Status.SOLVED:
         raise SolverError(f"no contact state was found on a mesh: {solution.status.words}")
+    state = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
+    return answer_of(condensation, solution, state, runs)
+
+
+def answer_of(
+    condensation: Condensation, solution: ContactSolution, state: BoundaryState, runs: Sequence[ZoneRun]
+) -> CaseAnswer:
+    """Order a contact state by elements and by runs of the zones."""
+    contact, body = condensation.contact, condensation.body
     intervals = footprint(contact, solution).intervals
     points = body.points
     pressure = np.zeros((len(body.problem.contact_zones), *body.mesh.elements.shape))
@@ -138,7 +146,7 @@ def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> CaseAnswer:
         solution=solution,
         stretches={run.number: _without_slits(contact_stretches(run, contact, solution, intervals)) for run in runs},
         pressure=pressure,
-        state=boundary_state(condensation, solution.pressure, solution.rigid_amplitudes),
+        state=state,
     )
 
 

@@ -8,15 +8,17 @@ from typing import Any
 import numpy as np
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
+from bemcontact.adaptivity.mesh_search import cut
+from bemcontact.analysis.path_states import FollowedPath, errors_at_breakpoints
 from bemcontact.analysis.penetration import penetration_on_path
 from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
 from bemcontact.analysis.variation import Variation, case_of
 from bemcontact.arrays import Array
-from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.checks.arguments import real_number, text_of_argument, texts
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
-from bemcontact.errors import Issue, KeyPath, ProblemError
+from bemcontact.errors import Issue, KeyPath, ProblemError, SingularSystemError, SolverError
 from bemcontact.formulations import complementarity
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.parametric.path import COMMON, SAME, ensure_same_body, load_path
@@ -69,10 +71,12 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     path = load_path(*(replace(contact, name=problem.title) for contact in between(varied, begin, end)))
     first, last = (_accuracy(varied, value, found.get(value), bool(found)) for value in (begin, end))
     infinite = bool(first.infinite or last.infinite)
-    deepest, at, said = penetration_on_path(varied, path, begin, end, infinite=infinite)
+    followed = FollowedPath(varied, path, begin, end)
+    deepest, at, said = penetration_on_path(followed, infinite=infinite)
+    bars = _errors(followed, found) if first.bars or last.bars else ()
     return ParameterPath(
         key=key, start=begin, end=end, path=path, start_accuracy=first, end_accuracy=last,
-        penetration=deepest, penetrates_at=at, said=said,
+        penetration=deepest, penetrates_at=at, said=said, breakpoint_bars=bars,
     )  # fmt: skip
 
 
@@ -166,6 +170,20 @@ def _accuracy(varied: Variation, value: float, found: Meshed | None, halved: boo
     except ProblemError as error:
         return Accuracy(asked=varied.problem.asked_accuracy, reason=str(error).splitlines()[0])
     return accuracy.knowing(*found.accuracies) if found else accuracy
+
+
+def _errors(followed: FollowedPath, found: Mapping[float, Meshed]) -> tuple[tuple[ErrorBar, ...], ...]:
+    """Error bars at each breakpoint, by a path on elements half as long, or twice if the mesh was found; or none."""
+    problem, key, start, end = followed.varied.problem, followed.varied.key, followed.start, followed.end
+    refine, of_fine = problem.mesh.refine, bool(found)
+    varied = Variation(cut(problem, refine // 2 if of_fine else 2 * refine), key)
+    try:
+        other = FollowedPath(varied, load_path(*between(varied, start, end)), start, end)
+    except (ProblemError, SingularSystemError, SolverError):
+        return ()
+    singular = max((meshed.singular for meshed in found.values()), key=len, default=())
+    pair = (other, followed) if of_fine else (followed, other)
+    return tuple(errors_at_breakpoints(*pair, singular[0] if singular else (), of_fine=of_fine))
 
 
 def _keys(changes: object) -> tuple[str, ...]:

@@ -5,20 +5,17 @@ in no zone of it.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from bemcontact.analysis.linear_theory import Noticed, linear_theory
+from bemcontact.analysis.path_states import FollowedPath
 from bemcontact.analysis.placement import part_of_path, placement
-from bemcontact.analysis.variation import Variation
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.penetration import ROUND_OFF, Misfit, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.body import Body
-from bemcontact.bem.condense import boundary_state
 from bemcontact.bem.contact_points import runs
-from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -145,20 +142,20 @@ def _crossing(loops: Sequence[Array], gaps: SurfaceGaps) -> Array | None:
 
 
 def penetration_on_path(
-    varied: Variation, path: LoadPath, start: float, end: float, *, infinite: bool
+    followed: FollowedPath, *, infinite: bool
 ) -> tuple[Penetration | None, float | None, tuple[str, ...]]:
-    """Find the deepest penetration at the breakpoints of a path between two values, and the value there; note the rest.
+    """Find the deepest penetration at the breakpoints of a path, and the value there; note the rest.
 
     A state at an end of the path is judged as a solution is. Of an `infinite` peak no strain is told.
     """
+    varied, path = followed.varied, followed.path
     outline, worst, at, notes = Outline(problem=varied.problem), None, None, dict[str, list[float]]()
     last, near, strained = len(path.parameter) - 1, part_of_path(varied.problem), dict[str, tuple[Noticed, float]]()
     for i, t in enumerate(path.parameter.tolist()):
-        value, contact, solution = (1 - t) * start + t * end, path.contact(t), path.breakpoint(i)
-        problem = varied.at(value) if varied.path[0] == "contact_zones" else varied.problem
-        state = _state_at(varied, value, contact, solution)
-        body = next(iter(varied.condensed.values())).body
-        gaps = surface_gaps(problem, state, contact, solution, outline)
+        value, solution = followed.value(t), path.breakpoint(i)
+        condensation, state = followed.state(t, solution)
+        body, contact = condensation.body, condensation.contact
+        gaps = surface_gaps(body.problem, state, contact, solution, outline)
         nearby = _peaks_within(path, t - near, t + near) if 0 < i < last else None
         found, said = penetration(gaps, body, contact, solution, nearby)
         beyond, noticed = linear_theory(body, contact, solution, footprint(contact, solution, infinite=infinite), state)
@@ -194,19 +191,6 @@ def _where(key: str, values: Sequence[float]) -> str:
     """Say at which values of a key something holds."""
     ends = dict.fromkeys(f"{value:.6g}" for value in (values[0], values[-1]))
     return f"at {key} = {' to '.join(ends)}"
-
-
-def _state_at(varied: Variation, value: float, contact: CondensedContact, solution: ContactSolution) -> BoundaryState:
-    """The boundary at a value: between two condensations loads, and so displacements, change linearly."""
-    p, a = solution.pressure, solution.rigid_amplitudes
-    if varied.acts_on_contact:
-        ((_, condensation),) = varied.condensed.items()
-        body = replace(condensation.body, problem=varied.at(value))
-        return boundary_state(replace(condensation, body=body, contact=contact), p, a)
-    first, last = min(varied.condensed), max(varied.condensed)
-    one, other = (boundary_state(varied.condensed[end], p, a) for end in (first, last))
-    share = (value - first) / (last - first)
-    return replace(one, displacement=(1 - share) * one.displacement + share * other.displacement)
 
 
 def _penetration(gaps: SurfaceGaps, zone: str, element: int, xi: float, depth: float, allowed: float) -> Penetration:

@@ -38,10 +38,11 @@ def path(
     r"""Follow contact from one value of a parameter to another.
 
     The table lists the points that enter or leave contact. Between two breakpoints pressure and gap are linear in
-    the parameter, so the path is exact and has no steps. Only gaps and loads may depend on the parameter, and only
-    linearly. Examples are a pressure, a traction, a prescribed displacement, gravity, the position of a rigid surface,
-    the force on a tool, the factor of a load case (load_cases.NAME). The exit status is 0 only if the path reaches its
-    end, each state on it is proved to be the only one, and the accuracy asked is met at both ends.
+    the parameter, so the path is exact on its mesh and has no steps. The mesh is made for both ends; each breakpoint
+    has its own error bar. Only gaps and loads may depend on the parameter, and only linearly. Examples are a pressure,
+    a traction, a prescribed displacement, gravity, the position of a rigid surface, the force on a tool, the factor of
+    a load case (load_cases.NAME). The exit status is 0 only if the path reaches its end, each state on it is proved to
+    be the only one, and the accuracy asked is met at both ends.
 
     FOLDER gets a picture of peak, resultants and ends of contact over the parameter (path.svg), a table of them with
     three rows between two breakpoints (path.csv), and all results (path.json). An earlier path is replaced.

@@ -1,9 +1,9 @@
 """The direct solver: gap = q + M p + R a >= 0, p >= 0, p·gap = 0, ℓᵀp = -load, and the polish of other solvers.
 
-The primal-dual active set comes first, from two starts. Lemke's complementary pivoting follows where both cycle (Cottle,
-Pang and Stone, "The Linear Complementarity Problem", 1992, section 4.4, with the lexicographic rule of section 4.9,
-which makes it finite). For a row sufficient M its path ends at a solution or proves that there is none. The quadratic
-programs are compared with the direct solution.
+The primal-dual active set comes first, from two starts. Where both cycle, Lemke's complementary pivoting follows
+(Cottle, Pang and Stone, "The Linear Complementarity Problem", 1992, section 4.4, with the lexicographic rule of section
+4.9, which makes it finite). For a row sufficient M its path ends at a solution or proves that there is none. The
+quadratic programs are compared with the direct solution.
 """
 
 from contextlib import suppress

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from pydantic import computed_field
 
-from bemcontact.assessment.accuracy import Accuracy, together
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar, together
 from bemcontact.assessment.footprint import ContactInterval, Footprint, footprint
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -21,6 +21,8 @@ BETWEEN = (0.25, 0.5, 0.75)
 """Fractions between two breakpoints at which intervals are evaluated, because their ends are not linear."""
 ROUND_OFF = 1e-14
 """Fraction of a parameter that counts as zero."""
+ROUND_OFF_OF_PEAK = 1e-9
+"""Peak over the largest one of the path that counts as zero."""
 RESIDUAL = 1e-10
 """Allowed residual at breakpoints, as in the certificate of a single solution."""
 
@@ -47,6 +49,13 @@ class PathState(Leaf):
     """Indices of the points that bear a pressure."""
     footprint: Internal[Footprint]
     """Where the body touches, and how hard."""
+    bars: tuple[ErrorBar, ...] = ()
+    """Error bars at a breakpoint; empty if errors were not estimated."""
+
+    @property
+    def peak_bar(self) -> float | None:
+        """Estimated error of the peak, relative; None if it is not known."""
+        return Accuracy(asked=None, bars=self.bars).peak_bar()
 
     @computed_field
     @property
@@ -83,6 +92,8 @@ class ParameterPath(Leaf):
     """Value of the parameter there; null if there is none."""
     said: Internal[tuple[str, ...]] = ()
     """Notes on the states."""
+    breakpoint_bars: Internal[tuple[tuple[ErrorBar, ...], ...]] = ()
+    """Error bars at each breakpoint; empty if errors were not estimated."""
 
     def __repr__(self) -> str:
         """One line: key, values, the path."""
@@ -162,6 +173,20 @@ class ParameterPath(Leaf):
         begin, end = self.reaches
         return (*self.path.notes_between(f"{begin:.6g}", f"{end:.6g}"), *self.said)
 
+    @property
+    def coarse(self) -> tuple[PathState, ...]:
+        """Breakpoints with contact at which the error of the peak is larger than asked, or not known."""
+        asked = self.start_accuracy.asked
+        if asked is None or not self.breakpoint_bars:
+            return ()
+        return tuple(state for state in self.pressed if state.peak_bar is None or state.peak_bar > asked)
+
+    @property
+    def pressed(self) -> tuple[PathState, ...]:
+        """Breakpoints with a finite peak that is more than round-off."""
+        least = ROUND_OFF_OF_PEAK * float(self.path.peak.max(initial=0.0))
+        return tuple(state for state in self.breakpoints if state.peak is not None and state.peak > least)
+
     @computed_field
     @property
     def pivots(self) -> int:
@@ -220,6 +245,7 @@ class ParameterPath(Leaf):
             resultant=tuple((float(x), float(y)) for x, y in contact.resultants(p)),
             touching=tuple(np.flatnonzero(p > 0).tolist()),
             footprint=where,
+            bars=() if i is None or not self.breakpoint_bars else self.breakpoint_bars[i],
         )
 
     def to_csv(self) -> str:
@@ -228,14 +254,14 @@ class ParameterPath(Leaf):
         table, zones = csv.writer(stream, lineterminator="\n"), self.contact.zone_names
         parts = ("resultant x", "resultant y", "starts", "ends")
         table.writerow(
-            [self.key, "breakpoint", "enter", "leave", "peak", "peak x", "peak y"]
+            [self.key, "breakpoint", "enter", "leave", "peak", "peak error", "peak x", "peak y"]
             + [f"{zone} {part}" for zone in zones for part in parts]
             + ["nodes in contact"]
         )
         for state in self.states:
-            peak = "" if state.peak is None else state.peak
+            peak = ["" if state.peak is None else state.peak, "" if state.peak_bar is None else state.peak_bar]
             place = ["", ""] if state.at is None else self.contact.points[state.at].tolist()
-            row = [state.value, int(state.breakpoint), _cell(state.entered), _cell(state.left), peak, *place]
+            row = [state.value, int(state.breakpoint), _cell(state.entered), _cell(state.left), *peak, *place]
             for zone, force in zip(zones, state.resultant, strict=True):
                 row += [*force, *map(_cell, state.ends(zone))]
             table.writerow([*row, _cell(state.touching)])

@@ -18,7 +18,7 @@ from bemcontact.assessment.comparison import Comparison
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.problem import DeflectedContour, Problem, Units
-from bemcontact.report.bars import mesh_in_short
+from bemcontact.report.bars import mesh_in_short, with_bar
 from bemcontact.report.facts import contact_intervals, facts, peak_of, peak_place, scores_in_words, zone_forces
 from bemcontact.report.formatting import (
     case_in_words,
@@ -204,7 +204,7 @@ def _cells(contact: CondensedContact, state: PathState) -> list[str]:
     """A row: value, what enters, what leaves, how many touch, the peak and where."""
     at = "" if state.at is None else _place(contact, state.at)
     entered, left = (_named(contact, points) for points in (state.entered, state.left))
-    peak = "infinite" if state.peak is None else number(state.peak)
+    peak = "infinite" if state.peak is None else with_bar(state.peak, state.peak_bar)
     return [number(state.value), entered, left, f"{len(state.touching)}", peak, at]
 
 

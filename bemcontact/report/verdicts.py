@@ -157,6 +157,21 @@ def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
             words = f"The path ends at {number(last)}, where errors were not estimated."
             verdict = Verdict("Mesh", "fair", "not reached", words)
         yield verdict._replace(words=f"At {path.key} = {number(value)}. {verdict.words}")
+    if path.coarse:
+        yield Verdict("Mesh", "fair", "too coarse between the ends", _between_the_ends(path))
+
+
+def _between_the_ends(path: ParameterPath) -> str:
+    """Say where the errors of peaks between the ends are larger than asked."""
+    first, last = path.coarse[0], path.coarse[-1]
+    values = " to ".join(dict.fromkeys(number(state.value) for state in (first, last)))
+    known = [state.peak_bar for state in path.coarse if state.peak_bar is not None]
+    error = f"up to {error_percent(max(known))}" if known else "not known"
+    return (
+        f"The mesh is made for the ends of the path. At {len(path.coarse)} of {len(path.pressed)} breakpoints with "
+        f"contact, at {path.key} = {values}, errors of peaks are larger than asked: {error}. The table has the error bar "
+        "of each."
+    )
 
 
 def path_sentence(path: ParameterPath) -> str:
