@@ -169,8 +169,8 @@ def _between_the_ends(path: ParameterPath) -> str:
     error = f"up to {error_percent(max(known))}" if known else "not known"
     return (
         f"The mesh is made for the ends of the path. At {len(path.coarse)} of {len(path.pressed)} breakpoints with "
-        f"contact, at {path.key} = {values}, errors of peaks are larger than asked: {error}. The table has the error bar "
-        "of each."
+        f"contact, at {path.key} = {values}, errors of peaks are larger than asked: {error}. The table has the error "
+        "bar of each."
     )
 
 
