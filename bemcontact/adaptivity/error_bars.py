@@ -30,6 +30,8 @@ NOTHING = 1e-9
 
 LEAST_POINTS = 5
 """Points in contact in an interval, those of two elements, below which bisecting elements does not tell the error."""
+MOST_PLACES = 3
+"""Number of places of an infinite pressure that are named besides the first."""
 TIP_ELEMENTS = 2
 """Number of elements beside an infinite pressure that its intensity is not fitted to."""
 
@@ -200,8 +202,15 @@ def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Seque
     peaks = [float(answer.pressure[number].max()) for _, answer in both]
     if its:
         worst = max(its, key=lambda item: item.exponent).place
+        places = [estimate.difference.fine.runs[item.place.run].point(item.place.position) for item in its]
         at = estimate.difference.fine.runs[worst.run].point(worst.position)
-        yield ErrorBar(quantity="peak", zone=name, value=None, bar=None, at=at, note=_infinite(its))
+        others = [f"({x:.5g}, {y:.5g})" for x, y in places if (x, y) != at]
+        more = (
+            f"; also at {', '.join(others)}" if len(others) <= MOST_PLACES else f"; also at {len(others)} other places"
+        )
+        yield ErrorBar(
+            quantity="peak", zone=name, value=None, bar=None, at=at, note=_infinite(its) + more * bool(others)
+        )
     else:
         bar = estimate.bar(max(_change(*peaks), PEAK * m), smooth=True) + logarithmic_rise(estimate.difference, name)
         yield ErrorBar(quantity="peak", zone=name, value=estimate.value(*peaks), bar=bar)
@@ -222,7 +231,7 @@ def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Seque
 
 def _infinite(its: Sequence[Singularity]) -> str:
     """Say why a peak is infinite."""
-    if any(item.place.end and not item.like_a_kink for item in its):
+    if any(item.place.end and not item.place.corner and not item.like_a_kink for item in its):
         return "infinite where contact reaches the end of its zone: a corner of the surface, or else a zone too short"
     if any(item.exponent == 0 for item in its):
         return (
@@ -230,6 +239,8 @@ def _infinite(its: Sequence[Singularity]) -> str:
             "spline, not as lines), or at a corner because of its angle, a shear load beside the contact, or a surface "
             "at an angle to the edge"
         )
+    if any(item.place.end for item in its):
+        return "infinite where contact reaches a corner of the body"
     return "infinite at a corner or a kink"
 
 
@@ -313,7 +324,8 @@ def _intensity(
         [np.where(side * (at - image) > 0, side * (at - image), np.inf) for image in images(run, item.place.position)],
         axis=0,
     )
-    low, high = max(part[0] * length, float(s[elements_beside(run, item.place.position)].max())), part[1] * length
+    beside = s[elements_beside(run, item.place.position)]
+    low, high = max(part[0] * length, float(beside[np.isfinite(beside)].max())), part[1] * length
     used = (s > low) & (s <= high) & (pressure > 0)
     if used.sum() < 2 * degree:
         return None

@@ -49,7 +49,7 @@ class ContactPlace:
     end: bool = False
     """Whether contact reaches the end of its zone there."""
     corner: bool = False
-    """Whether the boundary or the surface has a corner there."""
+    """Whether the boundary has a corner there, or inside the zone the boundary or the surface."""
     kink: float = 0.0
     """Angle by which surface and body, both as drawn, turn away from each other there [rad]."""
 
@@ -243,7 +243,8 @@ def _places(difference: MeshDifference) -> Iterator[ContactPlace]:
                 if not free:
                     at = position % run.length if run.closed else position
                     end = not run.closed and min(at, run.length - at) <= 1e-9 * run.length
-                    yield ContactPlace(run=run.number, zone=run.zone, position=at, end=end, corner=not end)
+                    corner = not end or _corner_of_body(coarse, run, after=2 * at > run.length)
+                    yield ContactPlace(run=run.number, zone=run.zone, position=at, end=end, corner=corner)
         kinks = dict(_turns_of_surface(coarse, run))
         for position, turn in zip(run.joints.tolist(), run.turn.tolist(), strict=True):
             same = [at for at in kinks if abs(at - position) <= SAME * run.length]
@@ -253,6 +254,14 @@ def _places(difference: MeshDifference) -> Iterator[ContactPlace]:
         for position, kink in kinks.items():
             if run.closed or 0 < position < run.length:
                 yield ContactPlace(run=run.number, zone=run.zone, position=position, corner=True, kink=kink)
+
+
+def _corner_of_body(solved: Solved, run: ZoneRun, *, after: bool) -> bool:
+    """Whether the boundary has a corner at the start of a run, or `after` it."""
+    mesh, elements = solved.mesh, run_elements(solved, run)
+    first = int(elements[-1] if after else mesh.before[elements[0]])
+    (x, y), (u, v) = mesh.tangents[first, 2], mesh.tangents[mesh.elements[first, 2], 0]
+    return abs(np.arctan2(x * v - y * u, x * u + y * v)) > CORNER
 
 
 def _turns_of_surface(solved: Solved, run: ZoneRun) -> Iterator[tuple[float, float]]:

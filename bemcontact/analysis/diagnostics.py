@@ -25,6 +25,8 @@ COARSE = 0.1
 """Accuracy asked for, relative, above which meshes are so coarse that a contact may be missed."""
 SMALL_NET_LOAD = 1e-3
 """Net load over the sum of the magnitudes of all loads below which it may be due to rounded numbers in the input."""
+OF_A_FIT = 10.0
+"""Contact forces over the load that they carry, from which most of them balance each other."""
 
 
 def diagnostics(
@@ -36,7 +38,7 @@ def diagnostics(
     """Notes on a solution; those on the mesh need a body."""
     touching = contact.pressed(solution.pressure, solution.displacement)
     yield from floating(contact, touching)
-    yield from nearly_balanced(contact)
+    yield from nearly_balanced(contact, solution)
     yield from against_its_force(contact, solution)
     yield from few_points(contact, touching, where)
     if body is not None:
@@ -65,9 +67,13 @@ def floating(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator
         )
 
 
-def nearly_balanced(contact: CondensedContact) -> Iterator[str]:
-    """Note that what presses the body onto its support is a small difference of large loads."""
-    if 0 < contact.net_load < SMALL_NET_LOAD:
+def nearly_balanced(contact: CondensedContact, solution: ContactSolution) -> Iterator[str]:
+    """Note that what presses the body onto its support is a small difference of large loads.
+
+    Pressure of a fit, by interference or heat, balances itself and does not depend on this difference.
+    """
+    carried = np.abs(contact.equilibrium).T @ solution.pressure
+    if 0 < contact.net_load < SMALL_NET_LOAD and np.any(carried <= OF_A_FIT * np.abs(contact.motion_load)):
         yield (
             f"the loads nearly balance: what drives the {' and the '.join(contact.motion_names)} is "
             f"{contact.net_load:.1g} of the sum of their magnitudes, and contact carries only that; errors of this "

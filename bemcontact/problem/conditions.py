@@ -125,6 +125,9 @@ class Centrifugal(SpecModel):
     """Steady rotation: the body force density · angular_velocity² · (x - center)."""
 
     example: ClassVar[str] = "{density: 7.85e-9, angular_velocity: 300}"
+    other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("rpm", "speed", "omega"), "write angular_velocity, in radians per time: 2 π/60 of the turns per minute"
+    )
 
     density: Positive
     """The mass per volume."""
@@ -157,6 +160,10 @@ class Loads(SpecModel):
     """The loads on the volume of the body; they are added."""
 
     example: ClassVar[str] = "{temperature: {expansion: 1.2e-5, change: 50}}"
+    other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("rotation", "rotating", "spin", "speed", "angular_velocity"),
+        "a body that rotates steadily has centrifugal: {density: 7.85e-9, angular_velocity: 300}, in radians per time",
+    )
 
     gravity: Gravity | None = None
     """The weight of the body."""

@@ -39,6 +39,8 @@ MOST_PLACES = 3
 """Number of places of the largest pressure that are named."""
 UNRESOLVED = 1e-3
 """Share of the length of contact below which no place in it is resolved."""
+TRANSLATIONS = "translation along (1, 0)", "translation along (0, 1)"
+"""Names of the free motions of a body that only contact holds."""
 
 
 def peak_of(record: Record, units: Units) -> str:
@@ -262,8 +264,13 @@ def zone_forces(record: Record, units: Units) -> dict[str, str]:
 
 
 def _force(components: tuple[float, float], record: Record, zone: str | None, units: Units) -> str:
-    """Write a force with the error of that of a zone; that of the only zone if none is named."""
+    """Write a force with the error of that of a zone; that of the only zone if none is named.
+
+    The resultant on a body that nothing else holds is that of its loads: it has no error.
+    """
     unit, pressed = units.line_force, pressed_by(record)
+    if zone is None and {*TRANSLATIONS} <= {*record["motion_names"]}:
+        return vector(components, unit, scale=pressed)
     bars = [bar for bar in bars_of(record, "force") if zone in (bar["zone"], None)]
     errors = [abs(bar["value"]) * bar["bar"] for bar in bars if bar["value"] and bar["bar"] is not None]
     return _with_error(components, errors[0] if len(errors) == len(bars) == 1 else None, unit, pressed)

@@ -94,6 +94,44 @@ def test_the_pressure_of_a_flat_punch_is_infinite_with_the_intensity_of_the_half
     assert 0 < (intensity.bar or 0) < 0.1
 
 
+def test_the_intensity_under_a_corner_of_the_surface_inside_an_edge():
+    """The same punch as a polyline over the whole face, whose corner no edge of the body ends at."""
+    side = 40.0
+    problem = wide_punch(1 / side)
+    corners = [("bottom", 0, 0), ("right", side, 0), ("face", side, side), ("axis", 0, side)]
+    surface = {"kind": "polyline", "points": [(1, side + 5), (1, side), (-1, side)]}
+    changes = {
+        "boundary.outer": [{"name": name, "start": [x, y]} for name, x, y in corners],
+        "contact_zones.punch.surface": surface,
+    }
+    result = found(problem.with_values(changes), 3e-3)
+    (judged,) = result.accuracies
+    assert judged.met
+    intensity, truth = entry(result, "intensity"), 600 / (pi * sqrt(2))
+    assert intensity.value is not None
+    assert intensity.at == pytest.approx((1.0, side))
+    assert abs(intensity.value / truth - 1) <= (intensity.bar or 0) + 2 / side**2
+    assert 0 < (intensity.bar or 0) < 0.1
+
+
+def test_all_corners_of_the_body_with_infinite_pressures_are_named():
+    """A foot that widens upwards: both ends of contact are corners of the body of 135 degrees, and no zone is short."""
+    outline = [("bottom", -10, 0), ("r", 10, 0), ("r2", 20, 10), ("top", 20, 50), ("l", -20, 50), ("l2", -20, 10)]
+    floor = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    problem = Problem.model_validate(
+        {
+            "name": "foot",
+            "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": name, "start": [x, y]} for name, x, y in outline]},
+            "conditions": {"top": {"pressure": 10}},
+            "contact_zones": {"table": {"edges": "bottom", "surface": floor}},
+        }
+    )
+    peak = entry(found(problem), "peak")
+    assert peak.at == (-10.0, 0.0)
+    assert peak.note == "infinite where contact reaches a corner of the body; also at (10, 0)"
+
+
 def test_no_peak_is_promised_at_a_punch_whose_end_is_a_corner_of_the_body():
     """At the end on the free face the pressure is infinite with α = 1/2; at the corner of a quarter it is finite."""
     result = found(flat_punch_at_corner()[0])
