@@ -101,7 +101,7 @@ class Solved:
         """Whether each zone has each element (zones, m)."""
         points = self.body.points
         has = np.zeros((len(self.body.problem.contact_zones), len(self.mesh.elements)), bool)
-        has[points.zone[points.point], points.element] = True
+        has[points.zone_of_share, points.element] = True
         return has
 
     @cached_property
@@ -140,7 +140,7 @@ def answer_of(
     points = body.points
     pressure = np.zeros((len(body.problem.contact_zones), *body.mesh.elements.shape))
     if intervals:  # else what there is of pressure is round-off
-        pressure[points.zone[points.point], points.element, points.local] = solution.pressure[points.point]
+        pressure[points.zone_of_share, points.element, points.local] = solution.pressure[points.point]
     return CaseAnswer(
         condensation=condensation,
         solution=solution,

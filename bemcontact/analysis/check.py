@@ -71,7 +71,7 @@ def _smallest_gap(body: Body, zone: int) -> float:
     least = float(points.gap[points.zone == zone].min())
     if isinstance(surface, DeflectedContour):
         return least
-    own = np.unique(points.element[points.zone[points.point] == zone])
+    own = np.unique(points.element[points.zone_of_share == zone])
     for edge in map(problem.edge, problem.edges_of(name)):
         ends, first = edge.breakpoints(problem.mesh.refine), np.argmax(mesh.edge == mesh.edge_names.index(edge.name))
         corners = (corner.fraction for corner in surface_corners(edge, surface))

@@ -79,8 +79,7 @@ def load_after(
     motions = body.free
     load = _load_of_turns(gaps, motions, contact, solution, moved)
     force, moment = _gain_of_levers(gaps, body)
-    own = contact.weights * (contact.zone == np.arange(len(contact.zone_names))[:, None])
-    pressed = own @ (solution.pressure > 0)
+    pressed = contact.weights_by_zone @ (solution.pressure > 0)
     if abs(moment) <= least * pressed[pressed > 0].min() * (contact.weights @ solution.pressure):
         return load
     return load + motions.body.work_of(force, moment, about=_centroid(body))

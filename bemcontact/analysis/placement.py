@@ -282,7 +282,7 @@ def _forces_changed(
     """Judge how the force on each surface changes with the gaps and normals of the displaced places."""
     if again.status is not Status.SOLVED:
         return None, ()  # as is said of the peak
-    own = (contact.zone == np.arange(len(contact.zone_names))[:, None]) * contact.weights
+    own = contact.weights_by_zone
     was = (own * solution.pressure) @ contact.normals
     is_now = (own * again.pressure) @ (contact.normals + moved.turn)
     total = own @ solution.pressure

@@ -91,6 +91,7 @@ def condense(body: Body) -> Condensation:
         motion_load=load[:, 0],
         initial_gap=points.gap + tools.motions @ tools.position[:, 0],
         weights=points.tributary,
+        zone_weights=points.tributary_by_zone(len(body.problem.contact_zones)),
         consistent_weights=points.consistent,
         element_length_weights=points.element_length,
         held_arc=points.held_arc,

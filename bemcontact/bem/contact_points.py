@@ -88,6 +88,24 @@ class ContactPoints:
         return len(self.node)
 
     @cached_property
+    def zone_of_share(self) -> IntArray:
+        """Number of the zone of each share of a point, an (element, local node) pair: that of its element.
+
+        A node between two zones on one face is a point of the first of them, and acts on the elements of both.
+        """
+        zones = self.zone[self.point]
+        middle = np.zeros((max(self.zone, default=0) + 1, len(self.mesh.elements)), bool)
+        middle[zones[self.local == 1], self.element[self.local == 1]] = True
+        own = middle[zones, self.element] | ~middle[:, self.element].any(axis=0)
+        return np.where(own, zones, middle[:, self.element].argmax(axis=0))
+
+    def tributary_by_zone(self, zones: int) -> Array:
+        """(zones, n) [L]: the parts of the tributary lengths in each zone."""
+        lengths = np.zeros((zones, len(self)))
+        np.add.at(lengths, (self.zone_of_share, self.point), self.mesh.tributary[self.element, self.local])
+        return lengths
+
+    @cached_property
     def tributary(self) -> Array:
         """(n,) [L]: Σ over elements of (1/3, 4/3, 1/3) |dx/dξ|."""
         return np.bincount(self.point, self.mesh.tributary[self.element, self.local], len(self)).astype(float)
@@ -106,8 +124,8 @@ class ContactPoints:
         jacobian = np.hypot(tangents[..., 0], tangents[..., 1])
         local = np.einsum("gk,gl,mg,g->mkl", N, N, jacobian, weights)
         J = np.zeros((len(self), len(self)))
-        for element, zone in np.unique(np.column_stack([self.element, self.zone[self.point]]), axis=0):
-            at = (self.element == element) & (self.zone[self.point] == zone)
+        for element, zone in np.unique(np.column_stack([self.element, self.zone_of_share]), axis=0):
+            at = (self.element == element) & (self.zone_of_share == zone)
             k, i = self.local[at], self.point[at]
             np.add.at(J, np.ix_(i, i), local[element][np.ix_(k, k)])
         return J

@@ -60,6 +60,8 @@ class CondensedContact(WithHints, MotionAlgebra):
     motion_load : (k,) work of the applied loads in these motions, [p L] for a motion of unit displacement
     initial_gap : (n,) ε [L]
     weights : (n,) tributary weights [L]: Σ w p n is the force of the rigid surface
+    zone_weights : (zones, n) parts of the weights that belong to each zone, for a point between two zones; None where
+        each point belongs to its zone alone [L]
     consistent_weights : (n, n) ∫ h hᵀ ds [L], or None where no mesh stands behind the problem
     element_length_weights : (n,) [L], or None likewise
     held_arc : (number of runs, 2) arc position of a run's ends that a condition holds on the rigid surface, up to which
@@ -89,6 +91,7 @@ class CondensedContact(WithHints, MotionAlgebra):
     compliance: Array
     free_displacement: Array
     initial_gap: Array
+    zone_weights: Array | None = None
     consistent_weights: Array | None = None
     element_length_weights: Array | None = None
     held_arc: Array | None = None
@@ -378,9 +381,16 @@ class CondensedContact(WithHints, MotionAlgebra):
 
     def resultants(self, pressure: Array) -> Array:
         """Σ w p n (..., zones, 2) [p L]: the force of each zone's rigid surface on the body, from p (..., n) [p]."""
-        forces = self.forces(pressure)
-        each = [forces[..., self.zone == i, :].sum(axis=-2) for i in range(len(self.zone_names))]
-        return np.stack(each, axis=-2)
+        p = self._by_point(pressure, "pressure", 0)
+        with np.errstate(invalid="ignore"):  # as in forces
+            return (p[..., None, :] * self.weights_by_zone) @ self.normals
+
+    @property
+    def weights_by_zone(self) -> Array:
+        """The weights (zones, n) in each zone [L]: zero for points of other zones."""
+        if self.zone_weights is not None:
+            return self.zone_weights
+        return self.weights * (self.zone == np.arange(len(self.zone_names))[:, None])
 
     def forces(self, pressure: Array) -> Array:
         """Forces w p n (..., n, 2) [p L] at the contact points, from p (..., n) [p]."""

@@ -22,10 +22,16 @@ def ensure_arrays(contact: Any) -> None:
         "points": (n, 2), "normals": (n, 2), "arc_position": (n,), "compliance": (n, n), "free_displacement": (n,),
         "motion_load": (k,), "initial_gap": (n,), "weights": (n,),
     }  # fmt: skip
-    optional: dict[str, Shape] = {"consistent_weights": (n, n), "element_length_weights": (n,)}
+    optional: dict[str, Shape] = {
+        "zone_weights": (len(contact.zone_names), n), "consistent_weights": (n, n), "element_length_weights": (n,),
+    }  # fmt: skip
     read_arrays(contact, needed | {key: shape for key, shape in optional.items() if getattr(contact, key) is not None})
     if not (contact.weights > 0).all():
         raise ProblemError(f"weights must be positive; the smallest is {contact.weights.min():.3g}")
+    if contact.zone_weights is not None:
+        total = contact.zone_weights.sum(axis=0)
+        if (contact.zone_weights < 0).any() or (np.abs(total - contact.weights) > UNIT * contact.weights).any():
+            raise ProblemError("zone_weights must not be negative, and add up to the weights")
     lengths = np.hypot(*contact.normals.T)
     if (wrong := np.abs(lengths - 1.0) > UNIT).any():
         i = int(np.argmax(wrong))

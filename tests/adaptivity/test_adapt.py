@@ -520,3 +520,31 @@ def test_a_body_that_touches_nothing_has_the_error_of_its_deformation_alone():
     assert result.accuracies[0].met
     assert grown.value == pytest.approx(12e-6 * 30 * 1.3 * np.hypot(50, 10), rel=1e-9)
     assert {item.quantity for item in result.accuracies[0].bars} == {"force", "displacement"}
+
+
+@pytest.mark.parametrize("at", [0.0, -7.3])
+def test_two_zones_that_meet_on_a_floor_share_the_load_exactly(at: float):
+    """A block under uniform pressure: the node between the zones acts on the elements of both, by their lengths."""
+    floor = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    corners = [("first", -20, 0), ("second", at, 0), ("right", 20, 0), ("top", 20, 20), ("left", -20, 20)]
+    problem = Problem.model_validate(
+        {
+            "name": "block",
+            "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": name, "start": [x, y]} for name, x, y in corners]},
+            "conditions": {"top": {"pressure": 3}},
+            "contact_zones": {name: {"edges": name, "surface": floor} for name in ("first", "second")},
+        }
+    )
+    result = solve(problem)
+    assert result.accuracy.passes == 1
+    expected = {"first": 3 * (at + 20), "second": 3 * (20 - at)}
+    for name, force in expected.items():
+        assert result.footprint.forces[name] == pytest.approx((0, force), rel=1e-12, abs=1e-9)
+        (bar,) = (item for item in result.accuracy.bars if (item.quantity, item.zone) == ("force", name))
+        assert bar.value == pytest.approx(force, rel=1e-12)
+    contact = result.contact
+    np.testing.assert_allclose(contact.weights_by_zone.sum(axis=1), [at + 20, 20 - at], rtol=1e-12)
+    assert contact.consistent_weights is not None
+    p = np.ones(len(contact.points))
+    assert p @ contact.consistent_weights @ p == pytest.approx(40, rel=1e-12)

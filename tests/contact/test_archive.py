@@ -195,6 +195,7 @@ BREAKS: dict[str, tuple[str, Callable[[np.ndarray], Any], str]] = {
     "reversed arc positions": ("arc_position", lambda arc: arc[::-1], "with rising arc_position"),
     "load case of nothing": ("cases.displacement", lambda array: array * np.nan, "cases.displacement has entries"),
     "negative weights": ("weights", lambda weights: -weights, "weights must be positive"),
+    "weights of another zone": ("zone_weights", lambda weights: 2 * weights, "add up to the weights"),
     "no run length": ("run_length", lambda length: -length, "run_length must be positive"),
     "a name of numbers": ("name", lambda _: np.zeros(3), "member 'name' is no"),
     "names of numbers": ("zone_names", lambda _: np.zeros(2), "zone_names must be a list of texts"),
