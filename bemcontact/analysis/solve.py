@@ -236,16 +236,13 @@ def assessed(
     with watch.stage("assessment"):
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
-        where, deepest, unseen = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
-        if boundary is not None and condensation is not None and certificate.kind is not CertificateKind.NOT_A_SOLUTION:
-            gaps = surface_gaps(condensation.body.problem, boundary, contact, solution)
-            deepest, unseen = misfit(gaps, condensation.body, contact, solution, where)
-        notes = (
-            *contact.notes,
-            *solution.notes,
-            *unseen,
-            *diagnostics(contact, solution, where, None if condensation is None else condensation.body),
-        )
+        where, deepest, said = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
+        if certificate.kind is not CertificateKind.NOT_A_SOLUTION:
+            if boundary is not None and condensation is not None:
+                gaps = surface_gaps(condensation.body.problem, boundary, contact, solution)
+                deepest, said = misfit(gaps, condensation.body, contact, solution, where)
+            said += tuple(diagnostics(contact, solution, where, None if condensation is None else condensation.body))
+        notes = (*contact.notes, *solution.notes, *said)
     gap = contact.initial_gap + solution.displacement
     return Result(
         problem=None if condensation is None else condensation.body.problem,

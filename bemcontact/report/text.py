@@ -14,6 +14,7 @@ from bemcontact.analysis.check import CheckedProblem
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.study import MeshLevel, Study
+from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.assessment.comparison import Comparison
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
@@ -94,15 +95,19 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
 def result_summary(result: Result) -> RenderableType:
     """List the facts of a result and its certificate."""
     solution, shown = result.solution, list_of_facts()
+    solved = result.certificate.kind is not CertificateKind.NOT_A_SOLUTION
+    for verdict in () if solved else result_verdicts(result):
+        add_verdict(shown, verdict)
     for name, value in facts(result.to_dict(), units_of(result.contact)):
-        add(shown, name, value)
+        if solved or name == "Residuals":  # where the solver stopped there is no contact
+            add(shown, name, value)
     if solution.search is not None:
         add(shown, "Search", search_in_words(solution.search, result.contact))
     if result.starts is not None:
         add(shown, "Starts", str(result.starts))
     for note in result.notes:
         add(shown, "Note", note)
-    for verdict in result_verdicts(result):
+    for verdict in result_verdicts(result) if solved else ():
         add_verdict(shown, verdict)
     polished = ", polished" if solution.polished else ""
     freedom = "" if result.degrees_of_freedom is None else f"{result.degrees_of_freedom} degrees of freedom, "
