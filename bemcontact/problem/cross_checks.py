@@ -324,7 +324,9 @@ def _faces_away(edge: str, surface: RigidSurface) -> str:
             x, y = surface.normal
             remedy = f"reverse the normal: [{0 - x:g}, {0 - y:g}]"
         case Circle():
-            remedy = f"is the body {'inside' if surface.body == 'outside' else 'outside'} the circle?"
+            outside = surface.body == "outside"
+            where, other = ("beyond this edge", "inside") if outside else ("on the side of the body", "outside")
+            remedy = f"with body: {surface.body} the center lies {where}: move it, or is the body {other} the circle?"
         case Polyline() | Spline():
             remedy = "list its points in the opposite order, so that the body is on their left"
         case DeflectedContour():

@@ -1,5 +1,6 @@
 """The material of a body."""
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
@@ -11,6 +12,12 @@ class Material(SpecModel):
     """An isotropic linear elastic material in plane strain or plane stress."""
 
     example: ClassVar[str] = "{young_modulus: 210000, poisson_ratio: 0.3}"
+    other_words: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(("E", "elastic_modulus"), "Young's modulus is young_modulus"),
+        **dict.fromkeys(("nu", "ν"), "Poisson's ratio is poisson_ratio"),
+        **dict.fromkeys(("density", "rho"), "the density belongs to the load that needs it: loads.gravity.density"),
+        **dict.fromkeys(("alpha", "expansion"), "thermal expansion belongs to the load: loads.temperature.expansion"),
+    }
 
     young_modulus: Positive
     """The modulus of elasticity E (Young's modulus), in the unit of stress."""

@@ -107,7 +107,8 @@ def not_tiny(value: float) -> float:
 def _pair(value: Any) -> Any:
     """Refuse a list that is not a pair, before its entries are checked."""
     if not isinstance(value, list | tuple) or len(value) != 2:
-        raise invalid(f"expected two numbers such as [0.0, 1.5], found {described(value)}")
+        brackets = "; write it in square brackets" if isinstance(value, str) and value.startswith("(") else ""
+        raise invalid(f"expected two numbers such as [0.0, 1.5], found {described(value)}{brackets}")
     return value
 
 

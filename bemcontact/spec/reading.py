@@ -28,7 +28,8 @@ _HINTS = {
     "mapping values are not allowed": "write key: value with a blank after the colon, and several in one line in "
     "braces, {a: 1, b: 2}; put a text that contains a colon in quotes, or check the indentation",
     "could not find expected ':'": "a key needs a colon and a space after it",
-    "expected <block end>": "check the indentation of this line and the lines above",
+    "expected <block end>": "check the indentation of this line and the lines above; nothing may follow "
+    "a closing bracket, not even a unit",
     "found undefined alias": "an alias *name needs an anchor &name before it",
     "found another document": "put one problem into one file",
     "found unexpected end of stream": "a quote or bracket is not closed",

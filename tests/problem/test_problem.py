@@ -150,8 +150,14 @@ def test_edge_that_occurs_twice_in_a_zone_is_refused():
     ("surface", "remedy"),
     [
         ({"kind": "plane", "point": [0, 0], "normal": [0, -2]}, "reverse the normal: [0, 2]"),
-        ({"kind": "circle", "center": [0, -9], "radius": 9, "body": "inside"}, "is the body outside the circle?"),
-        ({"kind": "circle", "center": [0, 20], "radius": 20, "body": "outside"}, "is the body inside the circle?"),
+        (
+            {"kind": "circle", "center": [0, -9], "radius": 9, "body": "inside"},
+            "the center lies on the side of the body: move it, or is the body outside the circle?",
+        ),
+        (
+            {"kind": "circle", "center": [0, 20], "radius": 20, "body": "outside"},
+            "the center lies beyond this edge: move it, or is the body inside the circle?",
+        ),
         ({"kind": "polyline", "points": [[1, 0], [-1, 0]]}, "list its points in the opposite order"),
         ({"kind": "spline", "points": [[1, 0], [0, 0], [-1, 0]]}, "list its points in the opposite order"),
     ],
