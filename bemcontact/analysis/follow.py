@@ -70,7 +70,7 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     varied = Variation(on_mesh, key)
     path = load_path(*(replace(contact, name=problem.title) for contact in between(varied, begin, end)))
     first, last = (_accuracy(varied, value, found.get(value), bool(found)) for value in (begin, end))
-    infinite = bool(first.infinite or last.infinite)
+    infinite = (*first.infinite, *last.infinite)
     followed = FollowedPath(varied, path, begin, end)
     deepest, at, said = penetration_on_path(followed, infinite=infinite)
     bars = _errors(followed, found) if first.bars or last.bars else ()

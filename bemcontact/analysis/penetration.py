@@ -4,7 +4,7 @@ Contact conditions hold at contact points. Nothing keeps the body out of a surfa
 in no zone of it.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -28,13 +28,19 @@ DETAIL = 1e-4
 
 
 def misfit(
-    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, where: Footprint
+    gaps: SurfaceGaps,
+    body: Body,
+    contact: CondensedContact,
+    solution: ContactSolution,
+    where: Footprint,
+    infinite: Collection[str],
 ) -> tuple[Penetration | None, tuple[str, ...]]:
     """Find what does not fit, or else displacements that are not small; note the rest.
 
-    Strains that are not small fold the boundary, and those above one tell nothing of where the body is.
+    `infinite` are the zones whose peak is. Strains that are not small fold the boundary, and those above one tell
+    nothing of where the body is.
     """
-    deepest, notes = penetration(gaps, body, contact, solution)
+    deepest, notes = penetration(gaps, body, contact, solution, infinite=infinite)
     beyond, noticed = linear_theory(body, contact, solution, where, gaps.state)
     if deepest is not None and beyond is not None:
         if deepest.kind is Misfit.ITSELF or beyond.depth > 1:
@@ -49,6 +55,7 @@ def penetration(
     contact: CondensedContact,
     solution: ContactSolution,
     nearby: Array | None = None,
+    infinite: Collection[str] = (),
 ) -> tuple[Penetration | None, tuple[str, ...]]:
     """Find the deepest penetration that is not tolerated, or else contact that is misplaced; note the rest.
 
@@ -70,7 +77,7 @@ def penetration(
         notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
     if worst is None or not worst.paired:  # an edge that is not in a zone may be there through the body itself
         worst = _through_itself(gaps) or worst
-    misplaced, said = (None, ()) if worst else placement(gaps, body, contact, solution, nearby)
+    misplaced, said = (None, ()) if worst else placement(gaps, body, contact, solution, nearby, infinite)
     return worst or misplaced, (*notes, *said)
 
 
@@ -142,11 +149,12 @@ def _crossing(loops: Sequence[Array], gaps: SurfaceGaps) -> Array | None:
 
 
 def penetration_on_path(
-    followed: FollowedPath, *, infinite: bool
+    followed: FollowedPath, *, infinite: Collection[str]
 ) -> tuple[Penetration | None, float | None, tuple[str, ...]]:
     """Find the deepest penetration at the breakpoints of a path, and the value there; note the rest.
 
-    A state at an end of the path is judged as a solution is. Of an `infinite` peak no strain is told.
+    A state at an end of the path is judged as a solution is. `infinite` are the zones whose peak is; no strain is told
+    there.
     """
     varied, path = followed.varied, followed.path
     outline, worst, at, notes = Outline(problem=varied.problem), None, None, dict[str, list[float]]()
@@ -157,8 +165,10 @@ def penetration_on_path(
         body, contact = condensation.body, condensation.contact
         gaps = surface_gaps(body.problem, state, contact, solution, outline)
         nearby = _peaks_within(path, t - near, t + near) if 0 < i < last else None
-        found, said = penetration(gaps, body, contact, solution, nearby)
-        beyond, noticed = linear_theory(body, contact, solution, footprint(contact, solution, infinite=infinite), state)
+        found, said = penetration(gaps, body, contact, solution, nearby, infinite)
+        beyond, noticed = linear_theory(
+            body, contact, solution, footprint(contact, solution, infinite=bool(infinite)), state
+        )
         found = found or beyond
         if found is not None and (worst is None or _order(found) > _order(worst)):
             worst, at = found, value

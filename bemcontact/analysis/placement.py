@@ -7,7 +7,7 @@ the change of the pressure is the error of the first solution, to first order. F
 there too: the normals turn, and a body that moves takes the places of its forces along.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -33,6 +33,10 @@ NOTED = 0.25
 are mostly a few times smaller than the accuracy."""
 WITHHELD = 0.05
 """Change from which a result is not certified: the curvature is off by a tenth."""
+SMALL_COMPONENT = 0.15
+"""Component of a force over the force from which its change is judged by itself, and not by the force.
+
+What the force of a tool prescribes does not change; the other component may, by far more than the force as a whole."""
 MOVES_ON = 0.8
 """Part of a motion by which a body moves on in the second solution, from which it is not held: the steps do not end.
 
@@ -54,9 +58,11 @@ def placement(
     contact: CondensedContact,
     solution: ContactSolution,
     nearby: Array | None = None,
+    infinite: Collection[str] = (),
 ) -> tuple[Penetration | None, tuple[str, ...]]:
     """Find pressure off a surface, or pressure that the motion changes too much; note what it changes by less.
 
+    Where the peak is `infinite`, in these zones, forces alone are judged.
     Of a state on a path, `nearby` (2, zones) is the least and the largest peak [p] of each zone a little before and
     after it. A peak between them is that of a parameter a little off: at first touch no peak is sure to any part of it.
     """
@@ -91,7 +97,8 @@ def placement(
         misfit, turned = _forces_changed(gaps, points, contact, solution, again, moved)
     if misfit is not None:
         return misfit, (*overhangs, *turned)
-    misfit, said = _changed(gaps, points, contact, solution, again, moved, nearby)
+    finite = [name for name in contact.zone_names if name not in infinite]
+    misfit, said = _changed(gaps, points, contact, solution, again, moved, nearby, finite)
     if misfit is None and nearby is None:
         said = (*said, *_places_changed(gaps, contact, solution, replace(contact, **there), again))
     return misfit, (*overhangs, *turned, *said)
@@ -206,15 +213,15 @@ def _off_the_surface(
 
 def _changed(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
-    again: ContactSolution, moved: Displaced, nearby: Array | None,
+    again: ContactSolution, moved: Displaced, nearby: Array | None, zones: Sequence[str],
 ) -> tuple[Penetration | None, tuple[str, ...]]:  # fmt: skip
-    """Judge how the peak of each zone changes with the gaps and normals of the displaced places."""
+    """Judge how the peak of each of some zones changes with the gaps and normals of the displaced places."""
     solved = again.status is Status.SOLVED
-    number, change = _peak_change(contact, solution.pressure, again.pressure)
+    number, change = _peak_change(contact, zones, solution.pressure, again.pressure)
     if solved and abs(change) < noted(gaps.problem):
         return None, ()
     if solved and nearby is not None:
-        beyond = _peak_change(contact, solution.pressure, again.pressure, nearby)
+        beyond = _peak_change(contact, zones, solution.pressure, again.pressure, nearby)
         if abs(beyond[1]) < WITHHELD:
             return None, (_off_by_a_little(contact.zone_names[number], gaps.problem),)
         number, change = beyond
@@ -228,8 +235,8 @@ def _changed(
         else "with the gaps after this motion, contact does not hold the body"
     )
     words = (
-        f"the body moves by {_vector(motion, gaps.problem.units.length)} against the surface of '{zone}', which is not "
-        f"small beside its shape: {effect}; {_remedy(gaps, motion)}"
+        f"the body and the surface of '{zone}' move by {_vector(motion, gaps.problem.units.length)} against each "
+        f"other, which is not small beside their shapes: {effect}; {_remedy(gaps, motion)}"
     )
     if solved and abs(change) < WITHHELD:
         return None, (f"{words}; error bars do not include this",)
@@ -286,25 +293,33 @@ def _forces_changed(
     was = (own * solution.pressure) @ contact.normals
     is_now = (own * again.pressure) @ (contact.normals + moved.turn)
     total = own @ solution.pressure
-    part = np.hypot(*(is_now - was).T) / np.where(total > 0, total, np.inf)
-    number = int(np.argmax(part))
-    if part[number] < noted(gaps.problem):
+    size = np.where(abs(was) >= SMALL_COMPONENT * total[:, None], abs(was), total[:, None])
+    parts = abs(is_now - was) / np.where(size > 0, size, np.inf)
+    number, axis = np.unravel_index(int(np.argmax(parts)), parts.shape)
+    part = float(parts[number, axis])
+    if part < noted(gaps.problem):
         return None, ()
     i = int(np.argmax(own[number] * solution.pressure))
     zone, motion = contact.zone_names[number], moved.motion[int(np.argmax(np.hypot(*moved.turn.T)))]
     units = gaps.problem.units
     gained = _vector(is_now[number] - was[number], units.line_force)
     words = (
-        f"the body moves by {_vector(motion, units.length)} against a surface, which is not small beside "
-        "its shape: with the gaps and the directions of the surfaces where the body then is, the force of the surface "
-        f"of '{zone}' changes by {100 * part[number]:.2g} %, by {gained}; "
+        f"the body and the surface of '{zone}' move by {_vector(motion, units.length)} against each other, which is "
+        "not small beside their shapes: with the gaps and the directions of the surfaces where the body then is, the "
+        f"force between them changes by {gained}, along {'xy'[axis]} by "
+        f"{_of_component(part, float(was[number, axis]), float(size[number, axis]))}; "
         f"{_remedy(gaps, motion)}"
     )
-    if part[number] < WITHHELD:
+    if part < WITHHELD:
         return None, (f"{words}; error bars do not include this",)
     words = f"{words[0].upper()}{words[1:]}."
     off = float(abs(moved.change[contact.zone == number]).max())
     return _misfit(gaps, points, contact, i, Misfit.MOVED, off, 0.0, words), ()
+
+
+def _of_component(part: float, component: float, size: float) -> str:
+    """Say a change of a component of a force in per cent: of itself, or of the force if it is small beside that."""
+    return f"{100 * part:.2g} %" if abs(component) >= size else f"{100 * part:.2g} % of the force"
 
 
 def _places_changed(
@@ -327,12 +342,13 @@ def _places_changed(
 
 
 def _peak_change(
-    contact: CondensedContact, before: Array, after: Array, nearby: Array | None = None
+    contact: CondensedContact, zones: Sequence[str], before: Array, after: Array, nearby: Array | None = None
 ) -> tuple[int, float]:
-    """The zone whose peak changes most, and the change over the largest peak; beyond the peaks nearby, if given."""
+    """One of the zones, whose peak changes most, and the change over the largest peak; beyond the peaks nearby."""
     own = contact.zone == np.arange(len(contact.zone_names))[:, None]
     was, is_now = (np.where(own, pressure, 0.0).max(axis=1, initial=0.0) for pressure in (before, after))
     changes = (is_now - (was if nearby is None else np.clip(is_now, *nearby))) / before.max()
+    changes[[name not in zones for name in contact.zone_names]] = 0.0
     number = int(np.argmax(abs(changes)))
     return number, float(changes[number])
 

@@ -240,7 +240,7 @@ def assessed(
         if certificate.kind is not CertificateKind.NOT_A_SOLUTION:
             if boundary is not None and condensation is not None:
                 gaps = surface_gaps(condensation.body.problem, boundary, contact, solution)
-                deepest, said = misfit(gaps, condensation.body, contact, solution, where)
+                deepest, said = misfit(gaps, condensation.body, contact, solution, where, prepared.accuracy.infinite)
             said += tuple(diagnostics(contact, solution, where, None if condensation is None else condensation.body))
         notes = (*contact.notes, *solution.notes, *said)
     gap = contact.initial_gap + solution.displacement

@@ -329,7 +329,12 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
     own = first_alike == np.arange(len(node))
     number = np.where(first_alike < 0, -1, (np.cumsum(own) - 1)[first_alike])
     elements, points = [], []
-    for first, piece in zip(np.cumsum([0, *sizes]), pieces, strict=False):
+    held_arc = np.array([piece.held_arc for piece in pieces])
+    held_points = np.array([piece.held_points for piece in pieces])
+    for row, (first, piece) in enumerate(zip(np.cumsum([0, *sizes]), pieces, strict=False)):
+        for end, i in enumerate((0, len(piece.nodes) - 1) if len(piece.nodes) else ()):
+            if first_alike[first + i] not in (-1, first + i):  # a point of another zone, up to which contact goes on
+                held_arc[row, end], held_points[row, end] = piece.arc[i], mesh.nodes[piece.nodes[i]]
         point_of = np.full(len(mesh.nodes), -1)
         point_of[piece.nodes] = number[first : first + len(piece.nodes)]
         carrier = point_of[mesh.elements[piece.elements]]
@@ -356,8 +361,8 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
         element=element,
         local=local,
         point=point,
-        held_arc=np.array([piece.held_arc for piece in pieces]),
-        held_points=np.array([piece.held_points for piece in pieces]),
+        held_arc=held_arc,
+        held_points=held_points,
         elements_of_run=tuple(piece.own for piece in pieces),
         zone_of_run=tuple(piece.zone for piece in pieces),
     )

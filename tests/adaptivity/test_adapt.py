@@ -1,7 +1,7 @@
 """Meshes that nobody makes: true errors are below their bars, in any unit and from any side."""
 
 from collections.abc import Sequence
-from math import cos, pi, radians, sin, sqrt, tan
+from math import asin, cos, pi, radians, sin, sqrt, tan
 
 import numpy as np
 import pytest
@@ -548,3 +548,32 @@ def test_two_zones_that_meet_on_a_floor_share_the_load_exactly(at: float):
     assert contact.consistent_weights is not None
     p = np.ones(len(contact.points))
     assert p @ contact.consistent_weights @ p == pytest.approx(40, rel=1e-12)
+
+
+def test_contact_across_the_border_of_two_zones():
+    """A roller on a table, its rim divided inside the contact: Hertz, and the part of the force beyond u = x/b.
+
+    From one side it is 1/2 + (u sqrt(1 - u²) + asin u)/π. Contact goes on up to the border from both sides.
+    """
+    R, E, pressure, turn = 10.0, 210e3 / 0.91, 20.0, 0.3
+    arc = {"kind": "arc", "center": [0, 0], "radius": R}
+    rim = [{"name": "one", **arc, "angles": [-180, -90 + turn]}, {"name": "two", **arc, "angles": [-90 + turn, 0]}]
+    floor = {"kind": "plane", "point": [0, -R], "normal": [0, 1]}
+    problem = Problem.model_validate(
+        {
+            "name": "roller",
+            "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+            "boundary": {"outer": [*rim, {"name": "top"}]},
+            "conditions": {"top": {"pressure": pressure}},
+            "contact_zones": {name: {"edges": name, "surface": floor} for name in ("one", "two")},
+        }
+    )
+    result = solve(problem)
+    assert result.accuracy.met
+    force, border = 2 * R * pressure, R * sin(radians(turn))
+    u = border / sqrt(4 * force * R / (pi * E))
+    share = 0.5 + (u * sqrt(1 - u**2) + asin(u)) / pi
+    forces = [result.footprint.forces[name][1] for name in ("one", "two")]
+    assert forces == pytest.approx([share * force, (1 - share) * force], rel=0.01)
+    first, second = result.footprint.intervals
+    assert first.end == pytest.approx(second.start, abs=1e-9)

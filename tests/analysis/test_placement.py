@@ -418,9 +418,60 @@ def test_a_force_turns_with_the_normal_of_the_place_that_the_body_moves_to(share
         )  # pyright: ignore[reportArgumentType]
     )  # fmt: skip
     texts = [*result.notes, *([result.penetration.words] if result.penetration else [])]
-    told = [float(found[1]) / 100 for text in texts if (found := re.search(r"force .* changes by ([\d.e-]+) %", text))]
+    told = [
+        float(found[1]) / 100 for text in texts if (found := re.search(r"force .* along x by ([\d.e-]+) % of", text))
+    ]
     assert told == ([] if abs(share) < SAID else [pytest.approx(abs(share), abs=0.05 * abs(share) + 0.0005)])
     assert result.certified == (abs(share) < WITHHELD)
+
+
+@pytest.mark.parametrize(("away", "certified"), [(0.75, False), (0.2, True), (0.01, True)])
+def test_the_component_that_a_tool_does_not_prescribe_is_judged_by_itself(away: float, certified: bool):
+    """A roller is pushed against the flank of a tooth, 3 in 10: without friction it presses down by 0.3 of its push.
+
+    Where it is drawn away from the flank, the contact is beside the place that it touches first, and its normal is off.
+    """
+    tooth = {"base": (-5, 0), "flank": (5, 0), "tip": (2, 10), "back": (-2, 10)}
+    normal = np.array([10.0, 3.0]) / np.hypot(10, 3)
+    center = np.array([3.5, 5.0]) + 5 * normal + np.array([away, 0.0])
+    problem = Problem(
+        name="rack",
+        material=STEEL,
+        boundary={"outer": [{"name": name, "start": at} for name, at in tooth.items()]},
+        conditions={"base": {"displacement": {"x": 0, "y": 0}}},
+        contact_zones={"roller": {"edges": "flank", "surface": {
+            "kind": "circle", "center": tuple(center), "radius": 5, "body": "outside"}}},
+        tools={"roller": {"zones": "roller", "point": tuple(center), "force": {"x": -300}}},
+    )  # pyright: ignore[reportArgumentType] # fmt: skip
+    result = solve(problem)
+    assert result.certified is certified
+    error = abs(result.footprint.forces["roller"][1] + 90)
+    texts = [*result.notes, *([result.penetration.words] if result.penetration else [])]
+    told = [float(found[1]) / 100 for text in texts if (found := re.search(r" along y by ([\d.e-]+) %;", text))]
+    assert told == ([pytest.approx(error / 90, rel=0.35)] if away > 0.1 else [])
+
+
+def test_an_infinite_peak_does_not_withhold_the_certificate():
+    """A flat punch with slopes of 0.02 beside it, a half of 2: its force is P = E* φ sqrt(a² - b²), a/R and φ small.
+
+    The kinks move against the block by 1e-3 of the punch, and with them the nodes where the peak is infinite.
+    """
+    block = {"bottom": (-100, -100), "right": (100, -100), "top": (100, 0), "left": (-100, 0)}
+    surface = {"kind": "polyline", "points": [(50, 0.96), (2, 0), (-2, 0), (-50, 0.96)]}
+    problem = Problem(
+        name="taper",
+        material=STEEL,
+        boundary={"outer": [{"name": name, "start": at} for name, at in block.items()]},
+        conditions={"bottom": {"displacement": {"x": 0, "y": 0}}},
+        contact_zones={"punch": {"edges": "top", "surface": surface}},
+        tools={"punch": {"zones": "punch", "point": (0, 0), "force": {"y": -2000}}},
+    )  # pyright: ignore[reportArgumentType] # fmt: skip
+    result = solve(problem)
+    assert result.accuracy.infinite == ("punch",)
+    assert result.certified
+    (interval,) = result.footprint.intervals
+    half = np.hypot(2000 / (210e3 / 0.91 * 0.02), 2.0)
+    assert np.ptp(interval.arc) / 2 == pytest.approx(half, rel=0.01)
 
 
 def test_a_small_force_is_judged_by_itself_and_by_statics():
@@ -449,6 +500,6 @@ def test_a_small_force_is_judged_by_itself_and_by_statics():
     )
     assert result.penetration is not None
     assert result.penetration.kind is Misfit.MOVED
-    (told,) = re.findall(r"'wall' changes by ([\d.e-]+) %", result.penetration.words)
+    (told,) = re.findall(r"'wall' move .* along x by ([\d.e-]+) %;", result.penetration.words)
     wall = -result.contact.resultants(result.solution.pressure)[2, 0]
     assert float(told) / 100 == pytest.approx((20 - wall) / wall, rel=0.05)
