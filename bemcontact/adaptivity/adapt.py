@@ -139,7 +139,7 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
             break
         differences = [MeshDifference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
         singular = [search.watch.look(item) for item in differences]
-        bars = [error_bars(item, its) for item, its in zip(differences, singular, strict=True)]
+        bars = [error_bars(item, its, searched=True) for item, its in zip(differences, singular, strict=True)]
         now = Meshed(
             problem=fine.body.problem,
             condensation=fine.condensation,

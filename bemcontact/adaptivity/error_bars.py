@@ -37,16 +37,16 @@ TIP_ELEMENTS = 2
 
 
 def error_bars(
-    difference: MeshDifference, singularities: Sequence[Singularity], *, of_fine: bool = True
+    difference: MeshDifference, singularities: Sequence[Singularity], *, of_fine: bool = True, searched: bool = False
 ) -> tuple[ErrorBar, ...]:
     """Error bars of all quantities of one load case on the fine mesh, or on the coarse one.
 
-    The error on the coarse mesh is at most the change, plus the error on the fine one. Where the coarse mesh does not
-    resolve contact in one place, none of its error bars is known: forces and displacements depend on all places. Then
-    the note says what the change alone would give.
+    The error on the coarse mesh is at most the change, plus the error on the fine one. Where a mesh that was not
+    `searched` for this state does not resolve contact in one place, none of its error bars is known: forces and
+    displacements depend on all places. Then the note says what the change alone would give.
     """
     bars = tuple(_bars(difference, singularities, of_fine))
-    note = "" if of_fine else _unresolved(difference)
+    note = "" if searched else _unresolved(difference, of_fine=of_fine)
     return (
         tuple(replace(item, bar=None, note=item.note or _with_change(note, item.bar)) for item in bars)
         if note
@@ -59,11 +59,12 @@ def _with_change(note: str, bar: float | None) -> str:
     return f"{note}; by the change when every element is bisected it is about {100 * bar:.2g} %" if bar else note
 
 
-def _unresolved(difference: MeshDifference) -> str:
-    """Why bisecting its elements does not tell the error of a mesh that is stated; empty if it does."""
+def _unresolved(difference: MeshDifference, *, of_fine: bool) -> str:
+    """Why bisecting elements does not tell the error of the fine mesh, or of the coarse one; empty if it does."""
     one, two = difference.pair
+    told = two if of_fine else one
     for run in difference.coarse.runs:
-        for item in one.stretches[run.number]:
+        for item in told.stretches[run.number]:
             if item.points < LEAST_POINTS:
                 return f"too few points in contact to estimate it ({item.points} in an interval of {run.zone})"
     names = [*difference.coarse.body.problem.contact_zones]
@@ -325,7 +326,8 @@ def _intensity(
         axis=0,
     )
     beside = s[elements_beside(run, item.place.position)]
-    low, high = max(part[0] * length, float(beside[np.isfinite(beside)].max())), part[1] * length
+    beside = float(beside[np.isfinite(beside)].max(initial=0.0))
+    low, high = max(part[0] * length, beside), part[1] * length
     used = (s > low) & (s <= high) & (pressure > 0)
     if used.sum() < 2 * degree:
         return None

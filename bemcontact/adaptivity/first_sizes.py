@@ -33,6 +33,8 @@ LEAST_SAMPLES = 24
 """Samples of an edge."""
 IN_CACHE = 64
 """Samples that are compared with all others at once."""
+FLAT = 1e-4
+"""Step over the length of an edge by which the curvature of the gap is measured."""
 NARROW = 0.01
 """Least element over its edge where a surface comes near."""
 AT_CORNER = 0.1
@@ -152,8 +154,7 @@ def surface_sizes(problem: Problem, outline: SizedOutline) -> tuple[dict[int, li
 
 def _near(edge: Edge, start: float, surface: Shape) -> Iterator[Limit]:
     """Limits at each local least of the initial gap: half of the radius of the relative curvature."""
-    middle, step = nearest_places(edge.curve, surface)
-    step = max(step, 1e-4)
+    middle, step = np.array(nearest_places(edge.curve, surface)), FLAT
     three = gaps(edge.curve, surface, middle[:, None] + step * np.array([-1.0, 0.0, 1.0]))
     curvature = (three[:, 0] - 2 * three[:, 1] + three[:, 2]) / (step * edge.length) ** 2
     for place, bend in zip(start + middle * edge.length, curvature, strict=True):

@@ -6,12 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from bemcontact.adaptivity.adapt import first_mesh
+from bemcontact.analysis.diagnostics import bulging
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, body_of, deflections, each_case, ensure_held
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.problem.nearness import nearest_places, surface_corners
+
+BULGE = 1e-5
+"""Bulge of a spline over the size of the body that is noted: displacements of stiff bodies are not much larger."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,7 +57,7 @@ def check(problem: Problem) -> CheckedProblem:
         held_by_contact=tuple(body.seen.describe()),
         total_load=(float(x), float(y)),
         load_magnitude=float(body.pinned.total(body.factors, body.forces)),
-        notes=(*body.notes, *_idle(body)),
+        notes=(*body.notes, *_idle(body), *bulging(body, BULGE * body.problem.boundary.size)),
     )
 
 
@@ -75,7 +79,7 @@ def _smallest_gap(body: Body, zone: int) -> float:
     for edge in map(problem.edge, problem.edges_of(name)):
         ends, first = edge.breakpoints(problem.mesh.refine), np.argmax(mesh.edge == mesh.edge_names.index(edge.name))
         corners = (corner.fraction for corner in surface_corners(edge, surface))
-        nearest = [*nearest_places(edge.curve, surface).fractions, *corners]
+        nearest = [*nearest_places(edge.curve, surface), *corners]
         if inside := [at for at in nearest if first + np.searchsorted(ends, at) - 1 in own]:
             least = float(surface.closest(edge.points(np.array(inside))).gap.min(initial=least))
     return least

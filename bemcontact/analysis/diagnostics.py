@@ -25,6 +25,10 @@ COARSE = 0.1
 """Accuracy asked for, relative, above which meshes are so coarse that a contact may be missed."""
 SMALL_NET_LOAD = 1e-3
 """Net load over the sum of the magnitudes of all loads below which it may be due to rounded numbers in the input."""
+BULGE = 0.1
+"""Bulge of a spline over the largest normal displacement of contact points that is noted."""
+FAR = 10.0
+"""Distance of a bulge from contact points over that displacement up to which it may matter."""
 OF_A_FIT = 10.0
 """Contact forces over the load that they carry, from which most of them balance each other."""
 
@@ -46,6 +50,29 @@ def diagnostics(
         yield from reached_zone_ends(body, touching)
         yield from long_neighbors(body, touching)
         yield from beyond_ends(body, touching)
+        displacement = float(abs(solution.displacement).max(initial=0.0))
+        yield from bulging(body, BULGE * displacement, FAR * displacement)
+
+
+def bulging(body: Body, least: float, reach: float = np.inf) -> Iterator[str]:
+    """Note a spline that bulges between its points by more than `least` [L], no farther from contact points than that.
+
+    `reach` [L] is the distance from contact points beyond which a bulge does not matter.
+    """
+    for number, (name, zone) in enumerate(body.problem.contact_zones.items()):
+        if not isinstance(zone.surface, Spline):
+            continue
+        nodes = body.mesh.nodes[body.points.node[body.points.zone == number]]
+        excess, places = zone.surface.bulges
+        near = np.array([np.hypot(*(nodes - place).T).min() for place in places]) <= reach + excess
+        i = int(np.argmax(np.where(near, excess, 0.0)))
+        if near[i] and excess[i] > least:
+            x, y = places[i].tolist()
+            how_far = f"{excess[i]:.2g} {body.problem.units.length}".rstrip()
+            yield (
+                f"the spline of '{name}' bulges by {how_far} at ({x:.5g}, {y:.5g}), between two of its points, where "
+                "they do not bend to it; put several points on a flat part, close to where it ends, or use a polyline"
+            )
 
 
 def coarse_answer(asked: float | None) -> Iterator[str]:

@@ -132,6 +132,7 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Prob
     """
     if not problem.adapts:
         return problem, {}
+    problem = problem.model_copy(update={"variants": {}})  # they may not fit the mesh that is found
     found: dict[float, Meshed] = {}
     refused: list[ProblemError] = []
     on_mesh = problem
@@ -181,9 +182,9 @@ def _errors(followed: FollowedPath, found: Mapping[float, Meshed]) -> tuple[tupl
         other = FollowedPath(varied, load_path(*between(varied, start, end)), start, end)
     except (ProblemError, SingularSystemError, SolverError):
         return ()
-    singular = max((meshed.singular for meshed in found.values()), key=len, default=())
+    singular = max((meshed.singular[0] for meshed in found.values() if meshed.singular), key=len, default=())
     pair = (other, followed) if of_fine else (followed, other)
-    return tuple(errors_at_breakpoints(*pair, singular[0] if singular else (), of_fine=of_fine))
+    return tuple(errors_at_breakpoints(*pair, singular if of_fine else None, of_fine=of_fine))
 
 
 def _keys(changes: object) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from bemcontact.adaptivity.error_bars import error_bars
 from bemcontact.adaptivity.fields import MeshDifference, Solved, answer_of
-from bemcontact.adaptivity.singularities import Singularity
+from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.adaptivity.zone_runs import ZoneRun, zone_runs
 from bemcontact.analysis.variation import Variation
 from bemcontact.assessment.accuracy import ErrorBar
@@ -56,11 +56,12 @@ class FollowedPath(NamedTuple):
 
 
 def errors_at_breakpoints(
-    coarse: FollowedPath, fine: FollowedPath, singular: Sequence[Singularity], *, of_fine: bool
+    coarse: FollowedPath, fine: FollowedPath, singular: Sequence[Singularity] | None, *, of_fine: bool
 ) -> Iterator[tuple[ErrorBar, ...]]:
     """Error bars at each breakpoint of one of two paths, on a mesh and on its halved elements; empty if not known.
 
-    They are not where the other path does not reach.
+    They are not where the other path does not reach. `singular` are infinite pressures that a search recognized; else
+    those are taken that the two meshes show.
     """
     told, other = (fine.path, coarse.path) if of_fine else (coarse.path, fine.path)
     runs = [tuple(zone_runs(next(iter(one.varied.condensed.values())).body)) for one in (coarse, fine)]
@@ -71,7 +72,9 @@ def errors_at_breakpoints(
         both = [
             _solved(one, t, i if one.path is told else None, its) for one, its in zip((coarse, fine), runs, strict=True)
         ]
-        yield error_bars(MeshDifference(coarse=both[0], fine=both[1], number=0), singular, of_fine=of_fine)
+        difference = MeshDifference(coarse=both[0], fine=both[1], number=0)
+        its = recognized(difference) if singular is None else singular
+        yield error_bars(difference, its, of_fine=of_fine)
 
 
 def _solved(followed: FollowedPath, t: float, number: int | None, runs: tuple[ZoneRun, ...]) -> Solved:

@@ -1,5 +1,6 @@
 """Places on the curves of the edges themselves, by the local coordinates of the elements on them."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -8,9 +9,11 @@ import numpy as np
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.mesh import Mesh, build
-from bemcontact.problem.nearness import nearest_places
+from bemcontact.problem.curves import Edge
+from bemcontact.problem.nearness import nearest_places, surface_corners
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour, Plane
+from bemcontact.problem.rigid_surface import Circle, RigidSurface
+from bemcontact.problem.surface_lines import Polyline, Spline
 
 SAMPLES = np.linspace(-1.0, 1.0, 17)
 """Local coordinates at which the boundary is compared with a surface; some are moved, see `Outline.local`."""
@@ -54,12 +57,10 @@ class Outline:
         of_edge, fractions = self._elements
         local, free = np.tile(SAMPLES, (len(of_edge), 1)), np.ones((len(of_edge), len(SAMPLES)), bool)
         free[:, NODES] = False
-        surfaces = [zone.surface for zone in self.problem.contact_zones.values()]
-        shapes = [surface for surface in surfaces if not isinstance(surface, DeflectedContour | Plane)]
         for number, edge in enumerate(self.problem.boundary.edges):
             own = np.flatnonzero(of_edge == number)
-            for shape in shapes:
-                for place in nearest_places(edge.curve, shape).fractions:
+            for name, zone in self.problem.contact_zones.items():
+                for place in _narrow_places(edge, zone.surface, paired=edge.name in self.problem.edges_of(name)):
                     element = own[min(int(np.searchsorted(fractions[own, 1], place)), len(own) - 1)]
                     first, last = fractions[element]
                     xi = 2 * (place - first) / (last - first) - 1
@@ -91,3 +92,15 @@ class Outline:
             self.samples.update(zip(missing.tolist(), zip(*new, strict=True), strict=True))
         points, inward = zip(*(self.samples[i] for i in elements.tolist()), strict=True)
         return Places(np.array(points), np.array(inward))
+
+
+def _narrow_places(edge: Edge, surface: RigidSurface, *, paired: bool) -> Iterable[float]:
+    """Fractions of an edge where a surface may be narrow: where it is nearest, or has a corner.
+
+    A spline, for which this takes long, is looked at from the edges alone that are `paired` with it.
+    """
+    if isinstance(surface, Polyline):
+        return (corner.fraction for corner in surface_corners(edge, surface))
+    if isinstance(surface, Circle) or (paired and isinstance(surface, Spline)):
+        return nearest_places(edge.curve, surface)
+    return ()

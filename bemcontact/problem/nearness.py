@@ -13,34 +13,37 @@ from bemcontact.problem.validation import Point
 
 SAMPLES = 800
 """Samples of an edge."""
-FOCUS = 5
+FOCUS = 6
 """Times that the samples are made finer about a least gap, each by a fifth."""
+ACCURACY = 1e-7
+"""Accuracy of a place, over the length of the edge."""
 AT_END = 1e-6
 """Distance over the length of an edge up to which a place is an end of it."""
 
 
-class NearestPlaces(NamedTuple):
-    """Where the initial gap is locally least.
+def nearest_places(curve: Curve, surface: Shape) -> tuple[float, ...]:
+    """Fractions of the length inside an edge where the initial gap is locally least, to `ACCURACY`.
 
-    Parameters
-    ----------
-    fractions : (k,) of the length of the edge, inside it
-    accuracy : of the fractions
+    A smooth surface remembers them: each mesh of a search asks again.
     """
+    if isinstance(surface, Polyline):
+        return _nearest_places(curve, surface)
+    if curve not in surface.nearest:
+        surface.nearest[curve] = _nearest_places(curve, surface)
+    return surface.nearest[curve]
 
-    fractions: Array
-    accuracy: float
 
-
-def nearest_places(curve: Curve, surface: Shape) -> NearestPlaces:
-    """Find where the initial gap is locally least inside an edge."""
+def _nearest_places(curve: Curve, surface: Shape) -> tuple[float, ...]:
+    """Find the places among samples, and then among finer ones beside each."""
     at = np.linspace(0, 1, SAMPLES + 1)
     gap, step = gaps(curve, surface, at), float(at[1])
     middle = at[1:-1][(gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])]
+    ends = np.array([step / 2, 1 - step / 2])[[gap[0] <= gap[1], gap[-1] <= gap[-2]]]
+    middle = np.concatenate([middle, ends])
     for _ in range(FOCUS):
         fine = np.clip(middle[:, None] + step * np.linspace(-1, 1, 21), 0, 1)
         middle, step = fine[np.arange(len(fine)), gaps(curve, surface, fine).argmin(axis=1)], step / 5
-    return NearestPlaces(middle, step)
+    return tuple(middle[np.minimum(middle, 1 - middle) > ACCURACY].tolist())
 
 
 def gaps(curve: Curve, surface: Shape, fractions: Array) -> Array:

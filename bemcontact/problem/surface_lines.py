@@ -9,6 +9,7 @@ import scipy
 from pydantic import Field, model_validator
 
 from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.problem.curves import Curve
 from bemcontact.problem.loops import first_meeting
 from bemcontact.problem.validation import Point, SpecModel, invalid
 
@@ -58,6 +59,11 @@ class Faces(NamedTuple):
 
 class SmoothSurface(SpecModel):
     """A surface without corners: one face holds both sides of a point."""
+
+    @cached_property
+    def nearest(self) -> dict[Curve, tuple[float, ...]]:
+        """Fractions of curves where they are nearest to it, as far as `nearest_places` has looked for them."""
+        return {}
 
     def closest(self, points: Array) -> Closest:
         """Gap and normal at points (k, 2) [L]."""
@@ -281,6 +287,24 @@ class Spline(SmoothSurface):
         """Lengths along the chords, some between two points."""
         knots = [np.linspace(a, b, SAMPLES, endpoint=False) for a, b in pairwise(self.curve.x)]
         return np.append(np.concatenate(knots), self.curve.x[-1])
+
+    @cached_property
+    def bulges(self) -> tuple[Array, Array]:
+        """How far (s,) [L] the curve leaves each chord beyond the arc that its neighbors bend to, and where (s, 2) [L].
+
+        An arc leaves its chord by an eighth of its length times its turn. Twice that is allowed for the smaller turn at
+        its ends; beside a flat part, or where the turns have different signs, there is nothing that the points bend to.
+        """
+        chords = np.diff(np.array(self.points), axis=0)
+        length = np.hypot(*chords.T)
+        turns = np.arctan2(_cross(chords[:-1], chords[1:]), _dot(chords[:-1], chords[1:]))
+        before, after = np.append(turns[:1], turns), np.append(turns, turns[-1:])
+        bend = np.where(before * after > 0, np.minimum(abs(before), abs(after)), 0.0) if len(turns) else np.zeros(1)
+        places = self.curve(self.samples[:-1].reshape(len(length), SAMPLES))
+        away = abs(_cross(places - np.array(self.points)[:-1, None], (chords / length[:, None])[:, None]))
+        farthest = away.argmax(axis=1)
+        rows = np.arange(len(length))
+        return away[rows, farthest] - bend * length / 4, places[rows, farthest]
 
     def closest(self, points: Array) -> Closest:
         """Gap and normal at points (k, 2) [L] for the nearest point of the curve or of its straight ends.

@@ -209,7 +209,8 @@ def _cells(contact: CondensedContact, state: PathState) -> list[str]:
     """A row: value, what enters, what leaves, how many touch, the peak and where."""
     at = "" if state.at is None else _place(contact, state.at)
     entered, left = (_named(contact, points) for points in (state.entered, state.left))
-    peak = "infinite" if state.peak is None else with_bar(state.peak, state.peak_bar)
+    unknown = " ± ?" * bool(state.peak and state.bars and state.peak_bar is None)
+    peak = "infinite" if state.peak is None else with_bar(state.peak, state.peak_bar) + unknown
     return [number(state.value), entered, left, f"{len(state.touching)}", peak, at]
 
 

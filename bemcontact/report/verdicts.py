@@ -166,10 +166,11 @@ def _between_the_ends(path: ParameterPath) -> str:
     first, last = path.coarse[0], path.coarse[-1]
     values = " to ".join(dict.fromkeys(number(state.value) for state in (first, last)))
     known = [state.peak_bar for state in path.coarse if state.peak_bar is not None]
-    error = f"up to {error_percent(max(known))}" if known else "not known"
+    error = f"up to {error_percent(max(known))}" if known else "or not known"
+    error += ", or not known" * (0 < len(known) < len(path.coarse))
     return (
         f"The mesh is made for the ends of the path. At {len(path.coarse)} of {len(path.pressed)} breakpoints with "
-        f"contact, at {path.key} = {values}, errors of peaks are larger than asked: {error}. The table has the error "
+        f"contact, at {path.key} = {values}, errors of peaks are larger than asked, {error}. The table has the error "
         "bar of each."
     )
 

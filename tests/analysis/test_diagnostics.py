@@ -14,10 +14,12 @@ from scipy.optimize import brentq
 from tool_problems import BETWEEN, made
 
 import bemcontact
+from bemcontact.analysis.check import check
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.solve import condense, solve
 from bemcontact.errors import ProblemError
 from bemcontact.problem import Problem
+from bemcontact.problem.surface_lines import Spline
 from bemcontact.report.facts import facts
 from bemcontact.report.formatting import units_of
 
@@ -302,3 +304,31 @@ def test_an_accuracy_above_a_tenth_is_noted(asked: float, noted: bool):
         told = [note for note in notes if "accuracy of" in note]
         assert len(told) == noted
         assert all(f"{100 * asked:.3g} %" in note and "--accuracy 0.01" in note for note in told)
+
+
+@pytest.mark.parametrize(
+    ("flat", "noted"), [([-10, 30, 60, 95, 102], True), ([*range(-10, 98, 2), 98, 99, 99.5], False)]
+)
+def test_a_spline_that_swings_out_beside_a_bend_is_noted(flat: list[float], noted: bool):
+    """A table that is flat up to a ramp: few points far apart let it bulge where the block stands, many do not."""
+    points = [(float(x), 0.0) for x in flat if x < 100] + [(100.0, 0.0), (110.0, -1.0), (120.0, -2.0)]
+    problem = Problem(
+        name="block on a table",
+        material={"young_modulus": 210e3, "poisson_ratio": 0.3},
+        boundary={"outer": [{"name": k, "start": at} for k, at in
+                            {"foot": (20, 0), "right": (80, 0), "top": (80, 40), "left": (20, 40)}.items()]},
+        conditions={"top": {"pressure": 3}},
+        contact_zones={"table": {"edges": "foot", "surface": {"kind": "spline", "points": points}}},
+    )  # fmt: skip
+    assert any("the spline of 'table' bulges by" in note for note in check(problem).notes)
+    assert any("the spline of 'table' bulges by" in note for note in bemcontact.solve(problem).notes) is noted
+
+
+def test_no_curve_of_even_points_bulges():
+    """Points on arcs, an ellipse and a parabola: the curve leaves its chords as arcs do."""
+    for count in (5, 9, 33):
+        angle = np.linspace(0, np.pi, count)
+        for x, y in ((20 * np.cos(angle), 20 * np.sin(angle)), (20 * np.cos(angle), 8 * np.sin(angle)),
+                     (angle, 0.1 * angle**2)):  # fmt: skip
+            excess, _ = Spline(points=tuple(zip(x.tolist(), y.tolist(), strict=True))).bulges
+            assert excess.max() <= 0
