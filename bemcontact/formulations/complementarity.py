@@ -103,7 +103,7 @@ def equilibrating(M: Array) -> Array:
     size, factors = np.abs(M), np.ones(len(M))
     for _ in range(EQUILIBRATIONS):
         scaled = factors[:, None] * size * factors
-        largest = np.maximum(scaled.max(axis=0), scaled.max(axis=1))
+        largest = np.maximum(scaled.max(axis=0, initial=0.0), scaled.max(axis=1, initial=0.0))
         factors /= np.sqrt(np.where(largest > 0, largest, 1.0))
     return powers_of_two(factors)
 
@@ -220,17 +220,19 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
     n = q.size
     if (M.shape, q.shape) != ((n, n), (n,)) and (n or M.size):
         raise ProblemError(f"M (n, n) and q (n,) of finite numbers are needed; found shapes {M.shape} and {q.shape}")
-    U = float(np.abs(q).max(initial=0.0)) or 1.0
-    T = U / (float(np.abs(M).sum(axis=1).max(initial=0.0)) or 1.0)
+    factors = equilibrating(M)  # else a row of small numbers could be violated within the round-off of others
+    even, right = factors[:, None] * M * factors, factors * q
+    U = float(np.abs(right).max(initial=0.0)) or 1.0
+    T = U / (float(np.abs(even).sum(axis=1).max(initial=0.0)) or 1.0)
     contact = ScaledContact(
-        compliance=M * (T / U),
-        offset=q / U,
+        compliance=even * (T / U),
+        offset=right / U,
         rigid_motions=np.zeros((n, 0)),
         motion_load=np.zeros(0),
         weights=np.ones(n),
     )
     search = _search(contact, None)
-    z = search.end.pressure * T
+    z = factors * search.end.pressure * T
     return LcpResult(z=z, w=q + M @ z, status=search.status, iterations=search.iterations, method=search.method)
 
 

@@ -363,6 +363,23 @@ def test_p_matrices_against_all_active_sets(seed):
     np.testing.assert_allclose(values(M, q, end.active)[0], solution_of_lcp(M, q), atol=1e-9)
 
 
+def test_no_row_is_violated_whatever_its_size():
+    """Semidefinite problems with rows and columns of any size: a solution holds in each row, beside its own terms."""
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        size = int(rng.integers(5, 40))
+        factors = 10.0 ** rng.uniform(-3, 3, size)
+        B = rng.standard_normal((size, int(rng.integers(1, size + 1))))
+        M, q = factors[:, None] * (B @ B.T) * factors, rng.standard_normal(size)
+        result = solve_lcp(M, factors * q if seed % 2 else q)
+        assert result.status in (Status.SOLVED, Status.INFEASIBLE)
+        if result.status is Status.SOLVED:
+            terms = np.abs(result.w - M @ result.z) + np.abs(M) @ result.z
+            assert (result.z >= 0).all()
+            assert (result.w >= -1e-9 * terms).all()
+            assert result.z @ np.abs(result.w) <= 1e-9 * (result.z @ terms)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_the_artificial_variable_is_reported_after_each_pivot(seed):
     """It enters at the least value that makes q + d z0 >= 0, and leaves at zero."""
