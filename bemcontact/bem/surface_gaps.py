@@ -36,8 +36,6 @@ DIRECTIONS = np.stack([np.cos(angles := np.linspace(0.0, np.pi, 32, endpoint=Fal
 """Directions (2, 32) in which the spread of displacements is measured."""
 SAME_FACE = 0.98
 """Cosine of the angle between two normals of a surface up to which they belong to the same face."""
-DIP = 1 / 8
-"""Largest dip of a quadratic below zero between three nodes, over the largest of its values there, if none is below."""
 LARGEST_PART = 0.05
 """Part of a displacement that is excused as an error of linear theory, at most: that of a rotation by a tenth."""
 TOUCHES = 1e-6
@@ -205,7 +203,8 @@ class SurfaceGaps:
         nodes = np.maximum(here.gap[:, None, NODES], 0.0)
         # where no node touches, what dips was not seen, and is no contact
         touching = nodes.min(axis=2) <= TOUCHES * nodes.max(axis=2)
-        dip = DIP * np.where(self._same(zone, here), nodes, 0.0).max(axis=2) * touching
+        shapes = reference_element.values(self.outline.local[elements])
+        dip = np.maximum(-np.sum(shapes * np.where(self._same(zone, here), nodes, 0.0), axis=2), 0.0) * touching
         other = np.sum(here.faces * there.normals, axis=-1) < SAME_FACE
         beyond = other & (-there.gap > self._second_order(zone))
         return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
