@@ -120,11 +120,15 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
     errors: list[float] = []
     reason = f"no better mesh was found in {MOST_PASSES} passes"
     for number in range(1, MOST_PASSES + 1):
+        start = f"pass {number}" + (f", error at most {100 * best.worst:.2g} %" if best else "")
         try:
-            coarse = search.fitted(MOST_UNKNOWNS)
+            coarse = search.fitted(
+                MOST_UNKNOWNS, lambda unknowns, start=start: progress(f"{start}, {unknowns} unknowns")
+            )
             if 2 * coarse.degrees_of_freedom > MOST_UNKNOWNS:
                 reason = f"a finer mesh would have more than {MOST_UNKNOWNS} unknowns"
                 break
+            progress(f"{start}, {2 * coarse.degrees_of_freedom} unknowns")
             fine = search.solve(2)
         except SolverError as error:
             reason = str(error)

@@ -1,6 +1,6 @@
 """The search for a mesh: elements that are fitted to the ends of contact, and cut where the answer changes most."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -85,10 +85,11 @@ class MeshSearch:
         """Halve all elements."""
         self.sources = [[limit._replace(size=limit.size / 2) for limit in own] for own in self.sources]
 
-    def fitted(self, most: int) -> Solved:
-        """Solve on meshes of up to `most` unknowns, fitted to the ends of contact until these rest."""
+    def fitted(self, most: int, tell: Callable[[int], object]) -> Solved:
+        """Solve on meshes of up to `most` unknowns, fitted to the ends of contact until these rest; tell unknowns."""
         coarse = self.solve(1)
         for count in range(NARROW_REFITS):
+            tell(coarse.degrees_of_freedom)
             ends, spots = self.ends_of_contact(coarse)
             between = [*self._between(coarse)]
             resting = self._resting(ends) and not between
