@@ -154,7 +154,8 @@ class Body:
             f"the {motion} moves no contact point and has no load: it is held at zero"
             for motion in self.unseen.describe()
         )
-        stated = self.problem.units.doubts(self.problem.material.young_modulus)
+        material = self.problem.material
+        stated = self.problem.units.doubts(material.young_modulus, material.poisson_ratio)
         placed = (*stated, *_left_out(self.problem), *self._wedges())
         return (*placed, *at_zero)
 

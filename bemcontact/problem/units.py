@@ -19,6 +19,8 @@ STIFFEST, DIAMOND = 2e12, 1.2e12
 """Young's modulus [Pa] above which there is no solid, and that of diamond, which is the largest of a bulk solid."""
 SOFTEST = 1e3
 """Young's modulus [Pa] below which a body keeps no shape: with the density of water and 10 cm of height it is ρ g h."""
+METAL_IN_MM = (4e4, 4.5e5), (0.2, 0.36)
+"""Young's moduli [N/mm²] and Poisson's ratios of metals; foam may have such a modulus in Pa."""
 STEEL = 2.1e11
 """Young's modulus of steel [Pa]."""
 
@@ -49,14 +51,18 @@ class Units(SpecModel):
         length, force = METERS.get(self.length.strip()), NEWTONS.get(self.force.strip())
         return None if length is None or force is None else force / length**2
 
-    def doubts(self, young_modulus: float) -> Iterator[str]:
-        """Note a Young's modulus that no solid has; nothing is said where units are not known."""
+    def doubts(self, young_modulus: float, poisson_ratio: float) -> Iterator[str]:
+        """Note a Young's modulus that no solid has, or the number of a metal in other units.
+
+        Nothing is said where units are not known.
+        """
         unit = self.pascals
-        if unit is None or SOFTEST <= young_modulus * unit <= STIFFEST:
+        found = 0.0 if unit is None else young_modulus * unit
+        of_metal = all(low <= x <= high for x, (low, high) in zip((found, poisson_ratio), METAL_IN_MM, strict=True))
+        if unit is None or (SOFTEST <= found <= STIFFEST and not of_metal):
             return
-        found = young_modulus * unit
         stiffer, softer = f"stiffer than diamond ({DIAMOND:g} Pa)", "softer than a body that keeps its shape"
-        than = stiffer if found > STIFFEST else softer
+        than = "softer than rubber" if of_metal else stiffer if found > STIFFEST else softer
         yield (
             f"Young's modulus of {young_modulus:g} {self.stress} is {found:.3g} Pa, {than}: check it, and the labels "
             f"of the units; in {self.stress} steel has {STEEL / unit:.3g}"

@@ -18,13 +18,23 @@ def test_no_solid_is_doubted_in_any_units(length: str, force: str):
     units = Units(length=length, force=force)
     assert units.pascals is not None
     for modulus in SOLIDS.values():
-        assert [*units.doubts(modulus / units.pascals)] == []
+        assert [*units.doubts(modulus / units.pascals, 0.4)] == []
     for modulus in (2 * STIFFEST, SOFTEST / 2):
-        (note,) = units.doubts(modulus / units.pascals)
+        (note,) = units.doubts(modulus / units.pascals, 0.4)
         assert f"is {modulus:.3g} Pa" in note
         assert f"steel has {2.1e11 / units.pascals:.3g}" in note
         for unknown in (Units(length=length), Units(force=force), Units(length="cubit", force=force)):
-            assert [*unknown.doubts(modulus / units.pascals)] == []
+            assert [*unknown.doubts(modulus / units.pascals, 0.4)] == []
+
+
+def test_a_metal_in_other_units_is_noted():
+    """E = 210e3 is steel in N/mm², and in N/m² a soft foam, whose Poisson's ratio is not that of a metal."""
+    meters = Units(length="m", force="N")
+    (note,) = meters.doubts(210e3, 0.3)
+    assert "softer than rubber" in note
+    assert "steel has 2.1e+11" in note
+    assert [*meters.doubts(210e3, 0.1)] == []
+    assert [*Units(length="mm", force="N").doubts(210e3, 0.3)] == []
 
 
 def test_units_of_stress_agree_with_each_other():
