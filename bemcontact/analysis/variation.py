@@ -13,11 +13,12 @@ from bemcontact.problem.problem import Problem
 
 @dataclass(frozen=True, eq=False)
 class Variation:
-    """A problem whose mesh is not to be fitted, the key of a value, and the condensations by value."""
+    """A problem whose mesh is not to be fitted, the key of a value, and what is known by value."""
 
     problem: Problem
     key: str
     condensed: dict[float, Condensation] = field(default_factory=dict)
+    stated: dict[float, Problem] = field(default_factory=dict)
 
     @property
     def path(self) -> KeyPath:
@@ -33,10 +34,13 @@ class Variation:
 
     def at(self, value: float) -> Problem:
         """The problem with another value, or with another factor of a load case."""
-        case, problem = case_of(self.problem, self.key), self.problem
-        if case is None:
-            return problem.with_value(self.key, value)
-        return problem.with_factors({**problem.factors(), case: value})
+        if value not in self.stated:
+            case, problem = case_of(self.problem, self.key), self.problem
+            if case is None:
+                self.stated[value] = problem.with_value(self.key, value)
+            else:
+                self.stated[value] = problem.with_factors({**problem.factors(), case: value})
+        return self.stated[value]
 
     def attempted(self, value: float) -> CondensedContact | ProblemError:
         """Condense the problem at a value that is allowed; the error where nothing presses the body on its support."""

@@ -24,7 +24,15 @@ def settled(monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setenv(variable, value)
 
 
-@pytest.mark.parametrize("page", pages.pages(), ids=name)
+MANY_SOLUTIONS = {"loaded_tool", "paths"}
+"""Pages with so many solutions that they take more than five seconds."""
+
+
+@pytest.mark.parametrize(
+    "page",
+    [pytest.param(page, marks=[pytest.mark.slow] * (page.stem in MANY_SOLUTIONS)) for page in pages.pages()],
+    ids=name,
+)
 def test_blocks_run_and_print_what_is_shown(page: Path, tmp_path: Path):
     for output in pages.Session(page, tmp_path).run():
         where = f"{name(page)}:{output.first + 1}: {output.source}"
