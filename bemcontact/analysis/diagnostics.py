@@ -29,6 +29,8 @@ BULGE = 0.1
 """Bulge of a spline over the largest normal displacement of contact points that is noted."""
 FAR = 10.0
 """Distance of a bulge from contact points over that displacement up to which it may matter."""
+MANY_INTERVALS = 3
+"""Number of intervals of a zone with few points up to which each has a note of its own."""
 OF_A_FIT = 10.0
 """Contact forces over the load that they carry, from which most of them balance each other."""
 
@@ -126,10 +128,22 @@ def against_its_force(contact: CondensedContact, solution: ContactSolution) -> I
 
 
 def few_points(contact: CondensedContact, touching: NDArray[np.bool_], where: Footprint) -> Iterator[str]:
-    """Note each interval of contact where too few points carry pressure to resolve it."""
+    """Note each interval of contact where too few points carry pressure to resolve it; together if there are many."""
+    few = dict[str, list[tuple[ContactInterval, int]]]()
     for interval in where.intervals:
         carrying = int(np.count_nonzero(touching & points_in(contact, interval)))
         if 0 < carrying < FEW_POINTS:
+            few.setdefault(interval.zone, []).append((interval, carrying))
+    for zone, found in few.items():
+        if len(found) > MANY_INTERVALS:
+            (x, y), (u, v) = found[0][0].start, found[-1][0].end
+            yield (
+                f"pressure acts on fewer than {FEW_POINTS} contact points in each of {len(found)} intervals of {zone}, "
+                f"from ({x:.5g}, {y:.5g}) to ({u:.5g}, {v:.5g}): the mesh is too coarse there to resolve its "
+                "distribution; shorten the elements, or round a corner that presses"
+            )
+            continue
+        for interval, carrying in found:
             start, end = (f"({x:.5g}, {y:.5g})" for x, y in (interval.start, interval.end))
             yield (
                 f"pressure acts on only {carrying} contact point{'s' if carrying > 1 else ''} from {start} to {end} in "

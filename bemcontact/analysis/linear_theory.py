@@ -33,6 +33,10 @@ LARGE_TURN = 0.1
 """Rotation of the whole body in radians from which it is named as the cause."""
 LARGE_PART = 0.05
 """Share of a contact, or of the boundary, on which strains may be large: singular corners and tips of slits."""
+CORNER = 0.2
+"""Sine of the angle by which the boundary turns from which it has a corner."""
+AT_CORNER = 1e-4
+"""Distance from a corner over the size of the body up to which pressure is that of the corner."""
 
 
 class Noticed(NamedTuple):
@@ -119,9 +123,18 @@ def _strained(
         words=(
             f"Strains are not small on {100 * share:.0f} % of contact in '{zone}', up to about {strain[i]:.2g} at "
             f"({x:.5g}, {y:.5g}), where the pressure is {solution.pressure[i] / E:.2g} times Young's modulus: linear "
-            f"theory does not hold. {_numbers(_modulus(body.problem))}"
+            f"theory does not hold. {_sharp(body, contact.points[i]) or _numbers(_modulus(body.problem))}"
         ),
     )  # fmt: skip
+
+
+def _sharp(body: Body, place: Array) -> str:
+    """Ask for a corner of the body to be rounded if one is at a place (2,) [L]; empty if none is."""
+    mesh = body.mesh
+    corners = mesh.nodes[mesh.elements[abs(mesh.turns) > CORNER, 0]]
+    if not len(corners) or np.hypot(*(corners - place).T).min() > AT_CORNER * mesh.size:
+        return ""
+    return "A sharp corner of the body presses there, and no area bears its force: round it, as the part is rounded."
 
 
 def large_displacements(boundary: BoundaryState, turns: bool, modulus: str) -> Judgment:

@@ -93,8 +93,8 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     if not record["intervals"]:
         held = "" if record["motion_names"] else ", and the supports alone hold the body"
         yield "Contact", f"nowhere: the body presses on no rigid surface{held}"
-    for zone, place in contact_intervals(record, units):
-        yield "Contact", f"{zone}: {place}"
+    for (zone, place), count in Counter(contact_intervals(record, units, merged=True)).items():
+        yield "Contact", f"{zone}: {place}" + (f", {count} times" if count > 1 else "")
     for zone in dict.fromkeys(record["zone"]):
         if record["intervals"] and zone not in [interval["zone"] for interval in record["intervals"]]:
             yield "Contact", f"{zone}: nowhere"
@@ -122,13 +122,29 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     yield "Residuals", ", ".join(written)
 
 
-def contact_intervals(record: Record, units: Units, *, short: bool = False) -> Iterator[tuple[str, str]]:
-    """Zone and place of each interval of contact, with the error of its ends; the length in place of a `short` one."""
+def contact_intervals(
+    record: Record, units: Units, *, short: bool = False, merged: bool = False
+) -> Iterator[tuple[str, str]]:
+    """Zone and place of each interval of contact, with the error of its ends; the length in place of a `short` one.
+
+    If they are to be `merged`, of several that do not differ in their coordinates the place alone is written.
+    """
     size = coordinate_size(record)
+    alike = Counter(_written_ends(interval, size, units) for interval in record["intervals"])
     for interval, error in zip(record["intervals"], _end_errors(record), strict=True):
         first, last = interval["arc"]
+        ends = _written_ends(interval, size, units)
+        if merged and ends[1] == ends[2] and alike[ends] > 1 and last > first:
+            yield interval["zone"], f"narrow, at {ends[2]}"
+            continue
         place = with_unit(number(last - first), units.length) if short else span(interval, size, units)
         yield interval["zone"], place + (f", ends ± {with_unit(small(error), units.length)}" if error else "")
+
+
+def _written_ends(interval: Record, size: float, units: Units) -> tuple[str, str, str]:
+    """Zone of an interval, and its ends as they are written."""
+    start, end = (vector(interval[name], units.length, scale=size) for name in ("start", "end"))
+    return interval["zone"], start, end
 
 
 def _end_errors(record: Record) -> Iterator[float | None]:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from bemcontact.problem import Units
 from bemcontact.report.bars import LEAST_SHOWN, accuracy_rows, error_percent, with_bar, without_digits_beyond
-from bemcontact.report.facts import facts, peak_of, peak_place
+from bemcontact.report.facts import contact_intervals, facts, peak_of, peak_place
 
 UNITS = Units(length="cm", force="kN")
 
@@ -178,3 +178,18 @@ def test_a_level_pressure_has_no_place(dips: list[float], others: list[float], o
     pressed_beside = other_zone == "foot" and any(value > 1e-9 for value in others)
     name = "the contact" if len({*zone}) == 1 else "foot"
     assert peak_place(record, UNITS) == (f"({at[0]:g}, 0) cm" if pressed_beside else f"all along {name}")
+
+
+def test_many_contacts_at_one_place_are_counted():
+    """At a sharp corner contact breaks into pieces whose coordinates look the same; one by itself keeps its length."""
+
+    def contact(*starts: float) -> list[str]:
+        intervals = [
+            {"zone": "floor", "arc": (s, s + 1e-8), "start": (25.0 + s, 15.0), "end": (25.0 + s + 1e-8, 15.0)}
+            for s in starts
+        ]
+        record = {"nodes": [[30.0, 15.0]], "intervals": intervals}
+        return [place for _, place in contact_intervals(record, Units(length="mm"), merged=True)]
+
+    assert contact(0.0, 1e-7, 2e-7, 3.0) == ["narrow, at (25, 15) mm"] * 3 + contact(3.0)
+    assert contact(3.0) == ["(28, 15) to (28, 15) mm, 1e-08 mm long"]
