@@ -58,7 +58,8 @@ class Units(SpecModel):
         """
         unit = self.pascals
         found = 0.0 if unit is None else young_modulus * unit
-        of_metal = all(low <= x <= high for x, (low, high) in zip((found, poisson_ratio), METAL_IN_MM, strict=True))
+        numbers = zip((young_modulus, poisson_ratio), METAL_IN_MM, strict=True)
+        of_metal = unit == 1.0 and all(low <= x <= high for x, (low, high) in numbers)
         if unit is None or (SOFTEST <= found <= STIFFEST and not of_metal):
             return
         stiffer, softer = f"stiffer than diamond ({DIAMOND:g} Pa)", "softer than a body that keeps its shape"

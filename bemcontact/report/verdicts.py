@@ -159,6 +159,11 @@ def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
         yield verdict._replace(words=f"At {path.key} = {number(value)}. {verdict.words}")
     if path.coarse:
         yield Verdict("Mesh", "fair", "too coarse between the ends", _between_the_ends(path))
+    elif not path.breakpoint_bars and (path.start_accuracy.bars or path.end_accuracy.bars):
+        words = (
+            "No path was found on the other mesh with which errors are estimated: nothing is known of the breakpoints."
+        )
+        yield Verdict("Mesh", "fair", "not assessed between the ends", words)
 
 
 def _between_the_ends(path: ParameterPath) -> str:
