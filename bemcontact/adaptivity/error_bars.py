@@ -251,7 +251,7 @@ def _change(before: float, after: float) -> float:
 
 
 def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
-    """Error bars of the ends of all contact intervals of a zone."""
+    """Error bars of the ends of all contact intervals of a zone, and of their lengths: both ends together."""
     one, two = estimate.difference.pair
     solved, answer = estimate.reported
     count = 0
@@ -262,6 +262,7 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
         for i, item in enumerate(answer.stretches[run.number]):
             ends: tuple[tuple[Literal["start", "end"], bool], ...]
             ends = ("start", item.start_free), ("end", item.end_free)
+            length, errors = item.end - item.start, list[float | None]()
             for which, free in ends:
                 position = float(getattr(item, which))
                 bar, note = 0.0, "contact reaches a corner or the end of its zone"
@@ -270,11 +271,13 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
                 elif free:
                     moved = abs(getattr(after[i], which) - getattr(before[i], which))
                     moved = min(moved, abs(run.length - moved)) if run.closed else moved
-                    length = item.end - item.start
                     change = max(moved / length, END * m)
                     bar = max(estimate.bar(change), estimate.factor * run.element_at(position) / 2 / length)
                     note = ""
+                errors.append(bar)
                 yield ErrorBar(quantity=which, zone=name, interval=count, value=position, bar=bar, note=note)
+            both = None if None in errors else sum(filter(None, errors))
+            yield ErrorBar(quantity="length", zone=name, interval=count, value=float(length), bar=both)
             count += 1
 
 

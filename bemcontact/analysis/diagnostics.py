@@ -31,6 +31,8 @@ FAR = 10.0
 """Distance of a bulge from contact points over that displacement up to which it may matter."""
 MANY_INTERVALS = 3
 """Number of intervals of a zone with few points up to which each has a note of its own."""
+SLOPE = 0.05
+"""Largest slope of normals beside a translation that hardly hold a body along it."""
 OF_A_FIT = 10.0
 """Contact forces over the load that they carry, from which most of them balance each other."""
 
@@ -45,6 +47,7 @@ def diagnostics(
     touching = contact.pressed(solution.pressure, solution.displacement)
     yield from floating(contact, touching)
     yield from nearly_balanced(contact, solution)
+    yield from hardly_held(contact, touching)
     yield from against_its_force(contact, solution)
     yield from few_points(contact, touching, where)
     if body is not None:
@@ -107,6 +110,23 @@ def nearly_balanced(contact: CondensedContact, solution: ContactSolution) -> Ite
             f"the loads nearly balance: what drives the {' and the '.join(contact.motion_names)} is "
             f"{contact.net_load:.1g} of the sum of their magnitudes, and contact carries only that; errors of this "
             "size in the loads change the contact entirely"
+        )
+
+
+def hardly_held(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Note a translation of the body that nothing holds but small slopes of surfaces within the contact."""
+    names = [name for name in contact.motion_names if name.startswith("translation along")]
+    if not names or not touching.any():
+        return
+    changes = contact.rigid_motions[touching][:, [contact.motion_names.index(name) for name in names]]
+    least = np.linalg.svd(changes, full_matrices=False)[2][-1]  # the translation that changes gaps least
+    slope = float(np.abs(changes @ least).max())
+    if slope <= SLOPE:
+        x, y = np.round(np.copysign(1.0, least[np.argmax(abs(least))]) * least, 2) + 0.0 if len(names) == 2 else (0, 0)
+        name = f"translation along ({x:g}, {y:g})" if len(names) == 2 else names[0]
+        yield (
+            f"only slopes of the surfaces where they touch, of at most {slope:.2g}, hold the body against the {name}: "
+            "it would slide far under a small load along it"
         )
 
 

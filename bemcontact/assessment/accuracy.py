@@ -7,11 +7,14 @@ from typing import Literal, Self
 
 from pydantic import computed_field
 
+from bemcontact.errors import ProblemError
 from bemcontact.serialization import Leaf, Pair
 
-Quantity = Literal["peak", "force", "start", "end", "pressure", "displacement", "intensity", "motion", "rotation"]
+Quantity = Literal[
+    "peak", "force", "start", "end", "length", "pressure", "displacement", "intensity", "motion", "rotation"
+]
 """What an error bar is of."""
-TOLD: tuple[Quantity, ...] = ("intensity", "motion", "rotation")
+TOLD: tuple[Quantity, ...] = ("length", "intensity", "motion", "rotation")
 """Quantities that are told with their error bars, and to which the accuracy asked for does not apply."""
 
 
@@ -20,18 +23,18 @@ class ErrorBar(Leaf):
     """A quantity with its estimated error."""
 
     quantity: Quantity
-    """What it is: peak pressure, force on a zone, start or end of a contact interval, the pressure as a whole, largest
-    displacement, intensity of an infinite pressure, or motion or rotation of a tool or along a free motion."""
+    """What it is: peak pressure, force on a zone, start, end or length of a contact interval, the pressure as a whole,
+    largest displacement, intensity of an infinite pressure, or motion or rotation of a tool or along a free motion."""
     zone: str | None
     """Name of the contact zone; null for displacements and motions."""
     interval: int | None = None
-    """Number of the contact interval of a start or an end, from 0 on; null for others."""
+    """Number of the contact interval of a start, an end or a length, from 0 on; null for others."""
     mover: str | None = None
     """Name of the tool or of the free motion of a motion or a rotation; null for others."""
     value: float | None
     """Value: pressure [p], sum of the magnitudes of the contact forces per thickness [p L], position along the run of
-    the zone [L], root of the mean square of the pressure [p], displacement or motion [L], rotation [rad], or intensity
-    K of p = K s^-α [p L^α]; null if there is none."""
+    the zone or length [L], root of the mean square of the pressure [p], displacement or motion [L], rotation [rad], or
+    intensity K of p = K s^-α [p L^α]; null if there is none."""
     bar: float | None
     """Estimated error, relative to the value; of a start or an end, to the length of its interval. Null if unknown."""
     at: Pair | None = None
@@ -41,13 +44,17 @@ class ErrorBar(Leaf):
 
     def __repr__(self) -> str:
         """One line: of what it is, its value, and the error, which is relative."""
-        owner = self.zone or self.mover
-        of = f"{self.quantity} of {owner!r}" if owner else self.quantity
-        of += f", interval {self.interval}" if self.interval is not None else ""
-        to = "the value" if self.interval is None else "the length of the interval"
+        to = "the length of the interval" if self.quantity in ("start", "end") else "the value"
         value = "no value" if self.value is None else f"value {self.value:.6g}"
         bar = "bar not known" if self.bar is None else f"bar {self.bar:.2g} relative to {to}"
-        return f"<ErrorBar of {of}: {value}, {bar}{'; ' * bool(self.note)}{self.note}>"
+        return f"<ErrorBar of {self.name}: {value}, {bar}{'; ' * bool(self.note)}{self.note}>"
+
+    @property
+    def name(self) -> str:
+        """Of what it is: ``end of 'foot', interval 0``."""
+        owner = self.zone or self.mover
+        of = f"{self.quantity} of {owner!r}" if owner else self.quantity
+        return of if self.interval is None else f"{of}, interval {self.interval}"
 
     @computed_field
     @property
@@ -98,6 +105,28 @@ class Accuracy(Leaf):
     def infinite_peaks(self) -> tuple[ErrorBar, ...]:
         """The entries of peaks that are infinite."""
         return tuple(item for item in self.bars if item.quantity == "peak" and item.value is None)
+
+    def bar_of(self, quantity: Quantity, of: str | None = None, interval: int = 0) -> ErrorBar:
+        """Find the error bar of a quantity: ``bar_of("peak", "foot")``, ``bar_of("length", "foot", 1)``.
+
+        Parameters
+        ----------
+        quantity : one of `Quantity`
+        of : name of the zone, tool or free motion; it may be left out where only one has this quantity
+        interval : number of the contact interval, for a start, an end or a length
+
+        Raises
+        ------
+        ProblemError
+            None or several of the error bars are meant; the text says which there are.
+        """
+        named = [item for item in self.bars if item.quantity == quantity and of in (None, item.zone, item.mover)]
+        found = [item for item in named if item.interval in (None, interval)]
+        if len(found) != 1:
+            there = ", ".join(dict.fromkeys(item.name for item in named or self.bars)) or "none: " + self.reason
+            what = f"{quantity} of {of}" if of else f"{quantity}"
+            raise ProblemError(f"{len(found) or 'no'} error bars of '{what}', interval {interval}; there are: {there}")
+        return found[0]
 
     def peak_bar(self, zone: str | None = None) -> float | None:
         """Estimated error of the largest finite peak pressure, or of that of a zone, relative; None if not known."""

@@ -47,8 +47,10 @@ PARTS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
         "length": ("width", "half_width", "contact_length", "contact_width", "contact_area", "size"),
     },
     "Accuracy": {
-        "bars, one of each quantity": (*_PEAK, "force", "forces", "pressure", "displacement", "start", "end", "ends",
-                                       "motion", "rotation", "intensity", "error_bar", "error_bars", "errors"),
+        'bar_of, such as bar_of("peak", "foot")': (
+            *_PEAK, "force", "forces", "pressure", "displacement", "start", "end", "ends", "length", "width", "motion",
+            "rotation", "intensity", "error_bar", "error_bars", "errors",
+        ),
         "worst": ("error", "max_error", "largest", "largest_error", "relative_error", "value", "tolerance"),
         "met": ("ok", "success", "converged", "status"),
     },

@@ -21,6 +21,7 @@ ROUND_OFF = 1e-9
 """Relative difference that is written as zero."""
 QUANTITIES = {
     "peak": "peak pressure", "force": "sum of contact forces", "start": "start of contact", "end": "end of contact",
+    "length": "length of contact",
     "pressure": "pressure as a whole", "displacement": "largest displacement",
     "intensity": "intensity of the infinite pressure", "motion": "motion", "rotation": "rotation",
 }  # fmt: skip
@@ -118,7 +119,8 @@ def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
     lengths = _interval_lengths(bars)
     for bar in bars:
         error = bar["bar"]
-        size = abs(bar["value"] or 0.0) if bar["interval"] is None else lengths.get((bar["zone"], bar["interval"]), 0.0)
+        of_end = bar["quantity"] in ("start", "end")
+        size = lengths.get((bar["zone"], bar["interval"]), 0.0) if of_end else abs(bar["value"] or 0.0)
         interval = f" {bar['interval'] + 1}" if bar["interval"] is not None and _several(bars, bar) else ""
         over = error is not None and asked and bar["promised"] and error > asked
         share = "not known" if error is None else f"{100 * error / (asked or 1.0):.2g} %"
@@ -144,12 +146,7 @@ def _bar_value(bar: Record, size: float, units: Units) -> str:
 
 def _interval_lengths(bars: Sequence[Record]) -> dict[tuple[str, int], float]:
     """Length of each contact interval, by zone and number, to which the errors of its ends are relative."""
-    ends = {(bar["quantity"], bar["zone"], bar["interval"]): bar["value"] for bar in bars}
-    return {
-        (zone, i): abs(ends["end", zone, i] - value)
-        for (quantity, zone, i), value in ends.items()
-        if quantity == "start" and ("end", zone, i) in ends
-    }
+    return {(bar["zone"], bar["interval"]): bar["value"] for bar in bars if bar["quantity"] == "length"}
 
 
 def _several(bars: Sequence[Record], bar: Record) -> bool:

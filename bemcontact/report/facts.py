@@ -106,7 +106,7 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
             yield "Intensity", f"of {bar['zone']}: K = {value} in {bar['note']} at {place}"
     for bar in bars_of(record, "displacement"):
         yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most"
-    force = _force(record["resultant"], record, None, units)
+    force = total_force(record, units)
     moment = with_unit(number(zero_if_negligible(record["resultant_moment"], pressed * size)), units.force)
     yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
     forces = zone_forces(record, units)
@@ -125,19 +125,20 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
 def contact_intervals(
     record: Record, units: Units, *, short: bool = False, merged: bool = False
 ) -> Iterator[tuple[str, str]]:
-    """Zone and place of each interval of contact, with the error of its ends; the length in place of a `short` one.
+    """Zone and place of each interval of contact, with its errors; the length in place of a `short` one.
 
     If they are to be `merged`, of several that do not differ in their coordinates the place alone is written.
     """
     size = coordinate_size(record)
     alike = Counter(_written_ends(interval, size, units) for interval in record["intervals"])
-    for interval, error in zip(record["intervals"], _end_errors(record), strict=True):
+    for interval, (error, bar) in zip(record["intervals"], _interval_errors(record), strict=True):
         first, last = interval["arc"]
         ends = _written_ends(interval, size, units)
         if merged and ends[1] == ends[2] and alike[ends] > 1 and last > first:
             yield interval["zone"], f"narrow, at {ends[2]}"
             continue
-        place = with_unit(number(last - first), units.length) if short else span(interval, size, units)
+        length = with_unit(with_bar(last - first, bar or None), units.length)
+        place = length if short else _span(interval, length, size, units)
         yield interval["zone"], place + (f", ends ± {with_unit(small(error), units.length)}" if error else "")
 
 
@@ -147,15 +148,15 @@ def _written_ends(interval: Record, size: float, units: Units) -> tuple[str, str
     return interval["zone"], start, end
 
 
-def _end_errors(record: Record) -> Iterator[float | None]:
-    """Largest error of the ends of each contact interval [L]; None if it is not known."""
-    bars = [*bars_of(record, "start"), *bars_of(record, "end")]
+def _interval_errors(record: Record) -> Iterator[tuple[float | None, float | None]]:
+    """Largest error of the ends of each contact interval [L], and relative error of its length; None if not known."""
+    bars = [bar for quantity in ("start", "end", "length") for bar in bars_of(record, quantity)]
     count: Counter[str] = Counter()
     for interval in record["intervals"]:
         zone, (first, last) = interval["zone"], interval["arc"]
         own = [bar["bar"] for bar in bars if (bar["zone"], bar["interval"]) == (zone, count[zone])]
         count[zone] += 1
-        yield None if not own or None in own else max(own) * (last - first)
+        yield (None, None) if not own or None in own else (max(own[:2]) * (last - first), own[2])
 
 
 def _amount(record: Record, motion: int, units: Units) -> str:
@@ -262,14 +263,13 @@ def _peak_places(record: Record, units: Units) -> list[str]:
     return places
 
 
-def span(interval: Record, size: float, units: Units) -> str:
-    """Ends and length of an interval of contact."""
+def _span(interval: Record, along: str, size: float, units: Units) -> str:
+    """Ends and length of an interval of contact, which is written as `along`."""
     first, last = interval["arc"]
     length = last - first
     start, end = vector(interval["start"], scale=size), vector(interval["end"], units.length, scale=size)
     if length == 0:
         return f"at the point {end} alone"
-    along = with_unit(number(length), units.length)
     all_round = np.allclose(interval["start"], interval["end"], rtol=0, atol=ROUND_OFF * length)
     return f"all round, {along}" if all_round else f"{start} to {end}, {along} long"
 
@@ -277,6 +277,11 @@ def span(interval: Record, size: float, units: Units) -> str:
 def zone_forces(record: Record, units: Units) -> dict[str, str]:
     """Write the force of each rigid surface on the body with its error: ``{"foot": "(0, 3.00) ± 0.02 N/mm"}``."""
     return {zone: _force(force, record, zone, units) for zone, force in record["forces"].items()}
+
+
+def total_force(record: Record, units: Units) -> str:
+    """Write the force of all rigid surfaces on the body with its error."""
+    return _force(record["resultant"], record, None, units)
 
 
 def _force(components: tuple[float, float], record: Record, zone: str | None, units: Units) -> str:

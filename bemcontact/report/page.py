@@ -14,7 +14,16 @@ from bemcontact.assessment.contender import OUTCOMES, Outcome
 from bemcontact.errors import escaped_lines
 from bemcontact.problem import Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, Record, accuracy_rows, infinite_peaks, with_bar
-from bemcontact.report.facts import facts, peak_bar, peak_of, percent, scores_in_words, small
+from bemcontact.report.facts import (
+    contact_intervals,
+    facts,
+    peak_bar,
+    peak_of,
+    percent,
+    scores_in_words,
+    small,
+    total_force,
+)
 from bemcontact.report.formatting import (
     number,
     penalty_unit,
@@ -131,6 +140,7 @@ def _contents(report: Record) -> dict[str, Any]:
     units = Units(**report["units"])
     headline = _headline(report, compared)
     verdicts = study_verdicts(report, headline)
+    answer = _record(level)
     return {
         "report": report,
         "level": level,
@@ -142,12 +152,14 @@ def _contents(report: Record) -> dict[str, Any]:
         "verdict": headline,
         "verdicts": verdicts,
         "overall": overall(verdicts),
-        "peak": peak_of({**compared["contact"], **(reference["answer"] or {"peak": None}), **level}, units),
+        "peak": peak_of(answer, units) if answer else NOTHING,
         "infinite": infinite_peaks(level),
         "bars": [*accuracy_rows(level["accuracy"], units)],
         "bars_are": BARS_ARE,
         "description": [" ".join(part.split()) for part in report["description"].split("\n\n") if part.strip()],
-        "facts": _facts(level, units),
+        "facts": [*facts(answer, units)] if answer else [],
+        "touching": [*contact_intervals(answer, units, short=True)] if answer else [],
+        "force": total_force(answer, units) if answer else "",
         "scores": [*scores_in_words(level["scores"], level["references"], units)],
         "certificate": _certificate(reference["answer"], units),
         "penalties": {item["label"]: _penalty(item, units) for item in contenders},
@@ -175,15 +187,14 @@ def _headline(report: Record, compared: Record) -> str:
     return f"{first}Of {len(compared['contenders'])} settings {', '.join(counted)}. {sentence_case(direct)}."
 
 
-def _facts(level: Record, units: Units) -> list[tuple[str, str]]:
-    """Facts of the direct solution."""
+def _record(level: Record) -> Record | None:
+    """The direct solution on a mesh, as the record of a result; None if there is none."""
     compared = level["comparison"]
     answer = compared["reference"]["answer"]
     if answer is None:
-        return []
+        return None
     residuals = {**answer["residuals"], "force_balance": level["force_balance"]}
-    record = {**compared["contact"], **answer, "residuals": residuals, "accuracy": level["accuracy"]}
-    return [*facts(record, units)]
+    return {**compared["contact"], **answer, "residuals": residuals, "accuracy": level["accuracy"]}
 
 
 def _certificate(answer: Record | None, units: Units) -> str:

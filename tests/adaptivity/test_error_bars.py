@@ -51,6 +51,15 @@ def test_the_change_of_the_pressure_as_a_whole_is_a_floor_of_all(changed: MeshDi
         assert (bars[quantity].bar or 0) >= SAFETY * share * m * (1 - 1e-12)
 
 
+def test_the_error_of_a_length_is_that_of_both_ends(changed: MeshDifference):
+    bars = by_quantity(error_bars(changed, ()))
+    start, end, length = (bars[name] for name in ("start", "end", "length"))
+    assert None not in (start.value, end.value, start.bar, end.bar)
+    assert length.value == pytest.approx((end.value or 0) - (start.value or 0))
+    assert length.bar == pytest.approx((start.bar or 0) + (end.bar or 0))
+    assert not length.promised
+
+
 def test_a_free_end_is_no_better_known_than_its_nodes(changed: MeshDifference):
     """Two meshes graded to the same place give the same end, whatever its error is: a spacing of nodes is the least."""
     bars = by_quantity(error_bars(changed, ()))

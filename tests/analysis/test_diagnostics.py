@@ -46,6 +46,44 @@ def block(angle: float, refine: int = 1, right: dict[str, object] | None = None)
     return bemcontact.solve(problem.refined(refine))
 
 
+@pytest.mark.parametrize("angle", [0.0, 30.0, 90.0])
+def test_a_flat_side_on_round_supports_is_hardly_held_along_it(angle: float):
+    """Circles at half the span: at the contact places, s from their tops, normals have the slopes s / R."""
+    turn = np.array(
+        [
+            [np.cos(np.radians(angle)), np.sin(np.radians(angle))],
+            [-np.sin(np.radians(angle)), np.cos(np.radians(angle))],
+        ]
+    )
+    corners = [[-100, 0], [100, 0], [100, 20], [20, 20], [-20, 20], [-100, 20]]
+    names = ["bottom", "right", "top right", "loaded", "top left", "left"]
+    circles = {side: (np.array([x, -10]) @ turn).tolist() for side, x in {"low": -80, "high": 80}.items()}
+    problem = Problem(
+        name="bar",
+        material={"young_modulus": 210e3, "poisson_ratio": 0.3},
+        boundary={
+            "outer": [
+                {"name": n, "start": (np.array(at) @ turn).tolist()} for n, at in zip(names, corners, strict=True)
+            ]
+        },
+        conditions={"loaded": {"pressure": 2}},
+        contact_zones={
+            side: {"edges": "bottom", "surface": {"kind": "circle", "center": center, "radius": 10, "body": "outside"}}
+            for side, center in circles.items()
+        },
+    )
+    result = bemcontact.solve(problem)
+    (note,) = (note for note in result.notes if "only slopes" in note)
+    x, y = np.round(turn[0], 2) + 0.0
+    ends = [
+        abs((np.array(at) @ turn.T)[0]) - 80 for item in result.footprint.intervals for at in (item.start, item.end)
+    ]
+    slope = float(note.partition("at most ")[2].partition(",")[0])
+    assert f"translation along ({x:g}, {y:g}):" in note
+    assert slope == pytest.approx(max(np.abs(ends)) / 10, rel=0.1)  # two figures, and the last node in contact
+    assert result.certified
+
+
 def at_the_corner(result: Result) -> float:
     """The pressure at (20, 0)."""
     return float(result.solution.pressure[np.argmax(result.contact.points[:, 0])])

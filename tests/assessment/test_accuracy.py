@@ -7,6 +7,7 @@ from math import inf, nextafter
 import pytest
 
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar, Quantity, together
+from bemcontact.errors import ProblemError
 
 
 def bar(
@@ -75,6 +76,23 @@ def test_infinite_peaks_that_another_mesh_knows():
 
 def test_knowing_does_not_judge_what_was_not_estimated():
     assert Accuracy(asked=1e-2).knowing(Accuracy.of(1e-2, 3, [bar(value=None, error=None)])).met is None
+
+
+def test_one_bar_is_found_by_its_name():
+    ends = [ErrorBar(quantity="end", zone="z", interval=i, value=1.0 + i, bar=0.1) for i in range(2)]
+    judged = Accuracy.of(0.5, 1, [bar(), bar(zone="other", error=2e-3), bar("pressure"), *ends])
+    assert judged.bar_of("peak", "other").bar == 2e-3
+    assert judged.bar_of("pressure").quantity == "pressure"
+    assert [judged.bar_of("end", interval=i).value for i in range(2)] == [1.0, 2.0]
+    for wrong, told in (
+        (("peak",), "2 error bars of 'peak'.* there are: peak of 'z', peak of 'other'"),
+        (("peak", "foot"), "no error bars of 'peak of foot'.* there are: peak of 'z', .*'other', pressure of 'z', end"),
+        (("end", "z", 2), "there are: end of 'z', interval 0, end of 'z', interval 1"),
+    ):
+        with pytest.raises(ProblemError, match=told):
+            judged.bar_of(*wrong)
+    with pytest.raises(ProblemError, match="none: no mesh"):
+        Accuracy(asked=None, reason="no mesh").bar_of("peak")
 
 
 def test_an_error_bar_says_to_what_it_is_relative():

@@ -90,7 +90,7 @@ def test_a_result_has_all_of_them():
         ("bar", "error", "bar, which is relative"),
         ("interval", "ends", "start and end"),
         ("interval", "width", "length"),
-        ("accuracy", "peak", "bars, one of each quantity"),
+        ("accuracy", "peak", 'bar_of, such as bar_of("peak", "foot")'),
         ("boundary", "nodes", "points"),
     ],
 )

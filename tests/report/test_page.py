@@ -59,6 +59,16 @@ def test_the_page_explains_its_words():
     assert ("The pressure as a whole is its root mean square" in page) is ("Pressure as a whole" in page)
 
 
+def test_the_head_has_peak_contact_and_force():
+    study = on_one_mesh()
+    answer = study.levels[0].answer.footprint
+    head = head_of(report_of(study))[1]
+    (interval,) = answer.intervals
+    for title, value in (("Contact", interval.length), ("Force on the body(0, ", answer.resultant.force[1])):
+        shown = float(re.split(r"[ )]", head.partition(title)[2])[0])
+        assert shown == pytest.approx(value, rel=1e-3)
+
+
 def test_numbers_come_from_the_report_alone():
     """Another peak, difference and eigenvalue in the report are others on the page, and those of the study are gone."""
     report = report_of(on_three_meshes())
@@ -154,7 +164,7 @@ def test_references_are_judged_in_their_range_only():
     shown = len(report["levels"][0]["scores"]) - len(held)
     assert shown
     assert text.count("not judged") >= shown
-    assert f"{len(held)} of {len(held)} quantities hold" in text
+    assert f"{len(held)} of {len(held)} of those judged hold" in text
     (remark,) = (item["remark"] for item in report["levels"][0]["references"] if item["remark"])
     assert remark[1:] in text
 
@@ -277,7 +287,7 @@ def test_an_infinite_peak_is_not_judged_and_the_reason_is_stated():
     assert resultant["holds"]
     text = read(render(report, {}, None)).text
     assert "The peak pressure of foot is infinite, and is not judged" in text
-    assert "1 of 1 quantities hold" in text
+    assert "1 of 1 of those judged hold" in text
 
 
 def test_errors_of_a_finer_mesh_know_the_infinite_pressure():

@@ -23,7 +23,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import escaped_lines
 from bemcontact.files import output
 from bemcontact.options import FormulationName
-from bemcontact.report.formatting import number, units_of, with_unit
+from bemcontact.report.formatting import number, units_of, vector, with_unit
 
 FORMATS = (".png", ".svg", ".pdf")
 """Endings of the files that can be written."""
@@ -202,11 +202,15 @@ def pieces_of(contact: CondensedContact, touching: BoolArray) -> Iterator[Piece]
 
 
 def distance_label(contact: CondensedContact, pieces: Sequence[Piece]) -> str:
-    """Label of the axis along some pieces; it explains distances beyond the length of one that closes on itself."""
+    """Label of the axis along some pieces: where one begins, and distances beyond the length of one that is closed."""
     unit = units_of(contact).length
+    first = pieces[0].index[int(np.argmin(contact.arc_position[pieces[0].index]))]
+    begins = len(pieces) == 1 and float(contact.arc_position[first]) == 0.0
+    x, y = contact.points[first].tolist()
+    begin = f" from {vector((x, y), scale=float(abs(contact.points).max()))}" * begins
     rounds = (float(contact.run_length[piece.run]) for piece in pieces)
     beyond = [length for piece, length in zip(pieces, rounds, strict=True) if piece.arc[-1] > length * (1 + SEAM)]
-    label = labelled("distance along the contact zone", unit)
+    label = labelled(f"distance{begin} along the contact zone", unit)
     if not beyond:
         return label
     around = plain(with_unit(number(beyond[0]), unit))

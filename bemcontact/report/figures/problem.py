@@ -217,9 +217,10 @@ def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
         points, normals = surface_line(problem, name, 0.12 * size)
         yield draw_ground(axes, points, normals, 0.03 * size, GREY)
         facing = _facing(problem, name)
-        middle = facing[len(facing) // 2][None]
-        gap, normal = zone.surface.closest(middle)
-        yield draw_arrows(axes, middle - gap[:, None] * normal, 0.09 * size * normal, GREY)
+        gap, normal = zone.surface.closest(facing)
+        nearest = np.flatnonzero(gap < gap.min() + FLUSH * size)
+        at = nearest[len(nearest) // 2, None]
+        yield draw_arrows(axes, facing[at] - gap[at, None] * normal[at], 0.09 * size * normal[at], GREY)
     yield from _draw_contours(axes, problem, mesh)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from drawings import beam_over_a_circle, block_in_a_corner, grey_lines, only_axes, strokes
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 from matplotlib.text import Annotation
@@ -13,6 +14,7 @@ from bemcontact.analysis import solve as analysis
 from bemcontact.bem import mesh
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report import figures
+from bemcontact.report.figures.page import GREY
 from bemcontact.report.figures.problem import draw_tools
 
 
@@ -55,6 +57,17 @@ def test_rigid_surfaces_are_drawn_where_they_are():
     assert not isinstance(surface, DeflectedContour)
     gap, _ = surface.closest(points)
     assert gap == pytest.approx(0, abs=1e-12 * 100)
+
+
+def test_the_normal_of_a_surface_is_drawn_where_the_body_is_nearest():
+    """At the top of the circle, which is below the end of the beam."""
+    problem = beam_over_a_circle()
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    grey = [item for item in axes.collections if isinstance(item, Quiver) and to_hex(item.get_facecolor()[0]) == GREY]
+    (arrow,) = grey
+    assert (arrow.X[0], arrow.Y[0]) == pytest.approx((50, -1))
+    assert arrow.U[0] == pytest.approx(0, abs=1e-9)
+    assert arrow.V[0] > 0
 
 
 def test_a_body_whose_only_edge_may_touch_two_planes_is_drawn():
