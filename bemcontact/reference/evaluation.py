@@ -114,7 +114,7 @@ class Expected(Leaf):
     ends: tuple[Pair, ...] = ()
     """Contact points (x, y) nearest to `start` and `end`, for drawing [L]."""
     resultant: float | None = None
-    """Magnitude of the contact force on what is modelled, per thickness [p L]."""
+    """Magnitude of the contact force on what is modeled, per thickness [p L]."""
     infinite: bool = False
     """Whether it states a peak, and that of the solution is infinite, so that the solution is not judged by it."""
     in_range: bool = True

@@ -29,7 +29,7 @@ class Frame(NamedTuple):
 
     @classmethod
     def at(cls, contact: CondensedContact, zone: str | None, center: Pair | None) -> Self:
-        """Put the frame at a centre, or where the initial gap is smallest."""
+        """Put the frame at a center, or where the initial gap is smallest."""
         index = np.flatnonzero(in_zone(contact, zone))
         middle = np.array(foot(contact, zone) if center is None else center)
         nearest = index[np.argmin(np.hypot(*(contact.points[index] - middle).T))]
@@ -86,7 +86,7 @@ def coordinates(stated: Values | Table, points: Array, arc: Array) -> Array:
 
 
 def spacing(contact: CondensedContact) -> Array:
-    """Arc length (n,) [L] from each contact point to the farther of its neighbours in the run."""
+    """Arc length (n,) [L] from each contact point to the farther of its neighbors in the run."""
     order = contact.in_order(np.arange(contact.size))
     step = np.diff(contact.arc_position[order])
     step[np.diff(contact.run[order]) != 0] = 0.0

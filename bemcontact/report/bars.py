@@ -129,7 +129,7 @@ def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
             "zone": bar["zone"] or bar["mover"] or NOTHING,
             "value": _bar_value(bar, size, units),
             "share": share if asked and bar["promised"] else NOTHING,
-            "colour": "bad" if over else "",
+            "color": "bad" if over else "",
             "note": f"{bar['note']} at {vector(bar['at'], units.length)}" if bar["at"] else sentence_case(bar["note"]),
         }
 

@@ -322,7 +322,7 @@ def scores_in_words(scores: Sequence[Record], references: Sequence[Record], unit
             "difference": percent(score["difference"]),
             "tolerance": f"{100 * score['tolerance']:.3g} %",
             "verdict": verdict,
-            "colour": QUALITIES[verdict],
+            "color": QUALITIES[verdict],
         }
 
 

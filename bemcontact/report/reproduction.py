@@ -191,5 +191,5 @@ def _scores(levels: list[Record], units: Units) -> Iterator[dict[str, Any]]:
             "expected": number(scores[-1]["expected"]),
             "computed": [NOTHING if score["computed"] is None else number(score["computed"]) for score in scores],
             "verdict": word,
-            "colour": QUALITIES[word],
+            "color": QUALITIES[word],
         }

@@ -357,7 +357,7 @@ def _score_table(level: MeshLevel, units: Units) -> Table:
         expected = row["expected"].removesuffix(f" {row['unit']}")
         verdict = f"{judged[row['verdict']]} {row['tolerance']}" if row["verdict"] in judged else row["verdict"]
         cells = (row["reference"], row["quantity"], row["computed"], expected, row["difference"], verdict)
-        table.add_row(*map(Text, cells), style="red" if row["colour"] == "bad" else "")
+        table.add_row(*map(Text, cells), style="red" if row["color"] == "bad" else "")
     return table
 
 

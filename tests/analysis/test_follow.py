@@ -106,7 +106,7 @@ def test_path_of_a_factor_ends_where_the_tool_lifts_off_and_is_named_after_the_p
         ("material.young_modulus", 2e3, "young_modulus: the compliance depends on it; only loads, gaps"),
         ("boundary.outer.top.elements", 8, "elements: the compliance depends on it"),
         ("name", 1.0, "name: there is no number to vary"),
-        ("material.colour", 1.0, "there is no number to vary: unknown entry 'colour'; there are: "),
+        ("material.color", 1.0, "there is no number to vary: unknown entry 'color'; there are: "),
         ("conditions.tpo.pressure", 1.0, "there is no number to vary: unknown entry 'tpo'; did you mean 'top'?"),
         (
             "conditions.top.traction.x",
@@ -134,7 +134,7 @@ def on_a_circle() -> tuple[Problem, str]:
 
 
 def test_radius_of_a_rigid_circle_is_linear():
-    """The gap along the normal of a circle is the distance from its centre less its radius."""
+    """The gap along the normal of a circle is the distance from its center less its radius."""
     circle, key = on_a_circle()
     assert follow(circle, f"{key}.radius", 99.99).path.contact(1.0).offset == pytest.approx(
         bemcontact.condense(circle.with_value(f"{key}.radius", 99.99)).offset, abs=1e-13
@@ -142,7 +142,7 @@ def test_radius_of_a_rigid_circle_is_linear():
 
 
 def test_value_that_turns_the_rigid_surface_is_refused():
-    """As the centre of a circle moves sideways its normals turn, and all that is seen along them with it."""
+    """As the center of a circle moves sideways its normals turn, and all that is seen along them with it."""
     circle, key = on_a_circle()
     with pytest.raises(ProblemError, match=r"center\[0\]: the compliance depends on it"):
         follow(circle, f"{key}.center[0]", 1.0)

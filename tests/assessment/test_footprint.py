@@ -82,7 +82,7 @@ def test_few_open_nodes(open_nodes, expected):
 
 
 def test_end_stays_between_the_contact_and_the_first_open_node():
-    """A gap that jumps, or is slow to open, cannot push the end past its neighbours."""
+    """A gap that jumps, or is slow to open, cannot push the end past its neighbors."""
     arc = np.arange(6.0)
     p = np.array([1.0, 1, 0, 0, 0, 0])
     points = np.column_stack([arc, 0 * arc])
@@ -102,7 +102,7 @@ def test_pocket_between_two_intervals():
 
 
 def test_single_node_in_contact():
-    """A polygon's corner: the interval straddles the node, within its neighbours."""
+    """A polygon's corner: the interval straddles the node, within its neighbors."""
     (interval,) = footprint(*along_x(np.arange(7.0), 2.6, 3.3)).intervals
     assert (interval.start_arc, interval.end_arc) == pytest.approx((2.6, 3.3), abs=1e-12)
 
@@ -117,22 +117,22 @@ def test_ends_lie_on_the_curve():
     assert interval.end == pytest.approx((2 * np.sin(0.415), -2 * np.cos(0.415)), abs=1.6e-5)
 
 
-def ring(centre: float, half: float, n: int = 40) -> Footprint:
+def ring(center: float, half: float, n: int = 40) -> Footprint:
     """Contact around one angle on a full circle of radius 1."""
     angle = 2 * np.pi * np.arange(n) / n
-    distance = np.abs((angle - centre + np.pi) % (2 * np.pi) - np.pi)
+    distance = np.abs((angle - center + np.pi) % (2 * np.pi) - np.pi)
     outside = np.maximum(distance - half, 0.0)
     points = np.column_stack([np.cos(angle), np.sin(angle)])
     return footprint(*state(points, angle, (outside == 0) * 1.0, outside**1.5, perimeter=2 * np.pi))
 
 
-@pytest.mark.parametrize("centre", [0.0, 0.05, 1.0, 3.0, 6.2])
-def test_closed_run_goes_on_across_its_seam(centre):
+@pytest.mark.parametrize("center", [0.0, 0.05, 1.0, 3.0, 6.2])
+def test_closed_run_goes_on_across_its_seam(center):
     """One interval wherever the contact lies, of the right length, with its ends at the right angles."""
-    (interval,) = ring(centre, 0.5).intervals
+    (interval,) = ring(center, 0.5).intervals
     assert interval.end_arc - interval.start_arc == pytest.approx(1.0, abs=1e-11)
-    assert np.exp(1j * interval.start_arc) == pytest.approx(np.exp(1j * (centre - 0.5)), abs=1e-11)
-    assert complex(*interval.end) == pytest.approx(np.exp(1j * (centre + 0.5)), abs=1e-3)
+    assert np.exp(1j * interval.start_arc) == pytest.approx(np.exp(1j * (center - 0.5)), abs=1e-11)
+    assert complex(*interval.end) == pytest.approx(np.exp(1j * (center + 0.5)), abs=1e-3)
 
 
 def test_closed_run_in_contact_all_around():

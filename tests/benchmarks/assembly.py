@@ -79,7 +79,7 @@ def system_of(problem: Problem) -> System:
     )  # fmt: skip
 
 
-def factorisation(matrix: Array) -> tuple[float, float]:
+def factorization(matrix: Array) -> tuple[float, float]:
     """Seconds of the LU and of the product of a matrix with itself."""
     copy = best_of(lambda: matrix.copy(order="F"))
     lu = best_of(lambda: dgetrf(matrix.copy(order="F"), overwrite_a=True)) - copy
@@ -96,7 +96,7 @@ def summed(system: System, *, by_numba: bool) -> System:
 def report(problem: Problem) -> None:
     system = system_of(problem)
     size = system.size
-    lu, gemm = factorisation(assemble(system)[0])
+    lu, gemm = factorization(assemble(system)[0])
     print(
         f"{problem.name:22s} N = {size:6d}  LU {lu:7.3f} s  LU/GEMM {lu / gemm:5.2f}"
         f"  GEMM {2e-9 * size**3 / gemm:5.0f} Gflop/s"

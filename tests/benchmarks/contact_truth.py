@@ -224,7 +224,7 @@ def statements(contact: CondensedContact, states: list[Array], count: int) -> It
         yield "QP3, local solver", qp3_searches(contact, states, count)
         return
     for options in map(with_penalty, PENALTIES):
-        name, paper = f"QP2 μ = {options.penalty:g}, ℓᵀp penalised", replace(options, equilibrium=Equilibrium.PENALTY)
+        name, paper = f"QP2 μ = {options.penalty:g}, ℓᵀp penalized", replace(options, equilibrium=Equilibrium.PENALTY)
         yield name, searches(contact, states, count, "qp2", paper)
 
 

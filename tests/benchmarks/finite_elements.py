@@ -72,7 +72,7 @@ PROBLEMS = {
             "lowest point": (0, 0),
             "28.4° from it": (8 * np.sin(ANGLE), 8 - 8 * np.cos(ANGLE)),
             "end of top": (8, 8),
-            "centre": (0, 8),
+            "center": (0, 8),
         },
     ),
     "cantilever_flat_surface": Problem(

@@ -90,7 +90,7 @@ def from_top(x: Array, y: Array) -> Array:
 
 
 def bolt_in_plate(parts: int) -> Touch:
-    """Fig. 5: rays from the half hole to the edges of the upper half; the bolt's centre is 0.1 left of the hole's."""
+    """Fig. 5: rays from the half hole to the edges of the upper half; the bolt's center is 0.1 left of the hole's."""
     corner = np.degrees(np.arctan2(3, 6))
     angle = graded(
         (0, corner, 8, 0.125), (corner, 90, 18, 3), (90, 98, 6, 0.5), (98, 103, 14, 1), (103, 180 - corner, 24, 0.3),

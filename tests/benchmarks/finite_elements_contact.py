@@ -137,11 +137,11 @@ class ElasticBody:
         """Displacement (n, 2) [L] under nodal forces without contact."""
         inner = np.setdiff1d(np.arange(len(load)), self.held_freedoms)
         u = np.zeros(len(load))
-        u[inner] = factorised(self.stiffness[inner][:, inner]).solve(load[inner])
+        u[inner] = factorized(self.stiffness[inner][:, inner]).solve(load[inner])
         return u[self.freedoms].T
 
 
-def factorised(matrix: sparse.csr_matrix) -> SuperLU:
+def factorized(matrix: sparse.csr_matrix) -> SuperLU:
     """LU of a symmetric positive definite matrix."""
     return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
@@ -278,7 +278,7 @@ def contact_state(
     """
     stiffness, f = (turned.T @ body.stiffness @ turned).tocsr(), turned.T @ load
     inner = np.setdiff1d(np.arange(len(f)), np.concatenate([body.held_freedoms, freedom]))
-    lu, coupling = factorised(stiffness[inner][:, inner]), stiffness[freedom][:, inner]
+    lu, coupling = factorized(stiffness[inner][:, inner]), stiffness[freedom][:, inner]
     S = stiffness[freedom][:, freedom].toarray() - coupling @ lu.solve(coupling.T.toarray())
     g = f[freedom] - coupling @ lu.solve(f[inner])
     normal_displacement, force = active_set(S, g, gap)

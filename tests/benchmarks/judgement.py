@@ -1,6 +1,6 @@
 """Judge a point that a solver returned for a quadratic program, from the point alone.
 
-For a quadratic program the second-order conditions are exact: a first-order point is a local minimiser if and only if
+For a quadratic program the second-order conditions are exact: a first-order point is a local minimizer if and only if
 dᵀH d >= 0 on its critical cone {d feasible, (H x + c)·d = 0}. If dᵀH d < 0 there, then also at an eigenvector of H
 projected on the span of one of the faces of the cone, inside that face; so a search of the faces decides it.
 """
@@ -41,7 +41,7 @@ class Verdict(Enum):
     NOT_STATIONARY = "not stationary"
     SADDLE = "descent along a curve of second order"
     OPEN = "second order not decided"
-    MINIMISER = "local minimiser"
+    MINIMISER = "local minimizer"
 
 
 FIRST_ORDER = (Verdict.SADDLE, Verdict.OPEN, Verdict.MINIMISER)

@@ -3,7 +3,7 @@
     python tests/benchmarks/local_solver.py [FOLDER] [--limit SECONDS] [--only NAME ...] [--nodes N ...] [--sizes N ...]
 
 FOLDER holds instances as .npz files. QP1 and QP2 of random half-planes, raw and scaled, and programs without a
-minimiser, are added to them. Every solver starts at the null vector; every point is judged from x.
+minimizer, are added to them. Every solver starts at the null vector; every point is judged from x.
 Set OPENBLAS_NUM_THREADS=1.
 """
 
@@ -54,7 +54,7 @@ class Trial:
 
     @property
     def false_claim(self) -> bool:
-        """Optimal where x is no local minimiser, or far from the only one; infeasible or unbounded where it is not."""
+        """Optimal where x is no local minimizer, or far from the only one; infeasible or unbounded where it is not."""
         claim, expected = self.answer.claim, self.instance.expected
         if claim is Claim.NOTHING:
             return False

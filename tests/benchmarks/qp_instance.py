@@ -117,7 +117,7 @@ def read_folder(folder: Path) -> Iterator[Instance]:
 
 
 def status_instances() -> Iterator[Instance]:
-    """Programs without a minimiser, of which a proof fits in one line."""
+    """Programs without a minimizer, of which a proof fits in one line."""
     free, quadrant = (-np.inf, np.inf), (0, np.inf)
     contradiction = ([[1, 1], [1, 1]], [2, -np.inf], [np.inf, 1])
     yield stated("x + y >= 2 and <= 1", "status", np.eye(2), [0, 0], contradiction, quadrant, expected="infeasible")

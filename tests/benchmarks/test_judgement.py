@@ -120,8 +120,8 @@ def test_descent_in_a_large_face():
 
 
 @pytest.mark.parametrize("instance", list(status_instances()), ids=lambda instance: instance.name)
-def test_programs_without_a_minimiser(instance):
-    """No point of a grid is called a minimiser."""
+def test_programs_without_a_minimizer(instance):
+    """No point of a grid is called a minimizer."""
     n = instance.c.size
     for x in np.array(np.meshgrid(*[np.linspace(-2, 2, 9)] * n)).reshape(n, -1).T:
         assert judge(instance, x).verdict is not Verdict.MINIMISER

@@ -164,8 +164,8 @@ def test_the_program_runs_as_a_module():
 
 
 def test_no_color_is_respected(block: Path):
-    coloured = in_a_process("check", block, FORCE_COLOR="1", NO_COLOR="")
+    colored = in_a_process("check", block, FORCE_COLOR="1", NO_COLOR="")
     plain = in_a_process("check", block, FORCE_COLOR="1", NO_COLOR="1")
-    colour = re.compile(r"\x1b\[[0-9;]*3[0-9]")
-    assert colour.search(coloured.stdout)
-    assert not colour.search(plain.stdout)
+    color = re.compile(r"\x1b\[[0-9;]*3[0-9]")
+    assert color.search(colored.stdout)
+    assert not color.search(plain.stdout)

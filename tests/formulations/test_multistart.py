@@ -187,7 +187,7 @@ def test_free_bodies_in_equilibrium_have_one_end(statement, k):
 @pytest.mark.parametrize("penalty", [1.0, 10.0])
 @pytest.mark.parametrize("k", [1, 2])
 def test_free_bodies_out_of_equilibrium_have_spurious_ends(k, penalty):
-    """Equilibrium penalised: some start leaves the body where no small change helps, and F2 > 0 tells it each time."""
+    """Equilibrium penalized: some start leaves the body where no small change helps, and F2 > 0 tells it each time."""
     spurious = 0
     for seed in range(4):
         problem = free_body(np.random.default_rng([seed, k]), 7, k)
@@ -280,7 +280,7 @@ def test_a_strictly_monotone_problem_has_one_end(formulation):
     np.testing.assert_allclose(end.solution.pressure, direct.pressure, atol=1e-10 * direct.pressure.max())
 
 
-def test_penalised_equilibrium_has_a_second_end():
+def test_penalized_equilibrium_has_a_second_end():
     """The lifted body: one end wherever it is lifted to, F2 > 0, counted apart and put last."""
     computed = multistart(resting(), SolveOptions.of("qp2", equilibrium=Equilibrium.PENALTY, starts=60))
     best, lifted = computed.ends

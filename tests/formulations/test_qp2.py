@@ -1,4 +1,4 @@
-"""QP2: its objective, the penalty and its limits, and equilibrium that is only penalised."""
+"""QP2: its objective, the penalty and its limits, and equilibrium that is only penalized."""
 
 from dataclasses import replace
 
@@ -235,7 +235,7 @@ def test_stiffness_rows_of_a_slender_body_do_not():
     np.testing.assert_allclose(solution.pressure, 1, atol=1e-8)
 
 
-def test_penalised_equilibrium_finds_the_solution_from_near_it():
+def test_penalized_equilibrium_finds_the_solution_from_near_it():
     problem = resting()
     direct = complementarity.solve(problem)
     start = Start(pressure=direct.pressure * 1.01, displacement=direct.displacement)

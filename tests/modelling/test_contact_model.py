@@ -278,7 +278,7 @@ def test_a_design_variable_composes_with_the_gap():
 
 
 def test_solving_again_starts_from_the_last_solution():
-    """The same problem again, and a neighbour: the active-set step gets there without Clarabel, and says so."""
+    """The same problem again, and a neighbor: the active-set step gets there without Clarabel, and says so."""
     contact = random_contact(3, 40, 1)
     model = bemcontact.model(contact)
     assert model.solve().solution.solver == "Clarabel"

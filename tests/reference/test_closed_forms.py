@@ -135,7 +135,7 @@ def test_punch_states_nothing_at_its_edges_and_zero_beyond():
 @pytest.mark.parametrize("state", STATES)
 @pytest.mark.parametrize(("rigid", "inner", "outer"), [("pin", 1.0, 1.7), ("bore", 1.0, 1.7), ("bore", 0.0, 1.7)])
 def test_lame_solves_the_equation_of_a_ring(state: str, rigid: str, inner: float, outer: float):
-    """Solve u'' + u'/r - u/r² = 0 from the free face (a disc: u = r near its centre), scaled to u = δ at the other."""
+    """Solve u'' + u'/r - u/r² = 0 from the free face (a disc: u = r near its center), scaled to u = δ at the other."""
     E, nu = 1000.0, 0.3
     if state == "plane_strain":
         E, nu = E / (1 - nu**2), nu / (1 - nu)

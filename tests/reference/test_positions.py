@@ -80,7 +80,7 @@ def test_coordinates():
     assert coordinates(table("angle", center=(0, 1), zero=(0, 7)), points, arc) == pytest.approx([-45, 45, 0])
 
 
-def test_spacing_is_to_the_farther_neighbour_in_the_run():
+def test_spacing_is_to_the_farther_neighbor_in_the_run():
     contact = along([0.0, 0.5, 2.0, 0.0, 4.0], np.ones(5), run=np.array([0, 0, 0, 1, 1]), run_length=np.full(2, np.inf))
     assert spacing(contact).tolist() == [0.5, 1.5, 1.5, 4.0, 4.0]
 

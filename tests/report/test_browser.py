@@ -33,16 +33,16 @@ WIDTHS = """
 # Text is judged against the nearest background that is painted, by the formula of WCAG 2.2.
 CONTRASTS = """
 (() => {
-  const channels = colour => colour.match(/[\\d.]+/g).map(Number);
+  const channels = color => color.match(/[\\d.]+/g).map(Number);
   const linear = value => value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
-  const luminance = colour => {
-    const [r, g, b] = channels(colour).slice(0, 3).map(value => linear(value / 255));
+  const luminance = color => {
+    const [r, g, b] = channels(color).slice(0, 3).map(value => linear(value / 255));
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;
   };
   const painted = element => {
     for (let node = element; node; node = node.parentElement) {
-      const colour = getComputedStyle(node).backgroundColor;
-      if (!(channels(colour).length === 4 && channels(colour)[3] === 0)) return colour;
+      const color = getComputedStyle(node).backgroundColor;
+      if (!(channels(color).length === 4 && channels(color)[3] === 0)) return color;
     }
     throw new Error("nothing is painted behind " + element.outerHTML.slice(0, 80));
   };

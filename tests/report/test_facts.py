@@ -66,8 +66,8 @@ def test_rows_have_units_and_errors_of_ends_relative_to_their_interval():
     """The ends of an interval of length 4, known to 0.5 %: 0.02. The intensity has the unit of p times √s."""
     bars = (
         bar("peak", 183.335, 0.002), bar("force", 405.0, 0.001), bar("start", 1.0, 0.005, interval=0),
-        bar("end", 5.0, 0.02, interval=0), bar("length", 4.0, 0.025, interval=0), bar("intensity", 9.68, 0.018, note="p = K s^-0.5"),
-        bar("displacement", 1.05, 0.003, zone=None),
+        bar("end", 5.0, 0.02, interval=0), bar("length", 4.0, 0.025, interval=0),
+        bar("intensity", 9.68, 0.018, note="p = K s^-0.5"), bar("displacement", 1.05, 0.003, zone=None),
     )  # fmt: skip
     rows = [*accuracy_rows(accuracy(*bars), UNITS)]
     assert [row["value"] for row in rows] == [
@@ -75,7 +75,7 @@ def test_rows_have_units_and_errors_of_ends_relative_to_their_interval():
         "9.68 ± 0.18 kN/cm²·cm^0.5", "1.050 ± 0.004 cm",
     ]  # fmt: skip
     assert [row["share"] for row in rows] == ["20 %", "10 %", "50 %", "2e+02 %", "–", "–", "30 %"]
-    assert [row["colour"] for row in rows] == ["", "", "", "bad", "", "", ""]
+    assert [row["color"] for row in rows] == ["", "", "", "bad", "", "", ""]
 
 
 def test_an_infinite_peak_has_no_number():

@@ -238,22 +238,22 @@ def test_a_coarse_mesh_is_amber_and_its_error_is_stated():
     assert re.search(r"Mesh: not met, error about \d+ % \(asked 1 %\)", text)
 
 
-def luminance(colour: str) -> float:
+def luminance(color: str) -> float:
     """Relative luminance of #rrggbb, as WCAG 2.2 defines it."""
-    channels = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    channels = (int(color[i : i + 2], 16) / 255 for i in (1, 3, 5))
     r, g, b = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels)
     return 0.2126 * r + 0.7152 * g + 0.0722 * b
 
 
 def test_the_text_of_each_box_can_be_read_on_its_ground():
-    """Green, amber and red, in the light and in the dark; and the colours of titles of pictures on paper."""
+    """Green, amber and red, in the light and in the dark; and the colors of titles of pictures on paper."""
     page = render(report_of(on_one_mesh()), {}, None)
     themes = re.findall(r"--good: .*", page)
     assert len(themes) == 2
     for theme in themes:
-        colours = dict(re.findall(r"--([\w-]+): (#\w{6})", theme))
+        colors = dict(re.findall(r"--([\w-]+): (#\w{6})", theme))
         for quality in ("good", "fair", "bad"):
-            light, dark = sorted(map(luminance, (colours[quality], colours[f"{quality}-page"])), reverse=True)
+            light, dark = sorted(map(luminance, (colors[quality], colors[f"{quality}-page"])), reverse=True)
             assert (light + 0.05) / (dark + 0.05) >= 4.5, quality
     for quality in ("good", "fair"):
         assert 1.05 / (luminance(QUALITY_COLOURS[quality]) + 0.05) >= 4.5

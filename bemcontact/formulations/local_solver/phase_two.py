@@ -369,7 +369,7 @@ class Descent:
         # A Newton step has the rounding of the gradient. Each row is satisfied up to the rounding of its terms, on the
         # way to the point too. A change of the rows moves the point by N and by a Newton step. Terms and rows change
         # with irregular phases, since with signs the movements by several rows of whole numbers can cancel.
-        working, hessian, size = self.working, self.hessian, self.progress.travelled
+        working, hessian, size = self.working, self.hessian, self.progress.traveled
         Z = hessian.Z
         moved = Z.dot(Z.T.dot(terms[:, None] * _phases(size.size)))
         if working.size:

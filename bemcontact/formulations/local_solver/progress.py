@@ -28,7 +28,7 @@ LOST = EPS
 """A component that was never larger than this, relative to the point or to one, is the rounding of directions."""
 
 MANY = 100
-"""Largest number of points that are stored before `travelled` is updated."""
+"""Largest number of points that are stored before `traveled` is updated."""
 
 STALLED = 100
 """Number of steps of length zero in sequence after which least-index rules are used, which never cycle (Bland 1977)."""
@@ -74,25 +74,25 @@ class Progress:
         self._slack = options.feasibility_tolerance * np.maximum(1.0, statement.bound_size)
         chosen = options.max_iterations
         self.limit = 1000 + 20 * statement.lower.size if chosen is None else chosen
-        self._travelled, self._passed, self._seen, self.far = np.zeros(self.x.size), [], None, 0.0
+        self._traveled, self._passed, self._seen, self.far = np.zeros(self.x.size), [], None, 0.0
         self.place(self.x)
 
     @property
-    def travelled(self) -> Array:
+    def traveled(self) -> Array:
         """Largest absolute value of each component so far (n,); it bounds the rounding of the component."""
         if self._passed:
             self._take_in()
-        return self._travelled
+        return self._traveled
 
     def _take_in(self) -> None:
-        """Update `travelled` with the stored points."""
-        self._travelled = np.maximum.reduce(np.abs([self._travelled, *self._passed]))
+        """Update `traveled` with the stored points."""
+        self._traveled = np.maximum.reduce(np.abs([self._traveled, *self._passed]))
         self._passed.clear()
 
     def forget(self) -> None:
-        """Reset `travelled` and `far` after the point was computed anew from the data."""
+        """Reset `traveled` and `far` after the point was computed anew from the data."""
         size = np.maximum(np.abs(self.x), 1.0)
-        self._travelled = np.minimum(self.travelled, size)
+        self._traveled = np.minimum(self.traveled, size)
         self.far = min(self.far, sqrt(size.dot(size)))
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
@@ -127,7 +127,7 @@ class Progress:
         A component that is zero in truth is rounding of the points before it, and counts with its size.
         """
         H, c, _ = self.statement.absolute
-        terms = H.dot(np.maximum(np.abs(self.x), EPS * self.travelled)) + c
+        terms = H.dot(np.maximum(np.abs(self.x), EPS * self.traveled)) + c
         return terms + np.abs(of_rows).dot(np.abs(rows)) if of_rows.size else terms
 
     def fine_zero(self, terms: Array, rows: Array, inverse: Array, reach: Array) -> Array:
@@ -150,7 +150,7 @@ class Progress:
 
         Faint components of the point have no digit.
         """
-        size = self.travelled
+        size = self.traveled
         size = np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
         return EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(size, reach)))
 

@@ -24,7 +24,7 @@ from bemcontact.report.figures.page import (
     ceiling,
     cut_off,
     distance_label,
-    labelled,
+    labeled,
     legend_below,
     pieces_of,
     plain,
@@ -53,8 +53,8 @@ class SharedCurve:
     dashes: str | tuple[int, tuple[float, ...]]
 
     @property
-    def colour(self) -> str:
-        """Colour of the formulation."""
+    def color(self) -> str:
+        """Color of the formulation."""
         return COLOURS[self.contenders[0].attempt.options.formulation]
 
     @property
@@ -86,13 +86,13 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
     top = ceiling(contact, direct, infinite)
     known = [float(np.abs(direct).max(initial=0.0))]
     for item in level.expected:
-        colour, label = (PURPLE, item.name) if item.in_range else (GREY, f"{item.name}, out of its range")
+        color, label = (PURPLE, item.name) if item.in_range else (GREY, f"{item.name}, out of its range")
         if np.isfinite(item.pressure).any():
-            along.line(axes, item.pressure, colour, short_label(label, 40))
+            along.line(axes, item.pressure, color, short_label(label, 40))
             known.append(float(np.nanmax(item.pressure)))
         elif item.peak is not None and not item.infinite:
             axes.axhline(
-                item.peak, color=colour, linewidth=1.2, linestyle="dotted", label=short_label(f"{label}: peak", 40)
+                item.peak, color=color, linewidth=1.2, linestyle="dotted", label=short_label(f"{label}: peak", 40)
             )
             known.append(item.peak)
     maxima = {curve.label: float(curve.solution.pressure.max(initial=0.0)) for curve in curves}
@@ -101,7 +101,7 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
     else:
         _cut_off(axes, {}, top, unit)
         cut_off(axes, top, infinite)
-    axes.set_ylabel(labelled("pressure", unit) + "\nper undeformed length")
+    axes.set_ylabel(labeled("pressure", unit) + "\nper undeformed length")
     along.finish(axes)
 
 
@@ -117,7 +117,7 @@ def draw_gaps(axes: Axes, level: MeshLevel) -> None:
     answer = contact.initial_gap + level.answer.solution.displacement
     largest = max(float(contact.initial_gap.max()), float(answer.max()), contact.scales.displacement)
     _cut_off(axes, maxima, BEYOND * largest, unit)
-    axes.set_ylabel(labelled("gap", unit))
+    axes.set_ylabel(labeled("gap", unit))
     along.finish(axes)
     widest = max(float(np.abs(contact.initial_gap).max(initial=0.0)), *map(abs, maxima.values()))
     label_closed(axes, widest, contact.scales.displacement)
@@ -172,7 +172,7 @@ class _Along:
             axes.plot(
                 s,
                 along,
-                color=curve.colour,
+                color=curve.color,
                 linewidth=curve.width,
                 linestyle=curve.dashes,
                 marker=marker,
@@ -181,11 +181,11 @@ class _Along:
                 solid_capstyle="butt",
             )
 
-    def line(self, axes: Axes, values: Array, colour: str, label: str) -> None:
+    def line(self, axes: Axes, values: Array, color: str, label: str) -> None:
         """Draw values (n,) that no solver found."""
         for order, (s, along) in enumerate(self.stretches(values)):
             shown = "_" if order else label
-            axes.plot(s, along, color=colour, linewidth=1.4, linestyle=(0, (2.5, 2)), label=shown, zorder=2.5)
+            axes.plot(s, along, color=color, linewidth=1.4, linestyle=(0, (2.5, 2)), label=shown, zorder=2.5)
 
     def finish(self, axes: Axes) -> None:
         """Name the axis, and the pieces if there are several."""

@@ -198,14 +198,14 @@ def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:
     """Text on the peak of a fan, to be placed beyond its tip in the middle of a level stretch, or in a hole."""
     if fan.closed:
         middle = tips.mean(axis=0, keepdims=True)
-        return Name(text=text.replace(" ", "\n"), colour=BLACK, anchors=middle, directions=np.zeros((1, 2)))
+        return Name(text=text.replace(" ", "\n"), color=BLACK, anchors=middle, directions=np.zeros((1, 2)))
     highest = np.flatnonzero(fan.pressure >= (1 - LEVEL) * fan.peak)
     at = int(highest[len(highest) // 2])
     outward, across = -fan.normals[at], fan.normals[at, ::-1] * (1, -1)
     directions = np.array([outward, outward + across, outward - across, across, -across])
     return Name(
         text=text + (",\nfan cut off" if cut else ""),
-        colour=BLACK,
+        color=BLACK,
         anchors=np.tile(tips[at], (5, 1)),
         directions=directions / np.hypot(*directions.T)[:, None],
     )

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.modelling.gap_design.designed_gap import GapDesign
-from bemcontact.report.figures.page import CYCLE, GREY, labelled, new_page, plain
+from bemcontact.report.figures.page import CYCLE, GREY, labeled, new_page, plain
 from bemcontact.report.formatting import units_of
 
 
@@ -27,15 +27,15 @@ def draw_relieved_pressure(axes: Axes, design: GapDesign) -> None:
     """
     at, arc = _points(design)
     for number, (before, after) in enumerate(zip(design.before, design.after, strict=True)):
-        colour = CYCLE[number % len(CYCLE)]
+        color = CYCLE[number % len(CYCLE)]
         state = f", state {number + 1}" if len(design.after) > 1 else ""
-        axes.plot(arc, before.pressure[at], color=colour, linestyle="dashed", linewidth=1.2, label=f"without{state}")
-        axes.plot(arc, after.pressure[at], color=colour, marker=".", linewidth=1.5, label=f"with profile{state}")
+        axes.plot(arc, before.pressure[at], color=color, linestyle="dashed", linewidth=1.2, label=f"without{state}")
+        axes.plot(arc, after.pressure[at], color=color, marker=".", linewidth=1.5, label=f"with profile{state}")
     highest = min(design.peak_before, 3 * design.peak) or 1.0
     axes.set_ylim(-0.03 * highest, 1.08 * highest)
     if design.peak_before > highest:
         axes.text(0.98, 0.95, f"up to {design.peak_before:.4g} without", ha="right", va="top", transform=axes.transAxes)
-    axes.set_ylabel(labelled("pressure", units_of(design.before[0].contact).stress))
+    axes.set_ylabel(labeled("pressure", units_of(design.before[0].contact).stress))
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(frameon=False, fontsize=8.5)
 
@@ -46,8 +46,8 @@ def draw_relief(axes: Axes, design: GapDesign) -> None:
     axes.fill_between(arc, design.profile[at], 0.0, color=GREY, alpha=0.25, linewidth=0)
     axes.plot(arc, design.profile[at], color=GREY, marker=".", linewidth=1.5)
     unit = units_of(design.before[0].contact).length
-    axes.set_xlabel(labelled("distance along the contact zone", unit))
-    axes.set_ylabel(labelled("profile", unit))
+    axes.set_xlabel(labeled("distance along the contact zone", unit))
+    axes.set_ylabel(labeled("profile", unit))
     axes.spines[["top", "right"]].set_visible(False)
 
 

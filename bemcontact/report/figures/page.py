@@ -1,4 +1,4 @@
-"""What all pictures share: colours, pieces of the contact zones, axes with units, and files."""
+"""What all pictures share: colors, pieces of the contact zones, axes with units, and files."""
 
 import re
 import warnings
@@ -31,7 +31,7 @@ FORMATS = (".png", ".svg", ".pdf")
 DATES = {"svg": "Date", "pdf": "CreationDate"}
 """Format -> the key of its metadata that would make each file another."""
 
-# The palette of Okabe and Ito, which colour-blind people can tell apart.
+# The palette of Okabe and Ito, which color-blind people can tell apart.
 BLACK, BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
     "#222222", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"
 )  # fmt: skip
@@ -102,7 +102,7 @@ def short_label(text: str, columns: int) -> str:
     return plain(text if len(text) <= columns else f"{text[: columns - 1]}…")
 
 
-def labelled(quantity: str, unit: str) -> str:
+def labeled(quantity: str, unit: str) -> str:
     """Write a quantity with its unit, if there is one."""
     return f"{quantity} [{plain(unit)}]" if unit else quantity
 
@@ -122,15 +122,15 @@ def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
     axes.set_aspect("equal")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(round_ticks(6))
-    axes.set_xlabel(labelled("x", unit))
-    axes.set_ylabel(labelled("y", unit))
+    axes.set_xlabel(labeled("x", unit))
+    axes.set_ylabel(labeled("y", unit))
     axes.spines[["top", "right"]].set_visible(False)
 
 
 AMBER = "#8a5a00"
-"""Colour of a title on paper that only half of its verdicts support."""
+"""Color of a title on paper that only half of its verdicts support."""
 QUALITY_COLOURS = {"good": BLACK, "fair": AMBER, "bad": VERMILION}
-"""Quality of an answer -> colour of the title of its picture."""
+"""Quality of an answer -> color of the title of its picture."""
 CUT = 3.0
 """Multiple of the mean pressure at which pictures cut off one that is infinite."""
 
@@ -176,8 +176,8 @@ class Piece:
         return arc + perimeter if arc < self.arc[0] else arc
 
     @property
-    def colour(self) -> str:
-        """Colour of the piece, one of six."""
+    def color(self) -> str:
+        """Color of the piece, one of six."""
         return PIECE_COLOURS[self.order % len(PIECE_COLOURS)]
 
     @property
@@ -210,7 +210,7 @@ def distance_label(contact: CondensedContact, pieces: Sequence[Piece]) -> str:
     begin = f" from {vector((x, y), scale=float(abs(contact.points).max()))}" * begins
     rounds = (float(contact.run_length[piece.run]) for piece in pieces)
     beyond = [length for piece, length in zip(pieces, rounds, strict=True) if piece.arc[-1] > length * (1 + SEAM)]
-    label = labelled(f"distance{begin} along the contact zone", unit)
+    label = labeled(f"distance{begin} along the contact zone", unit)
     if not beyond:
         return label
     around = plain(with_unit(number(beyond[0]), unit))
@@ -237,7 +237,7 @@ def _once_round(contact: CondensedContact, index: IntArray, touching: BoolArray)
 
 
 INK = "#e8eaed"
-"""Colour on a dark page of what is black on paper."""
+"""Color on a dark page of what is black on paper."""
 
 IN_THE_DARK = {
     "#000000": INK,
@@ -251,13 +251,13 @@ IN_THE_DARK = {
     PURPLE: "#dd9cc0",
     AMBER: "#ecc765",
 }
-"""Colour on paper -> colour on a dark page, for those that would not be seen there."""
+"""Color on paper -> color on a dark page, for those that would not be seen there."""
 
 
 def vector_graphic(figure: Figure) -> bytes:
     """Write a figure as transparent SVG for light and dark pages; the bytes depend on the figure alone.
 
-    Matplotlib writes colours as style attributes, which a style sheet can overrule. The style sheet added here does so
+    Matplotlib writes colors as style attributes, which a style sheet can overrule. The style sheet added here does so
     on dark pages.
     """
     metadata = {DATES["svg"]: None, "Creator": None, "Format": None, "Type": None}
@@ -269,7 +269,7 @@ def vector_graphic(figure: Figure) -> bytes:
 
 
 def _style_sheet() -> str:
-    """Style sheet with the colours for a dark page; text without a colour takes that of the whole picture."""
+    """Style sheet with the colors for a dark page; text without a color takes that of the whole picture."""
     rules = [
         f'[style*="{kind}: {paper}"] {{ {kind}: {dark} !important }}'
         for paper, dark in IN_THE_DARK.items()

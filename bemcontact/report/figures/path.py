@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labelled, new_page, plain, short_label
+from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labeled, new_page, plain, short_label
 from bemcontact.report.formatting import number, units_of
 from bemcontact.report.verdicts import in_short, overall, path_verdicts
 
@@ -40,7 +40,7 @@ def figure_of_path(path: ParameterPath) -> Figure:
 
 def draw_peaks(axes: Axes, path: ParameterPath) -> None:
     """Draw the largest pressure over the parameter, with a dot at each breakpoint; nothing if it is infinite."""
-    axes.set_ylabel(labelled("peak pressure", units_of(path.contact).stress))
+    axes.set_ylabel(labeled("peak pressure", units_of(path.contact).stress))
     if path.infinite:
         axes.text(
             0.5, 0.5, f"infinite in {', '.join(path.infinite)}", transform=axes.transAxes, ha="center", color=BLACK
@@ -57,7 +57,7 @@ def draw_resultants(axes: Axes, path: ParameterPath) -> None:
     for order, zone in enumerate(zones):
         sizes = [float(np.hypot(*state.resultant[order])) for state in path.states]
         _draw_line(axes, path, sizes, CYCLE[order % len(CYCLE)], plain(zone))
-    axes.set_ylabel(labelled("resultant", units_of(path.contact).line_force))
+    axes.set_ylabel(labeled("resultant", units_of(path.contact).line_force))
     axes.set_ylim(bottom=0)
     if len(zones) > 1:
         axes.legend(frameon=False, fontsize=8.5)
@@ -65,20 +65,20 @@ def draw_resultants(axes: Axes, path: ParameterPath) -> None:
 
 def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
     """Draw where a zone is in contact, by arc position, over the parameter."""
-    colour = CYCLE[path.contact.zone_names.index(zone) % len(CYCLE)]
+    color = CYCLE[path.contact.zone_names.index(zone) % len(CYCLE)]
     for values, starts, ends in _bands(path.states, zone):
-        axes.fill_between(values, starts, ends, color=colour, alpha=SHADE, linewidth=0)
+        axes.fill_between(values, starts, ends, color=color, alpha=SHADE, linewidth=0)
         for edge in (starts, ends):
-            axes.plot(values, edge, color=colour, linewidth=1.4)
-    axes.set_ylabel(labelled(f"contact of {short_label(zone, 16)}", units_of(path.contact).length))
+            axes.plot(values, edge, color=color, linewidth=1.4)
+    axes.set_ylabel(labeled(f"contact of {short_label(zone, 16)}", units_of(path.contact).length))
 
 
-def _draw_line(axes: Axes, path: ParameterPath, heights: list[float], colour: str, label: str) -> None:
+def _draw_line(axes: Axes, path: ParameterPath, heights: list[float], color: str, label: str) -> None:
     """Draw a quantity with a dot at each breakpoint."""
     values = [state.value for state in path.states]
-    axes.plot(values, heights, color=colour, linewidth=1.4, label=label)
+    axes.plot(values, heights, color=color, linewidth=1.4, label=label)
     dots = [(value, y) for state, value, y in zip(path.states, values, heights, strict=True) if state.breakpoint]
-    axes.plot(*zip(*dots, strict=True), color=colour, linestyle="none", marker="o", markersize=2.6)
+    axes.plot(*zip(*dots, strict=True), color=color, linestyle="none", marker="o", markersize=2.6)
 
 
 def _bands(states: tuple[PathState, ...], zone: str) -> Iterator[tuple[list[float], list[float], list[float]]]:

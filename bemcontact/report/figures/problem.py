@@ -46,7 +46,7 @@ Displacement = Callable[[Array], Array]
 """Points (k, 2) of the undeformed boundary -> how far (k, 2) they are displaced."""
 
 ROLES = {"may touch": VERMILION, "held": BLUE, "loaded": GREEN, "free": BLACK}
-"""Role of an edge -> colour."""
+"""Role of an edge -> color."""
 ALONG = 0.3
 """Largest share of a traction across the edge with which it is drawn as one along the edge."""
 FREE = Condition(traction=AxisFields(x=Field(constant=0.0)))
@@ -137,13 +137,13 @@ def _polygons(problem: Problem) -> list[Array]:
 
 
 def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
-    """Draw elements in the colour of their edge's role, with large dots at their ends and small ones between."""
+    """Draw elements in the color of their edge's role, with large dots at their ends and small ones between."""
     corners = mesh.nodes[mesh.elements]
-    colours = [ROLES[role(problem, mesh.edge_names[edge])] for edge in mesh.edge]
+    colors = [ROLES[role(problem, mesh.edge_names[edge])] for edge in mesh.edge]
     curves = element_curves(corners, 9)
-    axes.add_collection(LineCollection(list(curves), colors=colours, linewidths=2.2, zorder=3))
+    axes.add_collection(LineCollection(list(curves), colors=colors, linewidths=2.2, zorder=3))
     for nodes, diameter in ((corners[:, 0], 4.5), (corners[:, 1], 2.5)):
-        axes.scatter(*nodes.T, s=diameter**2, c="white", edgecolors=colours, linewidths=0.9, zorder=4)
+        axes.scatter(*nodes.T, s=diameter**2, c="white", edgecolors=colors, linewidths=0.9, zorder=4)
 
 
 def _spread(edge: Edge, size: float, spots: int, fewest: int = 2) -> tuple[Array, Array]:
@@ -196,7 +196,7 @@ def draw_loads(axes: Axes, problem: Problem, displacement: Displacement = np.zer
 
 
 def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
-    """Draw the centre of a rotation, and give its symbol a name to be placed there."""
+    """Draw the center of a rotation, and give its symbol a name to be placed there."""
     spin = problem.loads.centrifugal
     if spin is None or spin.angular_velocity == 0:
         return
@@ -205,7 +205,7 @@ def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
     sense = r"$\circlearrowleft\,\omega$" if spin.angular_velocity > 0 else r"$\circlearrowright\,\omega$"
     angle = np.radians(45 + 45 * np.arange(8))
     around = np.column_stack([np.cos(angle), np.sin(angle)])
-    yield Name(text=sense, colour=BLACK, anchors=np.tile(spin.center, (8, 1)), directions=around)
+    yield Name(text=sense, color=BLACK, anchors=np.tile(spin.center, (8, 1)), directions=around)
 
 
 def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
@@ -304,7 +304,7 @@ def _name(problem: Problem, edge: Edge) -> Name:
         text="\n".join(
             [wrapped(edge.name, 28), *(_symbols(short_label(line, 40)) for line in prescribed(problem, edge))]
         ),
-        colour=ROLES[role(problem, edge.name)],
+        color=ROLES[role(problem, edge.name)],
         anchors=np.concatenate([anchors, anchors, edge.points(ends)]),
         directions=np.concatenate([-outward, outward, slanted]),
     )
@@ -316,7 +316,7 @@ def _symbols(text: str) -> str:
 
 
 def _draw_legend(axes: Axes, problem: Problem) -> None:
-    """Explain the colours in the picture, and list the loads on the volume."""
+    """Explain the colors in the picture, and list the loads on the volume."""
     occurring = {role(problem, edge.name) for edge in problem.boundary.edges}
     handles = [Line2D([], [], color=c, linewidth=2.5, label=name) for name, c in ROLES.items() if name in occurring]
     handles.append(Line2D([], [], color=GREY, linewidth=1.3, label="rigid surface, normal"))
@@ -338,12 +338,12 @@ def draw_tools(axes: Axes, problem: Problem) -> Iterator[tuple[Array, Name]]:
         place, normal = _place(problem, tool)
         action = problem.tool_action(tool)
         covered = [place[None]]
-        for components, colour in ((action.position, BLUE), (action.load, GREEN)):
+        for components, color in ((action.position, BLUE), (action.load, GREEN)):
             if not any(components[:2]):
                 continue
             arrow = REACH * problem.boundary.size * np.array(components[:2]) / np.linalg.norm(components[:2])
             tail = place - arrow if arrow @ normal > 0 else place
-            covered.append(draw_arrows(axes, tail[None], arrow[None], colour))
+            covered.append(draw_arrows(axes, tail[None], arrow[None], color))
         lines = tool_in_words(action, problem.units).split("; ")
         yield np.concatenate(covered), _tool_name("\n".join([wrapped(tool, 28), *lines]), any(action.free), covered[-1])
 
@@ -367,7 +367,7 @@ def _tool_name(text: str, loaded: bool, covered: Array) -> Name:
     around = np.column_stack([np.cos(angle), np.sin(angle)])
     return Name(
         text=text,
-        colour=GREEN if loaded else BLUE,
+        color=GREEN if loaded else BLUE,
         anchors=np.repeat(covered, 8, axis=0),
         directions=np.tile(around, (len(covered), 1)),
     )

@@ -15,7 +15,7 @@ from bemcontact.report.figures.page import (
     ORANGE,
     PURPLE,
     VERMILION,
-    labelled,
+    labeled,
     legend_below,
     new_page,
 )
@@ -23,7 +23,7 @@ from bemcontact.report.figures.study import WIDTH, plan_of
 from bemcontact.report.formatting import number
 
 MESHES = (BLUE, VERMILION, GREEN)
-"""Colours of the meshes of the problem as stated, the coarsest first."""
+"""Colors of the meshes of the problem as stated, the coarsest first."""
 MARKERS = ("s", "D", "^")
 """Markers of the variants."""
 SINGLE = ("dotted", (0, (5, 2)), (0, (6, 1.5, 1.5, 1.5)), (0, (9, 2)))
@@ -83,8 +83,8 @@ def draw_against(axes: Axes, item: PaperStudy) -> None:
     for known in item.meshes[-1].level.expected:
         singles = _draw_reference(axes, known, item, singles)
     units = item.problem.units
-    axes.set_xlabel(labelled(item.paper.symbol, item.coordinate_unit))
-    axes.set_ylabel(labelled("pressure", units.stress) + "\nper undeformed length")
+    axes.set_xlabel(labeled(item.paper.symbol, item.coordinate_unit))
+    axes.set_ylabel(labeled("pressure", units.stress) + "\nper undeformed length")
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
     axes.set_ylim(bottom=0, top=ABOVE * max(float(np.nanmax(line.get_ydata())) for line in axes.lines))  # pyright: ignore
 
@@ -98,24 +98,24 @@ def _curve(run: Run, item: PaperStudy) -> tuple[np.ndarray, np.ndarray]:
 
 def _draw_reference(axes: Axes, known: Expected, item: PaperStudy, singles: int) -> int:
     """Draw a reference: a curve, points, or lines at single values; return how many lines there are so far."""
-    colour, beyond = (PURPLE, "") if known.in_range else (GREY, ", out of its range")
+    color, beyond = (PURPLE, "") if known.in_range else (GREY, ", out of its range")
     stated = item.problem.reference[known.name]
     if isinstance(stated, Table):
         position, value = np.array(sorted(stated.pressure)).T
         axes.plot(
-            position, value, color=colour, linewidth=1.0, linestyle=(0, (2.5, 2)), marker="D", markersize=3.5,
+            position, value, color=color, linewidth=1.0, linestyle=(0, (2.5, 2)), marker="D", markersize=3.5,
             label=f"{known.name}{beyond}", zorder=3.5,
         )  # fmt: skip
     elif known.closed_form:
         here = positions(item.meshes[-1].level, item.axis)
         order = np.argsort(here, kind="stable")
         label = f"{known.name}{beyond}"
-        axes.plot(here[order], known.pressure[order], color=colour, linewidth=1.4, linestyle=(0, (2.5, 2)), label=label)
+        axes.plot(here[order], known.pressure[order], color=color, linewidth=1.4, linestyle=(0, (2.5, 2)), label=label)
     else:
         single_values = ((known.peak, "peak", axes.axhline), (known.start, "start", axes.axvline))
         for value, what, draw in single_values:
             if value is not None:
                 label = f"{known.name}: {what} {number(value)}"
-                draw(value, color=colour, linewidth=1.3, linestyle=SINGLE[singles % len(SINGLE)], label=label)
+                draw(value, color=color, linewidth=1.3, linestyle=SINGLE[singles % len(SINGLE)], label=label)
                 singles += 1
     return singles

@@ -23,7 +23,7 @@ from bemcontact.report.figures.page import (
     ceiling,
     cut_off,
     distance_label,
-    labelled,
+    labeled,
     new_page,
     pieces_of,
     plain,
@@ -77,10 +77,10 @@ def figure_of_result(result: Result) -> Figure:
 
 
 def _entitle(figure: Figure, title: str, of_it: Sequence[Verdict], columns: int) -> None:
-    """Write a title with both verdicts in short, in the colour of their quality."""
+    """Write a title with both verdicts in short, in the color of their quality."""
     short = "\n".join(wrap(in_short(of_it), columns))
-    colour = QUALITY_COLOURS[overall(of_it)]
-    figure.suptitle(f"{title}; {short}", x=0.01, ha="left", fontweight="bold", color=colour, wrap=True)
+    color = QUALITY_COLOURS[overall(of_it)]
+    figure.suptitle(f"{title}; {short}", x=0.01, ha="left", fontweight="bold", color=color, wrap=True)
 
 
 def draw_pressure(axes: Axes, result: Result, zone: str | None = None) -> None:
@@ -91,7 +91,7 @@ def draw_pressure(axes: Axes, result: Result, zone: str | None = None) -> None:
     contact, infinite = result.contact, [name for name in result.accuracy.infinite if zone in (None, name)]
     pressure = np.where(_of_zone(contact, zone), result.solution.pressure, 0.0)
     _draw_along(axes, result, pressure, zone)
-    axes.set_ylabel(labelled("pressure", units_of(contact).stress) + "\nper undeformed length")
+    axes.set_ylabel(labeled("pressure", units_of(contact).stress) + "\nper undeformed length")
     axes.set_ylim(top=1.18 * float(pressure.max(initial=0.0)) or 1.0)
     if (top := ceiling(contact, pressure, infinite)) is not None:
         cut_off(axes, top, infinite)
@@ -115,7 +115,7 @@ def draw_gap(axes: Axes, result: Result, zone: str | None = None) -> None:
     gap = np.where(np.abs(gap := _gap(result)) <= CLOSED * scale, 0.0, gap)
     gap = np.where(_of_zone(result.contact, zone), gap, 0.0)
     _draw_along(axes, result, gap, zone)
-    axes.set_ylabel(labelled("gap", units_of(result.contact).length))
+    axes.set_ylabel(labeled("gap", units_of(result.contact).length))
     label_closed(axes, float(np.abs(gap).max(initial=0.0)), scale)
 
 
@@ -140,24 +140,24 @@ def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> 
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
     pieces = [piece for piece in pieces_of(contact, touching) if _of_zone(contact, zone)[piece.index[0]]]
     for rank, piece in enumerate(pieces):
-        s, along, colour = piece.arc, values[piece.index], piece.colour
+        s, along, color = piece.arc, values[piece.index], piece.color
         width = 1.5 * (2 - (rank + 1) / len(pieces))
         axes.plot(
             s,
             along,
-            color=colour,
+            color=color,
             linewidth=width,
             linestyle="dashed" if rank else "solid",
             zorder=2,
             label=piece.label,
         )
-        axes.fill_between(s, along, color=colour, alpha=0.12, linewidth=0, zorder=1)
-        faces = np.where(touching[piece.index], colour, "white")
-        axes.scatter(s, along, s=8 * width**2, c=faces, edgecolors=colour, linewidths=1.0, zorder=3)
-    colours = {contact.zone_names[int(contact.zone[piece.index[0]])]: piece.colour for piece in pieces}
+        axes.fill_between(s, along, color=color, alpha=0.12, linewidth=0, zorder=1)
+        faces = np.where(touching[piece.index], color, "white")
+        axes.scatter(s, along, s=8 * width**2, c=faces, edgecolors=color, linewidths=1.0, zorder=3)
+    colors = {contact.zone_names[int(contact.zone[piece.index[0]])]: piece.color for piece in pieces}
     intervals = [*_intervals(result, pieces)]
     for name, ends in intervals:
-        axes.hlines(0, *ends, color=colours[name], linewidth=3 + 3 * list(colours)[::-1].index(name), zorder=2)
+        axes.hlines(0, *ends, color=colors[name], linewidth=3 + 3 * list(colors)[::-1].index(name), zorder=2)
     axes.set_xlabel(distance_label(contact, pieces))
     axes.spines[["top", "right"]].set_visible(False)
     axes.xaxis.set_major_locator(round_ticks(7))
@@ -227,18 +227,18 @@ def draw_case_pressures(axes: Axes, cases: CaseResults) -> None:
     first, touching = next(iter(cases.results.values())), np.any([it.touching for it in cases.results.values()], axis=0)
     pieces = [*pieces_of(first.contact, touching)]
     for order, (name, result) in enumerate(cases.results.items()):
-        colour = PIECE_COLOURS[order % len(PIECE_COLOURS)]
+        color = PIECE_COLOURS[order % len(PIECE_COLOURS)]
         width = 2.2 if order < len(PIECE_COLOURS) else 1.2
         for piece in pieces:
             label, dashes = None if piece.order else short_label(name, 30), DASHES[piece.order % len(DASHES)]
             pressure = result.solution.pressure[piece.index]
-            axes.plot(piece.arc, pressure, color=colour, linestyle=dashes, linewidth=width, label=label)
+            axes.plot(piece.arc, pressure, color=color, linestyle=dashes, linewidth=width, label=label)
     labels = [f"{DASHES[piece.order % len(DASHES)]}: {piece.label}" for piece in pieces]
     if len(labels) > 1:
         axes.set_title("; ".join(labels), loc="left", fontsize=9, color=GREY)
     axes.axhline(0, color=GREY, linewidth=0.8)
     axes.set_xlabel(distance_label(first.contact, pieces))
-    axes.set_ylabel(labelled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
+    axes.set_ylabel(labeled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
     axes.legend(frameon=False, fontsize=8.5)
     if cases.infinite:
         tops = (
@@ -260,8 +260,8 @@ def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
     labels = [
         "infinite" if name in cases.infinite else with_bar(peak, bars_of_peaks[name]) for name, peak in finite.items()
     ]
-    colours = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
-    bars = axes.barh([short_label(name, 30) for name in cases.results], peaks, color=colours)
+    colors = [PIECE_COLOURS[order % len(PIECE_COLOURS)] for order in range(len(peaks))]
+    bars = axes.barh([short_label(name, 30) for name in cases.results], peaks, color=colors)
     axes.bar_label(bars, labels, padding=3)
     for bar, name in zip(bars, cases.results, strict=True):
         bar.set(hatch="//" if name in cases.infinite else None, alpha=0.5 if name in cases.infinite else 1.0)
@@ -269,4 +269,4 @@ def draw_case_peaks(axes: Axes, cases: CaseResults) -> None:
         axes.set_xticks([])
     axes.margins(x=0.12)
     axes.invert_yaxis()
-    axes.set_xlabel(labelled("peak pressure", units_of(first.contact).stress))
+    axes.set_xlabel(labeled("peak pressure", units_of(first.contact).stress))

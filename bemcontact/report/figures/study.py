@@ -124,10 +124,10 @@ def draw_history(axes: Axes, contenders: Sequence[Contender]) -> None:
     below_zero = False
     for order, contender in enumerate(recorded):
         alone = COLOURS[contender.attempt.options.formulation] if len(recorded) == 1 else None
-        colour = alone or CYCLE[order % len(CYCLE)]
+        color = alone or CYCLE[order % len(CYCLE)]
         for trace in contender.assessment.solution.history if contender.assessment else ():
             label = trace.quantity if alone else plain(f"{contender.label}: {trace.quantity}")
-            below_zero |= _draw_trace(axes, trace, colour, label)
+            below_zero |= _draw_trace(axes, trace, color, label)
     if below_zero:
         axes.scatter([], [], s=16, marker="v", facecolors="white", edgecolors=BLACK, label="objective below zero")
     show_decades(axes)
@@ -137,15 +137,15 @@ def draw_history(axes: Axes, contenders: Sequence[Contender]) -> None:
     legend_below(axes)
 
 
-def _draw_trace(axes: Axes, trace: Trace, colour: str, label: str) -> bool:
+def _draw_trace(axes: Axes, trace: Trace, color: str, label: str) -> bool:
     """Draw the magnitude of one quantity; return whether it is an objective with negative values."""
     values = np.array(trace.values)
     iteration = trace.first + np.arange(len(values))
     size = np.where(values != 0, np.abs(values), np.nan)
     mark, dashes = "." if len(values) < FEW else "none", QUANTITY_DASHES[trace.quantity]
-    axes.plot(iteration, size, color=colour, linestyle=dashes, linewidth=1.4, marker=mark, label=label)
+    axes.plot(iteration, size, color=color, linestyle=dashes, linewidth=1.4, marker=mark, label=label)
     below = (values < BELOW_ZERO) & (trace.quantity == "objective")
-    axes.scatter(iteration[below], size[below], s=16, marker="v", facecolors="white", edgecolors=colour, zorder=3)
+    axes.scatter(iteration[below], size[below], s=16, marker="v", facecolors="white", edgecolors=color, zorder=3)
     return bool(below.any())
 
 
@@ -159,9 +159,9 @@ def draw_convergence(axes: Axes, convergence: Convergence) -> None:
         distance = np.where(distance > 0, distance, np.nan)
         q = next((q for q in reversed(item.orders) if q is not None), None)
         order_text = "" if q is None else f", order {q:.2g}"
-        colour = CYCLE[order % len(CYCLE)]
+        color = CYCLE[order % len(CYCLE)]
         label = short_label(f"{item.name}{order_text}", 48)
-        axes.plot(refine, distance, color=colour, marker="o", markersize=5, linewidth=1.5, label=label)
+        axes.plot(refine, distance, color=color, marker="o", markersize=5, linewidth=1.5, label=label)
     axes.set_xscale("log")
     show_decades(axes)
     axes.set_xticks(refine, [f"{parts:g}" for parts in refine])

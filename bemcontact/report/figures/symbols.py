@@ -26,8 +26,8 @@ class Box(NamedTuple):
     top: float
 
 
-def centred(center: Array, size: tuple[float, float]) -> Box:
-    """Return the box of this size (width, height) around a centre (2,)."""
+def centered(center: Array, size: tuple[float, float]) -> Box:
+    """Return the box of this size (width, height) around a center (2,)."""
     (x, y), (width, height) = center, size
     return Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
 
@@ -48,7 +48,7 @@ def crowd(box: Box, taken: Sequence[Box], ink: Array) -> float:
 
 def least_crowded(centers: Array, size: tuple[float, float], taken: Sequence[Box], ink: Array) -> int:
     """Index of the first of the centers (c, 2) at which a label covers least of other labels and of ink (k, 2)."""
-    return int(np.argmin([crowd(centred(center, size), taken, ink) for center in centers]))
+    return int(np.argmin([crowd(centered(center, size), taken, ink) for center in centers]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,12 +56,12 @@ class Name:
     """A text, mathematics between dollars, to be placed near one of the anchors (c, 2), in its direction (c, 2)."""
 
     text: str
-    colour: str
+    color: str
     anchors: Array
     directions: Array
 
 
-def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, colour: str) -> Array:
+def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, color: str) -> Array:
     """Draw a rigid line (k, 2) and hatching of a depth on the side away from its unit normals (k, 2).
 
     Return points (k, 2) of what the drawing covers.
@@ -72,26 +72,26 @@ def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, colour:
     inward = -np.column_stack([np.interp(at, s, normals[:, i]) for i in (0, 1)])
     tips = roots + 0.7 * depth * (inward + inward[:, ::-1] * (1, -1))
     strokes = Path.make_compound_path(*(Path(stroke) for stroke in np.stack([roots, tips], axis=1)))
-    axes.add_patch(PathPatch(strokes, facecolor="none", edgecolor=colour, linewidth=0.7, zorder=1))
-    axes.plot(*points.T, color=colour, linewidth=1.3, zorder=1)
+    axes.add_patch(PathPatch(strokes, facecolor="none", edgecolor=color, linewidth=0.7, zorder=1))
+    axes.plot(*points.T, color=color, linewidth=1.3, zorder=1)
     return np.concatenate([roots, tips])
 
 
-def draw_rollers(axes: Axes, points: Array, away: Array, size: float, colour: str) -> Array:
+def draw_rollers(axes: Axes, points: Array, away: Array, size: float, color: str) -> Array:
     """Draw triangles with tips at the points (k, 2), bases on the side `away` (k, 2); return what they cover."""
     across = away[:, ::-1]
     base, behind = points + size * away, points + 1.35 * size * away
     for triangle in np.stack([points, base + 0.6 * size * across, base - 0.6 * size * across], axis=1):
-        axes.add_patch(Polygon(triangle, facecolor="white", edgecolor=colour, linewidth=1.0, zorder=2))
+        axes.add_patch(Polygon(triangle, facecolor="white", edgecolor=color, linewidth=1.0, zorder=2))
     lines = np.stack([behind - 0.75 * size * across, behind + 0.75 * size * across], axis=1)
-    axes.add_collection(LineCollection(list(lines), colors=colour, linewidths=1.0, zorder=2))
+    axes.add_collection(LineCollection(list(lines), colors=color, linewidths=1.0, zorder=2))
     return np.concatenate([base, behind])
 
 
-def draw_arrows(axes: Axes, tails: Array, vectors: Array, colour: str) -> Array:
+def draw_arrows(axes: Axes, tails: Array, vectors: Array, color: str) -> Array:
     """Draw arrows (k, 2) from their tails (k, 2); return what they cover."""
     axes.quiver(
-        *tails.T, *vectors.T, angles="xy", scale_units="xy", scale=1, color=colour, width=0.0028, headwidth=5, zorder=5
+        *tails.T, *vectors.T, angles="xy", scale_units="xy", scale=1, color=color, width=0.0028, headwidth=5, zorder=5
     )
     return np.concatenate([tails + share * vectors for share in (0.0, 0.35, 0.7, 1.0)])
 
@@ -107,7 +107,7 @@ def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence
     walls = [Path(to_page.transform(loop)) for loop in loops]
     taken: list[Box] = []
     for name in names:
-        text = axes.text(0, 0, name.text, color=name.colour, fontsize=9, ha="center", va="center", zorder=6)
+        text = axes.text(0, 0, name.text, color=name.color, fontsize=9, ha="center", va="center", zorder=6)
         extent = text.get_window_extent()
         size = (extent.width + 4, extent.height + 2)
         anchors, centers = _places(to_page.transform(name.anchors), name.directions, size)
@@ -118,7 +118,7 @@ def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence
                 centers = centers[admissible]
                 break
         chosen = centers[least_crowded(centers, size, taken, ink)]
-        taken.append(centred(chosen, size))
+        taken.append(centered(chosen, size))
         text.set_position(_to_data(axes, chosen))
     return taken
 
@@ -163,7 +163,7 @@ def _grid(frame: Bbox, size: tuple[float, float]) -> Array:
 
 
 def _places(anchors: Array, directions: Array, size: tuple[float, float]) -> tuple[Array, Array]:
-    """Anchors (c, 2), and centres (c, 2) for a text of this size beside them, near ones first."""
+    """Anchors (c, 2), and centers (c, 2) for a text of this size beside them, near ones first."""
     reach = np.abs(directions) @ np.array(size) / 2
     distances = (8.0, 16.0, 30.0, 50.0, 75.0)
     centers = [anchors + (reach + distance)[:, None] * directions for distance in distances]

@@ -16,7 +16,7 @@ INF = np.inf
 
 
 def random_qp(seed):
-    """A small programme: any inertia, whole numbers (degenerate) or not, redundant and contradictory rows."""
+    """A small program: any inertia, whole numbers (degenerate) or not, redundant and contradictory rows."""
     rng = np.random.default_rng(seed)
     n, m = int(rng.integers(1, 6)), int(rng.integers(0, 6))
     whole = rng.random() < 0.5
@@ -211,7 +211,7 @@ def test_order_of_variables_and_rows_changes_no_status_and_no_convex_value(seed)
         assert_allclose(moved.objective, plain.objective, atol=1e-8)
 
 
-def test_scaling_off_gives_the_same_minimiser():
+def test_scaling_off_gives_the_same_minimizer():
     H, c = np.array([[2.0, 0.5], [0.5, 1.0]]), np.array([1.0, -3.0])
     for scale in (True, False):
         result = minimize_qp(H, c, options=QPOptions(scale=scale))
@@ -241,7 +241,7 @@ def test_minus_xy_over_the_quadrant_is_unbounded_from_its_dead_point():
     assert_allclose(result.ray / result.ray[0], [1.0, 1.0])
 
 
-def test_xy_over_the_quadrant_has_its_minimiser_at_the_dead_point():
+def test_xy_over_the_quadrant_has_its_minimizer_at_the_dead_point():
     """On the quadrant xy >= 0: copositive though indefinite."""
     result = minimize_qp(np.array([[0.0, 1.0], [1.0, 0.0]]), np.zeros(2), bl=np.zeros(2))
     assert result.status is QPStatus.LOCAL_MINIMIZER
@@ -387,7 +387,7 @@ def test_the_iteration_limit_is_a_status_and_not_a_claim():
 
 
 def test_no_iteration_is_needed_to_know_an_optimal_start():
-    """(1, -1) is the minimiser of a bowl inside its box; one iteration less than none is asked for and none is used."""
+    """(1, -1) is the minimizer of a bowl inside its box; one iteration less than none is asked for and none is used."""
     H, c = np.array([[2.0, 1.0], [1.0, 3.0]]), np.array([-1.0, 2.0])
     result = minimize_qp(H, c, x0=[1.0, -1.0], bl=[-2.0, -2.0], options=QPOptions(max_iterations=0))
     assert result.status is QPStatus.LOCAL_MINIMIZER
@@ -522,7 +522,7 @@ def test_rows_satisfied_at_the_start_do_not_stop_the_search(seed):
     assert_allclose(result.objective, 0.0, atol=1e-12)
 
 
-def test_a_variable_that_nothing_moves_is_a_minimiser():
+def test_a_variable_that_nothing_moves_is_a_minimizer():
     assert minimize_qp([[0.0]], [0.0]).status is QPStatus.LOCAL_MINIMIZER
 
 

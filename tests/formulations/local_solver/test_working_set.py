@@ -89,7 +89,7 @@ def test_two_hundred_updates_keep_what_defines_the_factors(seed, definite):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_multipliers_are_those_of_least_squares(seed):
-    """λ minimises |g - Wᵀλ| over the free variables; the fixed ones take what is left."""
+    """λ minimizes |g - Wᵀλ| over the free variables; the fixed ones take what is left."""
     data = statement(seed, definite=True)
     sides = np.zeros(22)
     sides[[1, 4, 13, 15, 20]] = [-1, 1, 1, -1, 2]
@@ -181,7 +181,7 @@ def test_the_newton_step_ends_where_the_gradient_on_the_working_set_vanishes():
     assert_allclose(data.A[[1, 6]] @ x, -1.0, atol=1e-12)
 
 
-def test_the_pivoted_factorisation_gives_both_spaces():
+def test_the_pivoted_factorization_gives_both_spaces():
     """Rank 2 of three rows: bases orthonormal, the range orthogonal to the null space, the rows rebuilt."""
     rows = np.array([[1.0, 2.0, 0.0, 1.0], [0.0, 1.0, 1.0, 0.0], [1.0, 3.0, 1.0, 1.0]])
     Y, Z, T, kept = orthogonal(rows, 1e-9)

@@ -32,8 +32,8 @@ def drawn(result: analysis.Result) -> Axes:
     return axes
 
 
-def lines(axes: Axes, colour: str) -> list[np.ndarray]:
-    return [np.asarray(line.get_xydata()) for line in axes.lines if line.get_color() == colour]
+def lines(axes: Axes, color: str) -> list[np.ndarray]:
+    return [np.asarray(line.get_xydata()) for line in axes.lines if line.get_color() == color]
 
 
 @pytest.mark.parametrize("name", ["cylinder_on_plane", "bolt_in_plate", "cantilever_flat_surface"])

@@ -93,7 +93,7 @@ def test_unknown_format_is_refused(tmp_path: Path):
     assert [*tmp_path.iterdir()] == []
 
 
-def test_every_colour_has_contrast_on_paper_and_in_the_dark():
+def test_every_color_has_contrast_on_paper_and_in_the_dark():
     """Lines and text against white and the dark page, 3 to 1 as WCAG asks of graphics; fills are only fills."""
     text = figures.vector_graphic(figures.figures_of(on_one_mesh())["pressure"]).decode()
     dark = dict(re.findall(r'\[style\*="stroke: (#\w{6})"\] \{ stroke: (#\w{6})', text))
@@ -102,7 +102,7 @@ def test_every_colour_has_contrast_on_paper_and_in_the_dark():
     assert len(dark) == 8
     for there in dark.values():
         assert contrast(there, page) > 4.5
-    strokes = {colour for colour in re.findall(r"stroke: (#\w{6})", text.split("</style>")[1]) if colour != "#ffffff"}
+    strokes = {color for color in re.findall(r"stroke: (#\w{6})", text.split("</style>")[1]) if color != "#ffffff"}
     for here in strokes - {"#cc79a7"}:  # of a reference, which is dashed
         assert contrast(here, "#ffffff") > 3
 
@@ -110,8 +110,8 @@ def test_every_colour_has_contrast_on_paper_and_in_the_dark():
 def contrast(one: str, other: str) -> float:
     """Ratio of relative luminances, WCAG 2.2."""
 
-    def luminance(colour: str) -> float:
-        rgb = np.array(matplotlib.colors.to_rgb(colour))
+    def luminance(color: str) -> float:
+        rgb = np.array(matplotlib.colors.to_rgb(color))
         linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
         return float(linear @ (0.2126, 0.7152, 0.0722))
 

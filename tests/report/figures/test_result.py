@@ -172,15 +172,15 @@ def test_infinite_pressures_are_cut_off_at_three_times_the_mean():
     assert [text.get_text() for text in below.texts] == ["infinite", "infinite"]
 
 
-def test_colour_of_the_title_is_that_of_the_worse_verdict():
-    def colour_of(result: analysis.Result) -> str:
+def test_color_of_the_title_is_that_of_the_worse_verdict():
+    def color_of(result: analysis.Result) -> str:
         return figures.figure_of(result)._suptitle.get_color()  # pyright: ignore
 
     one = on_a_punch().results["low"]
     doubtful = replace(one.certificate, kind=CertificateKind.LOCAL, heading=HEADINGS[CertificateKind.LOCAL])
     unmet = replace(one, accuracy=replace(one.accuracy, met=False))
-    colours = [colour_of(item) for item in (one, unmet, replace(unmet, certificate=doubtful))]
-    assert colours == ["#222222", "#8a5a00", "#d55e00"]
+    colors = [color_of(item) for item in (one, unmet, replace(unmet, certificate=doubtful))]
+    assert colors == ["#222222", "#8a5a00", "#d55e00"]
 
 
 @pytest.mark.parametrize("name", ["gallery/hertz_small", "gallery/flat_punch", "cylinder_on_plane"])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from bemcontact.report.figures.symbols import Box, centred, crowd, draw_ground, least_crowded, overlap
+from bemcontact.report.figures.symbols import Box, centered, crowd, draw_ground, least_crowded, overlap
 
 NOTHING = np.zeros((0, 2))
 
@@ -14,7 +14,7 @@ def test_overlap_is_the_common_area():
     assert overlap(a, Box(3, 1, 9, 9)) == 1
     assert overlap(a, Box(4, 0, 5, 2)) == 0
     assert overlap(a, a) == 8
-    assert centred(np.array([2.0, 1.0]), (4, 2)) == a
+    assert centered(np.array([2.0, 1.0]), (4, 2)) == a
 
 
 def test_crowd_counts_drawn_points_and_covered_area():
