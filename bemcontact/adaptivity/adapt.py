@@ -93,7 +93,7 @@ def _stated(
     try:
         unknowns = 2 * own.degrees_of_freedom
         if not halved and unknowns > MOST_UNKNOWNS:
-            raise ProblemError(f"with every element in two the mesh has {unknowns} unknowns, more than {MOST_UNKNOWNS}")
+            raise ProblemError(f"a mesh of half the elements' size has {unknowns} unknowns, more than {MOST_UNKNOWNS}")
         progress("every two elements in one" if halved else "every element in two")
         other = solved(cut(problem, refine // 2 if halved else 2 * refine))
         coarse, fine = (other, own) if halved else (own, other)

@@ -75,8 +75,8 @@ def bulging(body: Body, least: float, reach: float = np.inf) -> Iterator[str]:
             x, y = places[i].tolist()
             how_far = f"{excess[i]:.2g} {body.problem.units.length}".rstrip()
             yield (
-                f"the spline of '{name}' bulges by {how_far} at ({x:.5g}, {y:.5g}), between two of its points, where "
-                "they do not bend to it; put several points on a flat part, close to where it ends, or use a polyline"
+                f"the spline of '{name}' bulges by {how_far} at ({x:.5g}, {y:.5g}), between two of its points, beside "
+                "the line through them; put several points on a flat part, close to where it ends, or use a polyline"
             )
 
 
@@ -107,7 +107,7 @@ def nearly_balanced(contact: CondensedContact, solution: ContactSolution) -> Ite
     carried = np.abs(contact.equilibrium).T @ solution.pressure
     if 0 < contact.net_load < SMALL_NET_LOAD and np.any(carried <= OF_A_FIT * np.abs(contact.motion_load)):
         yield (
-            f"the loads nearly balance: what drives the {' and the '.join(contact.motion_names)} is "
+            f"the loads nearly balance: the net load along the {' and the '.join(contact.motion_names)} is "
             f"{contact.net_load:.1g} of the sum of their magnitudes, and contact carries only that; errors of this "
             "size in the loads change the contact entirely"
         )

@@ -134,7 +134,9 @@ def _sharp(body: Body, place: Array) -> str:
     corners = mesh.nodes[mesh.elements[abs(mesh.turns) > CORNER, 0]]
     if not len(corners) or np.hypot(*(corners - place).T).min() > AT_CORNER * mesh.size:
         return ""
-    return "A sharp corner of the body presses there, and no area bears its force: round it, as the part is rounded."
+    return (
+        "A sharp corner of the body presses there, and a point cannot carry a force. Give the corner its real radius."
+    )
 
 
 def large_displacements(boundary: BoundaryState, turns: bool, modulus: str) -> Judgment:

@@ -74,7 +74,7 @@ class CaseResults(Recorded):
 
     @property
     def holds(self) -> bool | None:
-        """Whether each of them is certified, and as accurate as was asked; None if nothing is said about the mesh."""
+        """Whether each of them is certified, and as accurate as was asked; None if mesh errors are not assessed."""
         return together(result.holds for result in self.results.values())
 
     @property

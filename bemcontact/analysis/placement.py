@@ -119,9 +119,8 @@ def _slides(
         return None, ()
     motion = body.free.combined(push[:, None] / size).describe()[0]
     words = (
-        f"no contact holds the {motion}, and the forces push along it: as the body and the surfaces move, levers and "
-        f"directions of forces change, by {100 * size / total:.2g} % of the force of contact; prescribe a displacement "
-        "that holds it"
+        f"no contact holds the {motion}, and the forces push along it after the motion, by {100 * size / total:.2g} % "
+        "of the force of contact; prescribe a displacement that holds it"
     )
     least = _judged_to(gaps.problem)
     if size < least * total:
@@ -274,10 +273,10 @@ def _moves_on(
     i = int(np.argmax(contact.weights * solution.pressure * abs(contact.rigid_motions[:, j])))
     unit = gaps.problem.units.length
     words = (
-        f"No contact holds the {contact.motion_names[j]} against the load. As drawn, surfaces that are tilted beside "
-        "the place of contact or levers of forces seem to hold it, but they move with the body: along this motion "
-        f"contact moves by {_length(before[j], unit)}, and from there on by {_length(further[j], unit)}. Prescribe a "
-        "displacement that holds the body, or take away the load in this direction."
+        f"No contact holds the {contact.motion_names[j]} against the load. Only slopes and levers as drawn seem to "
+        f"hold it, and they move with the body. Along this motion contact moves by {_length(before[j], unit)}, and "
+        f"from there on by {_length(further[j], unit)}. Prescribe a displacement that holds the body, or take away the load "
+        "in this direction."
     )
     return _misfit(gaps, points, contact, i, Misfit.MOVED, float(further[j]), float(least), words)
 

@@ -67,7 +67,7 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     """Solution of a contact problem and all quantities recomputed from it; lists are by contact point."""
 
     holds: bool | None
-    """Whether it is certified and the mesh is as accurate as was asked; null if nothing is said about the mesh."""
+    """Whether it is certified and the mesh is as accurate as was asked; null if mesh errors are not assessed."""
     accuracy: Accuracy
     """Accuracy of the mesh: error bars, and whether they are as small as was asked."""
     weights: Weights
@@ -158,7 +158,7 @@ class Result(Recorded):
     def holds(self) -> bool | None:
         """Whether the equations are certified, and the mesh is as accurate as was asked.
 
-        None if they are certified, and nothing is said about the mesh: no accuracy was asked for (accuracy: null), or
+        None if they are certified, and mesh errors are not assessed: no accuracy was asked for (accuracy: null), or
         the problem was given condensed, so that neither its mesh nor its boundary was looked at.
         """
         return together((self.certified, self.accuracy.holds))

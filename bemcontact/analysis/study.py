@@ -196,7 +196,7 @@ class Study(Recorded):
     def holds(self) -> bool | None:
         """Whether all solutions are certified, and the finest mesh is as accurate as was asked.
 
-        None if they are certified, and nothing is said about the mesh.
+        None if they are certified, and mesh errors are not assessed.
         """
         return together((self.certified, self.finest.answer.accuracy.holds))
 

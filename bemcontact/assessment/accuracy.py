@@ -87,7 +87,7 @@ class Accuracy(Leaf):
 
     @property
     def holds(self) -> bool | None:
-        """Whether the accuracy asked for is met; None if none is asked for, so that nothing is said about the mesh."""
+        """Whether the accuracy asked for is met; None if none is asked for, so that mesh errors are not assessed."""
         return None if self.asked is None else bool(self.met)
 
     @property

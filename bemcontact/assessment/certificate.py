@@ -52,8 +52,8 @@ TOLERANCE = 1e-10
 LARGEST_BOUND = 1e-3
 """Error bound, relative to the peak pressure, above which round-off alone leaves the answer open."""
 POSITION_OPEN = (
-    " This is proved of the pressures, which are zero; nothing determines the position of what is free: "
-    "the one given is one of many."
+    " This is proved of the pressures, which are zero. The position of what is free is not determined: the one given "
+    "is one of many."
 )
 LOCAL = (FormulationName.QP1, FormulationName.QP2)
 """Formulations whose solver starts somewhere and may end in a local minimum."""

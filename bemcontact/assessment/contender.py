@@ -182,8 +182,8 @@ def _of_weights(matrices: WeightedCompliance, tributary: WeightedCompliance) -> 
     name, parts = matrices.weights.value.replace("_", "-"), []
     if matrices.negative_weights:
         parts.append(
-            f"the {name} weights have {matrices.negative_weights} negative entries, which reward pressure at one "
-            "node for a gap at its neighbor, so that the least objective need not be that of the contact state"
+            f"the {name} weights have {matrices.negative_weights} negative entries, so that the objective can "
+            "be negative, and its least value need not be that of the contact state"
         )
     if matrices.saddle:
         parts.append(

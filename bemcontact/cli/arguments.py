@@ -101,7 +101,7 @@ class Source:
         typer.Option(
             "--set",
             metavar="KEY.PATH=VALUE",
-            help="Replace one value of the spec, stated or at its default, before it is checked; repeatable. "
+            help="Replace one value of the spec before it is checked. It may be given several times. "
             "It adds no zone, tool or load case.",
             show_default=False,
         ),

@@ -25,11 +25,11 @@ def solve(
 ) -> None:
     """Compute the contact pressure, assess it, and print a table.
 
-    Pressures are per UNDEFORMED length. Where the spec states no elements, or an accuracy is asked for, a mesh is
-    found, for 1 % unless the spec or --accuracy says otherwise, and each number has an error bar. The exit status is 0
-    only if the solution of the equations is certified, and the accuracy asked is met. A mesh that is stated on all
-    edges, without an accuracy, is taken as it is, and its errors are estimated and compared with 1 %. With accuracy:
-    null in the spec, errors are not assessed.
+    Pressures are per UNDEFORMED length. If the spec states no elements, the program finds a mesh, and each number has
+    an error bar. The accuracy is 1 % unless the spec or --accuracy gives another. A mesh that is stated on all edges,
+    without an accuracy, is taken as it is, and its errors are estimated and compared with 1 %. With accuracy: null in
+    the spec, errors are not assessed. The exit status is 0 only if the solution of the equations is certified, and the
+    accuracy is met.
 
     If a spec has load cases, all of them and all combinations are solved; --case selects one.
 

@@ -28,7 +28,7 @@ SOLUTION = 1e-8
 ZERO = 1e-6
 """Scaled objective that a solver's tolerance may leave where the best value is 0: large errors may hide behind it."""
 STATIONARY = "stationary but not the solution, with an objective of {:.1e} (scaled) and not 0"
-NEAR = "not the solution, but its objective, {:.1e} (scaled), is 0 to the solver's tolerance"
+NEAR = "not the solution, but its objective, {:.1e} (scaled), is 0 within the tolerance of the solver"
 LOST = "not the solution, although round-off makes it look stationary, with an objective of {:.1e} (scaled) and not 0"
 BIASED = (
     "not the solution, with an objective of {:.1e} (scaled): consistent weights have negative entries, so that the "

@@ -389,8 +389,8 @@ def _convex_hessian(problem: ScaledContact) -> tuple[Array, tuple[str, ...]]:
     if eigenvalue is None or eigenvalue >= -qp3.NEGLIGIBLE:
         return work.hessian, ()
     note = (
-        f"F3 is not convex on this mesh (smallest eigenvalue {eigenvalue:.1e}): the model is without the negative part "
-        "of its Hessian, and its optimum near the contact state, not on it"
+        f"F3 is not convex on this mesh (smallest eigenvalue {eigenvalue:.1e}): the negative part of its Hessian is "
+        "left out, so that the optimum is near the contact state, not on it"
     )
     return qp3.nearly_convex(work, eigenvalue, Weights.TRIBUTARY).hessian, (note,)
 

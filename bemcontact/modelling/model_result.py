@@ -192,7 +192,7 @@ def _words(solution: ContactSolution, certificate: Certificate, recomputed: Resi
         return f"This is the {NOT_CONTACT}: {certificate.violation}.{cut}"
     if added:
         return (
-            "What was added leaves a contact state, to the solver's tolerance (residual of complementarity "
-            f"{recomputed.complementarity:.1e}).{cut}"
+            "This is a contact state in spite of what was added, within the tolerance of the solver (residual of "
+            f"complementarity {recomputed.complementarity:.1e}).{cut}"
         )
     return f"{certificate.words}{cut}"

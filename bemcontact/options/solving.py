@@ -136,7 +136,7 @@ class SolveOptions:
     penalty: float = declared(
         1.0,
         f"qp2: an error of the equations costs its square over μ, a number without unit from {LEAST_PENALTY:g} to "
-        f"{LARGEST_PENALTY:g}; a smaller μ enforces them harder.",
+        f"{LARGEST_PENALTY:g}; a smaller μ makes this error smaller.",
         metavar="μ",
     )
     rows: Rows = declared(
@@ -171,7 +171,7 @@ class SolveOptions:
         noun="limit of iterations",
         metavar="N",
         least=1,
-        shown="its own",
+        shown="that of the solver",
     )
     polish: bool = declared(
         True, "qp1, qp2, qp3: make the result of the solver exact by a few steps of an active-set method."

@@ -135,7 +135,7 @@ class ParameterPath(Leaf):
     def holds(self) -> bool | None:
         """Whether it is certified, and the accuracy asked is met at both ends, but where nothing presses.
 
-        None if it is certified, and nothing is said about the mesh.
+        None if it is certified, and mesh errors are not assessed.
         """
         ends = ((self.start_accuracy, self.path.pressure[0]), (self.end_accuracy, self.path.pressure[-1]))
         of_meshes = (

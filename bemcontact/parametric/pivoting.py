@@ -183,7 +183,7 @@ class Tangent:
         equations of contact are singular to working precision.
         """
         if self.escape(change).any():
-            raise ProblemError("the points in contact do not carry what the load changes by, and the body moves away")
+            raise ProblemError("the points in contact do not carry the change of the load, and the body moves away")
         block = self.after(change)
         (pressure,), (gap,), (amplitudes,) = block.solve(change)
         return Rate(pressure=pressure, gap=gap, amplitudes=amplitudes, block=block)

@@ -271,8 +271,8 @@ def _at_rest(contact: CondensedContact, state: ContactSolution) -> Iterator[str]
     """Notes on ends of contact without a rate, because they are kept at a point."""
     for x, y in resting_ends(contact, state):
         yield (
-            f"the end of contact at ({x:.6g}, {y:.6g}) is read at a point, where it rests while little changes: "
-            "its rates are zero; between two points the reading moves unevenly, so follow a path to see it move"
+            f"the end of contact at ({x:.6g}, {y:.6g}) is that of a point, and stays there under small changes, so "
+            "that its rates are zero; follow a path to see it move"
         )
 
 

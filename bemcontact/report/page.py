@@ -161,7 +161,7 @@ def _contents(report: Record) -> dict[str, Any]:
         "touching": [*contact_intervals(answer, units, short=True)] if answer else [],
         "force": total_force(answer, units) if answer else "",
         "scores": [*scores_in_words(level["scores"], level["references"], units)],
-        "certificate": _certificate(reference["answer"], units),
+        "certificate": answer["certificate"]["words"] if answer else "There is no direct solution to certify.",
         "penalties": {item["label"]: _penalty(item, units) for item in contenders},
         "acting": " + ".join(
             f"{factor:g} {case}" for case, factor in compared["contact"]["load_factors"].items() if factor
@@ -195,40 +195,6 @@ def _record(level: Record) -> Record | None:
         return None
     residuals = {**answer["residuals"], "force_balance": level["force_balance"]}
     return {**compared["contact"], **answer, "residuals": residuals, "accuracy": level["accuracy"]}
-
-
-def _certificate(answer: Record | None, units: Units) -> str:
-    """What is proved of the direct solution, in sentences for an engineer."""
-    if answer is None:
-        return "The direct solver has no solution, so there is nothing to certify."
-    proved, left = answer["certificate"], answer["residuals"]
-    eigenvalue, kind = proved["smallest_eigenvalue"], proved["kind"]
-    if kind == "not a solution":
-        return f"{proved['words']} Do not rely on this result."
-    largest = small(max(left[name] for name in ("penetration", "tension", "complementarity", "equilibrium")))
-    holds = (
-        "All contact conditions were recomputed from the pressure: it penetrates no rigid surface, pulls at none, "
-        "keeps the body in equilibrium, and is zero wherever there is a gap. "
-        f"The largest residual of these conditions, relative to its scale, is {largest}."
-    )
-    if kind == "left open by round-off":
-        return f"{holds} Because of round-off, very different pressures cannot be ruled out."
-    if kind != "unique":
-        return (
-            f"{holds} A second contact state cannot be ruled out, because the smallest eigenvalue of the compliance "
-            f"({small(eigenvalue)}) is not positive. This is proved to be a solution, but not the only one."
-        )
-    why = f"{sentence_case(proved['why_unique'])}."
-    return f"{holds} {why}{_bound(proved['error_bound'], answer['peak'], units)}"
-
-
-def _bound(bound: float | None, peak: Record | None, units: Units) -> str:
-    """Bound of the effect of round-off on the pressure."""
-    if bound is None:
-        return ""
-    size = with_unit(small(bound), units.stress)
-    share = f", {small(bound / peak['pressure'])} of the peak" if peak else ""
-    return f" Round-off changes no pressure by more than {size}{share}."
 
 
 def _penalty(contender: Record, units: Units) -> dict[str, str] | None:

@@ -7,6 +7,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.problem import Units
 from bemcontact.report.bars import NOTHING, Record
 from bemcontact.report.facts import QUALITIES, peak_of, score_verdict, scores_in_words, small
@@ -22,6 +23,7 @@ MESHES = (
     "and refinement judge them."
 )
 """What is known of the errors of the meshes."""
+SOME_OPEN = "some solutions are not proved"
 TINY = 1e-4
 """Smaller numbers are written with two figures."""
 
@@ -47,7 +49,7 @@ def reproduction_summary(record: Record) -> RenderableType:
     """List the paper's statements, the computed quantities on each mesh, and the certificates."""
     parts = list[RenderableType]()
     for item in record["problems"]:
-        proved = "unique solution proved" if item["certified"] else "NOT each solution proved"
+        proved = HEADINGS[CertificateKind.UNIQUE] if item["certified"] else SOME_OPEN
         held = f"{item['held']} of {item['judged']} reference quantities hold"
         title = Text.assemble((sentence_case(item["name"]), "bold"), f" ({item['figure']}): ")
         parts += [
@@ -69,7 +71,7 @@ def reproduction_verdicts(record: Record) -> tuple[Verdict, Verdict]:
     """Verdicts on the equations of all runs, and on their meshes."""
     levels = [run["level"] for item in record["problems"] for run in item["runs"]]
     proved = sum(item["certified"] for item in record["problems"])
-    word = "unique solution proved" if proved == len(record["problems"]) else "not each solution proved"
+    word = HEADINGS[CertificateKind.UNIQUE] if proved == len(record["problems"]) else SOME_OPEN
     count = f"{len(levels)} runs of {len(record['problems'])} problems"
     equations = Verdict("Equations", "good" if proved == len(record["problems"]) else "bad", word, f"In {count}.")
     return equations, mesh_verdict(levels[-1]["accuracy"])._replace(words=MESHES)

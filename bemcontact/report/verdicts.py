@@ -6,6 +6,7 @@ from typing import NamedTuple
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.study import Study
+from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.assessment.penetration import Misfit
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report.bars import Record, bar_in_words, error_percent, worst_bar
@@ -57,7 +58,7 @@ def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
     sentences = [sentence_case(words or report["verdict"])]
     if short:
         meshes = f"coarser mesh{'es' * (len(short) > 1)} (refine {', '.join(map(str, short))})"
-        sentences.append(f"On the {meshes} not each answer is proved to be the solution.")
+        sentences.append(f"On the {meshes} some solutions are not proved.")
     equations = Verdict("Equations", quality, report["heading"], " ".join(sentences))
     return equations, mesh_verdict(finest["accuracy"])
 
@@ -144,7 +145,7 @@ def _shortfall(verdicts: Iterable[Verdict]) -> str:
 
 def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
     """Verdicts on the equations all along a path, and on the mesh at both ends."""
-    beyond, word = path.penetration, "unique solution proved" if path.certified else "not proved"
+    beyond, word = path.penetration, HEADINGS[CertificateKind.UNIQUE] if path.certified else "not proved"
     quality = "good" if path.certified else "bad"
     if beyond is not None:
         word, quality = str(beyond.kind), _quality(beyond.to_dict(), path.proved)
@@ -160,9 +161,7 @@ def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
     if path.coarse:
         yield Verdict("Mesh", "fair", "too coarse between the ends", _between_the_ends(path))
     elif not path.breakpoint_bars and (path.start_accuracy.bars or path.end_accuracy.bars):
-        words = (
-            "No path was found on the other mesh with which errors are estimated: nothing is known of the breakpoints."
-        )
+        words = "No path was found on the other mesh with which errors are estimated. The errors at breakpoints are not known."
         yield Verdict("Mesh", "fair", "not assessed between the ends", words)
 
 

@@ -398,7 +398,11 @@ def test_a_flat_tool_that_may_slide_off_a_dome_is_told(moment, certified):
     problem, R = flat_tool_on_a_dome(moment, 0.0, force={"x": 0, "y": -500, "moment": moment})
     result = solve(problem)
     texts = [*result.notes, *([result.penetration.words] if result.penetration else [])]
-    told = [float(found[1]) / 100 for text in texts if (found := re.search(r"push along it: .* by ([\d.e-]+) %", text))]
+    told = [
+        float(found[1]) / 100
+        for text in texts
+        if (found := re.search(r"push along it after the motion, by ([\d.e-]+) %", text))
+    ]
     angle = moment / (500 * R)
     assert told == ([] if angle < SAID else [pytest.approx(angle, rel=0.05)])
     assert result.certified is certified

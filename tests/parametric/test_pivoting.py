@@ -71,7 +71,7 @@ def test_weak_points_join_where_strong_ones_do_not_hold_the_body():
 
 
 def test_load_that_the_points_in_contact_do_not_carry_is_refused():
-    with pytest.raises(ProblemError, match="do not carry what the load changes by"):
+    with pytest.raises(ProblemError, match="do not carry the change of the load"):
         rate_of(rocker(0.0), Change(np.zeros(3), np.array([0.0, -1.0])))
 
 

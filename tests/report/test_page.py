@@ -126,7 +126,7 @@ def test_a_coarser_mesh_that_is_not_certified_is_named():
     report = report_of(on_three_meshes())
     report["certified"] = report["levels"][1]["comparison"]["certified"] = False
     head = read(render(report, {}, None)).text.split("Asked")[0]
-    assert "On the coarser mesh (refine 2) not each answer is proved" in head
+    assert "On the coarser mesh (refine 2) some solutions are not proved" in head
 
 
 def test_sections_without_content_are_left_out():
@@ -145,7 +145,7 @@ def test_sections_without_content_are_left_out():
     ("study", "says"),
     [
         (on_one_mesh, "o other state exists, because"),
-        (not_unique, "proved to be a solution, but not the only one"),
+        (not_unique, "so another contact state may exist"),
     ],
 )
 def test_the_certificate_states_whether_the_solution_is_unique(study: Callable[[], Study], says: str):
