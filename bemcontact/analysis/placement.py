@@ -275,8 +275,8 @@ def _moves_on(
     words = (
         f"No contact holds the {contact.motion_names[j]} against the load. Only slopes and levers as drawn seem to "
         f"hold it, and they move with the body. Along this motion contact moves by {_length(before[j], unit)}, and "
-        f"from there on by {_length(further[j], unit)}. Prescribe a displacement that holds the body, or take away the load "
-        "in this direction."
+        f"from there on by {_length(further[j], unit)}. Prescribe a displacement that holds the body, or take away the "
+        "load in this direction."
     )
     return _misfit(gaps, points, contact, i, Misfit.MOVED, float(further[j]), float(least), words)
 

@@ -161,7 +161,9 @@ def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
     if path.coarse:
         yield Verdict("Mesh", "fair", "too coarse between the ends", _between_the_ends(path))
     elif not path.breakpoint_bars and (path.start_accuracy.bars or path.end_accuracy.bars):
-        words = "No path was found on the other mesh with which errors are estimated. The errors at breakpoints are not known."
+        words = (
+            "No path was found on the mesh with which errors are estimated. The errors at breakpoints are not known."
+        )
         yield Verdict("Mesh", "fair", "not assessed between the ends", words)
 
 
