@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Literal, Self
+from typing import ClassVar, Literal, Self, get_args
 
 from pydantic import computed_field
 
+from bemcontact.checks.attributes import ERROR, PEAK, PLACE, Words
 from bemcontact.errors import ProblemError
 from bemcontact.serialization import Leaf, Pair
 
@@ -21,6 +22,14 @@ TOLD: tuple[Quantity, ...] = ("length", "intensity", "motion", "rotation")
 @dataclass(frozen=True, kw_only=True)
 class ErrorBar(Leaf):
     """A quantity with its estimated error."""
+
+    _home = "accuracy.bars"
+    _called: ClassVar[Words] = {
+        "bar, which is relative": ERROR,
+        "value": (*PEAK[1:], "force", "forces", "pressure", "displacement", "magnitude", "start", "end", "motion"),
+        "at": PLACE,
+        "quantity": ("name", "kind", "what"),
+    }
 
     quantity: Quantity
     """What it is: peak pressure, force on a zone, start, end or length of a contact interval, the pressure as a whole,
@@ -67,6 +76,14 @@ class ErrorBar(Leaf):
 @dataclass(frozen=True, kw_only=True)
 class Accuracy(Leaf):
     """Accuracy that was asked for, and what was reached."""
+
+    _called: ClassVar[Words] = {
+        'bar_of, such as bar_of("peak", "foot")': (
+            *PEAK, *get_args(Quantity), "forces", "ends", "width", "error_bar", "error_bars", "errors",
+        ),
+        "worst": ("error", "max_error", "largest", "largest_error", "relative_error", "value", "tolerance"),
+        "met": ("ok", "success", "converged", "status"),
+    }  # fmt: skip
 
     asked: float | None
     """Relative accuracy asked for; null if none is."""

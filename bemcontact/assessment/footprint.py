@@ -1,13 +1,14 @@
 """Where the bodies touch: intervals of contact, the peak pressure, the resultant."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import computed_field
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.checks.attributes import WithHints
+from bemcontact.checks.attributes import PEAK, PLACE, WithHints, Words
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import BALANCED
 from bemcontact.contact.solution import ContactSolution
@@ -19,6 +20,12 @@ OPEN_NODES = 3
 @dataclass(frozen=True, kw_only=True)
 class ContactInterval(Leaf):
     """One unbroken stretch of contact along the boundary."""
+
+    _home = "footprint.intervals"
+    _called: ClassVar[Words] = {
+        "start and end": ("ends", *PLACE),
+        "length": ("width", "half_width", "contact_length", "contact_width", "contact_area", "size"),
+    }
 
     zone: str
     """Name of the contact zone."""
@@ -51,6 +58,8 @@ class ContactInterval(Leaf):
 class Peak(Leaf):
     """The largest pressure, and where it acts."""
 
+    _called: ClassVar[Words] = {"at": PLACE, "pressure": PEAK}
+
     pressure: float
     """Nodal pressure per undeformed length [p]."""
     at: Pair
@@ -60,6 +69,12 @@ class Peak(Leaf):
 @dataclass(frozen=True, kw_only=True)
 class Resultant(WithHints):
     """Force of the rigid surfaces on the body."""
+
+    _called: ClassVar[Words] = {
+        "force": ("value", "x", "y", "forces", "total_force", "contact_force"),
+        "moment": ("torque",),
+        "line_point": PLACE,
+    }
 
     force: Pair
     """Force (x, y), Σ w p n, per thickness [p L]."""

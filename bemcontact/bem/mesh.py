@@ -3,12 +3,13 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.checks.attributes import WithHints
+from bemcontact.checks.attributes import PLACE, WithHints, Words
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.curves import Edge
@@ -180,6 +181,13 @@ class BoundaryValues:
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BoundaryState(WithHints):
     """Displacement and traction on the boundary, element by element; traction may jump between elements."""
+
+    _home = "boundary"
+    _called: ClassVar[Words] = {
+        "points": (*PLACE, "nodes", "mesh"),
+        "displacement": ("u", "displacements", "deformation"),
+        "traction": ("stress", "stresses", "tractions", "pressure", "t"),
+    }
 
     points: Array
     """Nodes (m, 3, 2) of each element [L]."""

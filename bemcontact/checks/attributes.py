@@ -2,7 +2,7 @@
 
 import difflib
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 PLACES = {
     "footprint.peak.pressure": ("peak", "max_pressure", "maximum_pressure", "peak_pressure", "p_max", "pmax", "max"),
@@ -30,38 +30,13 @@ PLACES = {
     "problem.material.poisson_ratio": ("poisson_ratio",),
 }  # fmt: skip
 """Place of a quantity in a result -> its own name and what others call it."""
-_PLACE = ("point", "points", "place", "position", "positions", "location", "where", "node", "x", "y", "coordinates")
-_ERROR = ("error", "errors", "relative", "relative_error", "tolerance", "uncertainty", "sigma", "error_bar",
-          "error_bars", "bars")  # fmt: skip
-_PEAK = ("value", "peak", "max", "p", "p_max", "pmax", "max_pressure", "maximum_pressure", "peak_pressure", "stress")
-PARTS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
-    "Peak": {"at": _PLACE, "pressure": _PEAK},
-    "ErrorBar": {
-        "bar, which is relative": _ERROR,
-        "value": (*_PEAK[1:], "force", "forces", "pressure", "displacement", "magnitude", "start", "end", "motion"),
-        "at": _PLACE,
-        "quantity": ("name", "kind", "what"),
-    },
-    "ContactInterval": {
-        "start and end": ("ends", *_PLACE),
-        "length": ("width", "half_width", "contact_length", "contact_width", "contact_area", "size"),
-    },
-    "Accuracy": {
-        'bar_of, such as bar_of("peak", "foot")': (
-            *_PEAK, "force", "forces", "pressure", "displacement", "start", "end", "ends", "length", "width", "motion",
-            "rotation", "intensity", "error_bar", "error_bars", "errors",
-        ),
-        "worst": ("error", "max_error", "largest", "largest_error", "relative_error", "value", "tolerance"),
-        "met": ("ok", "success", "converged", "status"),
-    },
-    "Resultant": {"force": ("value", "x", "y", "forces", "total_force", "contact_force"), "moment": ("torque",),
-                  "line_point": _PLACE},
-    "BoundaryState": {"points": (*_PLACE, "nodes", "mesh"), "displacement": ("u", "displacements", "deformation"),
-                      "traction": ("stress", "stresses", "tractions", "pressure", "t")},
-}  # fmt: skip
-"""Class of a part of a result -> what it has, and what others call it there."""
-HOMES = {"ErrorBar": "accuracy.bars", "ContactInterval": "footprint.intervals", "BoundaryState": "boundary"}
-"""Class of a part of a result -> where it is itself, to which nobody is sent who has it."""
+PLACE = ("point", "points", "place", "position", "positions", "location", "where", "node", "x", "y", "coordinates")
+ERROR = ("error", "errors", "relative", "relative_error", "tolerance", "uncertainty", "sigma", "error_bar",
+         "error_bars", "bars")  # fmt: skip
+PEAK = ("value", "peak", "max", "p", "p_max", "pmax", "max_pressure", "maximum_pressure", "peak_pressure", "stress")
+"""What others call a place, an error and a largest pressure."""
+Words = Mapping[str, tuple[str, ...]]
+"""What a part of a result has -> what others call it there."""
 CLOSE = 0.8
 """Likeness of two words, from 0 to 1, from which one may be meant by the other: a slip of one or two letters."""
 OF_A_RESULT = "the result of bemcontact.solve has it as"
@@ -70,8 +45,13 @@ OF_A_RESULT = "the result of bemcontact.solve has it as"
 class WithHints:
     """Base of objects whose users look for a quantity by another name or in another place."""
 
+    _called: ClassVar[Words] = {}
+    """Words of others for what it has."""
+    _home: ClassVar[str] = ""
+    """Where a part of a result is itself, to which nobody is sent who has it."""
 
-def _missing(owner: object, name: str) -> Any:
+
+def _missing(owner: WithHints, name: str) -> Any:
     """Raise the error of an attribute that does not exist."""
     if name.startswith("_") or hasattr(type(owner), name):  # an error within a property is another one
         return object.__getattribute__(owner, name)
@@ -81,13 +61,12 @@ def _missing(owner: object, name: str) -> Any:
 setattr(WithHints, "__getattr__", _missing)  # noqa: B010 (in the class it would tell checkers of types that all exist)
 
 
-def _hint(owner: object, name: str) -> str:
+def _hint(owner: WithHints, name: str) -> str:
     """Say where a quantity is: by another name, in another place, under a similar name; else list the names."""
-    for place, words in PARTS.get(type(owner).__name__, {}).items():
+    for place, words in owner._called.items():
         if name.lower() in words:
             return f"use {place}"
-    home = HOMES.get(type(owner).__name__)
-    known = {word: place for place, words in PLACES.items() for word in words if place != home}
+    known = {word: place for place, words in PLACES.items() for word in words if place != owner._home}
     own = [part for part in dir(owner) if not part.startswith("_")]
     if name.lower() not in known:
         similar = difflib.get_close_matches(name.lower(), own, 1, CLOSE)
