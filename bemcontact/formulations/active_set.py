@@ -32,27 +32,27 @@ class ContactBlock:
     indices.
     """
 
-    contact: ScaledContact
+    scaled: ScaledContact
     points: IntArray
 
     @property
     def touching(self) -> BoolArray:
         """True on A, (n,)."""
-        mask = np.zeros(len(self.contact.offset), bool)
+        mask = np.zeros(len(self.scaled.offset), bool)
         mask[self.points] = True
         return mask
 
     @cached_property
     def matrix(self) -> Array:
         """The matrix, with |A| + k rows and columns."""
-        A, k = self.points, self.contact.rigid_motions.shape[1]
-        M, R, ell = self.contact.compliance[np.ix_(A, A)], self.contact.rigid_motions[A], self.contact.equilibrium[A]
+        A, k = self.points, self.scaled.rigid_motions.shape[1]
+        M, R, ell = self.scaled.compliance[np.ix_(A, A)], self.scaled.rigid_motions[A], self.scaled.equilibrium[A]
         return np.block([[M, R], [ell.T, np.zeros((k, k))]])
 
     @cached_property
     def _columns(self) -> Array:
         """M on A (n, |A|): gaps per pressure."""
-        return self.contact.compliance[:, self.points]
+        return self.scaled.compliance[:, self.points]
 
     @cached_property
     def _units(self) -> Array:
@@ -85,7 +85,7 @@ class ContactBlock:
         x = self.inverse(-np.hstack([offset[:, A], load]).T).T
         pressure, amplitudes = np.zeros_like(offset), x[:, len(A) :]
         pressure[:, A] = x[:, : len(A)]
-        gap = offset + pressure[:, A] @ self._columns.T + amplitudes @ self.contact.rigid_motions.T
+        gap = offset + pressure[:, A] @ self._columns.T + amplitudes @ self.scaled.rigid_motions.T
         gap[:, A] = 0.0
         return pressure, gap, amplitudes
 
@@ -109,32 +109,32 @@ class ActiveSetEnd:
         return len(self.residuals)
 
 
-def first_active_set(contact: ScaledContact) -> BoolArray:
+def first_active_set(scaled: ScaledContact) -> BoolArray:
     """Points (n,) that penetrate without pressure, {q < 0}; of a free body once its gaps have no part along a motion.
 
     For a free body q is replaced by P q, P = I - R(ℓᵀR)⁻¹ℓᵀ: the body lies as close as can be in the least squares of
     the weights.
     """
-    R = contact.rigid_motions
+    R = scaled.rigid_motions
     if not R.shape[1]:
-        return contact.offset < 0
-    return contact.offset <= R @ contact.amplitudes_of(contact.offset)
+        return scaled.offset < 0
+    return scaled.offset <= R @ scaled.amplitudes_of(scaled.offset)
 
 
-def resting_points(contact: ScaledContact) -> BoolArray:
+def resting_points(scaled: ScaledContact) -> BoolArray:
     """Points (n,) on which the body would come to rest if it were rigid: where its loads have done the most work.
 
     There are as many as it has free motions, or fewer; none where no pressure carries its load. A round body with free
     motions may have equal gaps all around, so that only its load says where it touches.
     """
-    R = contact.rigid_motions
+    R = scaled.rigid_motions
     if not R.shape[1]:
         return np.zeros(len(R), bool)
-    work = scipy.optimize.linprog(-contact.motion_load, A_ub=-R, b_ub=contact.offset, bounds=(None, None))
+    work = scipy.optimize.linprog(-scaled.motion_load, A_ub=-R, b_ub=scaled.offset, bounds=(None, None))
     return work.ineqlin.marginals < 0 if work.success else np.zeros(len(R), bool)
 
 
-def primal_dual(contact: ScaledContact, active: BoolArray, limit: int | None = None) -> ActiveSetEnd:
+def primal_dual(scaled: ScaledContact, active: BoolArray, limit: int | None = None) -> ActiveSetEnd:
     """Iterate from an active set (n,) until nothing changes, a set comes back, or the limit of steps is reached.
 
     Each step solves `solve_active_set`, then releases the points in tension and adds the points that penetrate. Only
@@ -146,23 +146,23 @@ def primal_dual(contact: ScaledContact, active: BoolArray, limit: int | None = N
     limit = STEP_LIMIT + len(active) if limit is None else limit
     while len(points) < limit and active.tobytes() not in visited:
         visited.add(active.tobytes())
-        p, a = solve_active_set(contact, active)
+        p, a = solve_active_set(scaled, active)
         points.append((np.maximum(p, 0.0), a))
-        residuals.append(contact.residual(*points[-1]))
+        residuals.append(scaled.residual(*points[-1]))
         if residuals[-1] <= SETTLED:
             break
-        active = np.where(active, p > 0, contact.gap(p, a) < 0)
+        active = np.where(active, p > 0, scaled.gap(p, a) < 0)
     pressure, amplitudes = points[residuals.index(min(residuals))]
     return ActiveSetEnd(pressure=pressure, amplitudes=amplitudes, residuals=tuple(residuals))
 
 
-def solve_active_set(contact: ScaledContact, active: BoolArray) -> tuple[Array, Array]:
+def solve_active_set(scaled: ScaledContact, active: BoolArray) -> tuple[Array, Array]:
     """Solve δ = 0 on the active set (n,), p = 0 off it, and ℓᵀp = -load for p (n,), of either sign, and a (k,).
 
     The amplitudes are the shortest least-squares solution if the set holds the body too little or too often.
     """
-    block = ContactBlock(contact=contact, points=np.flatnonzero(active))
-    right = -np.append(contact.offset[block.points], contact.motion_load)
+    block = ContactBlock(scaled=scaled, points=np.flatnonzero(active))
+    right = -np.append(scaled.offset[block.points], scaled.motion_load)
     try:
         unknowns = block.inverse(right)
     except SingularSystemError:

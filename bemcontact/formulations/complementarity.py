@@ -20,7 +20,7 @@ from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_i
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual, resting_points
 from bemcontact.formulations.open_position import with_chosen_position
-from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
+from bemcontact.formulations.scaling import ScaledContact, scale, scaled_point, unscaled
 from bemcontact.options import FormulationName, SolveOptions, options_of
 
 PIVOT = 1e-11
@@ -102,8 +102,8 @@ def equilibrating(M: Array) -> Array:
     """
     size, factors = np.abs(M), np.ones(len(M))
     for _ in range(EQUILIBRATIONS):
-        scaled = factors[:, None] * size * factors
-        largest = np.maximum(scaled.max(axis=0, initial=0.0), scaled.max(axis=1, initial=0.0))
+        equal = factors[:, None] * size * factors
+        largest = np.maximum(equal.max(axis=0, initial=0.0), equal.max(axis=1, initial=0.0))
         factors /= np.sqrt(np.where(largest > 0, largest, 1.0))
     return powers_of_two(factors)
 
@@ -247,8 +247,8 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     options = options_of(FormulationName.COMPLEMENTARITY, options)
     if note := escape_note(contact):
         return _without_contact(contact, note)
-    body = scaled(contact)
-    carried = replace(body, motion_load=body.motion_load - loose_load(body))
+    scaled = scale(contact)
+    carried = replace(scaled, motion_load=scaled.motion_load - loose_load(scaled))
     search = _search(carried, options.max_iterations)
     if search.status is Status.INFEASIBLE:
         note = "Lemke's method ended on a ray, which proves that no pressure satisfies the conditions"
@@ -274,33 +274,33 @@ def polish(contact: CondensedContact, solution: ContactSolution) -> ContactSolut
     `polished` is set if the natural residual got smaller, or is at round-off where the solver had left traces of
     pressure off the contact set. Otherwise the solution is returned as it is. A position that is open is `settled`.
     """
-    body = scaled(contact)
+    scaled = scale(contact)
     p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
     touching = contact.touching(solution.pressure, solution.displacement)
-    end = primal_dual(body, touching, POLISH_STEPS)
+    end = primal_dual(scaled, touching, POLISH_STEPS)
     cleaner = end.residual <= ACCEPTED and solution.pressure[~touching].any()
-    if not (cleaner or end.residual < body.residual(p, a)):
+    if not (cleaner or end.residual < scaled.residual(p, a)):
         return with_chosen_position(contact, solution)
     p, u_n, a = unscaled(contact, end.pressure, end.amplitudes)
     better = replace(solution, pressure=p, displacement=u_n, rigid_amplitudes=a, unpolished=solution.pressure)
     return with_chosen_position(contact, better)
 
 
-def loose_load(contact: ScaledContact) -> Array:
+def loose_load(scaled: ScaledContact) -> Array:
     """The part r (k,) of the load that no p >= 0 carries: the least ℓᵀp + load by norm.
 
     Where it is not zero, it is the motion in which the body leaves: R r >= 0 opens every gap, and the load works on it,
     r·load = r·r > 0 (Farkas).
     """
-    ell, load = contact.equilibrium, contact.motion_load
+    ell, load = scaled.equilibrium, scaled.motion_load
     return ell.T @ scipy.optimize.nnls(ell.T, -load)[0] + load if load.size else load
 
 
 def escape_note(contact: CondensedContact) -> str | None:
     """Describe the motion in which the load pulls the body off its support; None if the support carries the load."""
-    body = scaled(contact)
-    motion = loose_load(body)
-    if np.linalg.norm(motion) <= BALANCED * np.linalg.norm(body.motion_load):
+    scaled = scale(contact)
+    motion = loose_load(scaled)
+    if np.linalg.norm(motion) <= BALANCED * np.linalg.norm(scaled.motion_load):
         return None
     return escape_words(contact, motion)
 
@@ -315,7 +315,7 @@ def escape_words(contact: CondensedContact, motion: Array) -> str:
     return f"the load pulls the body off its support, in a motion that nothing holds: {terms}"
 
 
-def standard_form(contact: ScaledContact) -> tuple[Array, Array, BoolArray]:
+def standard_form(scaled: ScaledContact) -> tuple[Array, Array, BoolArray]:
     """The contact problem as w = q' + M' z without free motions, by one principal pivot.
 
     Choose k points B on which R_B has full rank (QR with pivoting). The block of [[M, R], [ℓᵀ, 0]] on B and the motions
@@ -323,13 +323,13 @@ def standard_form(contact: ScaledContact) -> tuple[Array, Array, BoolArray]:
     change places. Rows are weighted by J: Δzᵀ Δw = Δpᵀ JM Δp on the equilibrium space, so that M' inherits
     semidefiniteness from sym(JM) there. The result is M' (n, n), q' (n,) and the mask of B (n,).
     """
-    M, R, ell, J = contact.compliance, contact.rigid_motions, contact.equilibrium, contact.weights
+    M, R, ell, J = scaled.compliance, scaled.rigid_motions, scaled.equilibrium, scaled.weights
     n, k = R.shape
     B = _spanning_points(np.sqrt(J)[:, None] * R)
     rest = np.setdiff1d(np.arange(n), B)
     inside, order = np.append(B, n + np.arange(k)), np.append(B, rest)
     W = np.block([[M, R], [ell.T, np.zeros((k, k))]])
-    h = np.append(contact.offset, contact.motion_load)
+    h = np.append(scaled.offset, scaled.motion_load)
     given = np.hstack([np.eye(2 * k, k), -W[np.ix_(inside, rest)], -h[inside, None]])
     inner = np.linalg.solve(W[np.ix_(inside, inside)], given)
     gap_rest = W[np.ix_(rest, inside)] @ inner + np.hstack([np.zeros((n - k, k)), M[np.ix_(rest, rest)], h[rest, None]])
@@ -361,17 +361,17 @@ class _SearchEnd:
         return sum(len(trace.values) for trace in self.history)
 
 
-def _search(contact: ScaledContact, pivot_limit: int | None) -> _SearchEnd:
+def _search(scaled: ScaledContact, pivot_limit: int | None) -> _SearchEnd:
     """Primal-dual active set from two starts; if it cycles, Lemke's method, and the active set again from its end."""
     ends = list[ActiveSetEnd]()
-    for start in (first_active_set, resting_points) if contact.motion_load.size else (first_active_set,):
-        ends.append(primal_dual(contact, start(contact)))
+    for start in (first_active_set, resting_points) if scaled.motion_load.size else (first_active_set,):
+        ends.append(primal_dual(scaled, start(scaled)))
         if ends[-1].residual <= ACCEPTED:
             history = traces_in_turn(*(("residual", end.residuals) for end in ends))
             return _SearchEnd(end=ends[-1], status=Status.SOLVED, method=ACTIVE_SET, history=history)
-    matrix, vector, exchanged = standard_form(contact)
+    matrix, vector, exchanged = standard_form(scaled)
     path = lemke(matrix, vector, limit=pivot_limit)
-    last = primal_dual(contact, path.active ^ exchanged)
+    last = primal_dual(scaled, path.active ^ exchanged)
     history = traces_in_turn(
         *(("residual", end.residuals) for end in ends), ("infeasibility", path.covers), ("residual", last.residuals)
     )

@@ -15,7 +15,7 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.formulations.local_solver.factorizations import unit_rows
-from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, unscaled
+from bemcontact.formulations.scaling import ScaledContact, scale, scaled_point, unscaled
 
 VANISHED = 1e-12
 """Fraction of the largest pressure below which a pressure is round-off, and holds no motion."""
@@ -35,18 +35,18 @@ def with_chosen_position(
     Points that do not solve the contact problem to round-off, and bodies that nothing touches, are left as they are.
     `closed` (n,) are points that must stay closed although nothing presses them.
     """
-    body = scaled(contact)
+    scaled = scale(contact)
     p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
-    if not a.size or not contact.peak(solution.pressure) or not body.residual(p, a) <= ACCEPTED:
+    if not a.size or not contact.peak(solution.pressure) or not scaled.residual(p, a) <= ACCEPTED:
         return solution
     p = np.where(p > VANISHED * p.max(), p, 0.0)
     held = p > 0 if closed is None else (p > 0) | closed
-    motions = _unseen(body, held)
-    limits = _limits(body, held, body.gap(p, a), motions)
+    motions = _unseen(scaled, held)
+    limits = _limits(scaled, held, scaled.gap(p, a), motions)
     if not motions.size or not (ways := _open_ways(limits, motions)).any():
         return solution
-    a = _nearest(body, a, limits, motions)
-    if not body.residual(p, a) <= ACCEPTED:
+    a = _nearest(scaled, a, limits, motions)
+    if not scaled.residual(p, a) <= ACCEPTED:
         return solution
     p, u_n, a = unscaled(contact, p, a)
     named = tuple(name for name, way in zip(contact.motion_names, ways, strict=True) if way)
@@ -60,16 +60,16 @@ def with_chosen_position(
     )  # fmt: skip
 
 
-def _unseen(body: ScaledContact, held: BoolArray) -> Array:
+def _unseen(scaled: ScaledContact, held: BoolArray) -> Array:
     """Basis (k, j) of the motions that no held point (n,) sees."""
-    pressed = body.rigid_motions[held]
-    scale = np.sqrt(len(body.weights))
+    pressed = scaled.rigid_motions[held]
+    scale = np.sqrt(len(scaled.weights))
     return np.asarray(null_space(np.vstack([pressed, np.zeros_like(pressed[:1])]) / scale, rcond=UNSEEN), float)
 
 
-def _limits(body: ScaledContact, held: BoolArray, gap: Array, motions: Array) -> tuple[Array, Array]:
+def _limits(scaled: ScaledContact, held: BoolArray, gap: Array, motions: Array) -> tuple[Array, Array]:
     """The rows G y >= h, h <= 0, of size one, for the points that must not penetrate where the body moves by y (j,)."""
-    G, h = body.rigid_motions[~held] @ motions, -np.maximum(gap[~held], 0.0)
+    G, h = scaled.rigid_motions[~held] @ motions, -np.maximum(gap[~held], 0.0)
     size = np.maximum(np.abs(G).max(axis=1, initial=UNSEEN), np.abs(h))
     return np.where(np.abs(G) > UNSEEN, G, 0.0) / size[:, None], h / size
 
@@ -85,9 +85,9 @@ def _open_ways(limits: tuple[Array, Array], motions: Array) -> BoolArray:
     return open_ways
 
 
-def _nearest(body: ScaledContact, amplitudes: Array, limits: tuple[Array, Array], motions: Array) -> Array:
+def _nearest(scaled: ScaledContact, amplitudes: Array, limits: tuple[Array, Array], motions: Array) -> Array:
     """The amplitudes (k,) with least weighted squares of R a: a least-distance program."""
-    root, (G, h) = np.sqrt(body.weights)[:, None] * body.rigid_motions, limits
+    root, (G, h) = np.sqrt(scaled.weights)[:, None] * scaled.rigid_motions, limits
     Q, S = np.linalg.qr(root @ motions)
     center = -np.linalg.solve(S, Q.T @ (root @ amplitudes))
     rows = np.asarray(np.linalg.solve(S.T, G.T).T, float)

@@ -13,7 +13,7 @@ from scipy.linalg import block_diag
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations.local_solver import QPOptions, QPResult, inertia, minimize_qp
-from bemcontact.formulations.scaling import ScaledContact, scaled
+from bemcontact.formulations.scaling import ScaledContact, scale
 from bemcontact.options import Rows
 
 
@@ -103,17 +103,17 @@ def contact_equations(contact: CondensedContact, rows: Rows) -> Equations:
     if rows is Rows.STIFFNESS:
         K, B, r = contact.stiffness_rows
         return Equations(matrix=np.hstack([K * (U / T), -B]), right=r / T)
-    problem = scaled(contact)
-    matrix = np.hstack([np.eye(contact.size), -problem.compliance, -problem.rigid_motions])
+    scaled = scale(contact)
+    matrix = np.hstack([np.eye(contact.size), -scaled.compliance, -scaled.rigid_motions])
     return Equations(matrix=matrix, right=contact.free_displacement / U)
 
 
-def equilibrium(problem: ScaledContact, size: int) -> Equations:
+def equilibrium(scaled: ScaledContact, size: int) -> Equations:
     """ℓᵀp = -load over x of `size` entries."""
-    n, k = problem.rigid_motions.shape
+    n, k = scaled.rigid_motions.shape
     matrix = np.zeros((k, size))
-    matrix[:, n : 2 * n] = problem.equilibrium.T
-    return Equations(matrix=matrix, right=-problem.motion_load)
+    matrix[:, n : 2 * n] = scaled.equilibrium.T
+    return Equations(matrix=matrix, right=-scaled.motion_load)
 
 
 def no_equations(size: int) -> Equations:

@@ -20,7 +20,7 @@ from bemcontact.formulations.program import (
     no_equations,
 )
 from bemcontact.formulations.qp3 import NEGLIGIBLE, smallest_eigenvalue
-from bemcontact.formulations.scaling import scaled, scaled_weights
+from bemcontact.formulations.scaling import scale, scaled_weights
 from bemcontact.formulations.search import polished, searched
 from bemcontact.options import FormulationName, Rows, SolveOptions, options_of
 
@@ -33,7 +33,7 @@ def program_of(contact: CondensedContact, options: SolveOptions) -> Program:
     equations = contact_equations(contact, options.rows)
     size = equations.matrix.shape[1]
     if options.rows is Rows.COMPLIANCE:
-        equations = equations.and_also(equilibrium(scaled(contact), size))
+        equations = equations.and_also(equilibrium(scale(contact), size))
     return Program(
         weights=scaled_weights(contact, options.weights),
         penalized=no_equations(size),
@@ -53,7 +53,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     """
     options = options_of(FormulationName.QP1, options)
     program = program_of(contact, options)
-    eigenvalue = smallest_eigenvalue(scaled(contact), scaled_weights(contact, options.weights))
+    eigenvalue = smallest_eigenvalue(scale(contact), scaled_weights(contact, options.weights))
     only = eigenvalue is None or eigenvalue > NEGLIGIBLE
     solution = searched(contact, options, program, only=only)
     return replace(polished(contact, options, solution), smallest_eigenvalue=eigenvalue)

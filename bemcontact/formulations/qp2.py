@@ -36,7 +36,7 @@ from bemcontact.formulations.program import (
     lower_bounds,
     no_equations,
 )
-from bemcontact.formulations.scaling import scaled, scaled_weights
+from bemcontact.formulations.scaling import scale, scaled_weights
 from bemcontact.formulations.search import polished, searched
 from bemcontact.options import Equilibrium, FormulationName, Rows, SolveOptions, Weights, options_of
 
@@ -71,7 +71,7 @@ def program_of(contact: CondensedContact, options: SolveOptions) -> Program:
     size = penalized.matrix.shape[1]
     exact = no_equations(size)
     if options.equilibrium is Equilibrium.CONSTRAINT:
-        exact = equilibrium(scaled(contact), size).of_unit_size
+        exact = equilibrium(scale(contact), size).of_unit_size
     elif options.rows is Rows.COMPLIANCE and contact.free_motions:
         raise OptionError(
             "equilibrium can be penalized with the stiffness rows only, which contain it; the compliance rows need it "
@@ -102,15 +102,15 @@ def convexity_limit(contact: CondensedContact, options: SolveOptions) -> float:
 
     It is zero if QP2 is convex for none, and infinite if equilibrium leaves no pressure free.
     """
-    problem, J = scaled(contact), scaled_weights(contact, options.weights)
-    n, k = problem.rigid_motions.shape
-    Z = problem.equilibrium_space
+    scaled, J = scale(contact), scaled_weights(contact, options.weights)
+    n, k = scaled.rigid_motions.shape
+    Z = scaled.equilibrium_space
     lifted = options.equilibrium is Equilibrium.PENALTY and k > 0
-    if lifted or np.abs(Z.T @ J @ problem.rigid_motions).max(initial=0.0) > NEGLIGIBLE:
+    if lifted or np.abs(Z.T @ J @ scaled.rigid_motions).max(initial=0.0) > NEGLIGIBLE:
         return 0.0
     if n == k:
         return np.inf
-    W = Z.T @ J @ problem.compliance @ Z
+    W = Z.T @ J @ scaled.compliance @ Z
     curvatures = eigvalsh(W + W.T)
     if curvatures[0] <= n * np.finfo(float).eps * curvatures[-1]:
         return 0.0

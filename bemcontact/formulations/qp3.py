@@ -18,7 +18,7 @@ from bemcontact.contact.solution import ContactSolution, Status, Trace
 from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.clarabel import STATUSES, minimize_convex
 from bemcontact.formulations.complementarity import ACCEPTED, escape_note, polish
-from bemcontact.formulations.scaling import ScaledContact, scaled, scaled_point, scaled_weights, unscaled
+from bemcontact.formulations.scaling import ScaledContact, scale, scaled_point, scaled_weights, unscaled
 from bemcontact.options import FormulationName, SolveOptions, Weights, options_of
 
 NEGLIGIBLE = 1e-10
@@ -55,36 +55,36 @@ class Objective:
         return float(quadratic + self.pressure @ pressure + self.amplitudes @ amplitudes + self.constant)
 
 
-def objective(contact: ScaledContact, J: Array) -> Objective:
+def objective(scaled: ScaledContact, J: Array) -> Objective:
     """Write pᵀJδ as a convex function of (p, a) by means of equilibrium; J (n, n) is scaled.
 
     With P = I - R(ℓᵀR)⁻¹ℓᵀ and p0 = -R(ℓᵀR)⁻¹load every p in equilibrium is P p + p0, so that
     pᵀJM p = (P p)ᵀJM(P p) + p0ᵀ(JM + MᵀJᵀ)P p + p0ᵀJM p0. And if JR = ℓC, then pᵀJR a = -loadᵀC a; C = I for the
     tributary J.
     """
-    weighted, project, p0 = J @ contact.compliance, contact.projector, contact.balancing_pressure
+    weighted, project, p0 = J @ scaled.compliance, scaled.projector, scaled.balancing_pressure
     hessian = weighted + weighted.T
-    share = np.linalg.lstsq(contact.equilibrium, J @ contact.rigid_motions, rcond=None)[0]
+    share = np.linalg.lstsq(scaled.equilibrium, J @ scaled.rigid_motions, rcond=None)[0]
     return Objective(
         hessian=project.T @ hessian @ project,
-        pressure=J @ contact.offset + project.T @ (hessian @ p0),
-        amplitudes=-share.T @ contact.motion_load,
+        pressure=J @ scaled.offset + project.T @ (hessian @ p0),
+        amplitudes=-share.T @ scaled.motion_load,
         constant=float(p0 @ weighted @ p0),
     )
 
 
-def smallest_eigenvalue(contact: ScaledContact, J: Array) -> float | None:
+def smallest_eigenvalue(scaled: ScaledContact, J: Array) -> float | None:
     """Smallest eigenvalue of Zᵀ(JM + MᵀJᵀ)Z, Z spanning {p : ℓᵀp = 0}: the curvature on the equilibrium space.
 
     J (n, n) is scaled. Where ZᵀJR is not zero, pᵀJR a makes the objective a saddle in (p, a), and the eigenvalue is
     that of the Hessian in both; the tributary weights exclude this. None if equilibrium leaves no pressure free (n =
     k).
     """
-    R, Z = contact.rigid_motions, contact.equilibrium_space
+    R, Z = scaled.rigid_motions, scaled.equilibrium_space
     n, k = R.shape
     if n == k:
         return None
-    weighted = J @ contact.compliance
+    weighted = J @ scaled.compliance
     hessian = Z.T @ (weighted + weighted.T) @ Z
     coupling = Z.T @ J @ R
     if np.abs(coupling).max(initial=0.0) > NEGLIGIBLE:
@@ -111,9 +111,9 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
         Clarabel broke down, and left no point. A point that it leaves is polished, and a note says what happened.
     """
     options = options_of(FormulationName.QP3, options)
-    body, J = scaled(contact), scaled_weights(contact, options.weights)
-    eigenvalue = smallest_eigenvalue(body, J)
-    work = objective(body, J)
+    scaled, J = scale(contact), scaled_weights(contact, options.weights)
+    eigenvalue = smallest_eigenvalue(scaled, J)
+    work = objective(scaled, J)
     notes = []
     if eigenvalue is not None and eigenvalue < -NEGLIGIBLE:
         work = nearly_convex(work, eigenvalue, options.weights)
@@ -121,7 +121,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
             f"QP3 is not convex on this mesh (smallest eigenvalue {eigenvalue:.1e}): it was solved without the "
             "negative part of its Hessian, as a start for the active-set step"
         )
-    optimum = _minimized(body, work, options.max_iterations)
+    optimum = _minimized(scaled, work, options.max_iterations)
     if optimum.status is Status.INFEASIBLE and (escape := escape_note(contact)):
         notes.append(escape)
     notes += [optimum.note] if optimum.note else []
@@ -149,7 +149,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
 
 def _rescued(contact: CondensedContact, solution: ContactSolution) -> ContactSolution:
     """A solution of which Clarabel gave the start only: solved if the active-set steps led to a contact state."""
-    if scaled(contact).residual(*scaled_point(contact, solution.pressure, solution.rigid_amplitudes)) > ACCEPTED:
+    if scale(contact).residual(*scaled_point(contact, solution.pressure, solution.rigid_amplitudes)) > ACCEPTED:
         return solution
     note = "the active-set steps from the point that Clarabel left led to the contact state"
     return replace(solution, status=Status.SOLVED, notes=(*solution.notes, note))
@@ -169,16 +169,16 @@ class _Optimum:
     note: str
 
 
-def _minimized(contact: ScaledContact, work: Objective, max_iterations: int | None) -> _Optimum:
+def _minimized(scaled: ScaledContact, work: Objective, max_iterations: int | None) -> _Optimum:
     """State the quadratic program in cvxpy, and solve it."""
     import cvxpy as cp
 
-    M, R, ell, load = contact.compliance, contact.rigid_motions, contact.equilibrium, contact.motion_load
+    M, R, ell, load = scaled.compliance, scaled.rigid_motions, scaled.equilibrium, scaled.motion_load
     n, k = R.shape
     p = cp.Variable(n, nonneg=True, name="pressure")
     a = cp.Variable(k, name="rigid_amplitudes") if k else None
     goal = 0.5 * cp.quad_form(p, cp.psd_wrap(work.hessian)) + work.pressure @ p
-    gap, balance = contact.offset + M @ p, []
+    gap, balance = scaled.offset + M @ p, []
     if a is not None:
         goal, gap, balance = goal + work.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
     program = cp.Problem(cp.Minimize(goal), [gap >= 0, *balance])

@@ -43,7 +43,7 @@ class ScaledContact(MotionAlgebra):
         return float(max(natural.max(initial=0.0), balance.max(initial=0.0)) / size)
 
 
-def scaled(contact: CondensedContact, scales: ContactScales | None = None) -> ScaledContact:
+def scale(contact: CondensedContact, scales: ContactScales | None = None) -> ScaledContact:
     """Take the units out of a contact problem.
 
     `scales` replace those of the problem, which depend on its load; then ‖M‖∞ = 1 only if U = ‖M‖∞ T.

@@ -18,7 +18,7 @@ from bemcontact.files.text import text_of
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.local_solver import QPResult, QPStatus
 from bemcontact.formulations.program import Program, minimize_program
-from bemcontact.formulations.scaling import scaled, scaled_point, unscaled
+from bemcontact.formulations.scaling import scale, scaled_point, unscaled
 from bemcontact.options import STARTS, SolveOptions, StartName, Weights, ensure_whole
 
 SPREAD = 2.0
@@ -222,11 +222,11 @@ def polished(contact: CondensedContact, options: SolveOptions, solution: Contact
 
 def contact_residual(contact: CondensedContact, solution: ContactSolution) -> float:
     """Largest of |min(p/T, δ/U)|, of (12) over U and of |ℓᵀp + load| over T Σ|ℓ|, over the size of the numbers."""
-    problem = scaled(contact)
+    scaled = scale(contact)
     p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
     residual = solution.displacement - unscaled(contact, p, a)[1]
     size = 1.0 + float(np.abs(p).max(initial=0.0) + np.abs(a).sum())
-    return max(problem.residual(p, a), float(np.abs(residual).max()) / contact.scales.displacement / size)
+    return max(scaled.residual(p, a), float(np.abs(residual).max()) / contact.scales.displacement / size)
 
 
 def ray_in_words(contact: CondensedContact, ray: Array) -> str:

@@ -18,7 +18,7 @@ from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import Answer, minimize_convex
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
-from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scaled
+from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scale
 from bemcontact.modelling.model_result import ModelResult, judged, read_back, solution_at
 from bemcontact.modelling.parameters import Parameters, Value
 from bemcontact.options import Weights, ensure_whole
@@ -147,10 +147,10 @@ class ContactModel(WithHints):
 
         Its gradient lacks (I - Pᵀ)H(p - ½ p0) = ℓ c, which ℓᵀp = -load makes good: this is c.
         """
-        body, (U, _) = scaled(self.contact, self.scales), self.scales
-        p = cast(Array, self.pressure.variables()[0].value) - body.balancing_pressure / 2
-        weighted = body.weights[:, None] * body.compliance
-        R, ell = body.rigid_motions, body.equilibrium
+        scaled, (U, _) = scale(self.contact, self.scales), self.scales
+        p = cast(Array, self.pressure.variables()[0].value) - scaled.balancing_pressure / 2
+        weighted = scaled.weights[:, None] * scaled.compliance
+        R, ell = scaled.rigid_motions, scaled.equilibrium
         return U / motion_sizes(self.original) * np.linalg.solve(R.T @ ell, R.T @ ((weighted + weighted.T) @ p))
 
     @cached_property
@@ -315,15 +315,15 @@ def model(contact: CondensedContact) -> ContactModel:
     """
     instance_of(contact, CondensedContact, "contact", "bemcontact.condense makes one of a problem")
     U, T = scales = largest_scales(contact)
-    problem, given = scaled(contact, scales), Parameters.of(contact)
+    scaled, given = scale(contact, scales), Parameters.of(contact)
     n, k = contact.rigid_motions.shape
-    hessian, notes = _convex_hessian(problem)
+    hessian, notes = _convex_hessian(scaled)
     p = cp.Variable(n, name="pressure")
     a = cp.Variable(k, name="motions") if k else None
-    moved = problem.compliance @ p + (problem.rigid_motions @ a if a is not None else 0.0)
+    moved = scaled.compliance @ p + (scaled.rigid_motions @ a if a is not None else 0.0)
     sizes = motion_sizes(contact)
     load, offset = given.motion_load / (sizes * contact.weights.max() * T), given.offset / U
-    balance = {} if a is None else {"equilibrium": problem.equilibrium.T @ p == -load}
+    balance = {} if a is None else {"equilibrium": scaled.equilibrium.T @ p == -load}
     motions = None if a is None else cp.multiply(U / sizes, a)
     return ContactModel(
         original=contact,
@@ -333,7 +333,7 @@ def model(contact: CondensedContact) -> ContactModel:
         gap=U * (offset + moved),
         displacement=U * (given.free_displacement / U + moved),
         tool_displacement=_tool_displacement(given, motions),
-        objective=U * T * contact.weights.max() * _work(problem, hessian, p, a, offset, load),
+        objective=U * T * contact.weights.max() * _work(scaled, hessian, p, a, offset, load),
         constraints={"no_penetration": offset + moved >= 0, "no_tension": p >= 0, **balance},
         scales=scales,
         notes=notes,
@@ -382,10 +382,10 @@ def largest_scales(contact: CondensedContact) -> ContactScales:
     return max((state.scales for state in acting), default=contact.scales)
 
 
-def _convex_hessian(problem: ScaledContact) -> tuple[Array, tuple[str, ...]]:
+def _convex_hessian(scaled: ScaledContact) -> tuple[Array, tuple[str, ...]]:
     """Hessian (n, n) of F3 on the equilibrium space, as in QP3, and a note on the part that was dropped."""
-    J = np.diag(problem.weights)
-    work, eigenvalue = qp3.objective(problem, J), qp3.smallest_eigenvalue(problem, J)
+    J = np.diag(scaled.weights)
+    work, eigenvalue = qp3.objective(scaled, J), qp3.smallest_eigenvalue(scaled, J)
     if eigenvalue is None or eigenvalue >= -qp3.NEGLIGIBLE:
         return work.hessian, ()
     note = (
@@ -396,20 +396,20 @@ def _convex_hessian(problem: ScaledContact) -> tuple[Array, tuple[str, ...]]:
 
 
 def _work(
-    problem: ScaledContact, hessian: Array, p: cp.Variable, a: cp.Variable | None, offset: Value, load: Value
+    scaled: ScaledContact, hessian: Array, p: cp.Variable, a: cp.Variable | None, offset: Value, load: Value
 ) -> cp.Expression:
     """F3, scaled: ½ pᵀPᵀHP p + (J q + ½ (I + Pᵀ) H p0)ᵀp - loadᵀa with H = JM + MᵀJ.
 
     With P and p0 of `qp3.objective` every p in equilibrium is P p + p0 and p0 = (I - P) p, so that
     pᵀJM p = ½ (P p)ᵀH P p + p0ᵀH P p + ½ p0ᵀH (I - P) p: linear in parameters, and no constant is left.
     """
-    J = problem.weights
+    J = scaled.weights
     work = 0.5 * cp.quad_form(p, cp.psd_wrap(hessian)) + cp.multiply(J, offset) @ p
     if a is None:
         return work
-    weighted = J[:, None] * problem.compliance
-    balancing = problem.balancing(np.eye(problem.rigid_motions.shape[1]))
-    held = 0.5 * (np.eye(len(J)) + problem.projector.T) @ (weighted + weighted.T) @ balancing
+    weighted = J[:, None] * scaled.compliance
+    balancing = scaled.balancing(np.eye(scaled.rigid_motions.shape[1]))
+    held = 0.5 * (np.eye(len(J)) + scaled.projector.T) @ (weighted + weighted.T) @ balancing
     return work + (held @ load) @ p - load @ a
 
 

@@ -16,7 +16,7 @@ from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.open_position import with_chosen_position
-from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
+from bemcontact.formulations.scaling import scale, scaled_change, scaled_point, unscaled
 from bemcontact.options import FormulationName
 from bemcontact.parametric.pivoting import LinearChange, Trail, trail_along
 from bemcontact.serialization import Internal, Leaf, Matrix, PairTables, Vector
@@ -161,13 +161,13 @@ class LoadPath(Leaf):
     def residual(self) -> float:
         """The largest natural residual at the breakpoints and midway between two, recomputed from p and a, relative."""
         unit, worst = measure(self.start, self.end), 0.0
-        line, body = line_between(unit, self.start, self.end), scaled(unit)
+        line, scaled = line_between(unit, self.start, self.end), scale(unit)
         found = (self.parameter, self.pressure, self.rigid_amplitudes)
         midway = ((values[1:] + values[:-1]) / 2 for values in found)
         states = zip(*(np.concatenate(pair) for pair in zip(found, midway, strict=True)), strict=True)
         for t, pressure, amplitudes in states:
             offset, load = line.at(t)
-            stated = replace(body, offset=offset, motion_load=load)
+            stated = replace(scaled, offset=offset, motion_load=load)
             worst = max(worst, stated.residual(*scaled_point(unit, pressure, amplitudes)))
         return worst
 
@@ -322,7 +322,7 @@ def _followed(first: CondensedContact, last: CondensedContact) -> tuple[Trail | 
         return None, "; ".join(solution.notes) or solution.status.words
     unit = measure(first, last)
     point = scaled_point(unit, solution.pressure, solution.rigid_amplitudes)
-    trail = trail_along(scaled(unit), line_between(unit, first, last), *point)
+    trail = trail_along(scale(unit), line_between(unit, first, last), *point)
     return trail, trail.stop if trail.escape is None else complementarity.escape_words(first, trail.escape)
 
 

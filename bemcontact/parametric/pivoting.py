@@ -74,7 +74,7 @@ class Tangent:
     before : equations of points that hold the body, S and some of W, if there are any at hand
     """
 
-    contact: ScaledContact
+    scaled: ScaledContact
     strong: IntArray
     weak: IntArray
     unique: bool
@@ -83,7 +83,7 @@ class Tangent:
     @classmethod
     def at(
         cls,
-        contact: ScaledContact,
+        scaled: ScaledContact,
         pressure: Array,
         gap: Array,
         amplitudes: Array,
@@ -91,10 +91,10 @@ class Tangent:
         before: ContactBlock | None = None,
     ) -> Self:
         """Classify the points of a state: p (n,), δ (n,) and a (k,), dimensionless."""
-        least, near = negligible(contact, pressure, amplitudes)
+        least, near = negligible(scaled, pressure, amplitudes)
         loaded, closed = pressure > least, gap <= near
         return cls(
-            contact=contact,
+            scaled=scaled,
             strong=np.array(np.flatnonzero(loaded & closed), np.int64),
             weak=np.array(np.flatnonzero(~loaded & closed), np.int64),
             unique=unique,
@@ -104,14 +104,14 @@ class Tangent:
     @property
     def loaded(self) -> BoolArray:
         """(n,) True on S."""
-        return ContactBlock(contact=self.contact, points=self.strong).touching
+        return ContactBlock(scaled=self.scaled, points=self.strong).touching
 
     def escape(self, change: Change) -> Array:
         """The part r (k,) of a change of load that neither S nor W can carry: the least ℓᵀṗ + ḟ by norm.
 
         Where it is not zero, it is a motion that moves no point of S, closes none of W, and on which the load works.
         """
-        ell, load = self.contact.equilibrium, change.motion_load
+        ell, load = self.scaled.equilibrium, change.motion_load
         if not (load.any() and self._unresisted.size):
             return np.zeros_like(load)
         free = self._unresisted
@@ -131,7 +131,7 @@ class Tangent:
 
     def _still(self, points: IntArray) -> Array:
         """An orthonormal basis (k, ·) of the motions that move none of some points."""
-        R = self.contact.rigid_motions[points]
+        R = self.scaled.rigid_motions[points]
         k = R.shape[1]
         _, sizes, motions = np.linalg.svd(np.linalg.qr(np.vstack([R, np.zeros((k, k))]), mode="r"))
         return motions[sizes <= RANK].T
@@ -148,14 +148,14 @@ class Tangent:
         if free.size:
             if self.weak.size < free.shape[1]:
                 raise ProblemError(NOT_HELD)
-            seen = (self.contact.rigid_motions[self.weak] @ free).T
+            seen = (self.scaled.rigid_motions[self.weak] @ free).T
             factors = qr(seen, mode="r", pivoting=True)
             triangle, order = np.asarray(factors[0]), np.asarray(factors[-1])
             sizes = np.abs(np.diag(triangle))
             if sizes.min() <= RANK:
                 raise ProblemError(NOT_HELD)
             joined = self.weak[order[: free.shape[1]]]
-        return ContactBlock(contact=self.contact, points=np.union1d(self.strong, joined))
+        return ContactBlock(scaled=self.scaled, points=np.union1d(self.strong, joined))
 
     @cached_property
     def exchanged(self) -> IntArray:
@@ -165,13 +165,13 @@ class Tangent:
     @cached_property
     def _small(self) -> tuple[IntArray, Array]:
         """The points of W, those of B first, and w = N z on them: z is δ̇ on B, ṗ elsewhere, w the other one."""
-        M, A, B = self.contact.compliance, self.held.points, self.exchanged
+        M, A, B = self.scaled.compliance, self.held.points, self.exchanged
         rest, place, b = np.setdiff1d(self.weak, B, assume_unique=True), np.searchsorted(A, B), len(B)
         right = np.zeros((len(self.held.matrix), len(self.weak)))
         right[place, np.arange(b)] = 1.0
-        right[: len(A), b:], right[len(A) :, b:] = -M[np.ix_(A, rest)], -self.contact.equilibrium[rest].T
+        right[: len(A), b:], right[len(A) :, b:] = -M[np.ix_(A, rest)], -self.scaled.equilibrium[rest].T
         inner = self.held.inverse(right)
-        below = np.hstack([M[np.ix_(rest, A)], self.contact.rigid_motions[rest]]) @ inner
+        below = np.hstack([M[np.ix_(rest, A)], self.scaled.rigid_motions[rest]]) @ inner
         below[:, b:] += M[np.ix_(rest, rest)]
         return np.append(B, rest), np.vstack([inner[place], below])
 
@@ -200,7 +200,7 @@ class Tangent:
         (pressure,), (gap,), (amplitudes,) = self.held.solve(change)
         vector = np.append(pressure[points[:b]], gap[points[b:]])
         vector[np.abs(vector) <= STILL * size_of_terms(change, pressure, amplitudes)] = 0.0
-        rows = self.contact.weights[points]
+        rows = self.scaled.weights[points]
         matrix, vector = rows[:, None] * N, rows * vector
         end = lemke(matrix, vector)
         if end.status is not Status.SOLVED:
@@ -211,7 +211,7 @@ class Tangent:
             if eigvalsh(matrix + matrix.T)[0] <= len(matrix) * EPS * np.abs(matrix).max():
                 raise ProblemError(NOT_UNIQUE)
         loaded = points[end.active ^ (np.arange(len(points)) < b)]
-        return ContactBlock(contact=self.contact, points=np.sort(np.append(self.strong, loaded)))
+        return ContactBlock(scaled=self.scaled, points=np.sort(np.append(self.strong, loaded)))
 
 
 def size_of_terms(change: Change, pressure: Array, amplitudes: Array) -> float:
@@ -219,15 +219,15 @@ def size_of_terms(change: Change, pressure: Array, amplitudes: Array) -> float:
     return float(np.abs(change.offset).max(initial=0.0) + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
 
 
-def negligible(contact: ScaledContact, pressure: Array, amplitudes: Array) -> tuple[float, Array]:
+def negligible(scaled: ScaledContact, pressure: Array, amplitudes: Array) -> tuple[float, Array]:
     """Pressure, and gap (n,) of each point, that count as zero at a state."""
     size = float(1.0 + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum())
-    return WEAK * size, np.maximum(WEAK * np.abs(contact.compliance.diagonal()), STILL) * size
+    return WEAK * size, np.maximum(WEAK * np.abs(scaled.compliance.diagonal()), STILL) * size
 
 
-def is_monotone(contact: ScaledContact) -> bool:
+def is_monotone(scaled: ScaledContact) -> bool:
     """Whether sym(JM) is positive definite on the equilibrium space, so that each contact state is the only one."""
-    return Definiteness.of(contact.weights, contact.compliance, contact.equilibrium).definite
+    return Definiteness.of(scaled.weights, scaled.compliance, scaled.equilibrium).definite
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -277,24 +277,24 @@ class Trail:
     unique: bool
 
 
-def trail_along(contact: ScaledContact, line: LinearChange, pressure: Array, amplitudes: Array) -> Trail:
+def trail_along(scaled: ScaledContact, line: LinearChange, pressure: Array, amplitudes: Array) -> Trail:
     """Follow a state, p (n,) and a (k,) at s = 0, along the line of offsets and loads, as far as it goes.
 
     The first state of the trail is the limit of those that follow, which differs from the given one where that is not
     unique. `SolverError` if more points enter and leave than can be, which only round-off could cause.
     """
-    gap = line.first.offset + contact.compliance @ pressure + contact.rigid_motions @ amplitudes
+    gap = line.first.offset + scaled.compliance @ pressure + scaled.rigid_motions @ amplitudes
     states = [State(s=0.0, pressure=pressure, gap=np.maximum(gap, 0.0), amplitudes=amplitudes)]
     touching: list[BoolArray] = []
-    unique, block, escape, stop = is_monotone(contact), None, None, ""
+    unique, block, escape, stop = is_monotone(scaled), None, None, ""
     for _ in range(limit := 1000 + 50 * len(pressure)):
         if (state := states[-1]).s >= 1.0:
             break
-        tangent = Tangent.at(contact, state.pressure, state.gap, state.amplitudes, unique, block)
+        tangent = Tangent.at(scaled, state.pressure, state.gap, state.amplitudes, unique, block)
         motion = tangent.escape(line.rate)
         try:
             if motion.any():
-                block, following = None, _tipped(contact, state, tangent, motion)
+                block, following = None, _tipped(scaled, state, tangent, motion)
             elif tangent.strong.size and tangent.open_motions.size:
                 following, loaded = _drifted(line, state, tangent)
                 states.append(following)
@@ -329,7 +329,7 @@ def _next(line: LinearChange, s: float, block: ContactBlock) -> State:
     pressures, gaps, amplitudes = block.solve(line.at(s), rate)
     values, rates = np.where(touching, pressures, gaps)
     step, blocking = first_zero(values, rates, STILL * size_of_terms(rate, pressures[1], amplitudes[1]))
-    small = np.where(touching, *negligible(block.contact, pressures[0], amplitudes[0]))
+    small = np.where(touching, *negligible(block.scaled, pressures[0], amplitudes[0]))
     if s + step >= 1.0 or (values + (1.0 - s) * rates >= -small).all():  # at the end all pressures may vanish
         step, blocking = 1.0 - s, np.zeros_like(touching)
     reached = np.where(blocking, 0.0, np.maximum(values + step * rates, 0.0))
@@ -346,7 +346,7 @@ def _drifted(line: LinearChange, state: State, tangent: Tangent) -> tuple[State,
 
     The pressures do not depend on the position. With it come the points in contact. `ProblemError` if there is no step.
     """
-    contact, ways = tangent.contact, tangent.open_motions
+    contact, ways = tangent.scaled, tangent.open_motions
     held = null_space(ways.T)
     seen, place = contact.rigid_motions @ ways, ways.T @ state.amplitudes
     fixed = replace(contact, rigid_motions=contact.rigid_motions @ held, motion_load=held.T @ contact.motion_load)
@@ -373,9 +373,9 @@ def _drifted(line: LinearChange, state: State, tangent: Tangent) -> tuple[State,
     return following, touching
 
 
-def _tipped(contact: ScaledContact, state: State, tangent: Tangent, motion: Array) -> State | None:
+def _tipped(scaled: ScaledContact, state: State, tangent: Tangent, motion: Array) -> State | None:
     """Let the body move under a constant load until a point closes; None if none does."""
-    closed, opening = np.append(tangent.strong, tangent.weak), contact.rigid_motions @ motion
+    closed, opening = np.append(tangent.strong, tangent.weak), scaled.rigid_motions @ motion
     opening[closed] = np.maximum(opening[closed], 0.0)
     step, blocking = first_zero(state.gap, opening, RANK * float(np.linalg.norm(motion)))
     if not blocking.any():

@@ -16,7 +16,7 @@ from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
-from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
+from bemcontact.formulations.scaling import scale, scaled_change, scaled_point, unscaled
 from bemcontact.parametric.path import NOT_PROVED
 from bemcontact.parametric.pivoting import WEAK, Tangent, is_monotone
 from bemcontact.serialization import Internal, Leaf, Pairs, Vector
@@ -165,11 +165,11 @@ def sensitivities(
     if state.status is not Status.SOLVED:
         why = "; ".join(state.notes) or state.status.words
         raise ProblemError(f"there is no contact state to differentiate: {why}")
-    problem = scaled(contact)
+    scaled = scale(contact)
     p, a = scaled_point(contact, state.pressure, state.rigid_amplitudes)
-    if (residual := problem.residual(p, a)) > EXACT:
+    if (residual := scaled.residual(p, a)) > EXACT:
         raise ProblemError(f"the given solution is no contact state to differentiate: its residual is {residual:.2g}")
-    tangent = Tangent.at(problem, p, np.maximum(problem.gap(p, a), 0.0), a, is_monotone(problem))
+    tangent = Tangent.at(scaled, p, np.maximum(scaled.gap(p, a), 0.0), a, is_monotone(scaled))
     each = {key: _sensitivity(contact, state, tangent, key, change) for key, change in wanted.items()}
     return Sensitivities(
         solution=state,

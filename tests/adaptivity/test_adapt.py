@@ -24,7 +24,7 @@ from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import first_active_set, primal_dual
 from bemcontact.formulations.complementarity import ACCEPTED, lemke, standard_form
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scale
 from bemcontact.problem import Problem
 
 RADIUS = 50.0
@@ -448,12 +448,12 @@ def test_a_hook_with_a_loaded_pin(radius: float, tip: float):
     assert result.certificate.certified
     assert result.accuracy.met
     assert result.footprint.forces["pin"] == pytest.approx((0, -500), abs=1e-6)
-    body = scaled(result.contact)
-    assert not first_active_set(body).any()
-    matrix, vector, exchanged = standard_form(body)
+    scaled = scale(result.contact)
+    assert not first_active_set(scaled).any()
+    matrix, vector, exchanged = standard_form(scaled)
     path = lemke(matrix, vector)
     assert min(path.covers) >= 0.0
-    assert primal_dual(body, path.active ^ exchanged, 2).residual <= ACCEPTED
+    assert primal_dual(scaled, path.active ^ exchanged, 2).residual <= ACCEPTED
 
 
 def indented_by_a_pin() -> Problem:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import bemcontact
 from bemcontact import CondensedContact, Problem
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scale
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -127,10 +127,10 @@ def is_definite(contact: CondensedContact) -> bool:
 
 def contact_states(contact: CondensedContact) -> list[Array]:
     """The scaled pressures (n,) of all contact states, one for each contact set that gives one."""
-    problem = scaled(contact)
-    n, k = problem.rigid_motions.shape
-    system = np.block([[problem.compliance, problem.rigid_motions], [problem.equilibrium.T, np.zeros((k, k))]])
-    right = -np.append(problem.offset, problem.motion_load)
+    scaled = scale(contact)
+    n, k = scaled.rigid_motions.shape
+    system = np.block([[scaled.compliance, scaled.rigid_motions], [scaled.equilibrium.T, np.zeros((k, k))]])
+    right = -np.append(scaled.offset, scaled.motion_load)
     states: list[Array] = []
     for touching in contact_sets(n):
         rows = np.append(np.flatnonzero(touching), n + np.arange(k))

@@ -36,7 +36,7 @@ from rich.table import Table
 
 from bemcontact import CondensedContact, ContactSolution, Equilibrium, Status, minimize_qp
 from bemcontact.formulations import FORMULATIONS, complementarity
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scale
 from bemcontact.formulations.search import draw_starts
 from bemcontact.options import SolveOptions
 
@@ -202,11 +202,11 @@ def searches(
 
 def qp3_searches(contact: CondensedContact, states: list[Array], count: int) -> list[Search]:
     """QP3 over p of a held body by the local solver, convex or not: min pᵀJ(q + M p), q + M p >= 0, p >= 0."""
-    problem, found = scaled(contact), []
-    weighted = problem.weights[:, None] * problem.compliance
+    scaled, found = scale(contact), []
+    weighted = scaled.weights[:, None] * scaled.compliance
     for start in draw_starts(contact, count):
         end = minimize_qp(
-            weighted + weighted.T, problem.weights * problem.offset, A=problem.compliance, cl=-problem.offset,
+            weighted + weighted.T, scaled.weights * scaled.offset, A=scaled.compliance, cl=-scaled.offset,
             bl=np.zeros(contact.size), x0=start.pressure / contact.scales.pressure,
         )  # fmt: skip
         right = is_among(end.x, states)
@@ -284,16 +284,16 @@ def iterations() -> Table:
 
 def qp3_iterations(contact: CondensedContact) -> int:
     """(40)-(42) over (p, a) by the local solver."""
-    problem = scaled(contact)
-    M, R, ell, J = problem.compliance, problem.rigid_motions, problem.equilibrium, problem.weights
+    scaled = scale(contact)
+    M, R, ell, J = scaled.compliance, scaled.rigid_motions, scaled.equilibrium, scaled.weights
     n, k = R.shape
     weighted = J[:, None] * M
     found = minimize_qp(
         np.block([[weighted + weighted.T, ell], [ell.T, np.zeros((k, k))]]),
-        np.append(J * problem.offset, np.zeros(k)),
+        np.append(J * scaled.offset, np.zeros(k)),
         A=np.block([[M, R], [ell.T, np.zeros((k, k))]]),
-        cl=np.append(-problem.offset, -problem.motion_load),
-        cu=np.append(np.full(n, np.inf), -problem.motion_load),
+        cl=np.append(-scaled.offset, -scaled.motion_load),
+        cu=np.append(np.full(n, np.inf), -scaled.motion_load),
         bl=np.append(np.zeros(n), np.full(k, -np.inf)),
     )
     return found.iterations

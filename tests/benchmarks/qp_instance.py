@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import StiffnessRows
 from bemcontact.formulations import complementarity
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scale
 
 Array = NDArray[np.float64]
 
@@ -147,8 +147,8 @@ def half_plane(n: int, modulus: float, seed: int) -> CondensedContact:
 
 def without_units(contact: CondensedContact) -> CondensedContact:
     """The same problem of a body held without contact, in dimensionless numbers."""
-    problem = scaled(contact)
-    return CondensedContact.from_compliance(problem.compliance, problem.offset, problem.weights)
+    scaled = scale(contact)
+    return CondensedContact.from_compliance(scaled.compliance, scaled.offset, scaled.weights)
 
 
 def compliance_rows(contact: CondensedContact) -> StiffnessRows:

@@ -8,7 +8,7 @@ from bemcontact import (
 )
 from bemcontact.arrays import Array
 from bemcontact.formulations import qp2, qp3
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scale
 from bemcontact.options import SolveOptions
 
 BoolArray = NDArray[np.bool_]
@@ -60,10 +60,10 @@ def among(point: Array, points: list[Array]) -> bool:
 
 def contact_states(condensed: CondensedContact) -> list[Array]:
     """The scaled pressures (n,) of all contact states, from all 2ⁿ contact sets, equilibrium included."""
-    problem = scaled(condensed)
-    n, k = problem.rigid_motions.shape
-    system = np.block([[problem.compliance, problem.rigid_motions], [problem.equilibrium.T, np.zeros((k, k))]])
-    points = complementary_points(system, np.append(problem.offset, problem.motion_load), free=k)
+    scaled = scale(condensed)
+    n, k = scaled.rigid_motions.shape
+    system = np.block([[scaled.compliance, scaled.rigid_motions], [scaled.equilibrium.T, np.zeros((k, k))]])
+    points = complementary_points(system, np.append(scaled.offset, scaled.motion_load), free=k)
     return distinct([z[:n] for z in points])
 
 
@@ -72,11 +72,11 @@ def first_order_points_of_qp1(condensed: CondensedContact) -> list[Array]:
 
     With multipliers λ of the gaps: Jq + (JM + MᵀJ)p - Mᵀλ >= 0 complementary to p, q + M p >= 0 to λ.
     """
-    problem = scaled(condensed)
-    n, M = condensed.size, problem.compliance
-    weighted = problem.weights[:, None] * M
+    scaled = scale(condensed)
+    n, M = condensed.size, scaled.compliance
+    weighted = scaled.weights[:, None] * M
     system = np.block([[weighted + weighted.T, -M.T], [M, np.zeros((n, n))]])
-    points = complementary_points(system, np.append(problem.weights * problem.offset, problem.offset))
+    points = complementary_points(system, np.append(scaled.weights * scaled.offset, scaled.offset))
     return distinct([z[:n] for z in points])
 
 
@@ -93,8 +93,8 @@ def is_p_matrix(M: Array) -> bool:
 
 def curvature(problem: CondensedContact) -> float:
     """Smallest eigenvalue of JM + MᵀJ on the equilibrium space, scaled."""
-    held = scaled(problem)
-    value = qp3.smallest_eigenvalue(held, np.diag(held.weights))
+    scaled = scale(problem)
+    value = qp3.smallest_eigenvalue(scaled, np.diag(scaled.weights))
     assert value is not None
     return value
 

@@ -7,11 +7,11 @@ import pytest
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations.active_set import first_active_set, primal_dual, resting_points, solve_active_set
-from bemcontact.formulations.scaling import ScaledContact, scaled
+from bemcontact.formulations.scaling import ScaledContact, scale
 
 
 def plain(M: np.ndarray, q: np.ndarray) -> ScaledContact:
-    return scaled(CondensedContact.from_compliance(M, q))
+    return scale(CondensedContact.from_compliance(M, q))
 
 
 def test_exact_in_one_step_from_the_right_set():
@@ -24,16 +24,16 @@ def test_exact_in_one_step_from_the_right_set():
 def test_a_rigid_body_rests_on_what_is_under_its_load():
     """A disk with the same gap all around falls onto two points beside the line of its load."""
     angles = np.radians(np.arange(5.0, 360.0, 10.0))
-    problem = scaled(
+    scaled = scale(
         CondensedContact.from_compliance(
             np.eye(36), np.ones(36), rigid_motions=np.column_stack([np.cos(angles), np.sin(angles)]),
             motion_load=np.array([0.0, -1.0]),
         )
     )  # fmt: skip
-    assert not first_active_set(problem).any()
-    touching = np.rad2deg(angles[resting_points(problem)])
+    assert not first_active_set(scaled).any()
+    touching = np.rad2deg(angles[resting_points(scaled)])
     np.testing.assert_allclose(touching, [85.0, 95.0])
-    end = primal_dual(problem, resting_points(problem))
+    end = primal_dual(scaled, resting_points(scaled))
     assert end.residual <= 1e-15
     assert not resting_points(plain(np.eye(2), np.ones(2))).any()
 
@@ -64,10 +64,10 @@ def test_cycle_ends_with_the_best_point_seen():
 def test_too_few_contacts_for_the_motions():
     """One point cannot hold two motions: the least-squares answer keeps its gap closed and is finite."""
     R = np.array([[1.0, 0.0], [1.0, 1.0], [1.0, 2.0]])
-    problem = scaled(
+    scaled = scale(
         CondensedContact.from_compliance(np.eye(3), np.ones(3), rigid_motions=R, motion_load=np.array([-1.0, -1.0]))
     )
-    p, a = solve_active_set(problem, np.array([True, False, False]))
+    p, a = solve_active_set(scaled, np.array([True, False, False]))
     assert np.isfinite(p).all()
     assert np.isfinite(a).all()
 
@@ -100,5 +100,5 @@ def test_small_weights_make_no_set_singular(power):
 def test_first_set_of_a_free_body_is_laid_by_least_squares():
     """A parabola on a plane: the weighted mean of x² separates the points that are taken to touch."""
     x = np.linspace(-1, 1, 11)
-    problem = scaled(CondensedContact.from_compliance(np.eye(11), x**2, rigid_motions=np.ones(11), motion_load=-1.0))
-    np.testing.assert_array_equal(first_active_set(problem), x**2 <= np.mean(x**2))
+    scaled = scale(CondensedContact.from_compliance(np.eye(11), x**2, rigid_motions=np.ones(11), motion_load=-1.0))
+    np.testing.assert_array_equal(first_active_set(scaled), x**2 <= np.mean(x**2))

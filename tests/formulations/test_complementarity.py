@@ -12,7 +12,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.complementarity import escape_note, lemke, polish, solve, solve_lcp, standard_form
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scale
 
 
 def murty(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -276,21 +276,21 @@ def test_note_of_a_supported_body_is_none():
 def test_standard_form_states_the_same(k):
     """For any p in equilibrium and any a, J w = q' + M' z with pressure and gap exchanged on k points."""
     rng = np.random.default_rng(2)
-    problem = scaled(random_contact(5, 9, k))
-    matrix, vector, exchanged = standard_form(problem)
+    scaled = scale(random_contact(5, 9, k))
+    matrix, vector, exchanged = standard_form(scaled)
     assert exchanged.sum() == k
-    R, ell = problem.rigid_motions, problem.equilibrium
+    R, ell = scaled.rigid_motions, scaled.equilibrium
     p, a = rng.standard_normal(9), rng.standard_normal(k)
-    p -= R @ np.linalg.solve(ell.T @ R, ell.T @ p + problem.motion_load)
-    gap = problem.gap(p, a)
+    p -= R @ np.linalg.solve(ell.T @ R, ell.T @ p + scaled.motion_load)
+    gap = scaled.gap(p, a)
     z, w = np.where(exchanged, gap, p), np.where(exchanged, p, gap)
-    np.testing.assert_allclose(vector + matrix @ z, problem.weights * w, atol=1e-11)
+    np.testing.assert_allclose(vector + matrix @ z, scaled.weights * w, atol=1e-11)
 
 
 @pytest.mark.parametrize("k", [1, 3])
 def test_standard_form_is_monotone(k):
     """Where sym(JM) is positive definite on {ℓᵀp = 0}, sym(M') is positive semidefinite: Lemke ends with an answer."""
-    matrix = standard_form(scaled(random_contact(6, 12, k)))[0]
+    matrix = standard_form(scale(random_contact(6, 12, k)))[0]
     smallest = np.linalg.eigvalsh(matrix + matrix.T)[0]
     assert smallest >= -1e-12 * np.abs(matrix).max()
 

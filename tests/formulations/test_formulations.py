@@ -14,7 +14,7 @@ from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_i
 from bemcontact.errors import OptionError
 from bemcontact.formulations import FORMULATIONS, clarabel, complementarity, qp1, qp2, qp3
 from bemcontact.formulations.complementarity import ACCEPTED
-from bemcontact.formulations.scaling import scaled, scaled_point
+from bemcontact.formulations.scaling import scale, scaled_point
 from bemcontact.formulations.search import draw_starts
 from bemcontact.options import USES, FormulationName, SolveOptions
 
@@ -110,8 +110,8 @@ def test_objective_of_qp3_is_that_of_the_point(k):
     negative pressure, the point is another one.
     """
     problem = random_contact(4, N, k)
-    small = scaled(problem)
-    work = qp3.objective(small, np.diag(small.weights))
+    scaled = scale(problem)
+    work = qp3.objective(scaled, np.diag(scaled.weights))
     whole = qp3.solve(problem, SolveOptions.of("qp3", polish=False))
     assert counted(whole) == 2 * [*range(whole.iterations + 1)]
     for limit in range(1, whole.iterations + 1):
@@ -121,8 +121,8 @@ def test_objective_of_qp3_is_that_of_the_point(k):
         p, a = scaled_point(problem, stopped.pressure, stopped.rigid_amplitudes)
         if p.all():
             assert values[-1] == pytest.approx(work.value(p, a), rel=1e-12, abs=1e-14 * (1 + p @ p))
-        gap, balance = small.gap(p, a), np.abs(small.equilibrium.T @ p + small.motion_load)
-        terms = max(1.0, sum(map(np.linalg.norm, (p, a, gap, small.offset, small.motion_load))))
+        gap, balance = scaled.gap(p, a), np.abs(scaled.equilibrium.T @ p + scaled.motion_load)
+        terms = max(1.0, sum(map(np.linalg.norm, (p, a, gap, scaled.offset, scaled.motion_load))))
         assert max(-p.min(), -gap.min(), balance.max(initial=0.0)) <= (record[-1] + 1e-15) * terms
     assert of(whole, "objective")[-1] == pytest.approx(0, abs=1e-10)
     assert of(whole, "infeasibility")[-1] <= clarabel.GOOD
@@ -136,12 +136,12 @@ def test_units_of_wide_gaps_are_taken_back(k):
     """
     problem = random_contact(5, N, k)
     problem = replace(problem, initial_gap=problem.initial_gap + 1e7 * np.eye(N)[0])
-    small = scaled(problem)
-    work = qp3.objective(small, np.diag(small.weights))
+    scaled = scale(problem)
+    work = qp3.objective(scaled, np.diag(scaled.weights))
     result = qp3.solve(problem, SolveOptions.of("qp3", polish=False))
     assert counted(result) == 2 * [*range(result.iterations + 1)]
     p, a = scaled_point(problem, result.pressure, result.rigid_amplitudes)
-    assert of(result, "objective")[-1] == pytest.approx(work.value(p, a), rel=1e-6, abs=1e-9 * small.offset.max())
+    assert of(result, "objective")[-1] == pytest.approx(work.value(p, a), rel=1e-6, abs=1e-9 * scaled.offset.max())
     assert result.status is Status.SOLVED
 
 
@@ -153,7 +153,7 @@ def test_residual_of_the_active_set_ends_at_that_of_the_solution(k):
     assert (trace.quantity, trace.first, len(trace.values)) == ("residual", 1, result.iterations)
     assert trace.values[-1] <= ACCEPTED < trace.values[0]
     p, a = scaled_point(problem, result.pressure, result.rigid_amplitudes)
-    assert scaled(problem).residual(p, a) == pytest.approx(trace.values[-1], abs=1e-15)
+    assert scale(problem).residual(p, a) == pytest.approx(trace.values[-1], abs=1e-15)
 
 
 def test_lemke_takes_over_in_the_history():

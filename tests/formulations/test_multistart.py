@@ -41,7 +41,7 @@ from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError
 from bemcontact.formulations import complementarity, qp1, qp2, qp3
 from bemcontact.formulations.multistart import multistart
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scale
 from bemcontact.formulations.search import Start, draw_starts
 from bemcontact.options import Equilibrium, SolveOptions
 
@@ -88,7 +88,7 @@ def test_p_matrices_have_one_first_order_point(kind, n):
     for seed in range(3):
         problem = kind(np.random.default_rng([seed, n]), n)
         (truth,) = contact_states(problem)
-        gap = scaled(problem).gap(truth, np.zeros(0))
+        gap = scale(problem).gap(truth, np.zeros(0))
         (p,) = first_order_points_of_qp1(problem)
         assert among(p, [truth])
         for penalty in PENALTIES:
@@ -113,17 +113,17 @@ def test_qp3_of_p_matrices(kind):
     for seed in range(3):
         condensed = kind(np.random.default_rng([seed, 6, 2]), 6)
         (truth,) = contact_states(condensed)
-        problem = scaled(condensed)
+        scaled = scale(condensed)
         if curvature(condensed) > 0:
             solution = qp3.solve(condensed)
             np.testing.assert_allclose(solution.pressure / condensed.scales.pressure, truth, atol=1e-9)
         else:
             with pytest.raises(NotConvexError):
                 qp3.solve(condensed)
-        weighted = problem.weights[:, None] * problem.compliance
+        weighted = scaled.weights[:, None] * scaled.compliance
         for start in draw_starts(condensed, 10, seed):
             result = minimize_qp(
-                weighted + weighted.T, problem.weights * problem.offset, A=problem.compliance, cl=-problem.offset,
+                weighted + weighted.T, scaled.weights * scaled.offset, A=scaled.compliance, cl=-scaled.offset,
                 bl=np.zeros(6), x0=start.pressure / condensed.scales.pressure,
             )  # fmt: skip
             assert result.status is QPStatus.LOCAL_MINIMIZER
@@ -241,7 +241,7 @@ def test_points_that_touch_without_pressure(q, statement):
     problem = CondensedContact.from_compliance(np.array(TRIANGULAR), q, [2, 2, 2, 1, 2, 2])
     assert is_p_matrix(problem.compliance)
     (truth,) = contact_states(problem)
-    gap = scaled(problem).gap(truth, np.zeros(0))
+    gap = scale(problem).gap(truth, np.zeros(0))
     assert np.abs(np.maximum(gap, truth)).min() <= SAME
     formulation, penalty = statement
     assert_right(problem, random_starts(problem, formulation, count=60, seed=5, penalty=penalty), truth)

@@ -12,7 +12,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import FORMULATIONS, complementarity, qp1, qp3
-from bemcontact.formulations.scaling import scaled, scaled_point
+from bemcontact.formulations.scaling import scale, scaled_point
 from bemcontact.formulations.search import Start
 from bemcontact.options import Rows, SolveOptions, Weights
 
@@ -46,15 +46,15 @@ def test_quadratic_is_the_work_of_the_pressure_in_the_gap(k, rows):
     """½ xᵀHx + cᵀx = pᵀJδ = F1, and F1 = F3 with A x = b wherever (12) holds: no factor 1/2 is amiss."""
     rng = np.random.default_rng(k)
     condensed = random_contact(1, 9, k)
-    problem = scaled(condensed)
+    scaled = scale(condensed)
     program = qp1.program_of(condensed, SolveOptions.of("qp1", rows=rows))
-    work = qp3.objective(problem, np.diag(problem.weights))
+    work = qp3.objective(scaled, np.diag(scaled.weights))
     for _ in range(5):
-        p, a, gap = in_equilibrium(problem, rng)
+        p, a, gap = in_equilibrium(scaled, rng)
         u_n = gap - condensed.initial_gap / condensed.scales.displacement
         x = np.concatenate([u_n, p, a])[: len(program.lower)]
         quadratic = 0.5 * x @ program.hessian @ x + program.linear @ x
-        assert quadratic == pytest.approx(p @ np.diag(problem.weights) @ gap, rel=1e-11)
+        assert quadratic == pytest.approx(p @ np.diag(scaled.weights) @ gap, rel=1e-11)
         assert program.value(x) == pytest.approx(quadratic, rel=1e-11)
         assert program.value(x) == pytest.approx(work.value(p, a), rel=1e-9)
         np.testing.assert_allclose(program.equations.matrix @ x, program.equations.right, atol=1e-12)
@@ -65,12 +65,12 @@ def test_quadratic_is_the_work_of_the_pressure_in_the_gap(k, rows):
 def test_hessian_on_the_equations_is_that_of_qp3(k, rows):
     """Along the null space of the equations dδ = M dp + R da with ℓᵀdp = 0, so that dxᵀH dx = dpᵀ(JM + MᵀJᵀ)dp."""
     condensed = random_contact(2, 8, k)
-    problem = scaled(condensed)
+    scaled = scale(condensed)
     program = qp1.program_of(condensed, SolveOptions.of("qp1", rows=rows))
     free = null_space(program.equations.matrix)
     assert free.shape[1] == condensed.size  # n - k pressures in equilibrium and k motions
     p = free[8:16]
-    weighted = np.diag(problem.weights) @ problem.compliance
+    weighted = np.diag(scaled.weights) @ scaled.compliance
     np.testing.assert_allclose(free.T @ program.hessian @ free, p.T @ (weighted + weighted.T) @ p, atol=1e-12)
     assert np.linalg.eigvalsh(free.T @ program.hessian @ free)[0] >= -1e-14  # convex there, by the choice of M
 

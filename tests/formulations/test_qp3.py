@@ -11,7 +11,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import NotConvexError, ProblemError, SolverError
 from bemcontact.formulations import clarabel, complementarity, qp3
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scale
 from bemcontact.options import SolveOptions, Weights
 
 UNPOLISHED = SolveOptions.of("qp3", polish=False)
@@ -28,31 +28,31 @@ def balanced(problem, rng: np.random.Generator) -> np.ndarray:
 def test_quadratic_equals_the_work_of_the_pressure_in_the_gap(k):
     """F3 = pᵀJδ = F1 wherever (12) holds, for every p in equilibrium and every a: no factor 1/2 is amiss."""
     rng = np.random.default_rng(0)
-    problem = scaled(random_contact(1, 9, k))
-    J = np.diag(problem.weights)
-    work = qp3.objective(problem, J)
+    scaled = scale(random_contact(1, 9, k))
+    J = np.diag(scaled.weights)
+    work = qp3.objective(scaled, J)
     for _ in range(5):
-        p, a = balanced(problem, rng), rng.standard_normal(k)
-        assert work.value(p, a) == pytest.approx(p @ J @ problem.gap(p, a), rel=1e-11, abs=1e-12)
+        p, a = balanced(scaled, rng), rng.standard_normal(k)
+        assert work.value(p, a) == pytest.approx(p @ J @ scaled.gap(p, a), rel=1e-11, abs=1e-12)
 
 
 def test_quadratic_with_full_weights():
     """For a J that is neither diagonal nor tributary, with J R = ℓ C: here tributary weights plus PᵀXP."""
     rng = np.random.default_rng(2)
-    problem = scaled(random_contact(3, 9, 2))
-    R, ell = problem.rigid_motions, problem.equilibrium
+    scaled = scale(random_contact(3, 9, 2))
+    R, ell = scaled.rigid_motions, scaled.equilibrium
     project = np.eye(9) - R @ np.linalg.solve(ell.T @ R, ell.T)
     A = rng.standard_normal((9, 9))
-    J = 2 * np.diag(problem.weights) + project.T @ (A + A.T) @ project
-    work = qp3.objective(problem, J)
-    p, a = balanced(problem, rng), rng.standard_normal(2)
-    assert work.value(p, a) == pytest.approx(p @ J @ problem.gap(p, a), rel=1e-11)
+    J = 2 * np.diag(scaled.weights) + project.T @ (A + A.T) @ project
+    work = qp3.objective(scaled, J)
+    p, a = balanced(scaled, rng), rng.standard_normal(2)
+    assert work.value(p, a) == pytest.approx(p @ J @ scaled.gap(p, a), rel=1e-11)
 
 
 def test_hessian_is_semidefinite_in_all_directions():
     """Positive on {ℓᵀp = 0} is made enough: PᵀHP has no negative eigenvalue, and k zero ones."""
-    problem = scaled(random_contact(4, 10, 2))
-    eigenvalues = np.linalg.eigvalsh(qp3.objective(problem, np.diag(problem.weights)).hessian)
+    scaled = scale(random_contact(4, 10, 2))
+    eigenvalues = np.linalg.eigvalsh(qp3.objective(scaled, np.diag(scaled.weights)).hessian)
     assert eigenvalues[0] >= -1e-14
     assert eigenvalues[1] == pytest.approx(0, abs=1e-14)
     assert eigenvalues[2] > 1e-4

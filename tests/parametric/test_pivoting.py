@@ -9,14 +9,14 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.formulations.scaling import scaled, scaled_change, scaled_point, unscaled
+from bemcontact.formulations.scaling import scale, scaled_change, scaled_point, unscaled
 from bemcontact.parametric.pivoting import Tangent, is_monotone
 
 
 def tangent_of(contact: CondensedContact) -> Tangent:
-    problem, solution = scaled(contact), complementarity.solve(contact)
+    scaled, solution = scale(contact), complementarity.solve(contact)
     p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
-    return Tangent.at(problem, p, problem.gap(p, a), a, is_monotone(problem))
+    return Tangent.at(scaled, p, scaled.gap(p, a), a, is_monotone(scaled))
 
 
 def rate_of(contact: CondensedContact, change: Change) -> tuple[np.ndarray, np.ndarray]:
@@ -51,10 +51,10 @@ def test_derivative_is_the_difference_to_a_state_a_step_further(seed: int):
 @pytest.mark.parametrize("size", [1.0, 1e-2, 1e-3])
 def test_a_gap_is_closed_if_next_to_no_pressure_closes_it(size: float):
     """Short elements have little compliance: it takes a large pressure to close a small gap there."""
-    contact = scaled(CondensedContact.from_compliance(np.diag([1.0, size]), [-1.0, 0.0], [1.0, 1.0]))
+    scaled = scale(CondensedContact.from_compliance(np.diag([1.0, size]), [-1.0, 0.0], [1.0, 1.0]))
     pressure = np.array([1.0, 0.0])
     for part, weak in ((1e-9, False), (1e-11, True)):
-        tangent = Tangent.at(contact, pressure, np.array([0.0, 2 * part * size]), np.zeros(0), True)
+        tangent = Tangent.at(scaled, pressure, np.array([0.0, 2 * part * size]), np.zeros(0), True)
         assert tangent.weak.tolist() == [1] * weak
 
 
@@ -92,9 +92,9 @@ def test_state_that_may_go_on_in_two_ways_is_refused():
     As it would close, p = (1 - 2 z, z) has the second gap -3 z - t: no z >= 0 keeps it closed.
     """
     contact = indefinite([-1.0, -2.0])
-    problem = scaled(contact)
+    scaled = scale(contact)
     p, a = scaled_point(contact, np.array([1.0, 0.0]), np.zeros(0))
-    tangent = Tangent.at(problem, p, problem.gap(p, a), a, is_monotone(problem))
+    tangent = Tangent.at(scaled, p, scaled.gap(p, a), a, is_monotone(scaled))
     assert not tangent.unique
     with pytest.raises(ProblemError, match="more than one way"):
         tangent.rate(Change(np.array([0.0, 1.0]), np.zeros(0)))

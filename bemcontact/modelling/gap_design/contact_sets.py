@@ -20,7 +20,7 @@ from bemcontact.contact.free_motions import ContactScales
 from bemcontact.errors import SolverError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import minimize_convex
-from bemcontact.formulations.scaling import ScaledContact, scaled
+from bemcontact.formulations.scaling import ScaledContact, scale
 from bemcontact.modelling.gap_design.designed_gap import Goal
 from bemcontact.modelling.gap_design.relief import Profiles
 from bemcontact.modelling.parameters import value_of
@@ -89,7 +89,7 @@ class SharedProfile:
     def of(cls, contacts: Sequence[CondensedContact], profiles: Profiles, goal: Goal) -> "SharedProfile":
         """Scale all states by the largest of their scales."""
         scales = max(contact.scales for contact in contacts)
-        states = tuple(scaled(contact, scales) for contact in contacts)
+        states = tuple(scale(contact, scales) for contact in contacts)
         return cls(states=states, profiles=profiles, scales=scales, goal=goal)
 
     def measure(self, pressures: Iterable[Array]) -> float:

@@ -19,7 +19,7 @@ from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.active_set import solve_active_set
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scale
 from bemcontact.modelling.gap_design.contact_sets import BestProfile, SharedProfile
 from bemcontact.modelling.gap_design.designed_gap import GapDesign, Goal, LoadState, relieved
 from bemcontact.modelling.gap_design.relief import Profiles, Relief
@@ -179,7 +179,7 @@ def _solved(contact: CondensedContact, profile: Array) -> LoadState:
 
 def _on_sets(state: LoadState, touching: BoolArray) -> Array:
     """Pressure (n,) [p] on a designed contact set, of either sign; the program has it to its tolerance over λ only."""
-    pressure, _ = solve_active_set(scaled(state.contact), touching)
+    pressure, _ = solve_active_set(scale(state.contact), touching)
     return pressure * state.contact.scales.pressure
 
 

@@ -16,7 +16,7 @@ import bemcontact
 from bemcontact import CondensedContact, QPResult, QPStatus, Status, minimize_qp
 from bemcontact.arrays import Array
 from bemcontact.formulations import FORMULATIONS, complementarity, qp3
-from bemcontact.formulations.scaling import scaled
+from bemcontact.formulations.scaling import scale
 from bemcontact.formulations.search import draw_starts
 from bemcontact.options import SolveOptions
 
@@ -153,10 +153,10 @@ BODIES: list[Body] = [profile, hertz_held, hertz_pressed]
 
 def without_units(condensed: CondensedContact) -> CondensedContact:
     """The same problem in dimensionless numbers; its ε is the q of the other."""
-    problem = scaled(condensed)
+    scaled = scale(condensed)
     return CondensedContact.from_compliance(
-        problem.compliance, problem.offset, problem.weights,
-        rigid_motions=problem.rigid_motions, motion_load=problem.motion_load,
+        scaled.compliance, scaled.offset, scaled.weights,
+        rigid_motions=scaled.rigid_motions, motion_load=scaled.motion_load,
     )  # fmt: skip
 
 
@@ -226,8 +226,8 @@ def test_reference_is_the_only_solution(body, mesh, modulus, units):
     """sym(JM) positive definite on the equilibrium space, and min(p/T, δ/U) = 0 to round-off."""
     for n in SIZES:
         condensed = body(n, modulus, units, mesh)
-        problem, truth = scaled(condensed), complementarity.solve(condensed)
-        eigenvalue = qp3.smallest_eigenvalue(problem, np.diag(problem.weights))
+        scaled, truth = scale(condensed), complementarity.solve(condensed)
+        eigenvalue = qp3.smallest_eigenvalue(scaled, np.diag(scaled.weights))
         assert eigenvalue is not None
         assert eigenvalue > 0
         p, gap = truth.pressure / condensed.scales.pressure, condensed.gap(truth.pressure, truth.rigid_amplitudes)
