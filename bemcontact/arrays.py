@@ -2,15 +2,13 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
-from decimal import Decimal
 from math import fsum
-from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.checks.arguments import LARGEST_NUMBER, shown
+from bemcontact.checks.arguments import LARGEST_NUMBER, is_real, shown
 from bemcontact.errors import ProblemError
 
 Array = NDArray[np.float64]
@@ -21,18 +19,18 @@ ComplexArray = NDArray[np.complex128]
 BLOCK = 32
 """Rows of which products are held at a time, so that they stay in the cache."""
 
-Shape = tuple[int | None, ...]
+Dimensions = tuple[int | None, ...]
 """Shape of an array that is needed; None is any length."""
 
 
-def real_array(value: Any, what: str, shape: Shape | None = None, *, finite: bool = True) -> Array:
+def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite: bool = True) -> Array:
     """Read an array of real numbers, which errors call `what`; `ProblemError` says what is wrong with it.
 
     Refused are other shapes, masked entries, truth values, texts, complex numbers, and entries that are not finite or
     too large to compute with, unless `finite` is False. The array is not copied if it is one already.
     """
     array = _as_array(value, what)
-    if array.dtype.kind == "O" and all(_is_real(entry) for entry in array.flat):
+    if array.dtype.kind == "O" and all(is_real(entry) for entry in array.flat):
         array = _as_floats(array, what)
     if array.dtype.kind not in "iuf" and array.size:
         raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
@@ -43,7 +41,7 @@ def real_array(value: Any, what: str, shape: Shape | None = None, *, finite: boo
     return array
 
 
-def whole_array(value: Any, what: str, shape: Shape | None = None) -> IntArray:
+def whole_array(value: Any, what: str, shape: Dimensions | None = None) -> IntArray:
     """Read an array of whole numbers, as `real_array` does."""
     array = _as_array(value, what)
     if array.dtype.kind not in "iu" and array.size:
@@ -52,7 +50,7 @@ def whole_array(value: Any, what: str, shape: Shape | None = None) -> IntArray:
     return np.asarray(array, dtype=np.int64)
 
 
-def flag_array(value: Any, what: str, shape: Shape | None = None) -> BoolArray:
+def flag_array(value: Any, what: str, shape: Dimensions | None = None) -> BoolArray:
     """Read an array of truth values, as `real_array` does."""
     array = _as_array(value, what)
     if array.dtype.kind != "b" and array.size:
@@ -62,7 +60,7 @@ def flag_array(value: Any, what: str, shape: Shape | None = None) -> BoolArray:
 
 
 def read_arrays(
-    instance: Any, shapes: Mapping[str, Shape], prefix: str = "", reader: Callable[..., NDArray[Any]] = real_array
+    instance: Any, shapes: Mapping[str, Dimensions], prefix: str = "", reader: Callable[..., NDArray[Any]] = real_array
 ) -> None:
     """Read fields of a frozen dataclass as arrays with given shapes; errors call them by the prefix and their names."""
     for name, shape in shapes.items():
@@ -97,11 +95,6 @@ def _is_masked(value: Any) -> bool:
     return isinstance(value, np.ma.MaskedArray) and bool(np.ma.getmaskarray(value).any())
 
 
-def _is_real(entry: object) -> bool:
-    """Whether an entry of an array of objects is a real number, such as a fraction."""
-    return isinstance(entry, Real | Decimal) and not isinstance(entry, bool)
-
-
 def _as_floats(array: NDArray[Any], what: str) -> Array:
     """Fractions, decimals and long integers as floats."""
     try:
@@ -110,7 +103,7 @@ def _as_floats(array: NDArray[Any], what: str) -> Array:
         raise ProblemError(f"{what} has entries that are not finite numbers of double precision; scale them") from None
 
 
-def _ensure_shape(array: NDArray[Any], what: str, shape: Shape | None) -> None:
+def _ensure_shape(array: NDArray[Any], what: str, shape: Dimensions | None) -> None:
     """Refuse another shape."""
     if shape is None:
         return

@@ -10,8 +10,9 @@ import numpy as np
 
 from bemcontact.adaptivity.sizes import Limit, Loop
 from bemcontact.arrays import Array
+from bemcontact.bem.mesh import CORNER
 from bemcontact.problem.curves import Edge
-from bemcontact.problem.nearness import gaps, nearest_places, surface_corners
+from bemcontact.problem.nearest_places import gaps, nearest_places, surface_corners
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, Shape
 
@@ -19,8 +20,6 @@ TURN = pi / 6
 """Angle [rad] by which an element may turn."""
 PART = 0.5
 """Largest element over its edge."""
-CORNER = 0.2
-"""Angle [rad] by which the boundary turns from which a joint of two edges is a corner."""
 OPPOSED = -0.3
 """Cosine of the angle between two outward normals below which two parts of the boundary face each other."""
 ACROSS = 0.5

@@ -7,9 +7,10 @@ import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved
 from bemcontact.adaptivity.wedge_exponents import Face, contact_face, slow_change, wedge_exponents
-from bemcontact.adaptivity.zone_runs import CORNER, ZoneRun, contact_beside
+from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
-from bemcontact.problem.nearness import surface_corners
+from bemcontact.bem.mesh import CORNER
+from bemcontact.problem.nearest_places import surface_corners
 
 GROWING = 1.04, 1.9
 """Growth of the pressure at a place by bisection between which it may be infinite."""

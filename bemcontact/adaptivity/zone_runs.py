@@ -10,13 +10,12 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import element_lengths
+from bemcontact.bem.mesh import CORNER
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.curves import Edge
 from bemcontact.serialization import Pair
 
-CORNER = 0.2
-"""Sine of the angle by which the boundary turns from which a joint of two edges is a corner."""
 SAME = 1e-12
 """Difference of two positions, over the length of the run, below which they are equal."""
 POINTS_OF_ELEMENT = 3

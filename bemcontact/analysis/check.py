@@ -12,7 +12,7 @@ from bemcontact.bem.body import Body, body_of, deflections, each_case, ensure_he
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.problem import DeflectedContour, Problem
-from bemcontact.problem.nearness import nearest_places, surface_corners
+from bemcontact.problem.nearest_places import nearest_places, surface_corners
 
 BULGE = 1e-5
 """Bulge of a spline over the size of the body that is noted: displacements of stiff bodies are not much larger."""

@@ -9,14 +9,13 @@ from bemcontact.adaptivity.zone_runs import SAME
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import element_lengths
+from bemcontact.bem.mesh import CORNER
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.surface_lines import Polyline, Spline
 
 FEW_POINTS = 5
 """Points under pressure below which a contact is not resolved: three make a parabola, two more its ends."""
-SMOOTH = 0.2
-"""Angle in radians by which the boundary may turn at the end of a zone and still go on smoothly."""
 UNBOUNDED = "the pressure there is infinite in theory, and its values at the last nodes depend on the mesh"
 """Note on an end of contact where the stresses are singular."""
 LONG_NEIGHBOR = 4.0
@@ -193,12 +192,12 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
         node = points.node[i]
         x, y = mesh.nodes[node]
         reached = f"contact reaches the end of the zone '{_zone(body, i)}' at ({x:.5g}, {y:.5g})"
-        if abs(angles[node] - np.pi) < SMOOTH:
+        if abs(angles[node] - np.pi) < CORNER:
             yield (
                 f"{reached}, where the boundary goes on smoothly; make the zone longer, unless the rigid surface ends "
                 f"there with an edge: then {UNBOUNDED}"
             )
-        elif free[node] and angles[node] > np.pi / 2 + SMOOTH:
+        elif free[node] and angles[node] > np.pi / 2 + CORNER:
             yield f"{reached}, a corner of the body of {np.degrees(angles[node]):.0f} degrees; {UNBOUNDED}"
 
 

@@ -12,7 +12,7 @@ from bemcontact.arrays import Array
 from bemcontact.assessment.footprint import Footprint
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
-from bemcontact.bem.mesh import BoundaryState
+from bemcontact.bem.mesh import CORNER, BoundaryState
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.problem import Problem
@@ -33,8 +33,6 @@ LARGE_TURN = 0.1
 """Rotation of the whole body in radians from which it is named as the cause."""
 LARGE_PART = 0.05
 """Share of a contact, or of the boundary, on which strains may be large: singular corners and tips of slits."""
-CORNER = 0.2
-"""Sine of the angle by which the boundary turns from which it has a corner."""
 AT_CORNER = 1e-4
 """Distance from a corner over the size of the body up to which pressure is that of the corner."""
 

@@ -28,7 +28,7 @@ from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Circle, DeflectedContour
-from bemcontact.problem.sight import zone_edges
+from bemcontact.problem.visibility import zone_edges
 
 TURNED = {
     "plane": "its normal points to the body",

@@ -14,8 +14,8 @@ from bemcontact.bem.outline import Outline
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, RigidSurface
-from bemcontact.problem.sight import turned_to
 from bemcontact.problem.surface_lines import Faces
+from bemcontact.problem.visibility import turned_to
 
 PARALLEL = 1e-9
 """Sine of the angle below which the rigid normal lies along a prescribed axis."""

@@ -19,6 +19,8 @@ CURVE_ORDER = 16
 """Gauss points for each element's piece of the curve itself."""
 CONTRADICTION = 1e-9
 """Difference of two prescribed displacements at one corner, relative to the largest one, from which they contradict."""
+CORNER = 0.2
+"""Angle [rad], or its sine, by which the boundary turns from which it has a corner."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.problem.curves import Edge
-from bemcontact.problem.nearness import nearest_places, surface_corners
+from bemcontact.problem.nearest_places import nearest_places, surface_corners
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Circle, RigidSurface
 from bemcontact.problem.surface_lines import Polyline, Spline

@@ -43,7 +43,7 @@ def real_number(value: object, what: str) -> float:
     """Read one finite number of any real kind, a 0-d array included; errors call it `what`."""
     single = _single(value)
     try:
-        number = float(cast(Any, single)) if _is_real(single) else None
+        number = float(cast(Any, single)) if is_real(single) else None
     except (OverflowError, ValueError):
         number = None
     if number is None or not isfinite(number):
@@ -100,7 +100,7 @@ def ensure_callable(value: object, what: str) -> None:
         raise ProblemError(f"{what} must be a function, or None; found {shown(value)}")
 
 
-def _is_real(value: object) -> bool:
+def is_real(value: object) -> bool:
     """Whether this is a real number and no truth value."""
     return isinstance(value, Real | Decimal) and not isinstance(value, bool)
 

@@ -127,9 +127,15 @@ def _arrays(stored: Any, prefix: str) -> Iterator[tuple[str, NDArray[Any]]]:
             yield prefix + item.name, np.array(sorted(value.items()) if isinstance(value, Mapping) else value)
 
 
+def _hints(kind: type[Any]) -> dict[str, Any]:
+    """Types of the fields of a dataclass."""
+    hints = get_type_hints(kind)
+    return {item.name: hints[item.name] for item in fields(kind)}
+
+
 def _names(kind: type[Any], prefix: str) -> Iterator[str]:
     """Names of the arrays of all fields of a dataclass."""
-    for name, hint in get_type_hints(kind).items():
+    for name, hint in _hints(kind).items():
         if is_dataclass(hint):
             yield from _names(hint, f"{prefix}{name}.")  # pyright: ignore[reportArgumentType]
         else:
@@ -138,7 +144,7 @@ def _names(kind: type[Any], prefix: str) -> Iterator[str]:
 
 def _made(kind: type[Kind], arrays: Arrays, prefix: str) -> Kind:
     """Make a dataclass from the arrays under a prefix."""
-    return kind(**{name: _field(hint, arrays, prefix + name) for name, hint in get_type_hints(kind).items()})
+    return kind(**{name: _field(hint, arrays, prefix + name) for name, hint in _hints(kind).items()})
 
 
 def _field(hint: Any, arrays: Arrays, key: str) -> Any:

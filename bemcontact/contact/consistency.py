@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray, Shape, read_arrays, real_array, whole_array
+from bemcontact.arrays import Array, Dimensions, IntArray, read_arrays, real_array, whole_array
 from bemcontact.checks.arguments import shown, text_of_argument, texts
 from bemcontact.errors import ProblemError
 
@@ -18,11 +18,11 @@ def ensure_arrays(contact: Any) -> None:
     """Read the arrays of a problem; refuse wrong shapes and ranges, and points that are out of order."""
     n, k = contact_shape(contact)
     read_arrays(contact, {"zone": (n,), "run": (n,)}, reader=whole_array)
-    needed: dict[str, Shape] = {
+    needed: dict[str, Dimensions] = {
         "points": (n, 2), "normals": (n, 2), "arc_position": (n,), "compliance": (n, n), "free_displacement": (n,),
         "motion_load": (k,), "initial_gap": (n,), "weights": (n,),
     }  # fmt: skip
-    optional: dict[str, Shape] = {
+    optional: dict[str, Dimensions] = {
         "zone_weights": (len(contact.zone_names), n), "consistent_weights": (n, n), "element_length_weights": (n,),
     }  # fmt: skip
     read_arrays(contact, needed | {key: shape for key, shape in optional.items() if getattr(contact, key) is not None})

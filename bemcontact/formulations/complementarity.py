@@ -20,7 +20,7 @@ from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_i
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual, resting_points
 from bemcontact.formulations.open_position import with_chosen_position
-from bemcontact.formulations.scaling import ScaledContact, scale, scaled_point, unscaled
+from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, unscaled
 from bemcontact.options import FormulationName, SolveOptions, options_of
 
 PIVOT = 1e-11
@@ -29,8 +29,6 @@ VANISHED = 1e-13
 ROUND_OFF = 1e-11
 REFRESH = 50
 """Pivots after which the inverse of the basis is computed anew, against the growth of round-off."""
-ACCEPTED = 1e-11
-"""Value of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
 BALANCED = 1e-12
 """Fraction of the load, by its norm, that may remain without support before the load counts as impossible to carry."""
 POLISH_STEPS = 10

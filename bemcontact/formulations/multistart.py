@@ -18,12 +18,12 @@ SAME = 1e-6
 NOWHERE = (Status.INFEASIBLE, Status.UNBOUNDED)
 """Ends that are proofs and no points: all of a kind are one, and an objective means nothing there."""
 
-Progress = Callable[[int], object]
+StartsDone = Callable[[int], object]
 """Takes the number of searches done."""
 
 
 def solve_contact(
-    contact: CondensedContact, options: SolveOptions, progress: Progress | None = None
+    contact: CondensedContact, options: SolveOptions, progress: StartsDone | None = None
 ) -> tuple[ContactSolution, RandomStarts | None]:
     """Solve by the formulation of the options.
 
@@ -38,7 +38,7 @@ def solve_contact(
     return solve(contact, replace(options, start=best, seed=None, starts=None)), searches
 
 
-def multistart(contact: CondensedContact, options: SolveOptions, progress: Progress | None = None) -> RandomStarts:
+def multistart(contact: CondensedContact, options: SolveOptions, progress: StartsDone | None = None) -> RandomStarts:
     """Search from random starts, and sort the ends; there is no polish, which would hide where a search ended.
 
     `progress` is called after each search with the number of searches done.

@@ -15,7 +15,7 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.formulations.local_solver.factorizations import unit_rows
-from bemcontact.formulations.scaling import ScaledContact, scale, scaled_point, unscaled
+from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, unscaled
 
 VANISHED = 1e-12
 """Fraction of the largest pressure below which a pressure is round-off, and holds no motion."""
@@ -23,8 +23,6 @@ UNSEEN = 1e-9
 """Normal displacement of pressed points, relative to the motion's own, that counts as zero."""
 OPEN = 1e-6
 """Amplitude in U that a motion needs to count as open: round-off leaves less where it is locked."""
-ACCEPTED = 1e-11
-"""Value of `ScaledContact.residual` up to which a position is one of contact."""
 
 
 def with_chosen_position(

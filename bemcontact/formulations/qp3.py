@@ -17,8 +17,8 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace
 from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.clarabel import STATUSES, minimize_convex
-from bemcontact.formulations.complementarity import ACCEPTED, escape_note, polish
-from bemcontact.formulations.scaling import ScaledContact, scale, scaled_point, scaled_weights, unscaled
+from bemcontact.formulations.complementarity import escape_note, polish
+from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, scaled_weights, unscaled
 from bemcontact.options import FormulationName, SolveOptions, Weights, options_of
 
 NEGLIGIBLE = 1e-10

@@ -14,6 +14,9 @@ from bemcontact.contact.free_motions import ContactScales, MotionAlgebra
 from bemcontact.contact.load_cases import Change
 from bemcontact.options import Weights
 
+ACCEPTED = 1e-11
+"""Value of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ScaledContact(MotionAlgebra):

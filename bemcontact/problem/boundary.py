@@ -10,9 +10,9 @@ import numpy as np
 from pydantic import model_validator
 
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
-from bemcontact.problem.closing import JOINT_TOLERANCE, gap_issues, other_way_round
 from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc
 from bemcontact.problem.geometry import AnyEdge, Arc, Grading, LoopSpec, Place
+from bemcontact.problem.loop_closure import JOINT_TOLERANCE, gap_issues, other_way_round
 from bemcontact.problem.loops import loop_issues
 from bemcontact.problem.validation import LARGEST_STATED, Point, SpecModel, validation_error
 from bemcontact.problem.wording import unknown_word

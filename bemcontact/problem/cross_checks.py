@@ -17,9 +17,9 @@ from bemcontact.problem.key_path import RawValue
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.reference import Hertz, Table, Values
 from bemcontact.problem.rigid_surface import Circle, DeflectedContour, Plane, RigidSurface, Shape
-from bemcontact.problem.sight import turned_to, zone_edges
 from bemcontact.problem.surface_lines import Polyline, Spline
 from bemcontact.problem.validation import KeyIssue
+from bemcontact.problem.visibility import turned_to, zone_edges
 from bemcontact.problem.wording import unknown_word
 
 LARGEST_TURNING = radians(60)

@@ -273,6 +273,11 @@ def _chords(sweep: float) -> int:
     return int(degrees(abs(sweep))) + 1
 
 
+def cross(one: Array, other: Array) -> Array:
+    """Component z of the cross product of vectors (..., 2)."""
+    return one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
+
+
 def unit_vector(angle: float) -> Pair:
     """(cos, sin) of an angle in degrees, exact at multiples of 90 degrees."""
     quarter, rest = divmod(angle, 90.0)
@@ -329,28 +334,6 @@ def _lengths_about(elements: int, ratio: float, place: float) -> Array:
         return abs(log(left[-1] / right[0]))
 
     return np.concatenate(sides(min(range(1, elements), key=mismatch)))
-
-
-def cubic_ends(elements: int, *, both: bool, shortest: float = 0.0) -> Array:
-    """Element ends (elements + 1,) from 0 to 1 at the cubes of equal steps, dense at 0, or at both ends.
-
-    Parameters
-    ----------
-    elements : number of elements, at least 1
-    both : whether the ends are dense at 0 and at 1
-    shortest : smallest length; if cubes give shorter lengths, a linear term is mixed in
-    """
-    step = np.arange(elements + 1) / elements
-    if not both:
-        return _cubed(step, elements, shortest)
-    half = _cubed(2 * step[: elements // 2 + 1], elements / 2, 2 * shortest) / 2
-    return np.concatenate([half, 1 - half[: (elements + 1) // 2][::-1]])
-
-
-def _cubed(step: Array, count: float, shortest: float) -> Array:
-    """(1 - e) s³ + e s for steps s, with the smallest e >= 0 for which the first length is long enough."""
-    even = max(0.0, shortest - count**-3) / (1 / count - count**-3) if count > 1 else 0.0
-    return (1 - even) * step**3 + even * step
 
 
 def moved_onto(ends: Array, places: Sequence[float]) -> Array:

@@ -7,8 +7,8 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problem.closeness import near_miss, sagitta
-from bemcontact.problem.curves import Edge
+from bemcontact.problem.curves import Edge, cross
+from bemcontact.problem.near_misses import near_miss, sagitta
 
 TOUCHING = 1e-9
 """Distance of two edges, relative to the size of the body, up to which they touch."""
@@ -103,10 +103,10 @@ def _meetings(p: Array, p_end: Array, q: Array, q_end: Array, tolerance: float) 
     """Which sides q + u s (m, 2) cross, touch or overlap their sides p + t r (m, 2), and the common points (m, 2)."""
     r, s = p_end - p, q_end - q
     length, lengths = np.hypot(r[:, 0], r[:, 1]), np.hypot(s[:, 0], s[:, 1])
-    turn, off = _cross(r, s), _cross(q - p, r)
+    turn, off = cross(r, s), cross(q - p, r)
     parallel = np.abs(turn) <= 1e-12 * length * lengths
     turn = np.where(parallel, 1.0, turn)
-    t, u = _cross(q - p, s) / turn, off / turn
+    t, u = cross(q - p, s) / turn, off / turn
     slack, slacks = tolerance / length, tolerance / lengths
     inside = (t >= -slack) & (t <= 1 + slack) & (u >= -slacks) & (u <= 1 + slacks)
     crossing = inside & ~(parallel | _share_a_corner((p, p_end), (q, q_end)))
@@ -119,10 +119,6 @@ def _meetings(p: Array, p_end: Array, q: Array, q_end: Array, tolerance: float) 
 def _share_a_corner(ends: tuple[Array, Array], others: tuple[Array, Array]) -> BoolArray:
     """Which sides (m,) have exactly the same point as one of the ends."""
     return np.any([(end == other).all(axis=1) for end in ends for other in others], axis=0)
-
-
-def _cross(a: Array, b: Array) -> Array:
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def _orientations(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iterator[Issue]:

@@ -36,7 +36,6 @@ from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, wi
 from bemcontact.problem.load_case import Combination, LoadCase
 from bemcontact.problem.material import Material
 from bemcontact.problem.reference import ReferenceSpec
-from bemcontact.problem.sight import zone_edges
 from bemcontact.problem.units import Units
 from bemcontact.problem.validation import (
     Count,
@@ -49,6 +48,7 @@ from bemcontact.problem.validation import (
     issues_of,
 )
 from bemcontact.problem.variant import Variant, issues_of_values
+from bemcontact.problem.visibility import zone_edges
 from bemcontact.problem.wording import unknown_word
 
 ACCURACY = 0.01

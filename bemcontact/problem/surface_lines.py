@@ -9,7 +9,7 @@ import scipy
 from pydantic import Field, model_validator
 
 from bemcontact.arrays import Array, BoolArray, IntArray
-from bemcontact.problem.curves import Curve
+from bemcontact.problem.curves import Curve, cross
 from bemcontact.problem.loops import first_meeting
 from bemcontact.problem.validation import Point, SpecModel, invalid
 
@@ -149,7 +149,7 @@ class Polyline(SpecModel):
         offset = points[:, None] - corners[facing]
         along = np.einsum("ksi,ksi->ks", offset, directions[facing])
         rising = np.column_stack([nearest >= 0, *((nearest > 0, nearest < last) & self._concave_beside(nearest))])
-        turn = _cross(inward[:, 0], inward[:, 1])[:, None]
+        turn = cross(inward[:, 0], inward[:, 1])[:, None]
         rising &= (along >= low[facing]) | (np.arange(3) == 0) | ((turn > 0) & (np.arange(3) == 2))
         rising &= (along <= high[facing]) | (np.arange(3) == 0) | ((turn > 0) & (np.arange(3) == 1))
         held = np.flatnonzero((corner < 0) | self._concave[np.clip(corner - 1, 0, last - 1)])
@@ -163,7 +163,7 @@ class Polyline(SpecModel):
     def _press_on_ridges(self, points: Array, inward: Array, reach: Array, held: Faces) -> None:
         """Put the normals of the body where a convex corner of the surface presses on it."""
         ridges, distances = self._ridges_beside(points)
-        turn, lefts = _cross(inward[:, 0], inward[:, 1]), self.sides.lefts
+        turn, lefts = cross(inward[:, 0], inward[:, 1]), self.sides.lefts
         own, straight = _pressed_normals(inward, turn, held)
         within = [_dot(_between(own[:, 1], lefts[i + 1], lefts[i]), own[:, 1]) for i in ridges.T]
         within = np.where(np.isfinite(distances), np.transpose(within), -np.inf)
@@ -176,7 +176,7 @@ class Polyline(SpecModel):
             body = own[:, column]
             pressing, tilt = _between(body, after, before), _dot(held.normals[:, column], body)
             over, face = _over(offset, pressing, before, after)
-            opens = over >= abs(_cross(offset, body) * _cross(held.normals[:, column], body)) / 2
+            opens = over >= abs(cross(offset, body) * cross(held.normals[:, column], body)) / 2
             inside = _dot(pressing, body) >= 1 - ALIKE
             tilted = (tilt < LIES_ON) & (_dot(pressing, body) >= LIES_ON)
             nearer = smooth & ~flat & (tilted | (inside & opens & (tilt < 1 - ALIKE)))
@@ -207,7 +207,7 @@ class Polyline(SpecModel):
     def turns(self) -> Array:
         """Angle [rad] by which the line turns away from the body at each of its inner corners (s - 1,)."""
         before, after = self.sides.directions[:-1], self.sides.directions[1:]
-        return np.arctan2(-_cross(before, after), _dot(before, after))
+        return np.arctan2(-cross(before, after), _dot(before, after))
 
     @cached_property
     def _concave(self) -> BoolArray:
@@ -297,11 +297,11 @@ class Spline(SmoothSurface):
         """
         chords = np.diff(np.array(self.points), axis=0)
         length = np.hypot(*chords.T)
-        turns = np.arctan2(_cross(chords[:-1], chords[1:]), _dot(chords[:-1], chords[1:]))
+        turns = np.arctan2(cross(chords[:-1], chords[1:]), _dot(chords[:-1], chords[1:]))
         before, after = np.append(turns[:1], turns), np.append(turns, turns[-1:])
         bend = np.where(before * after > 0, np.minimum(abs(before), abs(after)), 0.0) if len(turns) else np.zeros(1)
         places = self.curve(self.samples[:-1].reshape(len(length), SAMPLES))
-        away = abs(_cross(places - np.array(self.points)[:-1, None], (chords / length[:, None])[:, None]))
+        away = abs(cross(places - np.array(self.points)[:-1, None], (chords / length[:, None])[:, None]))
         farthest = away.argmax(axis=1)
         rows = np.arange(len(length))
         return away[rows, farthest] - bend * length / 4, places[rows, farthest]
@@ -407,10 +407,6 @@ def _coordinates(point: Array) -> str:
     return f"({point[0]:.6g}, {point[1]:.6g})"
 
 
-def _cross(a: Array, b: Array) -> Array:
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-
-
 def _pressed_normals(inward: Array, turn: Array, held: Faces) -> tuple[Array, BoolArray]:
     """Normals (k, 3, 2) of the body against which corners press, and whether (k,) a smooth side of it is pressed.
 
@@ -435,7 +431,7 @@ def _dot(a: Array, b: Array) -> Array:
 
 def _between(vectors: Array, first: Array, last: Array) -> Array:
     """Unit vectors along vectors (k, 2), or the nearer of two unit normals where these are not on either side."""
-    inside = (_cross(first, vectors) >= 0) & (_cross(vectors, last) >= 0)
+    inside = (cross(first, vectors) >= 0) & (cross(vectors, last) >= 0)
     nearer = np.einsum("ki,ki->k", vectors, first) > np.einsum("ki,ki->k", vectors, last)
     return np.where(inside[:, None], unit_vectors(vectors, last), np.where(nearer[:, None], first, last))
 

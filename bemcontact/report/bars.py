@@ -11,9 +11,10 @@ from bemcontact.report.formatting import (
     sentence_case,
     vector,
     with_unit,
+    zero_if_negligible,
 )
 
-Record = Mapping[str, Any]
+JsonObject = Mapping[str, Any]
 """A JSON object of a result."""
 NOTHING = "–"
 """Text for a missing number."""
@@ -34,7 +35,7 @@ BARS_ARE = (
 """What an error bar is."""
 
 
-def mesh_in_short(accuracy: Record) -> str:
+def mesh_in_short(accuracy: JsonObject) -> str:
     """Error of a mesh, for a column of a table: ``0.4 %``, ``not met: 30 %``, ``not assessed``."""
     if accuracy["met"] is None:
         return "not assessed"
@@ -43,7 +44,7 @@ def mesh_in_short(accuracy: Record) -> str:
     return error if accuracy["met"] else f"not met: {error}"
 
 
-def worst_bar(accuracy: Record) -> Record | None:
+def worst_bar(accuracy: JsonObject) -> JsonObject | None:
     """The largest error bar of those to which the accuracy applies, an unknown one first; None if there is none.
 
     The first of those that are too small to be written, so that round-off does not choose.
@@ -59,17 +60,17 @@ def error_percent(error: float | None) -> str:
     return f"{power * np.ceil(100 * error / power * (1 - ROUND_OFF)):.3g} %"
 
 
-def bar_in_words(bar: Record) -> str:
+def bar_in_words(bar: JsonObject) -> str:
     """Name a quantity and its zone: ``peak pressure of foot``."""
     return QUANTITIES[bar["quantity"]] + (f" of {bar['zone'] or bar['mover']}" if bar["zone"] or bar["mover"] else "")
 
 
-def bars_of(record: Record, quantity: str) -> Iterator[Record]:
+def bars_of(record: JsonObject, quantity: str) -> Iterator[JsonObject]:
     """Error bars of a quantity."""
     return (bar for bar in record.get("accuracy", {}).get("bars", ()) if bar["quantity"] == quantity)
 
 
-def infinite_peaks(record: Record) -> dict[str, str]:
+def infinite_peaks(record: JsonObject) -> dict[str, str]:
     """Zones whose peak pressure is infinite, with the reason."""
     return {bar["zone"]: bar["note"] for bar in bars_of(record, "peak") if bar["value"] is None}
 
@@ -95,6 +96,16 @@ def with_error(value: float, error: float) -> str:
     return f"({written} ± {shown}){_exponent(power)}" if power else f"{written} ± {shown}"
 
 
+def vector_with_error(components: tuple[float, float], error: float | None, unit: str, scale: float) -> str:
+    """Write a vector and its error: (0.090, 16.211) ± 0.014 N/mm; what is negligible beside the scale is zero."""
+    x, y = (zero_if_negligible(value, scale) for value in components)
+    if error is None or not (x or y):
+        return vector((x, y), unit, scale=scale)
+    (x_written, y_written), shown, power = _rounded((x, y), error)
+    written = f"({x_written}, {y_written}) ± {shown}"
+    return with_unit(f"({written}){_exponent(power)}" if power else written, unit)
+
+
 def _rounded(values: Sequence[float], error: float) -> tuple[list[str], str, int]:
     """Numbers and their error over a power of ten: the error rounded up, and no number with a digit beyond it."""
     largest = max(map(abs, values))
@@ -113,7 +124,7 @@ def _exponent(power: int) -> str:
     return f"e{power:+03d}" if power else ""
 
 
-def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
+def accuracy_rows(accuracy: JsonObject, units: Units) -> Iterator[dict[str, str]]:
     """Write each quantity with its error bar, the share of the accuracy asked, and what is noted, for a table."""
     asked, bars = accuracy["asked"], accuracy["bars"]
     lengths = _interval_lengths(bars)
@@ -134,27 +145,27 @@ def accuracy_rows(accuracy: Record, units: Units) -> Iterator[dict[str, str]]:
         }
 
 
-def _bar_value(bar: Record, size: float, units: Units) -> str:
+def _bar_value(bar: JsonObject, size: float, units: Units) -> str:
     """Write a quantity and its error relative to a size, with the unit."""
     value, error = bar["value"], bar["bar"]
     if value is None and error is not None:
         return f"± {error_percent(error)}"
     if value is None:
         return "infinite" if bar["quantity"] == "peak" else NOTHING
-    return with_unit(with_error(value, error * size) if error else number(value), _unit_of_bar(bar, units))
+    return with_unit(with_error(value, error * size) if error else number(value), unit_of_bar(bar, units))
 
 
-def _interval_lengths(bars: Sequence[Record]) -> dict[tuple[str, int], float]:
+def _interval_lengths(bars: Sequence[JsonObject]) -> dict[tuple[str, int], float]:
     """Length of each contact interval, by zone and number, to which the errors of its ends are relative."""
     return {(bar["zone"], bar["interval"]): bar["value"] for bar in bars if bar["quantity"] == "length"}
 
 
-def _several(bars: Sequence[Record], bar: Record) -> bool:
+def _several(bars: Sequence[JsonObject], bar: JsonObject) -> bool:
     """Whether a zone has several contact intervals."""
     return any(other["zone"] == bar["zone"] and (other["interval"] or 0) > 0 for other in bars)
 
 
-def _unit_of_bar(bar: Record, units: Units) -> str:
+def unit_of_bar(bar: JsonObject, units: Units) -> str:
     """Label of the unit of a quantity with an error bar; K of p = K s^-α has that of p times a length to the α."""
     match bar["quantity"]:
         case "peak" | "pressure":

@@ -11,13 +11,12 @@ from bemcontact.problem import Units
 from bemcontact.report.bars import (
     NOTHING,
     ROUND_OFF,
-    Record,
-    _exponent,
-    _rounded,
-    _unit_of_bar,
+    JsonObject,
     bars_of,
     error_percent,
     infinite_peaks,
+    unit_of_bar,
+    vector_with_error,
     with_bar,
 )
 from bemcontact.report.formatting import (
@@ -43,7 +42,7 @@ TRANSLATIONS = "translation along (1, 0)", "translation along (0, 1)"
 """Names of the free motions of a body that only contact holds."""
 
 
-def peak_of(record: Record, units: Units) -> str:
+def peak_of(record: JsonObject, units: Units) -> str:
     """The largest pressure with its error in a few words: a number, ``infinite``, or ``no contact``."""
     if infinite_peaks(record):
         return "infinite"
@@ -52,19 +51,19 @@ def peak_of(record: Record, units: Units) -> str:
     return "no contact"
 
 
-def _unknown_error(record: Record) -> str:
+def _unknown_error(record: JsonObject) -> str:
     """Words behind a largest pressure whose error was looked for and is not known; else nothing."""
     sought = record.get("accuracy", {}).get("met") is False
     return "; error not known" * (sought and peak_bar(record) is None)
 
 
-def peak_bar(record: Record) -> float | None:
+def peak_bar(record: JsonObject) -> float | None:
     """Error of the largest pressure of all zones."""
     bars = [item for item in bars_of(record, "peak") if item["value"] is not None]
     return max(bars, key=lambda item: item["value"], default={"bar": None})["bar"]
 
 
-def _peaks(record: Record, units: Units) -> Iterator[tuple[str, str]]:
+def _peaks(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     """Write the largest pressure; where that of a zone is infinite, each zone by itself."""
     infinite = infinite_peaks(record)
     if not infinite and (peak := record["peak"]):
@@ -79,7 +78,7 @@ def _peaks(record: Record, units: Units) -> Iterator[tuple[str, str]]:
             yield "Peak pressure", f"of {bar['zone']}: {_peak_of_zone(bar, record, units)}"
 
 
-def _peak_of_zone(bar: Record, record: Record, units: Units) -> str:
+def _peak_of_zone(bar: JsonObject, record: JsonObject, units: Units) -> str:
     """Write the largest pressure of a zone with its error, or where and why it is infinite."""
     if bar["value"] is not None:
         return with_unit(with_bar(bar["value"], bar["bar"]), units.stress)
@@ -87,7 +86,7 @@ def _peak_of_zone(bar: Record, record: Record, units: Units) -> str:
     return f"infinite at {place}: {bar['note'].removeprefix('infinite ')}" if place else bar["note"]
 
 
-def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
+def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     """List name and value of each fact of a record: contact, peak, resultants, free motions, tools and residuals."""
     size, pressed, moves = coordinate_size(record), pressed_by(record), record["scales"]["displacement"]
     if not record["intervals"]:
@@ -101,7 +100,7 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
     yield from _peaks(record, units)
     for bar in bars_of(record, "intensity"):
         if bar["value"] is not None:
-            value = with_unit(with_bar(bar["value"], bar["bar"]), _unit_of_bar(bar, units))
+            value = with_unit(with_bar(bar["value"], bar["bar"]), unit_of_bar(bar, units))
             place = vector(bar["at"], units.length, scale=size)
             yield "Intensity", f"of {bar['zone']}: K = {value} in {bar['note']} at {place}"
     for bar in bars_of(record, "displacement"):
@@ -123,7 +122,7 @@ def facts(record: Record, units: Units) -> Iterator[tuple[str, str]]:
 
 
 def contact_intervals(
-    record: Record, units: Units, *, short: bool = False, merged: bool = False
+    record: JsonObject, units: Units, *, short: bool = False, merged: bool = False
 ) -> Iterator[tuple[str, str]]:
     """Zone and place of each interval of contact, with its errors; the length in place of a `short` one.
 
@@ -142,13 +141,13 @@ def contact_intervals(
         yield interval["zone"], place + (f", ends ± {with_unit(small(error), units.length)}" if error else "")
 
 
-def _written_ends(interval: Record, size: float, units: Units) -> tuple[str, str, str]:
+def _written_ends(interval: JsonObject, size: float, units: Units) -> tuple[str, str, str]:
     """Zone of an interval, and its ends as they are written."""
     start, end = (vector(interval[name], units.length, scale=size) for name in ("start", "end"))
     return interval["zone"], start, end
 
 
-def _interval_errors(record: Record) -> Iterator[tuple[float | None, float | None]]:
+def _interval_errors(record: JsonObject) -> Iterator[tuple[float | None, float | None]]:
     """Largest error of the ends of each contact interval [L], and relative error of its length; None if not known."""
     bars = [bar for quantity in ("start", "end", "length") for bar in bars_of(record, quantity)]
     count: Counter[str] = Counter()
@@ -159,7 +158,7 @@ def _interval_errors(record: Record) -> Iterator[tuple[float | None, float | Non
         yield (None, None) if not own or None in own else (max(own[:2]) * (last - first), own[2])
 
 
-def _amount(record: Record, motion: int, units: Units) -> str:
+def _amount(record: JsonObject, motion: int, units: Units) -> str:
     """How far the body moves along a free motion: a length, or an angle; nothing where the unit is not known."""
     moved, angles = record["rigid_amplitudes"][motion], record["rotations"]
     if not record["intervals"]:
@@ -177,7 +176,7 @@ def _amount(record: Record, motion: int, units: Units) -> str:
     return f": {with_unit(with_bar(abs(angle) if angle else moved, bar), unit)}"
 
 
-def _stays(record: Record, motion: int) -> bool:
+def _stays(record: JsonObject, motion: int) -> bool:
     """Whether a free motion is zero but for round-off."""
     if not zero_if_negligible(record["rigid_amplitudes"][motion], record["scales"]["displacement"]):
         return True
@@ -185,19 +184,19 @@ def _stays(record: Record, motion: int) -> bool:
     return angles is not None and 0 < abs(angles[motion]) <= _least_angle(record)
 
 
-def _least_angle(record: Record) -> float:
+def _least_angle(record: JsonObject) -> float:
     """Angle [rad] up to which a rotation is round-off."""
     pressure = np.array(record["pressure"])
     pressed = pressure > NEGLIGIBLE * pressure.max()
     return angle_of_round_off(np.array(record["nodes"]), np.array(record["normals"]), pressed) if pressed.any() else 0.0
 
 
-def _bar_of_motion(record: Record, quantity: str, mover: str) -> float | None:
+def _bar_of_motion(record: JsonObject, quantity: str, mover: str) -> float | None:
     """Error bar of a motion or a rotation; None if it is not known."""
     return next((bar["bar"] for bar in bars_of(record, quantity) if bar["mover"] == mover), None)
 
 
-def _in_sense(name: str, record: Record, motion: int) -> str:
+def _in_sense(name: str, record: JsonObject, motion: int) -> str:
     """Name of a free motion, with the sense in which it turns."""
     angles = record["rotations"]
     if angles is None or not angles[motion] < 0 or _stays(record, motion):
@@ -205,11 +204,11 @@ def _in_sense(name: str, record: Record, motion: int) -> str:
     return re.sub(r"(counter)?clockwise", lambda sense: "clockwise" if sense[1] else "counterclockwise", name)
 
 
-def _tool(record: Record, tool: Record, size: float, pressed: float, moves: float, units: Units) -> str:
+def _tool(record: JsonObject, tool: JsonObject, size: float, pressed: float, moves: float, units: Units) -> str:
     """Displacement of a tool, and the force and moment of the body on it."""
     bar = _bar_of_motion(record, "motion", tool["name"])
     error = None if bar is None else bar * float(np.hypot(*tool["displacement"]))
-    moved = _with_error(tool["displacement"], error, units.length, moves)
+    moved = vector_with_error(tool["displacement"], error, units.length, moves)
     turn = zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)
     turn = turn if not tool["free"][2] or abs(turn) > _least_angle(record) else 0.0
     turned = with_unit(with_bar(turn, _bar_of_motion(record, "rotation", tool["name"])), "rad")
@@ -222,25 +221,25 @@ def _tool(record: Record, tool: Record, size: float, pressed: float, moves: floa
     )
 
 
-def coordinate_size(record: Record) -> float:
+def coordinate_size(record: JsonObject) -> float:
     """Largest coordinate of a contact point [L], the scale of round-off in coordinates."""
     return max((abs(x) for point in record["nodes"] for x in point), default=0.0)
 
 
-def pressed_by(record: Record) -> float:
+def pressed_by(record: JsonObject) -> float:
     """Sum of the magnitudes of all contact forces [p L], the scale of round-off in forces; infinity without contact."""
     if not record["intervals"]:
         return np.inf
     return sum(w * abs(p) for w, p in zip(record["tributary_lengths"], record["pressure"], strict=True))
 
 
-def peak_place(record: Record, units: Units) -> str:
+def peak_place(record: JsonObject, units: Units) -> str:
     """Write where the largest pressure acts, if any."""
     places = _peak_places(record, units)
     return " and ".join(filter(None, (", ".join(places[:-1]), *places[-1:])))
 
 
-def _peak_places(record: Record, units: Units) -> list[str]:
+def _peak_places(record: JsonObject, units: Units) -> list[str]:
     """Places where the largest pressure acts, if any; what is small beside the shortest contact is zero.
 
     All places are named where it is equal within its error. Where the pressure is the same at all points of contact of
@@ -263,7 +262,7 @@ def _peak_places(record: Record, units: Units) -> list[str]:
     return places
 
 
-def _span(interval: Record, along: str, size: float, units: Units) -> str:
+def _span(interval: JsonObject, along: str, size: float, units: Units) -> str:
     """Ends and length of an interval of contact, which is written as `along`."""
     first, last = interval["arc"]
     length = last - first
@@ -274,17 +273,17 @@ def _span(interval: Record, along: str, size: float, units: Units) -> str:
     return f"all round, {along}" if all_round else f"{start} to {end}, {along} long"
 
 
-def zone_forces(record: Record, units: Units) -> dict[str, str]:
+def zone_forces(record: JsonObject, units: Units) -> dict[str, str]:
     """Write the force of each rigid surface on the body with its error: ``{"foot": "(0, 3.00) ± 0.02 N/mm"}``."""
     return {zone: _force(force, record, zone, units) for zone, force in record["forces"].items()}
 
 
-def total_force(record: Record, units: Units) -> str:
+def total_force(record: JsonObject, units: Units) -> str:
     """Write the force of all rigid surfaces on the body with its error."""
     return _force(record["resultant"], record, None, units)
 
 
-def _force(components: tuple[float, float], record: Record, zone: str | None, units: Units) -> str:
+def _force(components: tuple[float, float], record: JsonObject, zone: str | None, units: Units) -> str:
     """Write a force with the error of that of a zone; that of the only zone if none is named.
 
     The resultant on a body that nothing else holds is that of its loads: it has no error.
@@ -294,20 +293,12 @@ def _force(components: tuple[float, float], record: Record, zone: str | None, un
         return vector(components, unit, scale=pressed)
     bars = [bar for bar in bars_of(record, "force") if zone in (bar["zone"], None)]
     errors = [abs(bar["value"]) * bar["bar"] for bar in bars if bar["value"] and bar["bar"] is not None]
-    return _with_error(components, errors[0] if len(errors) == len(bars) == 1 else None, unit, pressed)
+    return vector_with_error(components, errors[0] if len(errors) == len(bars) == 1 else None, unit, pressed)
 
 
-def _with_error(components: tuple[float, float], error: float | None, unit: str, scale: float) -> str:
-    """Write a vector and its error: (0.090, 16.211) ± 0.014 N/mm; what is negligible beside the scale is zero."""
-    x, y = (zero_if_negligible(value, scale) for value in components)
-    if error is None or not (x or y):
-        return vector((x, y), unit, scale=scale)
-    (x_written, y_written), shown, power = _rounded((x, y), error)
-    written = f"({x_written}, {y_written}) ± {shown}"
-    return with_unit(f"({written}){_exponent(power)}" if power else written, unit)
-
-
-def scores_in_words(scores: Sequence[Record], references: Sequence[Record], units: Units) -> Iterator[dict[str, str]]:
+def scores_in_words(
+    scores: Sequence[JsonObject], references: Sequence[JsonObject], units: Units
+) -> Iterator[dict[str, str]]:
     """Write each computed quantity, the expected value and the verdict."""
     by_name = {item["name"]: item for item in references}
     for score in scores:
@@ -326,12 +317,12 @@ def scores_in_words(scores: Sequence[Record], references: Sequence[Record], unit
         }
 
 
-def score_verdict(score: Record) -> str:
+def score_verdict(score: JsonObject) -> str:
     """Whether a quantity is within the tolerance of its reference, in words."""
     return "not judged" if not score["judged"] else "holds" if score["holds"] else "does not hold"
 
 
-def _unit_of(quantity: str, reference: Record, units: Units) -> str:
+def _unit_of(quantity: str, reference: JsonObject, units: Units) -> str:
     """Label of the unit of a quantity of a reference."""
     if quantity == "resultant":
         return units.line_force

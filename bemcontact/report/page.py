@@ -13,7 +13,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from bemcontact.assessment.contender import OUTCOMES, Outcome
 from bemcontact.errors import escaped_lines
 from bemcontact.problem import Units
-from bemcontact.report.bars import BARS_ARE, NOTHING, Record, accuracy_rows, infinite_peaks, with_bar
+from bemcontact.report.bars import BARS_ARE, NOTHING, JsonObject, accuracy_rows, infinite_peaks, with_bar
 from bemcontact.report.facts import (
     contact_intervals,
     facts,
@@ -117,7 +117,7 @@ def _width(svg: bytes) -> float:
     return float(stated[1]) if stated else 0.0
 
 
-def render(report: Record, pictures: Mapping[str, bytes], spec: str | None) -> str:
+def render(report: JsonObject, pictures: Mapping[str, bytes], spec: str | None) -> str:
     """Write the page of a study as HTML that needs no other file.
 
     `report` is the content of report.json, `pictures` are SVG files by name as of `figures.figures_of`, and `spec` is
@@ -132,7 +132,7 @@ def render(report: Record, pictures: Mapping[str, bytes], spec: str | None) -> s
     )
 
 
-def _contents(report: Record) -> dict[str, Any]:
+def _contents(report: JsonObject) -> dict[str, Any]:
     """Variables of the template; the finest mesh gives the answer."""
     level = report["levels"][-1]
     compared = level["comparison"]
@@ -175,7 +175,7 @@ def _quality(outcome: str) -> str:
     return OUTCOMES[Outcome(outcome)].quality
 
 
-def _headline(report: Record, compared: Record) -> str:
+def _headline(report: JsonObject, compared: JsonObject) -> str:
     """Verdict of the comparison; of many contenders, the number with each outcome."""
     if len(compared["contenders"]) < MANY:
         return report["verdict"]
@@ -187,7 +187,7 @@ def _headline(report: Record, compared: Record) -> str:
     return f"{first}Of {len(compared['contenders'])} settings {', '.join(counted)}. {sentence_case(direct)}."
 
 
-def _record(level: Record) -> Record | None:
+def _record(level: JsonObject) -> JsonObject | None:
     """The direct solution on a mesh, as the record of a result; None if there is none."""
     compared = level["comparison"]
     answer = compared["reference"]["answer"]
@@ -197,7 +197,7 @@ def _record(level: Record) -> Record | None:
     return {**compared["contact"], **answer, "residuals": residuals, "accuracy": level["accuracy"]}
 
 
-def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
+def _penalty(contender: JsonObject, units: Units) -> dict[str, str] | None:
     """Penalty of QP2 and the largest one for which QP2 is convex, in both units."""
     search = (contender["answer"] or {}).get("search")
     penalty = search and search["penalty"]
@@ -212,7 +212,7 @@ def _penalty(contender: Record, units: Units) -> dict[str, str] | None:
     }
 
 
-def _picture(name: str, svg: bytes, level: Record) -> Picture:
+def _picture(name: str, svg: bytes, level: JsonObject) -> Picture:
     """A picture with its caption and text alternative."""
     caption = CAPTIONS.get(name)
     if caption is None:

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.report.bars import Record
+from bemcontact.report.bars import JsonObject
 
 LEVEL = 1e-3
 """Difference from the peak pressure, over that, below which a point counts as one at the peak, whatever its error."""
@@ -14,7 +14,7 @@ PRESSED = 1e-9
 """Pressure over the peak above which it counts."""
 
 
-def level_zones(record: Record, error: float) -> list[str]:
+def level_zones(record: JsonObject, error: float) -> list[str]:
     """Zones with the largest pressure, within an error, at several points and at all that are pressed."""
     pressure, zones, found = np.array(record["pressure"]), np.array(record["zone"]), list[str]()
     peak = pressure.max(initial=0.0)
@@ -27,7 +27,7 @@ def level_zones(record: Record, error: float) -> list[str]:
     return found
 
 
-def equal_peaks(record: Record, error: float) -> list[int]:
+def equal_peaks(record: JsonObject, error: float) -> list[int]:
     """Contact points of the largest pressure and of those that are equal to it within an error, one for each hill.
 
     Between two hills the pressure falls by more than twice the error.

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.problem import Units
-from bemcontact.report.bars import NOTHING, Record
+from bemcontact.report.bars import NOTHING, JsonObject
 from bemcontact.report.facts import QUALITIES, peak_of, score_verdict, scores_in_words, small
 from bemcontact.report.formatting import number, seconds_in_words, sentence_case, with_unit
 from bemcontact.report.page import formulation_name, picture, template
@@ -28,7 +28,7 @@ TINY = 1e-4
 """Smaller numbers are written with two figures."""
 
 
-def render(record: Record, pictures: Mapping[str, bytes]) -> str:
+def render(record: JsonObject, pictures: Mapping[str, bytes]) -> str:
     """Write the page of the paper's problems as HTML that needs no other file.
 
     `record` is the content of numbers.json, and `pictures` are SVG files by name as of
@@ -45,7 +45,7 @@ def render(record: Record, pictures: Mapping[str, bytes]) -> str:
     )
 
 
-def reproduction_summary(record: Record) -> RenderableType:
+def reproduction_summary(record: JsonObject) -> RenderableType:
     """List the paper's statements, the computed quantities on each mesh, and the certificates."""
     parts = list[RenderableType]()
     for item in record["problems"]:
@@ -67,7 +67,7 @@ def reproduction_summary(record: Record) -> RenderableType:
     return Group(*parts, _iteration_table(record), "", shown)
 
 
-def reproduction_verdicts(record: Record) -> tuple[Verdict, Verdict]:
+def reproduction_verdicts(record: JsonObject) -> tuple[Verdict, Verdict]:
     """Verdicts on the equations of all runs, and on their meshes."""
     levels = [run["level"] for item in record["problems"] for run in item["runs"]]
     proved = sum(item["certified"] for item in record["problems"])
@@ -77,7 +77,7 @@ def reproduction_verdicts(record: Record) -> tuple[Verdict, Verdict]:
     return equations, mesh_verdict(levels[-1]["accuracy"])._replace(words=MESHES)
 
 
-def reproduction_sentence(record: Record) -> str:
+def reproduction_sentence(record: JsonObject) -> str:
     """Result of the reproduction in two sentences."""
     problems = record["problems"]
     runs = [run for item in problems for run in item["runs"]]
@@ -91,18 +91,18 @@ def reproduction_sentence(record: Record) -> str:
     )
 
 
-def _reproduced(item: Record) -> bool:
+def _reproduced(item: JsonObject) -> bool:
     """Whether a problem is certified and meets its references."""
     return item["certified"] and item["held"] == item["judged"]
 
 
-def _solvers(run: Record) -> list[Record]:
+def _solvers(run: JsonObject) -> list[JsonObject]:
     """The formulations of a run, then the direct solution."""
     compared = run["level"]["comparison"]
     return [*compared["contenders"], compared["reference"]]
 
 
-def _statement_table(item: Record) -> Table:
+def _statement_table(item: JsonObject) -> Table:
     """List the paper's statements and the computed values."""
     labels = [run["label"] for run in item["runs"]]
     table = table_of("", "the paper", *labels, right=frozenset(labels))
@@ -113,7 +113,7 @@ def _statement_table(item: Record) -> Table:
     return table
 
 
-def _iteration_table(record: Record) -> Table:
+def _iteration_table(record: JsonObject) -> Table:
     """List how many iterations each solver took."""
     columns = ("iterations", "mesh", "points", "QP1", "QP2", "QP3", "direct")
     table = table_of(*columns, right=frozenset(columns[2:]))
@@ -134,7 +134,7 @@ def _values(values: Sequence[float]) -> str:
     return " to ".join(number(value) if abs(value) > TINY else small(value) for value in values) or "no contact"
 
 
-def _counts(item: Record) -> Iterator[dict[str, Any]]:
+def _counts(item: JsonObject) -> Iterator[dict[str, Any]]:
     """Iterations of one problem, those that the paper prints first, by the names in the template."""
     if item["iterations"]:
         printed = [str(item["iterations"].get(name, NOTHING)) for name in FORMULATIONS]
@@ -146,7 +146,7 @@ def _counts(item: Record) -> Iterator[dict[str, Any]]:
         yield {"label": run["label"], "printed": False, "cells": [str(size), *cells]}
 
 
-def _contents(item: Record, pictures: Mapping[str, bytes]) -> dict[str, Any]:
+def _contents(item: JsonObject, pictures: Mapping[str, bytes]) -> dict[str, Any]:
     """Variables of the template for one problem."""
     anchor, units = item["model"].replace("_", "-"), Units(**item["units"])
     finest = item["runs"][-1]
@@ -176,12 +176,12 @@ def _in_words(count: int) -> str:
     return words[count] if count < len(words) else str(count)
 
 
-def _picture(pictures: Mapping[str, bytes], name: str, caption: str, item: Record) -> Any:
+def _picture(pictures: Mapping[str, bytes], name: str, caption: str, item: JsonObject) -> Any:
     """A picture of a problem, if there is one."""
     return picture(pictures[name], caption, f"{item['name']}: {caption}") if name in pictures else None
 
 
-def _scores(levels: list[Record], units: Units) -> Iterator[dict[str, Any]]:
+def _scores(levels: list[JsonObject], units: Units) -> Iterator[dict[str, Any]]:
     """Quantities of the references on all meshes; differences are those of the finest mesh."""
     finest = levels[-1]
     rows = scores_in_words(finest["scores"], finest["references"], units)

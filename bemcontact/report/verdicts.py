@@ -9,7 +9,7 @@ from bemcontact.analysis.study import Study
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.assessment.penetration import Misfit
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.report.bars import Record, bar_in_words, error_percent, worst_bar
+from bemcontact.report.bars import JsonObject, bar_in_words, error_percent, worst_bar
 from bemcontact.report.formatting import number, sentence_case
 
 
@@ -38,12 +38,12 @@ def in_short(verdicts: Sequence[Verdict]) -> str:
     return "; ".join(item.word if item.good else f"{item.of.lower()}: {item.word}" for item in verdicts)
 
 
-def _quality(penetration: Record, solved: bool) -> str:
+def _quality(penetration: JsonObject, solved: bool) -> str:
     """Fair if the equations are solved, and only the theory is too rough."""
     return "fair" if solved and not Misfit(penetration["kind"]).serious else "bad"
 
 
-def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
+def study_verdicts(report: JsonObject, words: str = "") -> tuple[Verdict, Verdict]:
     """Verdicts on the equations and on the finest mesh of a study, from its JSON; `words` replace its own.
 
     The equations are solved if the direct solution is proved; a formulation that did not find it is a fair result.
@@ -63,12 +63,12 @@ def study_verdicts(report: Record, words: str = "") -> tuple[Verdict, Verdict]:
     return equations, mesh_verdict(finest["accuracy"])
 
 
-def _proved(level: Record) -> bool:
+def _proved(level: JsonObject) -> bool:
     """Whether all solutions on a mesh are proved, and the body penetrates no surface."""
     return level["comparison"]["certified"] and level["penetration"] is None
 
 
-def mesh_verdict(accuracy: Record) -> Verdict:
+def mesh_verdict(accuracy: JsonObject) -> Verdict:
     """Verdict on the errors of the mesh."""
     asked, reason = accuracy["asked"], accuracy["reason"]
     if accuracy["met"] is None:

@@ -9,7 +9,7 @@ from bemcontact.adaptivity.adapt import first_mesh
 from bemcontact.adaptivity.first_sizes import outline, surface_sizes
 from bemcontact.adaptivity.sizes import GROWTH
 from bemcontact.problem import Problem
-from bemcontact.problem.nearness import surface_corners
+from bemcontact.problem.nearest_places import surface_corners
 
 PLANE = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
 

@@ -14,7 +14,6 @@ from bemcontact.problem.curves import (
     Edge,
     EllipticArc,
     Segment,
-    cubic_ends,
     graded_ends,
     graded_lengths,
     moved_onto,
@@ -265,29 +264,6 @@ def test_grading_towards_the_middle_place_is_symmetric():
     lengths = np.diff(ends)
     assert lengths.max() / lengths.min() == pytest.approx(20, rel=1e-12)
     assert set(np.argsort(lengths)[:2].tolist()) == {3, 4}
-
-
-@pytest.mark.parametrize("elements", [1, 2, 5, 21])
-def test_ends_towards_contact_are_cubes(elements):
-    np.testing.assert_allclose(cubic_ends(elements, both=False), (np.arange(elements + 1) / elements) ** 3, rtol=1e-14)
-
-
-def test_ends_between_two_contact_ends_are_cubes_on_both_sides():
-    """Four elements: (1/2)³ and 1 of the half; five: the middle one straddles the half at (4/5)³."""
-    np.testing.assert_allclose(cubic_ends(4, both=True), [0, 1 / 16, 0.5, 15 / 16, 1], rtol=1e-15)
-    np.testing.assert_allclose(cubic_ends(5, both=True)[:3], [0, 0.5 * 0.4**3, 0.5 * 0.8**3], rtol=1e-14)
-    np.testing.assert_allclose(cubic_ends(5, both=True), 1 - cubic_ends(5, both=True)[::-1], atol=1e-16)
-
-
-@pytest.mark.parametrize("both", [False, True])
-@pytest.mark.parametrize("elements", [40, 51, 500])
-def test_elements_have_the_smallest_length(elements, both):
-    lengths = np.diff(cubic_ends(elements, both=both, shortest=1e-3))
-    assert lengths[0] == pytest.approx(1e-3, rel=1e-12)
-    assert lengths.min() == pytest.approx(1e-3, rel=1e-9)
-    assert lengths.sum() == pytest.approx(1, rel=1e-14)
-    coarse = cubic_ends(4, both=both, shortest=1e-3)
-    np.testing.assert_array_equal(coarse, cubic_ends(4, both=both))  # long enough anyway
 
 
 def test_refinement_cuts_the_elements_between_the_places():

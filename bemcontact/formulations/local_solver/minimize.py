@@ -14,7 +14,7 @@ from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, examine, first_order
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
-from bemcontact.formulations.local_solver.progress import FINER, PARALLEL, Progress
+from bemcontact.formulations.local_solver.progress import FINER, PARALLEL, SearchState
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 from bemcontact.formulations.local_solver.statement import (
     EPS,
@@ -62,7 +62,7 @@ class Restart:
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # ratio tests divide by slopes that may be zero
-def run_phases(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
+def run_phases(progress: SearchState, sides: Sides) -> tuple[Finding, Inertia]:
     """Repeat both phases until a claim passes its check, or until iterations or attempts are exhausted.
 
     The second result is the inertia of the reduced Hessian at the start of phase two; zeros if it was not reached.
@@ -95,7 +95,7 @@ def run_phases(progress: Progress, sides: Sides) -> tuple[Finding, Inertia]:
     return _finding(progress, status, sides), start or (0, 0, 0)
 
 
-def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
+def _second_phase(progress: SearchState, descent: Descent) -> Finding | Restart:
     """Run phase two, then check the claim that its end suggests."""
     outcome = descent.run()
     if outcome.ending is Ending.LIMIT:
@@ -116,7 +116,7 @@ def _second_phase(progress: Progress, descent: Descent) -> Finding | Restart:
     return _second_order(progress, descent, conditions, multipliers)
 
 
-def _inwards(progress: Progress, ray: Array) -> None:
+def _inwards(progress: SearchState, ray: Array) -> None:
     """Move along the ray until it no longer reduces a violation; a violation within tolerance may be a large part."""
     speed = np.abs(progress.statement.values(ray))
     steps = progress.statement.violation(progress.values) / speed
@@ -126,7 +126,7 @@ def _inwards(progress: Progress, ray: Array) -> None:
 
 
 def _second_order(
-    progress: Progress, descent: Descent, conditions: FirstOrder, multipliers: Array
+    progress: SearchState, descent: Descent, conditions: FirstOrder, multipliers: Array
 ) -> Finding | Restart:
     """Claim a minimizer if H is copositive on the critical cone; else move along a direction of negative curvature."""
     if not conditions.doubtful and _strict(descent, conditions):
@@ -184,7 +184,7 @@ def _minimizer(descent: Descent, conditions: FirstOrder, multipliers: Array, sta
 
 
 def _finding(
-    progress: Progress, status: QPStatus, sides: Sides, *, ray: Array | None = None, certificate: Array | None = None
+    progress: SearchState, status: QPStatus, sides: Sides, *, ray: Array | None = None, certificate: Array | None = None
 ) -> Finding:
     """Finding at a point that is not claimed to be of first order."""
     return Finding(
@@ -269,7 +269,7 @@ def minimize_qp(
     start = np.zeros(n) if x0 is None else numbers("x0", x0, n)
     start = np.minimum(np.maximum(start, stated.lower[:n]), stated.upper[:n])
     scaled, scales = equilibrate(stated) if options.scale else unequilibrated(stated)
-    progress = Progress(statement=scaled, options=options, unit=scales.objective, x=start / scales.variables)
+    progress = SearchState(statement=scaled, options=options, unit=scales.objective, x=start / scales.variables)
     sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
@@ -317,7 +317,7 @@ def _wanted(working_set: ArrayLike, size: int) -> BoolArray:
     return wanted != 0
 
 
-def _result(stated: Statement, scales: Scales, progress: Progress, finding: Finding, start: Inertia) -> QPResult:
+def _result(stated: Statement, scales: Scales, progress: SearchState, finding: Finding, start: Inertia) -> QPResult:
     """The result in the units of the data."""
     n = stated.c.size
     x = np.minimum(np.maximum(scales.variables * progress.x, stated.lower[:n]), stated.upper[:n])

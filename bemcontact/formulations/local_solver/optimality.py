@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.formulations.local_solver.factorizations import is_definite, orthogonal, unit_rows, unit_sizes
-from bemcontact.formulations.local_solver.progress import Progress
+from bemcontact.formulations.local_solver.progress import SearchState
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 from bemcontact.formulations.local_solver.working_set import DEPENDENT
 
@@ -249,7 +249,7 @@ class FirstOrder:
         return replace(self, strong=self.strong | leaving, weak=weak, sides=sides, doubtful=True)
 
 
-def first_order(progress: Progress, working: BoolArray, multipliers: Array, zeros: Array) -> FirstOrder:
+def first_order(progress: SearchState, working: BoolArray, multipliers: Array, zeros: Array) -> FirstOrder:
     """Recompute the first-order conditions at the point; a multiplier below its entry of `zeros` (n + m,) is zero.
 
     A constraint that is not in the `working` set is active if its bound is as near as rounding.
@@ -280,7 +280,7 @@ def first_order(progress: Progress, working: BoolArray, multipliers: Array, zero
     )
 
 
-def cleaned_ray(progress: Progress, ray: Array) -> Array | None:
+def cleaned_ray(progress: SearchState, ray: Array) -> Array | None:
     """The ray without rounding, if it is a recession direction on which the objective is unbounded; else None."""
     if (progress.values < progress.lowest).any() or (progress.values > progress.highest).any():
         return None
@@ -302,7 +302,7 @@ def _stays(statement: Statement, d: Array) -> bool:
     return not (falls.any() or rises.any())
 
 
-def _has_no_end(progress: Progress, d: Array) -> bool:
+def _has_no_end(progress: SearchState, d: Array) -> bool:
     """Whether the objective falls without end on the unit direction."""
     statement = progress.statement
     bent = statement.H @ d

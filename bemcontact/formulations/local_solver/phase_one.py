@@ -9,7 +9,7 @@ from math import sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.progress import Progress
+from bemcontact.formulations.local_solver.progress import SearchState
 from bemcontact.formulations.local_solver.statement import Sides, Statement
 from bemcontact.formulations.local_solver.working_set import (
     INFINITY,
@@ -21,7 +21,7 @@ from bemcontact.formulations.local_solver.working_set import (
 )
 
 
-def reach_feasibility(progress: Progress, sides: Sides, fineness: float) -> tuple[WorkingSet, Array | None]:
+def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> tuple[WorkingSet, Array | None]:
     """Find a feasible point, from a working set (n + m,).
 
     `fineness` is the part of the optimality tolerance that counts; it is less where a certificate was refused before.
@@ -66,13 +66,13 @@ def _with_equalities(statement: Statement, sides: Sides) -> WorkingSet:
     return WorkingSet(statement, sides, wanted)
 
 
-def violated_signs(progress: Progress) -> Array:
+def violated_signs(progress: SearchState) -> Array:
     """Sign of the violation of each constraint: +1 above its bounds, -1 below them, 0 if feasible (n + m,)."""
     values = progress.values
     return np.subtract(values > progress.highest, values < progress.lowest, dtype=float)
 
 
-def _signs_of_others(progress: Progress, working: WorkingSet) -> Array:
+def _signs_of_others(progress: SearchState, working: WorkingSet) -> Array:
     """`violated_signs`, with zeros for constraints that are held, which satisfy their bounds up to rounding."""
     signs = violated_signs(progress)
     signs[working.held] = 0.0
@@ -88,7 +88,7 @@ def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array
     return certificate
 
 
-def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Array, dropped: int | None) -> bool:
+def _step(progress: SearchState, working: WorkingSet, signs: Array, direction: Array, dropped: int | None) -> bool:
     """Move along the direction to the constraint that ends the step, and hold it; False if there is none."""
     length = sqrt(direction.dot(direction))
     along = progress.statement.values(direction)
@@ -106,7 +106,7 @@ def _step(progress: Progress, working: WorkingSet, signs: Array, direction: Arra
 
 
 def _breakpoint(
-    progress: Progress, signs: Array, along: Array, length: float, furthest: float
+    progress: SearchState, signs: Array, along: Array, length: float, furthest: float
 ) -> BlockingConstraint | None:
     """The violated constraint at which the sum of infeasibilities stops falling, within a furthest step."""
     statement, falling = progress.statement, -signs * along

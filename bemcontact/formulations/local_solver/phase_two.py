@@ -18,7 +18,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, pivoted_cholesky
-from bemcontact.formulations.local_solver.progress import FINE, Progress
+from bemcontact.formulations.local_solver.progress import FINE, SearchState
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 from bemcontact.formulations.local_solver.working_set import (
     FLAT,
@@ -171,7 +171,7 @@ class Descent:
         as zero; those of the variables are components of the gradient
     """
 
-    def __init__(self, progress: Progress, working: WorkingSet) -> None:
+    def __init__(self, progress: SearchState, working: WorkingSet) -> None:
         self.progress = progress
         self.dropped: int | None = None
         self.changed = self.broken = False

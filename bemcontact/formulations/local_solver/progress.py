@@ -35,7 +35,7 @@ STALLED = 100
 
 
 @dataclass(kw_only=True)
-class Progress:
+class SearchState:
     """The current point of a run and its counters; both phases change it.
 
     Parameters

@@ -25,7 +25,7 @@ from bemcontact.formulations.local_solver.factorizations import (
     orthogonal,
     unit_rows,
 )
-from bemcontact.formulations.local_solver.progress import FINE, PARALLEL, STALLED, Progress
+from bemcontact.formulations.local_solver.progress import FINE, PARALLEL, STALLED, SearchState
 from bemcontact.formulations.local_solver.statement import EPS, Sides, Statement, largest
 
 EQUALITY = 2
@@ -284,7 +284,7 @@ class WorkingSet:
         return near + N.dot(fine_remainders(targets[ids], W, near))
 
 
-def supporting(progress: Progress, sides: Sides) -> Sides:
+def supporting(progress: SearchState, sides: Sides) -> Sides:
     """Sides of independent active constraints with multipliers of the right sign, if the point is stationary.
 
     Other choices among dependent active constraints have multipliers of the wrong sign. Without such a set the sides
@@ -330,7 +330,7 @@ class BlockingConstraint(NamedTuple):
 
 
 def nearest(
-    progress: Progress, along: Array, length: float, held: BoolArray, working: WorkingSet | None = None
+    progress: SearchState, along: Array, length: float, held: BoolArray, working: WorkingSet | None = None
 ) -> BlockingConstraint | None:
     """The first constraint met by the direction and not held, by Harris' two passes; None if there is none.
 
@@ -351,7 +351,7 @@ def nearest(
     return block
 
 
-def _first(progress: Progress, along: Array, speed: Array, away: BoolArray) -> BlockingConstraint | None:
+def _first(progress: SearchState, along: Array, speed: Array, away: BoolArray) -> BlockingConstraint | None:
     """The first constraint met by the direction and not marked in `away` (n + m,)."""
     statement, values = progress.statement, progress.values
     # the bound ahead has the quotient that is not negative
@@ -370,7 +370,7 @@ def _first(progress: Progress, along: Array, speed: Array, away: BoolArray) -> B
     return BlockingConstraint(constraint, side_reached(progress, constraint, along), max(steps.item(constraint), 0.0))
 
 
-def side_reached(progress: Progress, constraint: int, along: Array) -> int:
+def side_reached(progress: SearchState, constraint: int, along: Array) -> int:
     """Bound that the movement reaches: -1, +1, or 2 for an equality."""
     if progress.statement.equality[constraint]:
         return 2

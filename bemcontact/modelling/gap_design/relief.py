@@ -15,7 +15,7 @@ from bemcontact.checks.arguments import real_number, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 
-Shape = Callable[[Array], ArrayLike]
+ReliefShape = Callable[[Array], ArrayLike]
 Range = float | tuple[float, float]
 UNBOUNDED = 3
 """Status of an unbounded linear program of SciPy."""
@@ -47,7 +47,7 @@ class Relief:
     upper: ArrayLike | None = None
     slope: Range | None = None
     curvature: Range | None = None
-    shapes: Sequence[Shape] | Array | None = None
+    shapes: Sequence[ReliefShape] | Array | None = None
     coefficients: tuple[ArrayLike, ArrayLike] | None = None
 
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from bemcontact.formulations.local_solver import QPOptions, QPStatus, minimize_qp
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
-from bemcontact.formulations.local_solver.progress import Progress
+from bemcontact.formulations.local_solver.progress import SearchState
 from bemcontact.formulations.local_solver.statement import read_statement
 from bemcontact.formulations.local_solver.working_set import WorkingSet
 
@@ -48,7 +48,7 @@ def test_multipliers_at_a_vertex_are_right_within_what_counts_as_zero(seed):
     W = triangle[rng.permutation(n)][:, rng.permutation(n)].astype(float)
     y = (rng.integers(1, 4, n) * (rng.random(n) < 0.4)).astype(float)
     statement = read_statement(np.zeros((n, n)), W.T @ y, W, np.zeros(n), np.full(n, INF), None, None)
-    progress = Progress(statement=statement, options=QPOptions(), unit=1.0, x=np.zeros(n))
+    progress = SearchState(statement=statement, options=QPOptions(), unit=1.0, x=np.zeros(n))
     sides = np.append(np.zeros(n), -np.ones(n)).astype(np.int8)
     descent = Descent(progress, WorkingSet(statement, sides))
     assert descent.run().ending is Ending.STATIONARY

@@ -8,6 +8,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.contact_zone import ContactZone
+from bemcontact.problem.curves import cross
 from bemcontact.problem.rigid_surface import DeflectedContour, Shape
 
 TURNED = 0.05
@@ -63,13 +64,9 @@ def _blocked(places: Array, feet: Array, sides: _OutlineSides, near: float) -> B
     """Whether a side crosses the line from each place (q, 2), and farther than `near` from it, to its foot (q, 2)."""
     way, along = feet - places, sides.ends - sides.starts
     offset = sides.starts - places[:, None]
-    turn = _cross(way[:, None], along)
+    turn = cross(way[:, None], along)
     with np.errstate(divide="ignore", invalid="ignore"):
-        on_way, on_side = _cross(offset, along) / turn, _cross(offset, way[:, None]) / turn
+        on_way, on_side = cross(offset, along) / turn, cross(offset, way[:, None]) / turn
         away = near / np.hypot(*way.T)[:, None]
     between = (on_way > away) & (on_way < 1 + away)
     return np.any(between & (on_side >= -ON_THE_WAY) & (on_side <= 1 + ON_THE_WAY), axis=1)
-
-
-def _cross(one: Array, other: Array) -> Array:
-    return one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]

@@ -10,7 +10,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.problem import Plane, Problem
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.rigid_surface import Circle
-from bemcontact.problem.sight import edges_that_see
+from bemcontact.problem.visibility import edges_that_see
 
 CHANNEL = {"under": (0, 0), "right": (4, 0), "rim": (4, 3), "inner right": (3, 3), "bed": (3, 1), "inner left": (1, 1),
            "other rim": (1, 3), "left": (0, 3)}  # fmt: skip
