@@ -41,6 +41,12 @@ def declared(
     return field(default=default, metadata=about)
 
 
+def redeclared(options: type[Any], name: str, meaning: str = "") -> Any:
+    """Declare an option as another class does; its meaning may be another one."""
+    item = options.__dataclass_fields__[name]
+    return field(default=item.default, metadata={**item.metadata, "meaning": meaning or item.metadata["meaning"]})
+
+
 def documented(options: type[Options]) -> type[Options]:
     """Write the meanings of options into the docstring of their class, for `help` and documentation."""
     head, rule, rest = cleandoc(options.__doc__ or "").partition("\n\nRaises\n")  # Python 3.13 has no indent there
@@ -76,6 +82,8 @@ def ensure_whole_fields(options: Any) -> None:
             object.__setattr__(options, item.name, whole_number(value, item.name, least))
 
 
+EXPECTED_ACCURACY = "expected a relative accuracy between 0 and 1, such as 0.01 for 1 percent"
+"""Beginning of the error of an accuracy that is something else."""
 OF_PROBLEM = {
     "accuracy": 'with_value("accuracy", 0.003)',
     "refine": "refined(2)",

@@ -19,6 +19,7 @@ from pydantic import (
 from bemcontact.arrays import real_array
 from bemcontact.checks.arguments import real_number, shown, text_of_argument, whole_number
 from bemcontact.errors import Issue, ProblemError
+from bemcontact.options import EXPECTED_ACCURACY
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.contact_zone import ContactZone, RigidTool, ToolAction
@@ -80,8 +81,7 @@ def _accuracy(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
     try:
         return handler(value)
     except ValidationError:
-        message = "expected a relative accuracy between 0 and 1, such as 0.01 for 1 percent, or null for none; found "
-        raise invalid(message + shown(value)) from None
+        raise invalid(f"{EXPECTED_ACCURACY}, or null for none; found {shown(value)}") from None
 
 
 class Problem(SpecModel):
