@@ -24,7 +24,7 @@ VERSIONS = ("numpy", "scipy", "cvxpy", "clarabel", "matplotlib", "jinja2")
 
 
 class Settings(Record):
-    """Options of a comparison, with the defaults in the place of null, and the changes to the problem."""
+    """Options of a comparison as they act, with penalties and seed filled in, and the changes to the problem."""
 
     formulations: tuple[FormulationName, ...]
     """Formulations beside the direct solution."""

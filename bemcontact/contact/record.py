@@ -15,7 +15,7 @@ class UnitsRecord(Record):
 
 
 class ScalesRecord(Record):
-    """Scales by which residuals and objectives are divided; JSON names the two numbers of a tuple."""
+    """Scales by which residuals and objectives are divided; a tuple in Python."""
 
     displacement: float
     """Typical displacement U [L]."""
