@@ -111,7 +111,15 @@ def study(
             prepared = replace(prepared, accuracy=prepared.accuracy.knowing(found.accuracy))
         level = _compared(options, prepared, watch)
         levels.append(replace(level, refine=parts, outdated=outdated(problem, changes)))
-    return Study(settings=Settings(**options.to_dict(), changes=tuple(changes)), levels=tuple(levels))
+    settings = Settings(
+        formulations=options.formulations,
+        weights=options.weights,
+        penalties=tuple(dict.fromkeys(item.penalty for item in options.attempts if item.uses("penalty"))),
+        starts=options.starts,
+        seed=options.seed or 0,
+        changes=tuple(changes),
+    )
+    return Study(settings=settings, levels=tuple(levels))
 
 
 def outdated(problem: Problem | CondensedContact, changes: Sequence[str]) -> frozenset[str]:

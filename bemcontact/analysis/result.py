@@ -31,7 +31,7 @@ from bemcontact.version import __version__
 
 
 class BoundaryRecord(Record):
-    """State of the whole boundary, element by element; values at the three nodes of each."""
+    """State of the whole boundary, element by element; values at the three nodes of each. JSON names the edges."""
 
     points: PairTables
     """Undeformed nodes (x, y) [L]."""
@@ -44,7 +44,7 @@ class BoundaryRecord(Record):
 
 
 class HeadRecord(Record):
-    """First fields of a result."""
+    """First fields of a result, which JSON has before those of its parts."""
 
     name: str
     """Name of the problem."""
@@ -64,7 +64,10 @@ class HeadRecord(Record):
 
 
 class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
-    """Solution of a contact problem and all quantities recomputed from it; lists are by contact point."""
+    """Solution of a contact problem and all quantities recomputed from it; lists are by contact point.
+
+    JSON has the contact points, the solution and the footprint without nesting.
+    """
 
     holds: bool | None
     """Whether it is certified and the mesh is as accurate as was asked; null if mesh errors are not assessed."""

@@ -24,7 +24,7 @@ VERSIONS = ("numpy", "scipy", "cvxpy", "clarabel", "matplotlib", "jinja2")
 
 
 class Settings(Record):
-    """Settings of a comparison."""
+    """Options of a comparison as they act, with penalties and seed filled in, and the changes to the problem."""
 
     formulations: tuple[FormulationName, ...]
     """Formulations beside the direct solution."""
@@ -36,12 +36,12 @@ class Settings(Record):
     """Number of random starts of QP1 and QP2, beside the null start."""
     seed: int
     """Seed of the random starts."""
-    changes: tuple[str, ...] = ()
+    changes: tuple[str, ...]
     """Changes made to the problem with --set."""
 
 
 class LevelRecord(Record):
-    """The comparison on one mesh."""
+    """The comparison on one mesh; JSON has what belongs to the direct solution beside it."""
 
     refine: int
     """Number of parts into which each stated element is cut."""
@@ -68,7 +68,7 @@ class LevelRecord(Record):
 
 
 class StudyRecord(Record):
-    """A problem compared on one mesh or several.
+    """A problem compared on one mesh or several; JSON has the verdict before the numbers of each mesh.
 
     [L] is the unit of length and [p] that of pressure, force over length squared. A number without either has no unit.
     """

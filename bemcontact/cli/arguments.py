@@ -4,7 +4,7 @@ import json
 import re
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from math import isfinite
@@ -14,7 +14,7 @@ from typing import Annotated, Any, TypeVar
 import typer
 
 from bemcontact.errors import OptionError, ProblemError, SpecError, escaped
-from bemcontact.options import ComparisonOptions, SolveOptions, StartName
+from bemcontact.options import EXPECTED_ACCURACY, ComparisonOptions, SolveOptions, StartName
 
 Number = TypeVar("Number", int, float)
 
@@ -54,26 +54,16 @@ RefineOption = Annotated[
     int, typer.Option(parser=reader(int, 1), metavar="K", help="Split each element into K equal parts.")
 ]
 read_number = reader(float)
-PERCENT = re.compile(r"\s*(\d+(\.\d*)?|\.\d+)\s*%?\s*")
 
 
 def read_accuracy(text: Any) -> float:
     """Read a relative accuracy; one in percent is refused with what to write."""
-    if isinstance(text, str) and (percent := PERCENT.fullmatch(text)):
-        value = float(percent[1])
-        if 0 < value < 1 and "%" not in text:
-            return value
-        if 0 < value < 100:
-            raise typer.BadParameter(
-                f"expected a relative accuracy between 0 and 1, found '{text.strip()[:40]}'; "
-                f"write {value / 100:.12g} for {value:.12g} %"
-            )
-    value = read_number(text)
-    if not 0 < value < 1:
-        raise typer.BadParameter(
-            f"expected a relative accuracy between 0 and 1, such as 0.01 for 1 %, found '{str(text)[:40]}'"
-        )
-    return value
+    written = str(text).strip()
+    value = read_number(written.removesuffix("%"))
+    if 0 < value < 1 and "%" not in written:
+        return value
+    hint = f"; write {value / 100:.12g} for {value:.12g} percent" if 0 < value < 100 else ""
+    raise typer.BadParameter(f"{EXPECTED_ACCURACY}, found '{written[:40]}'{hint}")
 
 
 FigureOption = Annotated[
@@ -195,7 +185,7 @@ class Source:
 
 def option(kind: type[SolveOptions | ComparisonOptions], name: str) -> Any:
     """An option of the command line as `SolveOptions` or `ComparisonOptions` declares it."""
-    item = next(item for item in fields(kind) if item.name == name)
+    item = kind.__dataclass_fields__[name]
     about, default = item.metadata, item.default
     parser, metavar = None, about["metavar"]
     if name == "start":

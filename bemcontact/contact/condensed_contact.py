@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays, real_array, whole_array
-from bemcontact.checks.arguments import file_path, instance_of, real_number, shown, whole_number
+from bemcontact.checks.arguments import file_path, instance_of, whole_number
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact import archive
 from bemcontact.contact.consistency import ensure_arrays, ensure_independent, ensure_labels, ensure_parts_fit
@@ -28,7 +28,7 @@ from bemcontact.contact.free_motions import (
 )
 from bemcontact.contact.load_cases import Change, LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
-from bemcontact.options import Weights, named
+from bemcontact.options import Weights, load_factors, named
 
 CANCELLED = 64 * float(np.finfo(float).eps)
 """Fraction of the terms of a sum below which the sum is round-off."""
@@ -258,12 +258,10 @@ class CondensedContact(WithHints, MotionAlgebra):
         ProblemError
             If there is no such case, a factor is no finite number, or loads act along a motion that nothing resists.
         """
-        if not isinstance(factors, Mapping):
-            raise ProblemError(f"factors by load case are needed, such as {{'wind': 1.5}}; found {shown(factors)}")
-        if unknown := [name for name in factors if name not in self.cases.names]:
+        numbers = load_factors(factors)
+        if unknown := [name for name in numbers if name not in self.cases.names]:
             known = ", ".join(self.cases.names) or "none"
             raise ProblemError(f"there is no load case '{unknown[0]}'; there are: {known}")
-        numbers = {name: real_number(factor, f"the factor of '{name}'") for name, factor in factors.items()}
         given = np.array([numbers.get(name, 0.0) for name in self.cases.names], float)
         step = given - self.cases.factors
         return self.stepped(step, self.cases.position * step, self.cases.force * step).balanced()

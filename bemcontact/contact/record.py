@@ -6,7 +6,7 @@ from bemcontact.serialization import Pair, Pairs, Record, Vector
 
 
 class UnitsRecord(Record):
-    """Labels of the units that all numbers are in; nothing is converted."""
+    """Labels of the units that all numbers are in; nothing is converted. JSON leaves out other labels."""
 
     length: str = ""
     """Label of the unit of length [L], or empty."""
@@ -15,7 +15,7 @@ class UnitsRecord(Record):
 
 
 class ScalesRecord(Record):
-    """Scales by which residuals and objectives are divided."""
+    """Scales by which residuals and objectives are divided; a tuple in Python."""
 
     displacement: float
     """Typical displacement U [L]."""
@@ -24,7 +24,7 @@ class ScalesRecord(Record):
 
 
 class ContactRecord(Record):
-    """Contact points of a condensed problem; lists go point by point. The matrices stand in contact.npz."""
+    """Contact points of a condensed problem; lists go point by point. JSON leaves the matrices to contact.npz."""
 
     contact_nodes: int
     """Number of contact points."""
@@ -93,7 +93,7 @@ class ToolRecord(Record):
 
 
 class SolutionRecord(Record):
-    """Solution as a formulation reports it; lists go contact point by contact point."""
+    """Solution as a formulation reports it, with its gap and tools; lists go contact point by contact point."""
 
     solver: str
     """Name of the program that solved it."""

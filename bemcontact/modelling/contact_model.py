@@ -28,11 +28,14 @@ WIDE = 1e5
 
 
 class ContactProblem(cp.Problem):
-    """A cvxpy problem that Clarabel solves unless another solver is named: OSQP, cvxpy's choice, is too inaccurate."""
+    """A cvxpy problem that is solved as by `ContactModel.solve`; with arguments, by cvxpy, which calls Clarabel."""
 
     def solve(self, *args: Any, **options: Any) -> Any:
-        """Solve as `cvxpy.Problem.solve` does; arguments and options are described there."""
-        return super().solve(*args, **{"solver": cp.CLARABEL, **options})
+        """Solve and return the value; arguments, and options such as a solver, are those of `cvxpy.Problem.solve`."""
+        if args or options:
+            return super().solve(*args, **{"solver": cp.CLARABEL, **options})
+        minimize_convex(self, as_stated=True)
+        return self.value
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

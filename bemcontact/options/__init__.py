@@ -1,13 +1,15 @@
 """The options of solving and comparing. There are no numerics here, so that ``bemcontact --help`` answers at once."""
 
-from bemcontact.options.comparing import ComparisonKeywords as ComparisonKeywords
 from bemcontact.options.comparing import ComparisonOptions as ComparisonOptions
+from bemcontact.options.declaration import EXPECTED_ACCURACY as EXPECTED_ACCURACY
 from bemcontact.options.declaration import STARTS as STARTS
 from bemcontact.options.declaration import ensure_known as ensure_known
 from bemcontact.options.declaration import ensure_whole as ensure_whole
+from bemcontact.options.declaration import load_factors as load_factors
 from bemcontact.options.declaration import named as named
 from bemcontact.options.solving import COMPARED as COMPARED
 from bemcontact.options.solving import USES as USES
+from bemcontact.options.solving import ComparisonKeywords as ComparisonKeywords
 from bemcontact.options.solving import Equilibrium as Equilibrium
 from bemcontact.options.solving import FormulationName as FormulationName
 from bemcontact.options.solving import Rows as Rows

@@ -3,19 +3,19 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import product
-from typing import Any, TypedDict, Unpack, cast
+from typing import Any, Unpack, cast
 
 from bemcontact.checks.arguments import shown
 from bemcontact.errors import OptionError
-from bemcontact.options.declaration import STARTS, declared, documented, ensure_known, ensure_whole_fields, named
-from bemcontact.options.solving import COMPARED, FormulationName, SolveOptions, Weights, penalty_of
-
-
-class ComparisonKeywords(TypedDict, total=False):
-    """Keywords of `bemcontact.compare`: types of fields of `ComparisonOptions`."""
-
-    starts: int | None
-    seed: int | None
+from bemcontact.options.declaration import (
+    declared,
+    documented,
+    ensure_known,
+    ensure_whole_fields,
+    named,
+    redeclared,
+)
+from bemcontact.options.solving import COMPARED, ComparisonKeywords, FormulationName, SolveOptions, Weights, penalty_of
 
 
 @documented
@@ -38,21 +38,10 @@ class ComparisonOptions:
     penalties: tuple[float, ...] | None = declared(
         None, "qp2: penalties, such as 1e-6,1e-3,1,1e3.", metavar="μ,…", shown="1"
     )
-    starts: int | None = declared(
-        None,
-        "qp1, qp2: count how many of N random starts end at the solution.",
-        noun=STARTS,
-        metavar="N",
-        least=1,
-        shown=False,
+    starts: int | None = redeclared(
+        SolveOptions, "starts", "qp1, qp2: count how many of N random starts end at the solution."
     )
-    seed: int | None = declared(
-        None,
-        "qp1, qp2: seed of the random starts; the same seed gives the same starts.",
-        metavar="S",
-        least=0,
-        shown="0",
-    )
+    seed: int | None = redeclared(SolveOptions, "seed")
 
     def __post_init__(self) -> None:
         """Read names and numbers, a single one as a list; refuse what is out of range, given twice, or of no use."""
@@ -100,16 +89,6 @@ class ComparisonOptions:
     def has_penalties(self) -> bool:
         """Whether there are several penalties, so that each label needs its own."""
         return len(self.penalties or ()) > 1
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the options as numbers, lists and texts, ready for JSON."""
-        return {
-            "formulations": [name.value for name in self.formulations],
-            "weights": [name.value for name in self.weights],
-            "penalties": [*(self.penalties or (1.0,))] if FormulationName.QP2 in self.formulations else [],
-            "starts": self.starts,
-            "seed": self.seed or 0,
-        }
 
 
 def _compared(name: object) -> FormulationName:

@@ -102,12 +102,17 @@ class StatementKeywords(TypedDict, total=False):
     max_iterations: int | None
 
 
-class SolveKeywords(StatementKeywords, total=False):
+class ComparisonKeywords(TypedDict, total=False):
+    """Keywords of `bemcontact.compare`: types of fields of `ComparisonOptions`."""
+
+    starts: int | None
+    seed: int | None
+
+
+class SolveKeywords(StatementKeywords, ComparisonKeywords, total=False):
     """Keywords of `bemcontact.solve`: types of fields of `SolveOptions`, with names as texts."""
 
     start: GivenStart | os.PathLike[str] | StartName | str | None
-    seed: int | None
-    starts: int | None
     polish: bool
 
 
@@ -239,8 +244,7 @@ class SolveOptions:
         used = USES[self.formulation]
         takes = f"it takes {', '.join(used)}; " if used else ""
         for option in sorted({name for names in USES.values() for name in names} - {*used}):
-            default = next(item.default for item in fields(self) if item.name == option)
-            value = getattr(self, option)
+            default, value = getattr(SolveOptions, option), getattr(self, option)
             is_set = self.is_random or value not in (None, StartName.NULL) if option == "start" else value != default
             if is_set:
                 stated = [name for name in ("starts", "seed") if option == "start" and getattr(self, name) is not None]

@@ -17,8 +17,9 @@ from pydantic import (
 )
 
 from bemcontact.arrays import real_array
-from bemcontact.checks.arguments import real_number, shown, text_of_argument, whole_number
+from bemcontact.checks.arguments import shown, text_of_argument, whole_number
 from bemcontact.errors import Issue, ProblemError
+from bemcontact.options import EXPECTED_ACCURACY, load_factors
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.contact_zone import ContactZone, RigidTool, ToolAction
@@ -80,8 +81,7 @@ def _accuracy(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
     try:
         return handler(value)
     except ValidationError:
-        message = "expected a relative accuracy between 0 and 1, such as 0.01 for 1 percent, or null for none; found "
-        raise invalid(message + shown(value)) from None
+        raise invalid(f"{EXPECTED_ACCURACY}, or null for none; found {shown(value)}") from None
 
 
 class Problem(SpecModel):
@@ -273,12 +273,7 @@ class Problem(SpecModel):
         ProblemError
             If a load case does not exist, or a factor is not a number.
         """
-        if not isinstance(factors, Mapping):
-            raise ProblemError(f"factors by load case are needed, such as {{'wind': 1.5}}; found {shown(factors)}")
-        numbers = {
-            text_of_argument(case, "the name of a load case"): real_number(factor, f"the factor of '{case}'")
-            for case, factor in factors.items()
-        }
+        numbers = load_factors(factors)
         name = " + ".join(f"{factor:.6g} {case}" for case, factor in numbers.items()).replace(".", ",")
         data = self.model_dump(exclude={"variants"})
         return type(self)(**{**data, "combinations": {**self.combinations, name: numbers}, "case": name})

@@ -247,6 +247,20 @@ def test_a_penalty_that_is_no_number_is_told_what_is_expected(value: str):
     assert f"expected a number, found '{value}'" in run("solve", "no file", "--penalty", value).stderr
 
 
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        ("5", "such as 0.01 for 1 percent, found '5'; write 0.05 for 5 percent"),
+        ("0.5 %", "found '0.5 %'; write 0.005 for 0.5 percent"),
+        ("0", "such as 0.01 for 1 percent, found '0'\n"),
+        ("200%", "found '200%'\n"),
+        ("fine", "expected a number, found 'fine'"),
+    ],
+)
+def test_an_accuracy_out_of_range_is_told_what_to_write(value: str, expected: str):
+    assert expected in run("solve", "no file", "--accuracy", value, COLUMNS="200").stderr
+
+
 def test_a_mesh_that_is_too_fine_is_told_by_its_option(block: Path):
     for parts in ("10000", "1000000000000"):
         assert_refused(run("solve", block, "--refine", parts), f"--refine {parts}: ")

@@ -316,6 +316,19 @@ def test_a_problem_solved_the_way_of_cvxpy_is_the_contact_state(contact):
     same_pressure(computed.pressure, contact)
 
 
+@pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12])
+def test_a_problem_solved_the_way_of_cvxpy_does_not_depend_on_the_unit_of_length(unit: float):
+    """Displacements and gaps in another unit; a bound that is far away leaves the contact state."""
+    one = random_contact(4, 12, 1)
+    lengths = {name: getattr(one, name) * unit for name in ("compliance", "free_displacement", "initial_gap")}
+    model = bemcontact.model(replace(one, **lengths))
+    problem = model.problem(extra_constraints=[model.gap <= 100 * model.scales.displacement])
+    assert problem.solve() == problem.value
+    computed = model.result(problem)
+    assert computed.contact_state
+    np.testing.assert_allclose(computed.pressure, complementarity.solve(one).pressure, rtol=1e-6, atol=1e-8)
+
+
 def test_loads_of_two_cases_that_balance_each_other_may_act_together():
     """Each alone would drive block and tools up or down; together they press with 10 on a width of 10, uniformly."""
     edges = {"bottom": [-5, 0], "right": [5, 0], "top": [5, 4], "left": [-5, 4]}

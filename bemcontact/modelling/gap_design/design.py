@@ -134,8 +134,8 @@ def _states(
     if not states or not all(isinstance(state, CondensedContact) for state in states):
         raise ProblemError("a design needs a CondensedContact, or several of one body; bemcontact.condense makes them")
     if cases is not None:
-        if not isinstance(cases, Sequence) or not all(isinstance(factors, Mapping) for factors in cases):
-            raise ProblemError(f"cases is a list of factors by load case, [{{'wind': 1.5}}]; found {shown(cases)}")
+        if not isinstance(cases, Sequence):
+            raise ProblemError(f"cases is a list, such as [{{'wind': 1.5}}]; found {shown(cases)}")
         if len(states) != 1 or not len(cases):
             raise ProblemError("factors of load cases go with one condensed contact, and at least one state is needed")
         return tuple(states[0].with_factors(factors) for factors in cases)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
+from pydantic import computed_field, field_serializer
 
 from bemcontact.arrays import Array, IntArray, freeze_arrays
 from bemcontact.assessment.certificate import Certificate
@@ -15,7 +16,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
 from bemcontact.problem.surface_lines import Polyline, Spline
-from bemcontact.serialization import Pairs, Record, Recorded, Vector
+from bemcontact.serialization import Internal, Leaf, Pairs, Vector
 
 AGREED = 1e-6
 """Difference of the designed pressure from that of the contact state, over the peak, up to which they agree."""
@@ -33,7 +34,7 @@ MEASURED = {Goal.PEAK: "The largest pressure", Goal.UNIFORM: "The root mean squa
 
 
 class LoadStateRecord(FootprintRecord):
-    """Contact state of a load state."""
+    """Contact state of a load state; JSON has its footprint without nesting."""
 
     pressure: Vector
     """Pressure at each contact point per undeformed length [p]."""
@@ -41,41 +42,6 @@ class LoadStateRecord(FootprintRecord):
     """Residuals of the contact conditions and equations."""
     certificate: Certificate
     """What is proved."""
-
-
-class GapDesignRecord(Record):
-    """A designed profile, with the contact states of all load states without and with it."""
-
-    goal: Goal
-    """What is made small."""
-    zone: str
-    """Name of the contact zone."""
-    points: Pairs
-    """Contact points (x, y) on the interval of the profile [L]."""
-    arc_position: Vector
-    """Arc position of these points [L]."""
-    profile: Vector
-    """Profile at these points, which is added to the initial gap [L]."""
-    coefficients: Vector | None
-    """Coefficients of the shapes, if the profile is made of some."""
-    before: list[LoadStateRecord]
-    """Contact states without the profile."""
-    after: list[LoadStateRecord]
-    """Contact states with the profile."""
-    value_before: float
-    """Value of the goal without the profile [p]."""
-    value: float
-    """Value of the goal with the profile [p]."""
-    lower_bound: float
-    """Lower bound of the goal within the bounds on the profile, by convex relaxation [p]."""
-    proved_optimal: bool
-    """Whether the value is at the bound, to a millionth."""
-    difference: float
-    """Largest difference of the designed pressure from that of the contact state, over the peak."""
-    verified: bool
-    """Whether all load states with the profile are certified and have the designed pressure, to a millionth."""
-    words: str
-    """What is reached and what is proved of it, in a few sentences."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -109,35 +75,33 @@ class LoadState(WithHints):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class GapDesign(Recorded):
-    """The best computed profile, with the contact states of all load states without and with it.
-
-    Parameters
-    ----------
-    goal : what was made small
-    zone : name of the contact zone
-    points : (m,) indices of the contact points on the interval
-    profile : (n,) g [L], zero off the interval
-    coefficients : (s,) of the shapes, if the profile is made of some
-    before, after : the load states without and with the profile, by the direct solver
-    designed : (loads, n) pressure [p] on the designed contact sets, which is to agree with that of `after`
-    value_before, value : of the goal [p], of the contact states
-    lower_bound : of the goal within the bounds on the profile [p], by convex relaxation
-    proved_optimal : whether the value is at the bound, to a millionth
-    """
+class GapDesign(Leaf):
+    """A designed profile, with the contact states of all load states without and with it."""
 
     goal: Goal
+    """What is made small."""
     zone: str
+    """Name of the contact zone."""
     points: IntArray
+    """Contact points on the interval of the profile: their indices (m,); in JSON their places (x, y) [L]."""
     profile: Array
-    coefficients: Array | None
+    """Profile, which is added to the initial gap [L]: at all n contact points; in JSON at those of the interval."""
+    coefficients: Vector | None
+    """Coefficients of the shapes, if the profile is made of some."""
     before: tuple[LoadState, ...]
+    """Contact states without the profile."""
     after: tuple[LoadState, ...]
-    designed: Array
+    """Contact states with the profile."""
+    designed: Internal[Array]
+    """Pressure (loads, n) on the designed contact sets, with which that of `after` is to agree [p]."""
     value_before: float
+    """Value of the goal without the profile [p]."""
     value: float
+    """Value of the goal with the profile [p]."""
     lower_bound: float
+    """Lower bound of the goal within the bounds on the profile, by convex relaxation [p]."""
     proved_optimal: bool
+    """Whether the value is at the bound, to a millionth."""
 
     def __post_init__(self) -> None:
         """Make arrays read-only."""
@@ -157,17 +121,38 @@ class GapDesign(Recorded):
         """The largest pressure of all load states with the profile [p]."""
         return max(state.peak for state in self.after)
 
+    @field_serializer("points")
+    def _places(self, points: IntArray) -> Pairs:
+        return self.before[0].contact.points[points]
+
+    @field_serializer("profile")
+    def _on_interval(self, profile: Array) -> Vector:
+        return profile[self.points]
+
+    @field_serializer("before", "after")
+    def _records(self, states: tuple[LoadState, ...]) -> list[LoadStateRecord]:
+        return [state.record() for state in states]
+
+    @computed_field
+    @property
+    def arc_position(self) -> Vector:
+        """Arc position of the points [L]."""
+        return self.before[0].contact.arc_position[self.points]
+
+    @computed_field
     @property
     def difference(self) -> float:
         """Largest difference of the designed pressure from that of the contact state, over the peak."""
         reached = np.array([state.pressure for state in self.after])
         return float(np.abs(reached - self.designed).max()) / (self.peak or 1.0)
 
+    @computed_field
     @property
     def verified(self) -> bool:
         """Whether all load states with the profile are certified and have the designed pressure, to a millionth."""
         return all(state.certificate.certified for state in self.after) and self.difference <= AGREED
 
+    @computed_field
     @property
     def words(self) -> str:
         """The result and what is proved about it, in a few sentences."""
@@ -252,26 +237,9 @@ class GapDesign(Recorded):
         points = "".join(f"    - [{_number(x)}, {_number(y)}]\n" for x, y in self.surface(kind).points)
         return f"surface:\n  kind: {kind}\n  points:\n{points}"
 
-    def record(self) -> GapDesignRecord:
-        """Return the JSON form of the design."""
-        contact = self.before[0].contact
-        return GapDesignRecord(
-            goal=self.goal,
-            zone=self.zone,
-            points=contact.points[self.points],
-            arc_position=contact.arc_position[self.points],
-            profile=self.profile[self.points],
-            coefficients=self.coefficients,
-            before=[state.record() for state in self.before],
-            after=[state.record() for state in self.after],
-            value_before=self.value_before,
-            value=self.value,
-            lower_bound=self.lower_bound,
-            proved_optimal=self.proved_optimal,
-            difference=self.difference,
-            verified=self.verified,
-            words=self.words,
-        )
+
+GapDesignRecord = GapDesign
+"""The name by which `report.schema` has it."""
 
 
 def relieved(contact: CondensedContact, profile: Array) -> CondensedContact:
