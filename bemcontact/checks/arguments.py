@@ -87,6 +87,16 @@ def texts(value: object, what: str) -> tuple[str, ...]:
     return cast(tuple[str, ...], items)
 
 
+def load_factors(value: object) -> dict[str, float]:
+    """Read the factors of load cases; refuse all but a mapping of their names to numbers."""
+    if not isinstance(value, Mapping):
+        raise ProblemError(f"factors by load case are needed, such as {{'wind': 1.5}}; found {shown(value)}")
+    return {
+        text_of_argument(case, "the name of a load case"): real_number(factor, f"the factor of '{case}'")
+        for case, factor in value.items()
+    }
+
+
 def file_path(value: object, what: str) -> Path:
     """Read the path of a file: a text or a path object."""
     if not isinstance(value, str | os.PathLike) or not isinstance(os.fspath(value), str) or "\0" in os.fspath(value):

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays, real_array, whole_array
-from bemcontact.checks.arguments import file_path, instance_of, whole_number
+from bemcontact.checks.arguments import file_path, instance_of, load_factors, whole_number
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact import archive
 from bemcontact.contact.consistency import ensure_arrays, ensure_independent, ensure_labels, ensure_parts_fit
@@ -28,7 +28,7 @@ from bemcontact.contact.free_motions import (
 )
 from bemcontact.contact.load_cases import Change, LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
-from bemcontact.options import Weights, load_factors, named
+from bemcontact.options import Weights, named
 
 CANCELLED = 64 * float(np.finfo(float).eps)
 """Fraction of the terms of a sum below which the sum is round-off."""

@@ -5,7 +5,6 @@ from bemcontact.options.declaration import EXPECTED_ACCURACY as EXPECTED_ACCURAC
 from bemcontact.options.declaration import STARTS as STARTS
 from bemcontact.options.declaration import ensure_known as ensure_known
 from bemcontact.options.declaration import ensure_whole as ensure_whole
-from bemcontact.options.declaration import load_factors as load_factors
 from bemcontact.options.declaration import named as named
 from bemcontact.options.solving import COMPARED as COMPARED
 from bemcontact.options.solving import USES as USES

@@ -1,6 +1,6 @@
 """How an option is declared: once, with its default, meaning and name in errors; and the checks of options."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import field, fields
 from difflib import get_close_matches
 from enum import StrEnum
@@ -8,7 +8,7 @@ from inspect import cleandoc
 from textwrap import fill
 from typing import Any, TypeVar, cast
 
-from bemcontact.checks.arguments import LARGEST_COUNT, real_number, shown, text_of_argument, whole_number
+from bemcontact.checks.arguments import LARGEST_COUNT, shown, whole_number
 from bemcontact.errors import OptionError, ProblemError
 
 Name = TypeVar("Name", bound=StrEnum)
@@ -80,16 +80,6 @@ def ensure_whole_fields(options: Any) -> None:
         if least is not None and value is not None:
             ensure_whole(value, item.metadata["noun"] or item.name, least)
             object.__setattr__(options, item.name, whole_number(value, item.name, least))
-
-
-def load_factors(value: object) -> dict[str, float]:
-    """Read the factors of load cases; refuse all but a mapping of their names to numbers."""
-    if not isinstance(value, Mapping):
-        raise ProblemError(f"factors by load case are needed, such as {{'wind': 1.5}}; found {shown(value)}")
-    return {
-        text_of_argument(case, "the name of a load case"): real_number(factor, f"the factor of '{case}'")
-        for case, factor in value.items()
-    }
 
 
 EXPECTED_ACCURACY = "expected a relative accuracy between 0 and 1, such as 0.01 for 1 percent"

@@ -17,9 +17,9 @@ from pydantic import (
 )
 
 from bemcontact.arrays import real_array
-from bemcontact.checks.arguments import shown, text_of_argument, whole_number
+from bemcontact.checks.arguments import load_factors, shown, text_of_argument, whole_number
 from bemcontact.errors import Issue, ProblemError
-from bemcontact.options import EXPECTED_ACCURACY, load_factors
+from bemcontact.options import EXPECTED_ACCURACY
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.contact_zone import ContactZone, RigidTool, ToolAction

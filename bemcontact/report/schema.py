@@ -8,7 +8,7 @@ from bemcontact.analysis.result import ResultRecord
 from bemcontact.analysis.study import StudyRecord
 from bemcontact.assessment.comparison import ComparisonRecord
 from bemcontact.contact.multistart import RandomStarts
-from bemcontact.modelling.gap_design.designed_gap import GapDesignRecord
+from bemcontact.modelling.gap_design.designed_gap import GapDesign
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.parametric.path import LoadPath
 from bemcontact.parametric.sensitivity import Sensitivities
@@ -24,7 +24,7 @@ RESULTS: dict[str, type[Leaf] | type[Record]] = {
     "load_path": LoadPath,
     "sensitivities": Sensitivities,
     "starts": RandomStarts,
-    "design": GapDesignRecord,
+    "design": GapDesign,
 }
 """Kind of a result -> the class whose fields JSON has."""
 

@@ -238,10 +238,6 @@ class GapDesign(Leaf):
         return f"surface:\n  kind: {kind}\n  points:\n{points}"
 
 
-GapDesignRecord = GapDesign
-"""The name by which `report.schema` has it."""
-
-
 def relieved(contact: CondensedContact, profile: Array) -> CondensedContact:
     """Add a profile (n,) [L] to the initial gap."""
     return replace(contact, initial_gap=contact.initial_gap + profile)
