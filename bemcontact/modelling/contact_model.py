@@ -309,6 +309,15 @@ class ContactModel(WithHints):
 def model(contact: CondensedContact) -> ContactModel:
     """Write a condensed contact as a cvxpy model whose parameters have the present values.
 
+    Parameters
+    ----------
+    contact : a body condensed to n contact points, as `condense` makes it
+
+    Returns
+    -------
+    ContactModel
+        QP3 with the pressure [p] and the gap [L] as expressions, to which constraints and costs can be added.
+
     Raises
     ------
     ProblemError

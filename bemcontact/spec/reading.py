@@ -121,7 +121,13 @@ def readable(text: str, name: str, overrides: Changes = (), variant: str | None 
 
 
 def schema() -> dict[str, Any]:
-    """JSON Schema (draft 2020-12) of a spec, for completion and checks in editors."""
+    """Describe a problem file, for completion and checks in editors.
+
+    Returns
+    -------
+    dict
+        JSON Schema (draft 2020-12), ready for `json.dumps`.
+    """
     properties = Problem.model_json_schema()
     for definition in (properties, *properties["$defs"].values()):
         if "description" in definition:  # python -OO has no docstrings
