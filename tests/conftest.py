@@ -10,7 +10,6 @@ for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the many processes that tests start compile each module once
 
-import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402
 
 settings.register_profile("repeatable", derandomize=True, deadline=None, max_examples=50)
@@ -22,7 +21,7 @@ SLOW = 10.0
 """Seconds of a test that should have the marker slow: twice the five of the marker, for a machine with other work."""
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter):
+def pytest_terminal_summary(terminalreporter):
     """Name the tests that take long and are not marked; they do not fail."""
     for report in [report for group in terminalreporter.stats.values() for report in group]:
         if getattr(report, "duration", 0.0) > SLOW and "slow" not in report.keywords:
