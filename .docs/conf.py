@@ -11,7 +11,13 @@ exclude_patterns = ["build"]
 default_role = "py:obj"  # docstrings name things in single backticks
 highlight_language = "none"
 smartquotes = False  # they would turn the two hyphens of an option into a dash
-nitpicky = False
+nitpicky = True
+nitpick_ignore_regex = [
+    ("py:obj", r"[a-z]\w*"),  # parameters and attributes of what is spoken of
+    ("py:obj", r"Goal|OUTCOMES|Quantity|TOLD"),  # names inside of their modules
+    ("py:class", r"array|default .*"),  # words of `generated.tidy` in the types of fields
+    ("py:class", r"(collections|cvxpy|numpy|os)\..*"),  # on other sites
+]
 
 myst_enable_extensions = ["attrs_inline", "colon_fence", "deflist", "dollarmath", "html_image"]
 myst_heading_anchors = 4

@@ -2,13 +2,14 @@
 
     python .docs/gallery.py
 
-Solves all problems anew. A second run changes nothing.
+Solves all problems anew, and writes the same errors into the tables of the pages in `TABLES`. A second run changes
+nothing.
 """
 
 import os
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -19,13 +20,15 @@ from matplotlib.patches import Rectangle  # noqa: E402
 
 import bemcontact  # noqa: E402
 from bemcontact import Result  # noqa: E402
-from bemcontact.reference import expected, score  # noqa: E402
+from bemcontact.reference import Score, expected, score  # noqa: E402
 from bemcontact.report import figures  # noqa: E402
 from bemcontact.report.figures.page import new_page  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[1]
 PICTURES = Path(".docs", "pictures")
 PAGE = Path("models", "README.md")
+TABLES = (Path("README.md"), Path(".docs", "validation", "closed_forms.md"))
+"""Pages with tables of errors that are written by hand, but for their numbers."""
 CASES = {"eccentric_punch": "beyond half", "roller_in_v_block": "down and aside"}
 """The load case in the picture, where it is not the first one."""
 README = ("cylinder_on_plane", "bolt_in_plate")
@@ -40,7 +43,9 @@ HEAD = """\
 
 Each file here states one problem with a known answer. This command solves one and draws it:
 
-    bemcontact solve models/cylinder_on_plane.yaml --figure contact.svg
+```sh
+bemcontact solve models/cylinder_on_plane.yaml --figure contact.svg
+```
 
 - Grey: the body, with its displacements to scale, and hatched rigid surfaces. Dashed lines show the undeformed body.
   Where the contact is small, only the part of the body around it is drawn.
@@ -114,19 +119,26 @@ def _errors(answers: Iterable[Result]) -> Iterator[str]:
     """For each source the largest error of each quantity over all load cases and references, in percent."""
     names, errors = dict[str, dict[str, None]](), dict[str, dict[str, float]]()
     for result in answers:
-        known = expected(result.problem, result.contact)
-        sources = {item.name: item.source for item in known}
-        for item in known:
+        for item in expected(result.problem, result.contact):
             names.setdefault(item.source, {})[item.name] = None
-        for item in score(known, result.contact, result.footprint, result.solution.pressure):
-            if item.judged and item.difference is not None:
-                quantities = errors.setdefault(sources[item.reference], {})
-                quantities[item.quantity] = max(quantities.get(item.quantity, 0.0), abs(item.difference))
+        for source, quantity, error, _ in _judged(result):
+            quantities = errors.setdefault(source, {})
+            quantities[quantity] = max(quantities.get(quantity, 0.0), error)
     for source, named in names.items():
         name = next(iter(named))
         title = source if len(named) > 1 or name.lower() in source.lower() else f"{name}, {source}"
-        told = (f"{_QUANTITIES.get(key, key)} {_percent(error)}" for key, error in errors.get(source, {}).items())
+        told = (f"{quantity} {_percent(error)}" for quantity, error in errors.get(source, {}).items())
         yield f"{title}: {', '.join(told) or 'this problem is out of its range'}"
+
+
+def _judged(result: Result) -> Iterator[tuple[str, str, float, Score]]:
+    """Source, quantity, error and score of each quantity by which a result is judged."""
+    known = expected(result.problem, result.contact)
+    sources = {item.name: item.source for item in known}
+    for item in score(known, result.contact, result.footprint, result.solution.pressure):
+        if item.judged and item.difference is not None:
+            quantity = _QUANTITIES.get(item.quantity, item.quantity)
+            yield sources[item.reference], quantity, abs(item.difference), item
 
 
 _QUANTITIES = {"pressure (largest difference)": "pressure", "pressure (mean square)": "pressure in the mean square"}
@@ -135,6 +147,34 @@ _QUANTITIES = {"pressure (largest difference)": "pressure", "pressure (mean squa
 def _percent(error: float) -> str:
     """A relative error with two figures."""
     return f"{100 * error:.2g} %" if error > ROUND_OFF else "round-off"
+
+
+def filled(text: str) -> str:
+    """Write the errors of today into each row of a table that names a model, or stands below one that does."""
+    lines, model = [], None
+    for line in text.splitlines():
+        named = re.search(r"^\| `(\w+)` \||compare models/gallery/(\w+)\.yaml`", line)
+        model = named[1] or named[2] if named else model if line.startswith("| |") else None
+        lines.append(_MEASURED.sub(partial(_measured, model), line) if model else line)
+    return "\n".join(lines) + "\n"
+
+
+_MEASURED = re.compile(r"\b([a-z][a-z -]*?)(?: |( \| ))(?:\d[\d.e-]* %|round-off)(?(2) \| [^|]* \|$)")
+"""A quantity with its error, in one cell of a table, or in two cells with the tolerance in a third one."""
+
+
+def _measured(model: str, found: re.Match[str]) -> str:
+    """Give a quantity with its largest error over all load cases and references, and the tolerance of that one."""
+    quantity, own_cell = found[1], found[2]
+    answers = results(ROOT / "models" / "gallery" / f"{model}.yaml").values()
+    scores = [
+        (error, item.tolerance) for answer in answers for _, key, error, item in _judged(answer) if key == quantity
+    ]
+    if not scores:
+        raise ValueError(f"{model} has no error of {quantity}")
+    error, tolerance = max(scores)
+    allowed = f"{100 * tolerance:g} %" if tolerance > ROUND_OFF else f"{tolerance:.0e}".replace("e-0", "e-")
+    return f"{quantity} | {_percent(error)} | {allowed} |" if own_cell else f"{quantity} {_percent(error)}"
 
 
 def pictures() -> Iterator[tuple[Path, bytes]]:
@@ -164,6 +204,8 @@ def main() -> None:
     for path, picture in pictures():
         (ROOT / path).write_bytes(picture)
     (ROOT / PAGE).write_text(page(), encoding="utf-8")
+    for table in TABLES:
+        (ROOT / table).write_text(filled((ROOT / table).read_text(encoding="utf-8")), encoding="utf-8")
 
 
 if __name__ == "__main__":

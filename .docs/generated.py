@@ -296,7 +296,7 @@ def _annotation(value: object, field: str) -> str:
         return ""
     text = stringify_annotation(annotation, "smart")
     default = getattr(value, field, None)  # where a dataclass keeps it
-    is_plain = isinstance(default, (bool, int, float, str)) and default != ""
+    is_plain = isinstance(default, bool | int | float | str) and default != ""
     return f" : {'array' if 'ndarray' in text else text}" + (f", default {default}" if is_plain else "")
 
 

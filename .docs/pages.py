@@ -11,7 +11,11 @@ A page is one session in a folder of its own, with the shipped models in ``model
 - ``console``: lines ``$ COMMAND``, each with what it prints. A command that does not end with status 0 is followed by
   ``$ echo $?``.
 - ``json``: must parse.
-- ``sh``, ``{code-cell}`` and blocks without a language are left to other tests, or are no code.
+- ``sh`` and ``{code-cell}`` are left to other tests.
+- Blocks that are indented or have no language are refused.
+
+Inline code that begins with ``bemcontact`` must be a command with options and problem files that exist. The file may be
+left out, and values of options are not checked.
 
 The line ``...`` in an output stands for lines that are left out. A comment ``<!-- uses: PAGE -->`` (from the folder of
 this file) saves the problem files of another page first.
@@ -44,7 +48,7 @@ from bemcontact import cli
 
 DOCS = Path(__file__).parent
 ROOT = DOCS.parent
-OTHERS = ("", "sh", "mermaid")
+OTHERS = ("sh", "mermaid")
 """Languages of blocks that are not run here."""
 CUT = "..."
 """The line that stands for lines that are left out."""
@@ -93,14 +97,21 @@ class Session:
     def run(self) -> Iterator[Output]:
         """Run all blocks; `PageError` names the line of what fails."""
         (self.folder / "models").symlink_to(ROOT / "models")
-        for token in tokens(self.page):
+        parts = tokens(self.page)
+        for token in parts:
             used = re.fullmatch(r"<!-- uses: (\S+) -->", token.content.strip())
             if used:
                 for other in tokens(DOCS / used[1]):
                     if other.info == "yaml":
                         self.save(other)
+            elif token.type == "code_block":
+                self.fail(token, "an indented block is not run: put it in a fence with its language")
             elif token.type == "fence":
                 yield from self.block(token)
+        for token in parts:
+            for code in token.children or ():
+                if code.type == "code_inline" and code.content.startswith("bemcontact "):
+                    self.mention(token, code.content)
 
     def block(self, token: Token) -> Iterator[Output]:
         """Run one block."""
@@ -117,7 +128,7 @@ class Session:
             case "json":
                 json.loads(token.content)
             case language if language not in OTHERS and not language.startswith("{"):
-                self.fail(token, f"a block of {language} here is not run: see {Path(__file__).name}")
+                self.fail(token, f"a block of {language or 'no language'} here is not run: see {Path(__file__).name}")
 
     def save(self, token: Token) -> None:
         """Save a problem, or add keys to one, and load it."""
@@ -181,6 +192,17 @@ class Session:
                     check=False,
                 )
                 return run.stdout, run.returncode
+
+    def mention(self, token: Token, command: str) -> None:
+        """Check that a command in a sentence or in a table has options that exist, and problem files that are there."""
+        missing = [
+            word for word in shlex.split(command) if word.endswith(".yaml") and not (self.folder / word).is_file()
+        ]
+        if missing:
+            self.fail(token, f"there is no {missing[0]} for '{command}'")
+        printed, status = self.command(f"{command} --help")  # which reads the options before it shows the help
+        if status:
+            self.fail(token, f"'{command}' is no command:\n{printed}")
 
     def output(self, token: Token, skipped: int, shown: list[str], printed: str, source: str) -> Output:
         """Put beside each other what a part of a block shows and what is printed."""

@@ -4,6 +4,7 @@ In all of them [L] is the unit of length and [p] that of pressure, force over le
 number without either has no unit.
 """
 
+import inspect
 import json
 from abc import ABC, abstractmethod
 from functools import cache
@@ -110,6 +111,10 @@ class _Schema(GenerateJsonSchema):
     def default_schema(self, schema: Any) -> dict[str, Any]:
         """Describe a field without its default."""
         return self.generate_inner(schema["schema"])
+
+    def dataclass_schema(self, schema: Any) -> dict[str, Any]:
+        """Describe a dataclass by its docstring, as Pydantic does by itself from 2.13 on."""
+        return {**super().dataclass_schema(schema), "description": inspect.getdoc(schema["cls"])}
 
 
 def schema_of(result: type[Leaf] | type[Record]) -> dict[str, Any]:

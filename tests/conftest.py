@@ -15,3 +15,15 @@ from hypothesis import settings  # noqa: E402
 settings.register_profile("repeatable", derandomize=True, deadline=None, max_examples=50)
 settings.register_profile("thorough", deadline=None, max_examples=2000)  # by hand: pytest --hypothesis-profile=thorough
 settings.load_profile("repeatable")
+
+
+SLOW = 10.0
+"""Seconds of a test that should have the marker slow: twice the five of the marker, for a machine with other work."""
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Name the tests that take long and are not marked; they do not fail."""
+    for report in [report for group in terminalreporter.stats.values() for report in group]:
+        if getattr(report, "duration", 0.0) > SLOW and "slow" not in report.keywords:
+            line = f"{report.nodeid}: {report.when} took {report.duration:.0f} s; mark it slow, or make it faster"
+            terminalreporter.write_line(line, yellow=True)

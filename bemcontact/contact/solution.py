@@ -11,7 +11,7 @@ from bemcontact.serialization import Leaf
 
 
 class Status(StrEnum):
-    """How a solver ended, which proves nothing; `bemcontact.assessment.certificate` says what to do."""
+    """How a solver ended, which proves nothing; ``bemcontact.assessment.certificate`` says what to do."""
 
     SOLVED = "solved"
     LOCAL_MINIMUM = "local_minimum"
@@ -116,7 +116,7 @@ def traces_in_turn(*parts: tuple[str, Sequence[float]]) -> tuple[Trace, ...]:
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ContactSolution(WithHints):
-    """A solution as a formulation reports it; `bemcontact.assessment` recomputes whether it is one.
+    """A solution as a formulation reports it; ``bemcontact.assessment`` recomputes whether it is one.
 
     Parameters
     ----------

@@ -209,7 +209,7 @@ class LoadPath(Leaf):
         Returns
         -------
         ContactSolution
-            Solution of `contact(t)`. Where the body tips over, it is the state after that.
+            Solution of ``contact(t)``. Where the body tips over, it is the state after that.
 
         Raises
         ------
@@ -232,7 +232,7 @@ class LoadPath(Leaf):
         return bool(last - first < 2 and self.open[max(first - 1, 0) : last].any())
 
     def breakpoint(self, i: int) -> ContactSolution:
-        """The contact state at breakpoint i, of `contact(parameter[i])`."""
+        """The contact state at breakpoint i, of ``contact(parameter[i])``."""
         if whole_number(i, "number of a breakpoint", 0) >= len(self.parameter):
             raise ProblemError(f"there is no breakpoint {shown(i)}: there are {len(self.parameter)}, numbered from 0")
         return self._solution(float(self.parameter[i]), self.pressure[i], self.rigid_amplitudes[i])

@@ -45,12 +45,36 @@ def test_pictures_of_the_page_are_those_of_the_models():
     assert sorted(shown) == sorted(f"{Path(model).stem}.svg" for model in MODELS)
 
 
+@pytest.mark.slow
 def test_page_is_what_the_command_writes(gallery: ModuleType):
+    agree(gallery.page(), PAGE)
+
+
+@pytest.mark.parametrize("page", ["README.md", ".docs/validation/closed_forms.md"])
+def test_tables_of_errors_are_what_the_command_writes(gallery: ModuleType, page: str):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    agree(gallery.filled(text), text)
+
+
+def agree(written: str, page: str):
     """The words are the same; an error may differ by a tenth, which two figures do not show better."""
-    written = gallery.page()
-    assert re.sub(PERCENT, "#", written) == re.sub(PERCENT, "#", PAGE), "run python .docs/gallery.py"
-    errors = [[float(error) for error in re.findall(PERCENT, text)] for text in (written, PAGE)]
+    assert re.sub(PERCENT, "#", written) == re.sub(PERCENT, "#", page), "run python .docs/gallery.py"
+    errors = [[float(error) for error in re.findall(PERCENT, text)] for text in (written, page)]
     assert errors[0] == pytest.approx(errors[1], rel=0.1)
+
+
+def test_a_table_of_errors_is_filled_in(gallery: ModuleType):
+    """In rows that name a model, and in those below it; nowhere else."""
+    text = "peak 9 %\n| `shrink_fit` | peak | 9 % | 9 % |\n| | pressure | round-off | 9 |\n| other | peak | 9 % | 9 |\n"
+    command = "`bemcontact compare models/gallery/shrink_fit.yaml`"
+    filled = gallery.filled(f"{text}| ring | peak 9 %, up to 0.9 | {command} |\n")
+    error = r"0\.003\d %"
+    below = rf"\| \| pressure \| {error} \| 0\.01 % \|\n\| other \| peak \| 9 % \| 9 \|"
+    in_one_cell = rf"\| ring \| peak {error}, up to 0\.9 \| {re.escape(command)} \|"
+    row = rf"\| `shrink_fit` \| peak \| {error} \| 0\.01 % \|"
+    assert re.fullmatch(rf"peak 9 %\n{row}\n{below}\n{in_one_cell}\n", filled)
+    with pytest.raises(ValueError, match="shrink_fit has no error of half-width"):
+        gallery.filled("| `shrink_fit` | half-width | 9 % | 9 % |")
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -49,6 +49,31 @@ def test_the_roller_of_the_readme_is_that_of_hertz():
     assert footprint.intervals[0].end[0] == pytest.approx(b, rel=1e-3)
 
 
+README = (pages.ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_cylinder_of_the_readme_is_that_of_the_finite_elements():
+    """The finite elements are those of the page of validation, which a benchmark computes."""
+    text = (pages.DOCS / "validation" / "finite_elements.md").read_text(encoding="utf-8")
+    _, _, table = text.partition("| `cylinder_on_plane` | peak |")
+    peak, end = (float(re.search(r"\d+\.\d+", row)[0]) for row in table.splitlines()[:2])
+    problem = bemcontact.load(pages.ROOT / "models" / "cylinder_on_plane.yaml", variant="stated mesh")
+    footprint = bemcontact.solve(problem.refined(4)).footprint
+    errors = (footprint.peak.pressure / peak - 1, footprint.intervals[0].end[0] / end - 1)
+    stated = re.search(r"peak ([\d.]+) %, end of contact ([\d.]+) %, with `--refine 4`", README)
+    assert [100 * abs(error) for error in errors] == pytest.approx([*map(float, stated.groups())], rel=0.1)
+
+
+def test_the_numbers_of_the_reproduction_are_those_that_it_prints():
+    """The page of validation shows the verdict, and its own test compares it with that of today."""
+    verdict = " ".join((pages.DOCS / "validation" / "paper.md").read_text(encoding="utf-8").split())
+    answers, held, known = re.search(
+        r"problems of the paper, (\d+) answers.*, (\d+) of (\d+) references met", README
+    ).groups()
+    assert f"{answers} of {answers} answers" in verdict
+    assert f"{held} of {known} quantities are within" in verdict
+
+
 def test_the_page_on_quadratic_programs_lists_each_status():
     text = Path(pages.DOCS, "how-to", "quadratic_programs.md").read_text(encoding="utf-8")
     assert re.findall(r"^\| `([A-Z_]+)` \|", text, flags=re.MULTILINE) == [s.name for s in bemcontact.QPStatus]

@@ -90,6 +90,14 @@ REFUSED = {
     "a command that fails before another": ("```console\n$ false\n$ true\n```", "status 1 before 'true'"),
     "a console without a prompt": ("```console\ntrue\n```", r"has to be '\$ COMMAND'"),
     "an output of nothing": ("```text\n3\n```", "a block of text here is not run"),
+    "an indented block": ("    print(3)", "an indented block is not run"),
+    "no language": ("```\n3\n```", "a block of no language here is not run"),
+    "a mentioned option that does not exist": (
+        "Take `bemcontact solve --nothing`.",
+        "'bemcontact solve --nothing' is no",
+    ),
+    "a mentioned command that does not exist": ("| a | `bemcontact nothing` |", "'bemcontact nothing' is no command"),
+    "a mentioned problem that does not exist": ("`bemcontact check no.yaml`", "there is no no.yaml for"),
     "a language that nothing runs": ("```ruby\n3\n```", "a block of ruby here is not run"),
 }
 

@@ -24,13 +24,13 @@ def settled(monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setenv(variable, value)
 
 
-MANY_SOLUTIONS = {"loaded_tool", "paths"}
+MANY_SOLUTIONS = {".docs/tutorials/loaded_tool.md", ".docs/how-to/paths.md", ".docs/validation/paper.md"}
 """Pages with so many solutions that they take more than five seconds."""
 
 
 @pytest.mark.parametrize(
     "page",
-    [pytest.param(page, marks=[pytest.mark.slow] * (page.stem in MANY_SOLUTIONS)) for page in pages.pages()],
+    [pytest.param(page, marks=[pytest.mark.slow] * (name(page) in MANY_SOLUTIONS)) for page in pages.pages()],
     ids=name,
 )
 def test_blocks_run_and_print_what_is_shown(page: Path, tmp_path: Path):

@@ -248,7 +248,7 @@ def minimize_qp(
     options : QPOptions, optional
         Tolerances, limits, log.
     working_set : (n + m,) int array, optional
-        Start of the working set, as in `QPResult.working_set`; all that is active at x0 if absent.
+        Start of the working set, as in the ``working_set`` of `QPResult`; all that is active at x0 if absent.
 
     Returns
     -------

@@ -74,7 +74,7 @@ class QPOptions:
         component
     scale : equilibrate rows and variables by powers of two, which changes no digit of the data
     search : most faces of the critical cone that are examined behind zero multipliers before the status is undecided
-    log : called with each `LogLine`
+    log : called with each ``LogLine``
     """
 
     max_iterations: int | None = None
