@@ -126,7 +126,7 @@ def schema() -> dict[str, Any]:
     Returns
     -------
     dict
-        JSON Schema (draft 2020-12), ready for `json.dumps`.
+        JSON Schema (draft 2020-12), of texts, numbers, lists and mappings.
     """
     properties = Problem.model_json_schema()
     for definition in (properties, *properties["$defs"].values()):
