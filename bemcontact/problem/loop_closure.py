@@ -133,8 +133,10 @@ def _other_arcs(arc: Arc, start: Point | None, end: Point | None) -> Iterator[tu
     yield _with(arc, radius=_rounded(radii[0], radii[0]))
     if start is None or end is None:
         return
-    angles = (_near(degrees(atan2(py - y, px - x)), angle) for (px, py), angle in ((start, first), (end, last)))
-    yield _with(arc, angles=tuple(_rounded(angle, 360) for angle in angles))
+    near = (_near(degrees(atan2(py - y, px - x)), angle) for (px, py), angle in ((start, first), (end, last)))
+    angles = tuple(_rounded(angle, 360) for angle in near)
+    if angles[0] != angles[1]:  # an arc of no length joins its neighbors too
+        yield _with(arc, angles=angles)
     if own := arc.own_ends()[0]:
         size = radii[0] + hypot(x, y)
         yield _with(

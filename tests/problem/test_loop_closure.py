@@ -74,6 +74,14 @@ def test_edges_in_another_order_are_listed_in_the_order_that_closes_the_loop(loo
         assert f"list the edges in the order {expected}, which closes the loop" in message
 
 
+def test_another_order_is_no_arc_of_no_length():
+    """Exchanged, the arc of the third quarter could join its neighbors only by two equal angles."""
+    kinds = ("line", "line", "angles", "angles")
+    loop = [edge(i, kind, i / 4, (i + 1) / 4) for i, kind in enumerate(kinds)]
+    for _, message in issues([loop[i] for i in (0, 2, 1, 3)]):
+        assert "list the edges in the order 'e0', 'e1', 'e2', 'e3', which closes the loop" in message
+
+
 @settings(max_examples=40, deadline=None)
 @given(st.integers(3, 7), st.sampled_from(("radius", "center", "angles")), st.floats(0.1, 0.9), st.data())
 def test_the_radius_center_or_angles_that_close_the_loop_are_given(n, key, change, data):
