@@ -200,8 +200,8 @@ def _bound_by(
     )
     if not stiff.definite and (eigenvalue := effective_eigenvalue(state, D, M, contact.equilibrium_space)) is not None:
         bound = float(np.linalg.norm(residual)) / eigenvalue
-    if bound > LARGEST_BOUND * y.max() and contact.free_motions:
-        bound = min(bound, near_bound(state, D, M, contact.equilibrium, stiff))
+    if bound > LARGEST_BOUND * y.max() and (contact.free_motions or not stiff.definite):
+        bound = min(bound, near_bound(state, D, M, equations.offset, contact.equilibrium, stiff))
     return (off + bound) * T * (1 + 4 * EPS) if bound < np.inf else None
 
 

@@ -25,7 +25,10 @@ If the bracket, b, is positive, then |e| <= |s|/λ (1 + ρσ'/b), the bound of a
 Where a node has contact points for several surfaces, K has many eigenvalues that are zero up to round-off -Λ. Then
 contact is near one of the surfaces only. Let N be the points with gᵢ <= h, the contact set among them, all in the
 scaling S of `definiteness`; let λ > 0 be the eigenvalue on N, and σ the least singular value of the rows of ℓ there,
-for orthonormal columns. The load bounds |e| by a number B, and so gᵀr <= w = ΛB² + B|s|. Off N this leaves
+for orthonormal columns. The load bounds |e| by a number B, and so gᵀr <= w = ΛB² + B|s|. A body without free motions
+has no ℓ; there K' = K - N is positive definite, with a smallest eigenvalue λ', for some N >= 0 that joins the points
+which null vectors of K set against each other. With b = max(K'y, -Dq) and p* >= 0 it is p*ᵀK'p* <= p*ᵀKp* = -p*ᵀDq
+<= p*ᵀb, and so λ'|p*|² <= bᵀK'⁻¹b. Off N this leaves
 |r| <= τ = w/h. On N the rest of e is v + d, with v in the equilibrium space of N and |d| <= τ/σ. With η = τ (1 + 1/σ)
 
     λ|v|² - 2‖K‖η|v| - ‖K‖η² <= eᵀKe <= (|v| + η)|s|,
@@ -37,10 +40,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
-from scipy.linalg import eigh
+from scipy.linalg import eigh, eigvalsh
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.assessment.definiteness import EPS, Definiteness
+from bemcontact.assessment.definiteness import EPS, SURE, Definiteness
 
 MOST = 8
 """Eigenvectors with which a proof is tried."""
@@ -50,6 +53,8 @@ NEAR = (0.25, 0.5, 0.75)
 """Parts of the open points, those with the smallest gaps first, that are tried as near to contact."""
 ROUNDS = 20
 """Times that the bound of pressures near contact and the work of all others sharpen one another."""
+NULL = (1e-4, 1e-6, 1e-8)
+"""Eigenvalues of K, with a diagonal of ones, up to which vectors are tried as null vectors."""
 SAFE = 2.0
 """Bound of |p - p'| over the largest sum of pressures, for two p, p' >= 0: √2, and more than round-off can add."""
 LEAST_REST = 0.05
@@ -140,17 +145,21 @@ def _largest(state: NearState, x: Array, g: Array) -> float:
     return max(at - lowest, -highest - at)
 
 
-def near_bound(state: NearState, D: Array, M: Array, ell: Array, whole: Definiteness) -> float:
+def near_bound(state: NearState, D: Array, M: Array, q: Array, ell: Array, whole: Definiteness) -> float:
     """Bound of |y - p*| of all states p*, in the largest component, by points near contact; infinity if there is none.
 
-    D (n,), M (n, n) and ℓ (n, k); `whole` is the definiteness on all points.
+    D (n,), M (n, n), q (n,) and ℓ (n, k); `whole` is the definiteness on all points.
     """
     S, open_points = whole.scales, ~state.contact_set
     scaled = S[:, None] * ell / np.linalg.norm(S[:, None] * ell, axis=0)
-    rows, lost = np.linalg.qr(scaled)[0], len(S) * EPS * float(np.linalg.cond(scaled))
+    rows, lost = np.linalg.qr(scaled)[0], len(S) * EPS * float(np.linalg.cond(scaled)) if ell.size else 0.0
     g, residual = S * state.work, float(np.linalg.norm(S * state.residual))
     K = np.abs(S[:, None] * (D[:, None] * M) * S)
-    norm, start = float(((K + K.T) / 2).sum(axis=1).max()), SAFE * _largest_sum(rows, state.pressure / S, lost)
+    norm, y = float(((K + K.T) / 2).sum(axis=1).max()), state.pressure / S
+    if ell.size:
+        start = SAFE * _largest_sum(rows, y, lost)
+    else:
+        start = _largest_pressure(whole, y, -S * D * q) + float(np.linalg.norm(y))
     found = np.inf
     for h in np.quantile(g[open_points], NEAR) if start < np.inf and open_points.any() else ():
         near = state.contact_set | (g <= h)
@@ -184,6 +193,25 @@ def _largest_sum(rows: Array, y: Array, lost: float) -> float:
     return float(np.maximum(share, 0.0) @ y) / least if least > 0 else np.inf
 
 
+def _largest_pressure(whole: Definiteness, y: Array, pull: Array) -> float:
+    """Bound of |f*| of all f* >= 0 with f*ᵀK f* = pullᵀf*, for K without free motions; infinity if there is none."""
+    values, vectors = eigh(whole.form)
+    round_off = 2 * (float(values[0]) - whole.certain)
+    for null in NULL:
+        m = int(np.count_nonzero(values <= null))
+        if m == len(values):
+            continue
+        opposed = np.maximum(-vectors[:, :m] @ vectors[:, :m].T, 0.0)  # N, but for its size
+        form = whole.form - values[m] * opposed - round_off * np.eye(len(values))
+        least = float(eigvalsh(form, subset_by_index=(0, 0))[0])
+        if least > round_off:
+            load = np.maximum(form @ y, pull)
+            return SURE * float(np.sqrt(load @ np.linalg.solve(form, load) / least))
+    return np.inf
+
+
 def _least_singular(rows: Array) -> float:
-    """Least singular value of rows (m, k); zero if they are fewer than k."""
+    """Least singular value of rows (m, k); zero if they are fewer than k, and infinite if k = 0."""
+    if not rows.shape[1]:
+        return np.inf
     return float(np.linalg.svd(rows, compute_uv=False)[-1]) if len(rows) >= rows.shape[1] else 0.0

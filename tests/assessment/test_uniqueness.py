@@ -211,3 +211,37 @@ def test_three_surfaces_at_each_node_are_no_obstacle_where_contact_holds_the_bod
     assert three.certificate.heading == "unique within the error bound"
     assert "any exact solution" in three.certificate.words
     assert three.footprint.peak.pressure == pytest.approx(one.footprint.peak.pressure, rel=1e-9)
+
+
+def held_with_two_normals_at_each_node(rng: np.random.Generator) -> CondensedContact:
+    """Three nodes of a held body, each opposite to two surfaces whose normals may be nearly the same."""
+    A = rng.standard_normal((6, 6))
+    angle = rng.uniform(-0.5, 0.5, (3, 1)) + np.hstack([np.zeros((3, 1)), rng.choice([1e-7, 0.3], (3, 1))])
+    normals = np.stack([np.sin(angle), np.cos(angle)], axis=-1)
+    rows = np.zeros((6, 6))
+    for node, surface in product(range(3), range(2)):
+        rows[2 * node + surface, 2 * node : 2 * node + 2] = normals[node, surface]
+    q = rng.standard_normal((3, 1)) + np.hstack([np.zeros((3, 1)), rng.choice([1e-3, 0.5, 3.0], (3, 1))])
+    return CondensedContact.from_compliance(rows @ (A @ A.T + 0.1 * np.eye(6)) @ rows.T, q.ravel())
+
+
+def test_two_surfaces_at_each_node_of_a_held_body():
+    """The pressure of one state is not certified if another has the same node pressed by the other surface.
+
+    The gaps of the two differ: without them pressures could be shared in any way.
+    """
+    rng = np.random.default_rng(8)
+    certified = singular = 0
+    for _ in range(150):
+        contact = held_with_two_normals_at_each_node(rng)
+        solution = complementarity.solve(contact)
+        certificate = certificate_of(contact, solution)
+        states = all_states(contact)
+        if not certificate.certified:
+            continue
+        certified += 1
+        singular += np.linalg.eigvalsh(contact.compliance)[0] < 1e-12
+        assert certificate.error_bound is not None
+        assert all(abs(solution.pressure - state).max() <= certificate.error_bound + 1e-9 for state in states)
+    assert certified > 60
+    assert singular > 40
