@@ -40,7 +40,7 @@ class Meshed:
         return max(item.worst for item in self.accuracies)
 
     def because(self, reason: str) -> "Meshed":
-        """The same, with the reason why no better accuracy was reached."""
+        """Return a copy that says why no better accuracy was reached."""
         return replace(self, accuracies=tuple(replace(item, reason=reason) for item in self.accuracies))
 
 

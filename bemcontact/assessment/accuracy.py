@@ -32,7 +32,7 @@ class ErrorBar(Leaf):
     }
 
     quantity: Quantity
-    """What it is: peak pressure, force on a zone, start, end or length of a contact interval, the pressure as a whole,
+    """The quantity: peak pressure, force on a zone, start, end or length of a contact interval, the pressure as a whole,
     largest displacement, intensity of an infinite pressure, or motion or rotation of a tool or along a free motion."""
     zone: str | None
     """Name of the contact zone; null for displacements and motions."""
@@ -60,7 +60,7 @@ class ErrorBar(Leaf):
 
     @property
     def name(self) -> str:
-        """Of what it is: ``end of 'foot', interval 0``."""
+        """Quantity and owner: ``end of 'foot', interval 0``."""
         owner = self.zone or self.mover
         of = f"{self.quantity} of {owner!r}" if owner else self.quantity
         return of if self.interval is None else f"{of}, interval {self.interval}"

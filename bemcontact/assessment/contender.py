@@ -20,7 +20,7 @@ ZERO = 1e-11
 
 
 class Outcome(StrEnum):
-    """What is shown of an answer; `OUTCOMES` describes each."""
+    """Whether a solution is the contact state, and what of this is proved."""
 
     SOLVES = "solves it"
     SOLVES_PERHAPS_NOT_ALONE = "solves it, perhaps not alone"
@@ -86,7 +86,7 @@ OUTCOMES = {
 
 @dataclass(frozen=True, kw_only=True)
 class Conclusion(Leaf):
-    """What is shown of an answer, and why."""
+    """Whether a solution is the contact state, and why."""
 
     outcome: Outcome
     """Outcome in a few words."""

@@ -21,7 +21,7 @@ class Quantity(Leaf):
     """A number on one mesh after the other."""
 
     name: str
-    """What it is."""
+    """Name of the quantity."""
     dimension: Literal["p", "L", "1"]
     """Its unit: pressure, length, or none."""
     values: tuple[float, ...]

@@ -16,7 +16,7 @@ ROUND_OFF = 1e-9
 
 
 class Misfit(StrEnum):
-    """What is wrong, as the verdict names it."""
+    """Why a solution of the equations is no answer, in the words of the verdict."""
 
     PENETRATION = "penetrates a surface"
     ITSELF = "penetrates itself"

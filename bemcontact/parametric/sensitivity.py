@@ -80,7 +80,7 @@ class Sensitivity(Leaf):
         return f"<Sensitivity to {self.key}: peak {peaks}{' per unit' * (rising != 'infinite')}>"
 
     def without_peak(self) -> Self:
-        """The same without the derivative of the largest pressure, which is infinite."""
+        """Return a copy without the derivative of the largest pressure, which is infinite."""
         rising = replace(self.rising, peak=None)
         return replace(self, rising=rising, falling=replace(self.falling, peak=None) if self.one_sided else rising)
 
@@ -123,7 +123,7 @@ class Sensitivities(Leaf):
         return f"<Sensitivities to {', '.join(self.each) or 'nothing'}{notes}>"
 
     def knowing(self, accuracy: Accuracy) -> Self:
-        """The same with the accuracy of its mesh; the largest pressure has no derivative if it is infinite."""
+        """Return a copy with the accuracy of its mesh; the largest pressure has no derivative if it is infinite."""
         each = {key: item.without_peak() for key, item in self.each.items()} if accuracy.infinite else self.each
         return replace(self, accuracy=accuracy, each=each)
 

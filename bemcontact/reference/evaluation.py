@@ -123,7 +123,7 @@ class Expected(Leaf):
     """Reason why the reference, or its peak, is not judged; or empty."""
 
     def without_peak(self, infinite: Sequence[str]) -> Self:
-        """The same, with a remark if it states a peak where the peak of the solution is infinite, by names of zones."""
+        """Return a copy that says so if it states a peak in a zone whose peak is infinite."""
         own = [name for name in infinite if self.zone in (None, name)]
         if self.peak is None or not own:
             return self

@@ -172,7 +172,7 @@ class Piece:
     run: int
 
     def place_of(self, arc: float, perimeter: float) -> float:
-        """The same arc position, counted as on this piece."""
+        """Count an arc position as this piece does."""
         return arc + perimeter if arc < self.arc[0] else arc
 
     @property
