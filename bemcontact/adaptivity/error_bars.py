@@ -62,9 +62,9 @@ def _with_change(note: str, bar: float | None) -> str:
 def _unresolved(difference: MeshDifference, *, of_fine: bool) -> str:
     """Why bisecting elements does not tell the error of the fine mesh, or of the coarse one; empty if it does."""
     one, two = difference.pair
-    told = two if of_fine else one
+    reported = two if of_fine else one
     for run in difference.coarse.runs:
-        for item in told.stretches[run.number]:
+        for item in reported.stretches[run.number]:
             if item.points < LEAST_POINTS:
                 return f"too few points in contact to estimate it ({item.points} in an interval of {run.zone})"
     names = [*difference.coarse.body.problem.contact_zones]
@@ -160,7 +160,7 @@ def _motions(answer: CaseAnswer) -> Iterator[_Motion]:
     angles, arms = contact.rotations(amplitudes), contact.motion_arms
     for j, name in enumerate(contact.motion_names):
         if " of the tool " in name:
-            continue  # told with the tool
+            continue  # reported with the tool
         if angles is not None and arms is not None and np.isfinite(arms[j]):
             yield _Motion("rotation", name, angles[j : j + 1])
         else:

@@ -63,14 +63,15 @@ def errors_at_breakpoints(
     They are not where the other path does not reach. `singular` are infinite pressures that a search recognized; else
     those are taken that the two meshes show.
     """
-    told, other = (fine.path, coarse.path) if of_fine else (coarse.path, fine.path)
+    reported, other = (fine.path, coarse.path) if of_fine else (coarse.path, fine.path)
     runs = [tuple(zone_runs(next(iter(one.varied.condensed.values())).body)) for one in (coarse, fine)]
-    for i, t in enumerate(told.parameter.tolist()):
+    for i, t in enumerate(reported.parameter.tolist()):
         if not other.begins_at <= t <= other.ends_at:
             yield ()
             continue
         both = [
-            _solved(one, t, i if one.path is told else None, its) for one, its in zip((coarse, fine), runs, strict=True)
+            _solved(one, t, i if one.path is reported else None, its)
+            for one, its in zip((coarse, fine), runs, strict=True)
         ]
         difference = MeshDifference(coarse=both[0], fine=both[1], number=0)
         its = recognized(difference) if singular is None else singular

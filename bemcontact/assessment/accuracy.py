@@ -32,7 +32,7 @@ class ErrorBar(Leaf):
     }
 
     quantity: Quantity
-    """The quantity: peak pressure, force on a zone, start, end or length of a contact interval, the pressure as a whole,
+    """Quantity: peak pressure, force on a zone, start, end or length of a contact interval, the pressure as a whole,
     largest displacement, intensity of an infinite pressure, or motion or rotation of a tool or along a free motion."""
     zone: str | None
     """Name of the contact zone; null for displacements and motions."""

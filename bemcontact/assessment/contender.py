@@ -246,13 +246,13 @@ class Contender:
     objective: float | None
     """Objective of its own statement with its own weights, scaled; None for the direct solution."""
     verdict: Conclusion
-    """What is shown of its solution."""
+    """Whether its solution is the contact state, and why."""
     convex: bool | None
     """Whether its program is convex on what equations and equilibrium leave free; None for the direct solution."""
 
     @property
     def label(self) -> str:
-        """What it is called."""
+        """Name in tables and pictures."""
         return self.attempt.label
 
     @property
@@ -283,7 +283,7 @@ class ContenderRecord(Record):
     """One formulation of a comparison."""
 
     label: str
-    """What it is called."""
+    """Name in tables and pictures."""
     formulation: FormulationName
     """Statement that was solved."""
     weights: Weights | None
@@ -293,7 +293,7 @@ class ContenderRecord(Record):
     certified: bool
     """Whether its solution is proved to be the contact state, and the only one."""
     verdict: Conclusion
-    """What is shown of its solution."""
+    """Whether its solution is the contact state, and why."""
     objective: float | None
     """Objective of its own statement with its own weights, scaled; null where it has none."""
     convex: bool | None

@@ -90,7 +90,7 @@ def test_path_ends_where_the_load_no_longer_presses_the_body_on(cylinder: Proble
     assert repr(found).startswith(f"<ParameterPath of {PRESSURE} from 50.625 to -{end:g}: ")
 
 
-def test_path_of_a_factor_ends_where_the_tool_lifts_off_and_is_named_after_the_problem():
+def test_a_path_of_a_factor_ends_where_the_tool_lifts_off():
     """A force of -10 + 4 f on a press that nothing else holds: none at f = 2.5, and the path is asked for up to 40."""
     cases = {"lift": {"tools": {"press": {"force": {"y": 4}}}}}
     tools = {"press": {"zones": "press", "force": {"y": -10}}}
@@ -381,7 +381,7 @@ def test_of_a_stated_mesh_no_bar_is_that_of_an_infinite_peak():
         assert force.bar < 0.01
 
 
-def test_mesh_that_is_found_is_asked_for_the_same_accuracy_along_a_path_and_when_it_is_cut():
+def test_the_accuracy_of_a_path_is_that_of_its_problem_also_when_the_mesh_is_cut():
     outer = [
         {"name": name, "start": list(at)} for name, at in zip("abcd", [(0, 0), (4, 0), (4, 2), (0, 2)], strict=True)
     ]

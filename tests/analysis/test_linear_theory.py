@@ -73,7 +73,7 @@ def block(pressure: float, modulus: float = 7.0, size: float = 1.0, **more: obje
     share=st.sampled_from([0.04, 0.06, 0.24, 0.26, 0.9, 5.0]), modulus=st.sampled_from([1e-6, 7.0, 1e9]),
     size=st.sampled_from([1e-3, 1.0, 1e4]),
 )  # fmt: skip
-def test_strains_up_to_a_twentieth_say_nothing_up_to_a_quarter_are_noted_and_beyond_are_withheld(share, modulus, size):
+def test_strains_are_noted_from_a_twentieth_on_and_judged_from_a_quarter_on(share, modulus, size):
     """In any units, and with the reason in the result."""
     result = bemcontact.solve(block(share * modulus, modulus, size))
     assert result.holds is result.certified is (share < LARGE)

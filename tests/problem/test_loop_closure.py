@@ -53,7 +53,7 @@ def values(item, *keys):
 
 @settings(max_examples=60, deadline=None)
 @given(sound_loops(), st.data())
-def test_edges_that_run_the_wrong_way_round_are_named_with_the_values_that_mend_them(loop, data):
+def test_edges_that_run_the_wrong_way_round_are_named_with_their_right_values(loop, data):
     turned = data.draw(st.sets(st.integers(0, len(loop) - 1), min_size=1, max_size=(len(loop) - 1) // 2))
     found = issues([exchanged(item) if i in turned else item for i, item in enumerate(loop)])
     assert {i for i, _ in found} == turned

@@ -149,7 +149,7 @@ def test_a_rotation_has_an_angle_and_a_translation_a_length():
     ]  # fmt: skip
 
 
-def test_a_motion_of_which_nobody_knows_whether_it_turns_has_no_amount_unless_it_is_zero():
+def test_a_motion_of_unknown_unit_has_no_amount_unless_it_is_zero():
     assert free_motions_of(None) == ["rotation about (1, 2): 0", "rotation about (3, 4)", "translation along (0, 1)"]
 
 

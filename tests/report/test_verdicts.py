@@ -58,7 +58,7 @@ def test_an_answer_is_good_only_if_both_verdicts_are():
     assert in_short((bad, fair)) == "equations: not solved; mesh: not met"
 
 
-def test_an_answer_outside_linear_theory_is_fair_and_said_in_the_same_words_everywhere():
+def test_results_outside_linear_theory_have_the_same_verdict_everywhere():
     """Terminal, page, picture, JSON, exit status and repr: the equations are solved, and the reason is the verdict."""
     soft = bemcontact.solve(block(material={"young_modulus": 5.0, "poisson_ratio": 0.3}))
     compared = study(ComparisonOptions.of("qp3"), soft.problem or soft.contact, (1,))

@@ -355,7 +355,7 @@ def test_a_warm_start_from_the_solution_changes_nothing(seed):
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_the_reduced_hessian_has_one_nonpositive_eigenvalue_at_most_and_the_objective_never_rises(seed):
+def test_one_nonpositive_eigenvalue_at_most_and_an_objective_that_never_rises(seed):
     rng = np.random.default_rng(seed)
     B, c, A = rng.standard_normal((20, 20)), rng.standard_normal(20), rng.standard_normal((10, 20))
     lines = []
@@ -446,7 +446,7 @@ def test_inertia_counts_small_eigenvalues(small):
     assert result.reduced_inertia_end == (1, 2, 0)
 
 
-def test_the_result_states_its_end_in_one_line_and_logs_the_objective_in_the_units_of_the_data():
+def test_the_result_has_one_line_and_logs_the_objective_in_the_units_of_the_data():
     result = minimize_qp(1e6 * np.eye(2), [-4e6, 1e6], bl=[0.0, 0.0])
     phases = f"{result.phase_one_iterations} + {result.phase_two_iterations}"
     assert str(result) == f"local minimizer: objective -8000000 after {phases} iterations (phase 1 + phase 2)"

@@ -123,7 +123,7 @@ def test_inaccurate_factors_are_corrected_or_computed_again():
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_direction_that_becomes_free_changes_nothing_held_by_more_than_its_own_rounding(seed):
+def test_a_direction_that_becomes_free_keeps_what_is_held(seed):
     """Rows at small angles cost N digits, and the direction none."""
     rng = np.random.default_rng(seed)
     data = statement(seed, n=8, m=6, definite=True)
