@@ -58,8 +58,10 @@ def _options(name: str, command: Any) -> str:
 
 
 def spec() -> str:
-    """Describe each key of a spec, from its JSON Schema."""
-    return "\n".join(_described(_schema(), "yaml", level=2))
+    """Describe each key of a spec, from its JSON Schema: the body and surfaces first, references last."""
+    described = "\n".join(_described(_schema(), "yaml", level=2))
+    sections = re.findall(r"\((yaml-[\w-]+)\)=\n+#+ (.*)", described)
+    return "\n".join((", ".join(f"[{title}](#{key})" for key, title in sections) + ".", "", described))
 
 
 def json_files() -> str:
@@ -94,7 +96,7 @@ def _described(schema: dict[str, Any], prefix: str, level: int) -> Iterator[str]
                 if len(places[name]) == 1:
                     queue.append((place, definition, (*above, name)))
     yield _object("The file", schema, schema, f"{prefix}-file", [], prefix, level)
-    for name, where in places.items():
+    for name, where in sorted(places.items(), key=lambda place: place[1][0].startswith("reference")):
         definition = schema["$defs"][name]
         kind = definition["properties"].get("kind", {}).get("const")
         title = _title(name) + (f", `kind: {kind}`" if kind else "")

@@ -204,7 +204,7 @@ def _off_the_surface(
         f"Pressure acts at {_vector(contact.points[i])} on '{_edge(gaps, points, i)}', where there is no surface of "
         f"'{zone}' after the body has moved by {_vector(moved.motion[i], unit)}: it is "
         f"{_length(moved.distance[i], unit)} off. Contact is looked for where the body is drawn. Draw the body where "
-        "it will touch, or correct the motion."
+        "it will touch, correct the motion, or hold the body by a condition if nothing else holds it in this direction."
     )
     distance, allowed = float(moved.distance[i]), _allowed(gaps, contact)
     return _misfit(gaps, points, contact, i, Misfit.OFF, distance, allowed, words)

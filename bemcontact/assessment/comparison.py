@@ -255,7 +255,8 @@ def _verdict(direct: Contender, contenders: Sequence[Contender], differences: Se
     elif solving and (apart <= SAME or outcome is not Outcome.SOLVES_PERHAPS_NOT_ALONE):
         agree = "agrees" if len(solving) == 1 else "agree"
         difference = "round-off" if apart <= ROUND_OFF else f"{apart:.1e} of the largest pressure"
-        sentences.append(f"{_listed(solving, len(contenders))} {agree} with the direct solution to {difference}")
+        who = _listed(solving, len(contenders))
+        sentences.append(f"{who} {agree} with the direct solution to {difference}, after a last exact step")
     elif solving:
         sentences.append(
             f"{_listed([*solving, direct], 0)} meet all conditions, but differ by {apart:.1e} of the largest pressure"

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from pydantic import computed_field
 
-from bemcontact.assessment.accuracy import Accuracy, ErrorBar, together
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar, Quantity, together
 from bemcontact.assessment.footprint import ContactInterval, Footprint, footprint
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -51,6 +51,10 @@ class PathState(Leaf):
     """Where the body touches, and how hard."""
     bars: tuple[ErrorBar, ...] = ()
     """Error bars at a breakpoint; empty if errors were not estimated."""
+
+    def bar_of(self, quantity: Quantity, of: str | None = None, interval: int = 0) -> ErrorBar:
+        """Find the error bar of a quantity by the name of its zone, as `Accuracy.bar_of` does."""
+        return Accuracy(asked=None, bars=self.bars, reason="this is no breakpoint").bar_of(quantity, of, interval)
 
     @property
     def peak_bar(self) -> float | None:
@@ -99,7 +103,8 @@ class ParameterPath(Leaf):
         """One line: key, values, the path."""
         counts = f"{len(self.path.parameter)} breakpoints, {self.path.pivots} pivots"
         notes = "".join(f"; {note}" for note in self.notes)
-        return f"<ParameterPath of {self.key} from {self.start:g} to {self.end:g}: {counts}{notes}>"
+        coarse = f"; {len(self.coarse)} breakpoints with errors larger than asked" if self.coarse else ""
+        return f"<ParameterPath of {self.key} from {self.start:g} to {self.end:g}: {counts}{coarse}{notes}>"
 
     @property
     def contact(self) -> CondensedContact:

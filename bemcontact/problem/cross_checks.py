@@ -25,6 +25,7 @@ from bemcontact.problem.wording import unknown_word
 LARGEST_TURNING = radians(60)
 """Largest angle by which a quadratic element may turn; beyond it the element deviates visibly from its arc."""
 
+INTO_THE_BODY = "the normal of the rigid surface must point from the surface into the body"
 SAMPLES = 128
 """Number of steps along an edge at which the direction of a surface is looked at."""
 ALONG = 0.5
@@ -243,6 +244,10 @@ def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone], pres
             _, cosine, name = min((*_facing(edge, zone.surface), edge.name) for edge in members)
         if cosine > ALONG:
             issues.append(Issue(path=(*path, "surface"), message=_faces_away(name, zone.surface)))
+        elif not any(_turned(edge, zone.surface) for edge in members):
+            names = ", ".join(f"'{edge.name}'" for edge in members)
+            message = f"{INTO_THE_BODY}, but no place of {names} is turned to it; look at the direction of the surface"
+            issues.append(Issue(path=(*path, "surface"), message=message))
     return issues or [*_unseen(boundary, zones, prescribed)]
 
 
@@ -332,5 +337,4 @@ def _faces_away(edge: str, surface: RigidSurface) -> str:
         case DeflectedContour():
             x, y = surface.direction
             remedy = f"reverse the direction: [{0 - x:g}, {0 - y:g}], or make the zone smaller"
-    rule = "the normal of the rigid surface must point from the surface into the body"
-    return f"{rule}, but at '{edge}' it points out of the body; {remedy}"
+    return f"{INTO_THE_BODY}, but at '{edge}' it points out of the body; {remedy}"

@@ -46,6 +46,11 @@ class Units(SpecModel):
         return f"{self.force}/{self.length}" if self.force and self.length else ""
 
     @property
+    def line_moment(self) -> str:
+        """The label of the unit of moment per thickness, such as kN·mm/mm; empty if a label is missing."""
+        return f"{self.force}·{self.length}/{self.length}" if self.force and self.length else ""
+
+    @property
     def pascals(self) -> float | None:
         """The unit of stress in pascals; None if a label is not one of `METERS` and `NEWTONS`."""
         length, force = METERS.get(self.length.strip()), NEWTONS.get(self.force.strip())

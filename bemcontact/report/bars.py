@@ -29,6 +29,8 @@ QUANTITIES = {
 """Name of a quantity with an error bar -> the same in words."""
 LEAST_SHOWN = 1e-5
 """Least error that is written, relative: smaller ones are written as this one."""
+TWO_FIGURES = 3.5
+"""Leading figures of an error up to which it keeps two: 0.34, but 0.4; rounding up adds a quarter at most."""
 BARS_ARE = (
     "Error bars are estimates, from the change of each quantity when every element is cut in two. They are not proved."
 )
@@ -88,11 +90,14 @@ def without_digits_beyond(value: float, bar: float | None) -> str:
     return f"{written}{_exponent(power)}"
 
 
-def with_error(value: float, error: float) -> str:
-    """Write a number and its error: 183.3 ± 0.4; the error is rounded up, and the number has no digit beyond it."""
+def with_error(value: float, error: float, size: float | None = None) -> str:
+    """Write a number and its error: 183.3 ± 0.4; the error is rounded up, and the number has no digit beyond it.
+
+    The least error that is written is relative to the `size`, or to the number.
+    """
     if not value and not error:
         return number(value)
-    (written,), shown, power = _rounded((value,), error)
+    (written,), shown, power = _rounded((value,), error, size)
     return f"({written} ± {shown}){_exponent(power)}" if power else f"{written} ± {shown}"
 
 
@@ -106,18 +111,25 @@ def vector_with_error(components: tuple[float, float], error: float | None, unit
     return with_unit(f"({written}){_exponent(power)}" if power else written, unit)
 
 
-def _rounded(values: Sequence[float], error: float) -> tuple[list[str], str, int]:
+def _rounded(values: Sequence[float], error: float, size: float | None = None) -> tuple[list[str], str, int]:
     """Numbers and their error over a power of ten: the error rounded up, and no number with a digit beyond it."""
     largest = max(map(abs, values))
     power = int(np.floor(np.log10(max(largest, error))))
     power = 0 if -4 <= power < 6 else power
-    error = max(error, LEAST_SHOWN * largest) / 10.0**power
+    error = max(error, LEAST_SHOWN * (largest if size is None else size)) / 10.0**power
     first = int(np.floor(np.log10(error) + ROUND_OFF))
-    place = first - 1 if error < 2 * 10.0**first else first  # 0.14 keeps two figures, 0.4 one
+    two_figures = error < TWO_FIGURES * 10.0**first and abs(error / 10.0**first % 1) > ROUND_OFF
+    place = first - two_figures
     shown = np.ceil(error / 10.0**place * (1 - ROUND_OFF)) * 10.0**place
     digits = max(0, -place)
     rounded = (round(value / 10.0**power, -place) for value in values)
     return [f"{value:.{digits}f}" if value else "0" for value in rounded], f"{shown:.{digits}f}", power
+
+
+def error_alone(error: float) -> str:
+    """Write an error as it stands behind a number: 0.0008."""
+    _, shown, power = _rounded((error,), error)
+    return shown + _exponent(power)
 
 
 def _exponent(power: int) -> str:
@@ -152,7 +164,7 @@ def _bar_value(bar: JsonObject, size: float, units: Units) -> str:
         return f"± {error_percent(error)}"
     if value is None:
         return "infinite" if bar["quantity"] == "peak" else NOTHING
-    return with_unit(with_error(value, error * size) if error else number(value), unit_of_bar(bar, units))
+    return with_unit(with_error(value, error * size, size) if error else number(value), unit_of_bar(bar, units))
 
 
 def _interval_lengths(bars: Sequence[JsonObject]) -> dict[tuple[str, int], float]:

@@ -13,6 +13,7 @@ from bemcontact.report.bars import (
     ROUND_OFF,
     JsonObject,
     bars_of,
+    error_alone,
     error_percent,
     infinite_peaks,
     unit_of_bar,
@@ -106,7 +107,7 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     for bar in bars_of(record, "displacement"):
         yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most"
     force = total_force(record, units)
-    moment = with_unit(number(zero_if_negligible(record["resultant_moment"], pressed * size)), units.force)
+    moment = with_unit(number(zero_if_negligible(record["resultant_moment"], pressed * size)), units.line_moment)
     yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
     forces = zone_forces(record, units)
     for zone, written in forces.items() if len(forces) > 1 else ():
@@ -138,7 +139,7 @@ def contact_intervals(
             continue
         length = with_unit(with_bar(last - first, bar or None), units.length)
         place = length if short else _span(interval, length, size, units)
-        yield interval["zone"], place + (f", ends ± {with_unit(small(error), units.length)}" if error else "")
+        yield interval["zone"], place + (f", ends ± {with_unit(error_alone(error), units.length)}" if error else "")
 
 
 def _written_ends(interval: JsonObject, size: float, units: Units) -> tuple[str, str, str]:
@@ -213,7 +214,7 @@ def _tool(record: JsonObject, tool: JsonObject, size: float, pressed: float, mov
     turn = turn if not tool["free"][2] or abs(turn) > _least_angle(record) else 0.0
     turned = with_unit(with_bar(turn, _bar_of_motion(record, "rotation", tool["name"])), "rad")
     force = vector(tool["force_of_body"], units.line_force, scale=pressed)
-    moment = with_unit(number(zero_if_negligible(tool["moment_of_body"], pressed * size)), units.force)
+    moment = with_unit(number(zero_if_negligible(tool["moment_of_body"], pressed * size)), units.line_moment)
     about = vector(tool["point"])
     return (
         f"{tool['name']}: moves by {moved}, turns by {turned}; the body presses on it with {force}, moment {moment} "

@@ -119,7 +119,7 @@ def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
 
 def tool_in_words(action: ToolAction, units: Units) -> str:
     """Displacement and loads of a tool: ``displaced by x = 0.1 mm; loaded by y = -10 N/mm``."""
-    labels = {"moment": units.force, "rotation": ""}
+    labels = {"moment": units.line_moment, "rotation": ""}
     ways = (
         ("displaced by", action.displacement, units.length),
         ("loaded by", action.force, units.line_force),

@@ -150,6 +150,7 @@ def test_edge_that_occurs_twice_in_a_zone_is_refused():
     ("surface", "remedy"),
     [
         ({"kind": "plane", "point": [0, 0], "normal": [0, -2]}, "reverse the normal: [0, 2]"),
+        ({"kind": "plane", "point": [0, 0], "normal": [1, 0]}, "look at the direction of the surface"),
         (
             {"kind": "circle", "center": [0, -9], "radius": 9, "body": "inside"},
             "the center lies on the side of the body: move it, or is the body outside the circle?",

@@ -24,6 +24,10 @@ UNITS = Units(length="cm", force="kN")
         (1.83335e7, 0.01, "(1.833 ± 0.019)e+07"),
         (0.0183335, 0.0075, "0.01833 ± 0.00014"),
         (3.0, 0.0, "3.00000 ± 0.00003"),
+        (1713.47, 0.00134, "1713.5 ± 2.3"),
+        (10.0, 0.034, "10.00 ± 0.34"),
+        (10.0, 0.036, "10.0 ± 0.4"),
+        (10.0, 0.02, "10.0 ± 0.2"),
         (0.0, 0.1, "0"),
         (12.5, None, "12.5"),
     ],
@@ -71,8 +75,8 @@ def test_rows_have_units_and_errors_of_ends_relative_to_their_interval():
     )  # fmt: skip
     rows = [*accuracy_rows(accuracy(*bars), UNITS)]
     assert [row["value"] for row in rows] == [
-        "183.3 ± 0.4 kN/cm²", "405.0 ± 0.5 kN/cm", "1.00 ± 0.02 cm", "5.00 ± 0.08 cm", "4.00 ± 0.10 cm",
-        "9.68 ± 0.18 kN/cm²·cm^0.5", "1.050 ± 0.004 cm",
+        "183.3 ± 0.4 kN/cm²", "405.0 ± 0.5 kN/cm", "1.00 ± 0.02 cm", "5.00 ± 0.08 cm", "4.0 ± 0.1 cm",
+        "9.68 ± 0.18 kN/cm²·cm^0.5", "1.0500 ± 0.0032 cm",
     ]  # fmt: skip
     assert [row["share"] for row in rows] == ["20 %", "10 %", "50 %", "2e+02 %", "–", "–", "30 %"]
     assert [row["color"] for row in rows] == ["", "", "", "bad", "", "", ""]

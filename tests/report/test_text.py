@@ -373,7 +373,7 @@ def test_solve_shows_where_the_tools_are_and_what_presses_on_them():
     told = " ".join(shown(text.result_summary(result)).split())
     x, y, turn = result.contact.tools.displacement(result.solution.rigid_amplitudes)[0]
     assert f"punch: moves by {formatting.vector((x, y), 'mm')}, turns by {formatting.number(turn)} rad" in told
-    assert "the body presses on it with (0, 40) N/mm, moment -3 N about (1.5, 1)" in told
+    assert "the body presses on it with (0, 40) N/mm, moment -3 N·mm/mm about (1.5, 1)" in told
 
 
 @pytest.mark.parametrize("width", [100, 60])

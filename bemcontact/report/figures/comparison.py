@@ -1,7 +1,7 @@
 """Pictures of a comparison along the contact zones: pressures, gaps and differences of all contenders."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -31,7 +31,7 @@ from bemcontact.report.figures.page import (
     short_label,
     show_decades,
 )
-from bemcontact.report.figures.result import label_closed
+from bemcontact.report.figures.result import AROUND, intervals_on, label_closed, window_around
 from bemcontact.report.formatting import number, units_of, with_unit
 
 DASHES = ("solid", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
@@ -149,8 +149,17 @@ class _Along:
 
     @cached_property
     def pieces(self) -> list[Piece]:
-        """Pieces in the order of the contact points."""
-        return [*pieces_of(self.contact, self.answer.touching)]
+        """Pieces in the order of the contact points; of one whose contact is small only what is around it."""
+        return [self._around_contact(piece) for piece in pieces_of(self.contact, self.answer.touching)]
+
+    def _around_contact(self, piece: Piece) -> Piece:
+        """The part of a piece that is shown: one point more than the window, so that no curve ends within it."""
+        window = window_around([piece], [ends for _, ends in intervals_on([piece], self.answer)])
+        if window is None:
+            return piece
+        first, last = np.searchsorted(piece.arc, window[0], "right") - 1, np.searchsorted(piece.arc, window[1]) + 1
+        part = slice(max(int(first), 0), int(last))
+        return replace(piece, index=piece.index[part], arc=piece.arc[part])
 
     @cached_property
     def shifts(self) -> list[float]:
@@ -189,7 +198,8 @@ class _Along:
 
     def finish(self, axes: Axes) -> None:
         """Name the axis, and the pieces if there are several."""
-        axes.set_xlabel(distance_label(self.contact, self.pieces))
+        whole = sum(len(piece.index) for piece in self.pieces) == self.contact.size
+        axes.set_xlabel(distance_label(self.contact, self.pieces) + f"\n{AROUND}" * (not whole))
         if len(self.pieces) > 1:
             self._name_pieces(axes)
         legend_below(axes)

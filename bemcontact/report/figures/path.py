@@ -31,9 +31,9 @@ def figure_of_path(path: ParameterPath) -> Figure:
         axes.spines[["top", "right"]].set_visible(False)
     ends[-1].set_xlabel(short_label(path.key, 60))
     of_it = [*path_verdicts(path)]
-    ends = zip((path.start, path.end), of_it[1:], strict=True)
-    at = [f"at {number(value)}: {in_short([verdict])}" for value, verdict in ends]
-    title = "\n".join((short_label(path.contact.name, 60), in_short(of_it[:1]), *at))
+    at = [*(f"at {number(value)}: " for value in (path.start, path.end)), *[""] * (len(of_it) - 3)]
+    lines = [where + in_short([verdict]) for where, verdict in zip(at, of_it[1:], strict=True)]
+    title = "\n".join((short_label(path.contact.name, 60), in_short(of_it[:1]), *lines))
     peaks.set_title(title, fontsize=10, color=QUALITY_COLOURS[overall(of_it)])
     return figure
 

@@ -40,6 +40,7 @@ NARROW = 0.15
 """Extent of the contact over that of its zone below which only the part around it is shown."""
 WIDTHS = 1.0
 """Widths of the contact that are shown to either side of it, where it is small beside the zone."""
+AROUND = "only around the contact"
 CLOSED = 1e-9
 """Gap over the displacement scale that is round-off."""
 
@@ -155,7 +156,7 @@ def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> 
         faces = np.where(touching[piece.index], color, "white")
         axes.scatter(s, along, s=8 * width**2, c=faces, edgecolors=color, linewidths=1.0, zorder=3)
     colors = {contact.zone_names[int(contact.zone[piece.index[0]])]: piece.color for piece in pieces}
-    intervals = [*_intervals(result, pieces)]
+    intervals = [*intervals_on(pieces, result)]
     for name, ends in intervals:
         axes.hlines(0, *ends, color=colors[name], linewidth=3 + 3 * list(colors)[::-1].index(name), zorder=2)
     axes.set_xlabel(distance_label(contact, pieces))
@@ -170,7 +171,7 @@ def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> 
         axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize=9)
 
 
-def _intervals(result: Result, pieces: Sequence[Piece]) -> Iterator[tuple[str, tuple[float, float]]]:
+def intervals_on(pieces: Sequence[Piece], result: Result) -> Iterator[tuple[str, tuple[float, float]]]:
     """Zone and ends of each interval of contact on pieces, in their arc positions."""
     by_run = {piece.run: piece for piece in pieces}
     for interval in result.footprint.intervals:
@@ -179,20 +180,27 @@ def _intervals(result: Result, pieces: Sequence[Piece]) -> Iterator[tuple[str, t
             yield interval.zone, (start, start + interval.end_arc - interval.start_arc)
 
 
-def _zoom(axes: Axes, pieces: Sequence[Piece], intervals: Sequence[tuple[float, float]], values: Array) -> None:
-    """Show only what lies about a contact that is small beside its pieces of boundary, and say so."""
+def window_around(pieces: Sequence[Piece], intervals: Sequence[tuple[float, float]]) -> tuple[float, float] | None:
+    """Arc positions about a contact that is small beside its pieces of boundary; None if it is not."""
     start, end = min(piece.arc[0] for piece in pieces), max(piece.arc[-1] for piece in pieces)
     low = min((begin for begin, _ in intervals), default=start)
     high = max((finish for _, finish in intervals), default=end)
     if high - low >= NARROW * (end - start):
-        return
+        return None
     air = WIDTHS * (high - low)
-    window = (max(low - air, start), min(high + air, end))
+    return max(low - air, start), min(high + air, end)
+
+
+def _zoom(axes: Axes, pieces: Sequence[Piece], intervals: Sequence[tuple[float, float]], values: Array) -> None:
+    """Show only what lies about a contact that is small beside its pieces of boundary, and say so."""
+    window = window_around(pieces, intervals)
+    if window is None:
+        return
     shown = np.concatenate(
         [np.interp(np.linspace(*window, 200), piece.arc, values[piece.index], left=0, right=0) for piece in pieces]
     )
     axes.set(xlim=window, ylim=(-0.05 * shown.max() or None, 1.1 * shown.max() or None))
-    axes.set_xlabel(f"{axes.get_xlabel()}\nonly around the contact")
+    axes.set_xlabel(f"{axes.get_xlabel()}\n{AROUND}")
 
 
 def _gap(result: Result) -> Array:

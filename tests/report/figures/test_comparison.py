@@ -12,12 +12,14 @@ from studies import (
     on_three_meshes,
 )
 
+import bemcontact
 from bemcontact import spec
 from bemcontact.analysis import compare as comparing
 from bemcontact.options import ComparisonOptions
 from bemcontact.report import figures
 
 GREY = "#7d838c"
+GALLERY = Path(__file__).parents[3] / "models" / "gallery"
 
 
 def test_each_pressure_is_drawn_and_none_hides_another():
@@ -31,6 +33,20 @@ def test_each_pressure_is_drawn_and_none_hides_another():
     assert np.diff(widths).max() < -1
     assert len({found[label].get_color() for label in ("direct", "QP1", "QP2", "QP3")}) == 4
     assert "per undeformed length" in axes.get_ylabel()
+
+
+def test_of_a_narrow_contact_only_what_is_around_it_is_drawn():
+    """As far on either side as it is wide; the frame ends with the last point beyond that, and each curve is whole."""
+    problem = bemcontact.load(GALLERY / "hertz_small.yaml")
+    level, axes = comparing.study(ComparisonOptions.of(["qp3"]), problem).finest, Figure().add_subplot()
+    figures.draw_pressures(axes, level)
+    contact = level.answer.contact
+    (interval,) = level.answer.footprint.intervals
+    shown = np.asarray(curves(axes)["direct"].get_xdata(), float)
+    beyond = contact.arc_position[contact.arc_position > 2 * interval.end_arc].min()
+    assert shown.max() == beyond < contact.arc_position.max() / 4
+    assert drawn(curves(axes)["direct"]).max() == level.answer.footprint.peak.pressure
+    assert "only around the contact" in axes.get_xlabel()
 
 
 def test_references_are_dashed_and_grey_where_they_are_out_of_range():

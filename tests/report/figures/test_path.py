@@ -1,5 +1,6 @@
 """The picture of a load path shows what the path is."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from studies import punch
 
 import bemcontact
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report import figures, folder
 from bemcontact.report.verdicts import path_sentence
@@ -50,6 +52,20 @@ def test_a_path_written_twice_is_the_same(link: ParameterPath, tmp_path: Path):
 
 def test_verdict_is_a_sentence(link: ParameterPath):
     assert path_sentence(link).startswith("Each state from 0 to 20 is proved to be the only contact state.")
+
+
+def test_a_path_that_is_too_coarse_between_its_ends_is_drawn(link: ParameterPath):
+    """A bar of 1 at one breakpoint makes it too coarse there: the verdict is the last line of the title."""
+    bar = ErrorBar(quantity="peak", zone="drum", value=1.0, bar=1.0)
+    accuracy = Accuracy(asked=0.01, met=True, bars=(replace(bar, bar=0.0),))
+    coarse = replace(
+        link, start_accuracy=accuracy, end_accuracy=accuracy, breakpoint_bars=((bar,),) * len(link.breakpoints)
+    )
+    title = figures.figure_of_path(coarse).axes[0].get_title()
+    assert coarse.coarse
+    assert title.endswith("mesh: too coarse between the ends")
+    unknown = replace(coarse, breakpoint_bars=())
+    assert figures.figure_of_path(unknown).axes[0].get_title().endswith("mesh: not assessed between the ends")
 
 
 def test_accuracies_of_both_ends_are_in_the_title(link: ParameterPath):

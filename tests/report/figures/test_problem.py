@@ -179,7 +179,7 @@ def test_tool_without_a_point_is_drawn_at_the_middle_of_its_surface():
 
 def test_tool_has_the_load_of_the_acting_case():
     texts = [text.get_text() for text in picture(made(HELD, **HELD_CASES, **UNITS, case="push")).texts]
-    assert "punch\nloaded by y = -70 N/mm, moment = -1 N" in texts
+    assert "punch\nloaded by y = -70 N/mm, moment = -1 N·mm/mm" in texts
 
 
 def test_the_picture_shows_the_conditions_of_the_case_that_acts():
