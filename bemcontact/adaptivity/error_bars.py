@@ -188,7 +188,7 @@ def near_singularities(solved: Solved, answer: CaseAnswer, singularities: Sequen
     """Which elements (m,) are so near to an infinite pressure that their pressure is not compared."""
     near = np.zeros(len(solved.mesh.elements), bool)
     for item in singularities:
-        run = solved.runs[item.place.run]
+        run = solved.run(item.place.run)
         reach = BESIDE * contact_beside(run, answer.stretches[run.number], item.place.position)[1]
         elements = run_elements(solved, run)
         low, high = run.ends[:-1], run.ends[1:]
@@ -203,8 +203,8 @@ def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Seque
     peaks = [float(answer.pressure[number].max()) for _, answer in both]
     if its:
         worst = max(its, key=lambda item: item.exponent).place
-        places = [estimate.difference.fine.runs[item.place.run].point(item.place.position) for item in its]
-        at = estimate.difference.fine.runs[worst.run].point(worst.position)
+        places = [estimate.difference.fine.run(item.place.run).point(item.place.position) for item in its]
+        at = estimate.difference.fine.run(worst.run).point(worst.position)
         others = [f"({x:.5g}, {y:.5g})" for x, y in places if (x, y) != at]
         more = (
             f"; also at {', '.join(others)}" if len(others) <= MOST_PLACES else f"; also at {len(others)} other places"
@@ -262,7 +262,7 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
         for i, item in enumerate(answer.stretches[run.number]):
             ends: tuple[tuple[Literal["start", "end"], bool], ...]
             ends = ("start", item.start_free), ("end", item.end_free)
-            length, errors = item.end - item.start, list[float | None]()
+            length, errors, note = item.end - item.start, list[float | None](), ""
             for which, free in ends:
                 position = float(getattr(item, which))
                 bar, note = 0.0, "contact reaches a corner or the end of its zone"
@@ -277,7 +277,8 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
                 errors.append(bar)
                 yield ErrorBar(quantity=which, zone=name, interval=count, value=position, bar=bar, note=note)
             both = None if None in errors else sum(filter(None, errors))
-            yield ErrorBar(quantity="length", zone=name, interval=count, value=float(length), bar=both)
+            why = note if both is None else ""
+            yield ErrorBar(quantity="length", zone=name, interval=count, value=float(length), bar=both, note=why)
             count += 1
 
 
@@ -287,7 +288,7 @@ def _intensity_bar(difference: MeshDifference, item: Singularity, m: float) -> E
     note = f"p = K s^-{item.exponent:.4g}"
     bar = ErrorBar(
         quantity="intensity", zone=item.place.zone, value=None, bar=None, note=note,
-        at=difference.fine.runs[item.place.run].point(item.place.position),
+        at=difference.fine.run(item.place.run).point(item.place.position),
     )  # fmt: skip
     fits = [fit for part in FITTED if (fit := _fitted(difference, item, part))]
     if not fits:
@@ -318,7 +319,7 @@ def _intensity(
     solved: Solved, answer: CaseAnswer, item: Singularity, degree: int, part: tuple[float, float]
 ) -> float | None:
     """K from a polynomial through p s^α at Gauss points beside the place."""
-    run = solved.runs[item.place.run]
+    run = solved.run(item.place.run)
     side, length = contact_beside(run, answer.stretches[run.number], item.place.position)
     xi, _ = reference_element.gauss_legendre(2)
     own = answer.pressure[[*solved.body.problem.contact_zones].index(run.zone)]

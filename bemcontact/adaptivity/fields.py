@@ -91,6 +91,10 @@ class Solved:
         """The curves of the edges under the elements."""
         return Outline(problem=self.body.problem)
 
+    def run(self, number: int) -> ZoneRun:
+        """The run of a number; one without elements is not among `runs`."""
+        return next(run for run in self.runs if run.number == number)
+
     @property
     def degrees_of_freedom(self) -> int:
         """Number of unknowns, two for each node."""

@@ -255,7 +255,7 @@ def _tips(difference: MeshDifference, singular: Sequence[Singularity]) -> IntArr
     tips = [np.zeros(0, int)]
     for item in singular:
         if not item.like_a_kink:
-            run, at = coarse.runs[item.place.run], item.place.position
+            run, at = coarse.run(item.place.run), item.place.position
             tip = elements_at(coarse, run, at)
             shortest = SHORTEST_TIP * contact_beside(run, one.stretches[run.number], at)[1]
             tips.append(tip[coarse.weights[tip].sum(axis=1) > shortest])

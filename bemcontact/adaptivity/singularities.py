@@ -103,12 +103,12 @@ class Watch:
         coarse, case = difference.coarse, difference.number
         one, _ = difference.pair
         for place in _places(difference):
-            history = self._history(place, case, SAME * coarse.runs[place.run].length)
+            history = self._history(place, case, SAME * coarse.run(place.run).length)
             history.growth.append(_growth(difference, place))
-            elements = elements_at(coarse, coarse.runs[place.run], place.position)
+            elements = elements_at(coarse, coarse.run(place.run), place.position)
             history.element.append(float(coarse.weights[elements].sum(axis=1).min()))
             if history.grows() or (history.exponent is not None and GROWING[0] < history.growth[-1] < GROWING[1]):
-                known = exponents_at(coarse, one, coarse.runs[place.run], place.position)
+                known = exponents_at(coarse, one, coarse.run(place.run), place.position)
                 measured = float(np.log2(history.growth[-1]))
                 history.exponent, history.exact = _nearest(measured, known) if known else (0.0, True)  # a logarithm
             elif history.exponent is None and _is_logarithmic(difference, place):
@@ -133,7 +133,7 @@ def recognized(difference: MeshDifference) -> tuple[Singularity, ...]:
     coarse, (one, _) = difference.coarse, difference.pair
     found: list[Singularity] = []
     for place in _places(difference):
-        known = exponents_at(coarse, one, coarse.runs[place.run], place.position)
+        known = exponents_at(coarse, one, coarse.run(place.run), place.position)
         exponent, near = _nearest(float(np.log2(_growth(difference, place))), known)
         if near or _is_logarithmic(difference, place):
             found.append(Singularity(place=place, exponent=exponent if near else 0.0))
@@ -143,7 +143,7 @@ def recognized(difference: MeshDifference) -> tuple[Singularity, ...]:
 def _growth(difference: MeshDifference, place: ContactPlace) -> float:
     """Largest pressure beside a place on the fine mesh over that on the coarse one; 1 where it is not high."""
     coarse, (one, two) = difference.coarse, difference.pair
-    elements = elements_at(coarse, coarse.runs[place.run], place.position)
+    elements = elements_at(coarse, coarse.run(place.run), place.position)
     zone = [*coarse.body.problem.contact_zones].index(place.zone)
     low = float(one.pressure[zone, elements].max())
     high = float(two.pressure[zone, np.concatenate([2 * elements, 2 * elements + 1])].max())
@@ -178,7 +178,7 @@ def logarithmic_rise(difference: MeshDifference, zone: str) -> float:
 def _rise(difference: MeshDifference, place: ContactPlace) -> float:
     """What the wedge and its tractions add to the peak between the fine mesh and a corner that is `SHARP`."""
     fine, answer = difference.fine, difference.pair[1]
-    run = fine.runs[place.run]
+    run = fine.run(place.run)
     zone = [*fine.body.problem.contact_zones].index(place.zone)
     elements = elements_at(fine, run, place.position)
     at, peak = float(answer.pressure[zone, elements].max()), float(answer.pressure[zone].max())

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import null_space, orth
 
 from bemcontact.adaptivity.zone_runs import SAME
 from bemcontact.assessment.footprint import ContactInterval, Footprint
@@ -46,11 +47,11 @@ def diagnostics(
     touching = contact.pressed(solution.pressure, solution.displacement)
     yield from floating(contact, touching)
     yield from nearly_balanced(contact, solution)
-    yield from hardly_held(contact, touching)
     yield from against_its_force(contact, solution)
     yield from few_points(contact, touching, where)
     if body is not None:
         yield from coarse_answer(body.problem.asked_accuracy)
+        yield from hardly_held(body, contact, touching)
         yield from reached_zone_ends(body, touching)
         yield from long_neighbors(body, touching)
         yield from beyond_ends(body, touching)
@@ -112,20 +113,21 @@ def nearly_balanced(contact: CondensedContact, solution: ContactSolution) -> Ite
         )
 
 
-def hardly_held(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Note a translation of the body that nothing holds but small slopes of surfaces within the contact."""
-    names = [name for name in contact.motion_names if name.startswith("translation along")]
-    if not names or not touching.any():
+def hardly_held(body: Body, contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator[str]:
+    """Note a translation of the body alone that nothing holds but small slopes of surfaces within the contact."""
+    motions = body.seen.coefficients  # (k, 3 + 3 t): x, y and turn of the body, then of tools
+    moved = orth(motions.T @ null_space(motions[:, 2:].T))  # pure translations of the body, orthonormal
+    if not touching.any() or not moved.size:
         return
-    changes = contact.rigid_motions[touching][:, [contact.motion_names.index(name) for name in names]]
+    changes = contact.rigid_motions[touching] @ np.linalg.lstsq(motions.T, moved)[0]
     least = np.linalg.svd(changes, full_matrices=False)[2][-1]  # the translation that changes gaps least
     slope = float(np.abs(changes @ least).max())
     if slope <= SLOPE:
-        x, y = np.round(np.copysign(1.0, least[np.argmax(abs(least))]) * least, 2) + 0.0 if len(names) == 2 else (0, 0)
-        name = f"translation along ({x:g}, {y:g})" if len(names) == 2 else names[0]
+        direction = (moved @ least)[:2]
+        x, y = np.round(np.copysign(1.0, direction[np.argmax(abs(direction))]) * direction, 2) + 0.0
         yield (
-            f"only slopes of the surfaces where they touch, of at most {slope:.2g}, hold the body against the {name}: "
-            "it would slide far under a small load along it"
+            f"only slopes of the surfaces where they touch, of at most {slope:.2g}, hold the body against the "
+            f"translation along ({x:g}, {y:g}): a load along it of this part of the contact force may move it far"
         )
 
 

@@ -26,7 +26,7 @@ from scipy.sparse import csc_array, diags_array, triu
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.solution import Status
-from bemcontact.errors import SolverError
+from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations.presolve import FixedVariables
 
 ASKED, RAY = 1e-11, 1e-13
@@ -116,12 +116,14 @@ def minimize_convex(
 ) -> Answer:
     """Solve a convex cvxpy problem; its status and values are set as by its own `solve`, which has coarser tolerances.
 
-    Rows and columns are scaled (`equilibrate`), unless the problem is dimensionless. `SolverError` if Clarabel cannot
-    state the problem, or no attempt is an answer; with `leave_point` the best point is left as an inaccurate one. With
-    `as_stated` the constraints are checked as they were written, too.
+    Rows and columns are scaled (`equilibrate`), unless the problem is dimensionless. `ProblemError` if a parameter has
+    no value. `SolverError` if Clarabel cannot state the problem, or no attempt is an answer; with `leave_point` the
+    best point is left as an inaccurate one. With `as_stated` the constraints are checked as they were written, too.
     """
     import cvxpy as cp
 
+    if unset := [parameter.name() for parameter in problem.parameters() if parameter.value is None]:
+        raise ProblemError(f"parameter '{unset[0]}' has no value; set its value before the model is solved")
     try:
         data, chain, inverse = problem.get_problem_data(cp.CLARABEL, solver_opts={})
     except cp.SolverError as error:
@@ -200,13 +202,20 @@ def _terms(part: Any) -> float:
 
 
 def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> Iterator[_End]:
-    """Make the attempts."""
+    """Make the attempts. A point of the other scaling is judged in the first one too, where sizes are one."""
+    first = _equilibrated(data) if equilibrate else (data, _Scaling())
     for attempt in ATTEMPTS:
-        scaled, scaling = data, _Scaling()
-        if attempt.shrunk or equilibrate is not attempt.rescaled:
-            scaled, scaling = _equilibrated(data, shrunk=attempt.shrunk)
+        scaled, scaling = first
+        if attempt.shrunk or attempt.rescaled:
+            scaled, scaling = (
+                (data, _Scaling()) if equilibrate and not attempt.shrunk else _equilibrated(data, shrunk=attempt.shrunk)
+            )
         solution, progress = _solve(scaled, attempt.settings, max_iterations or ITERATIONS)
         status, residual = _judged(scaled, solution, shrunk=attempt.shrunk)
+        if attempt.rescaled and status not in RAYS:
+            status, residual = max(
+                (status, residual), _judged(first[0], _moved(solution, scaling, first[1])), key=lambda end: end[1]
+            )
         if status not in RAYS and residual > GOOD and solution.iterations >= (max_iterations or np.inf):
             status = LIMIT
         yield _End(status, residual, _note(attempt, status, residual), solution, progress, scaling)
@@ -390,6 +399,17 @@ def _cone_of_rows(dims: Any) -> IntArray:
     sizes = [1] * (dims.zero + dims.nonneg) + list(dims.soc) + [k * (k + 1) // 2 for k in dims.psd]
     sizes += [3] * (dims.exp + len(dims.p3d)) + [len(powers) + 1 for powers in getattr(dims, "pnd", ())]
     return np.repeat(np.arange(len(sizes)), sizes)
+
+
+def _moved(solution: Any, scaling: _Scaling, other: _Scaling) -> SimpleNamespace:
+    """A point of one scaled problem in the numbers of another."""
+    x, z, s = (np.array(part) for part in (solution.x, solution.z, solution.s))
+    return SimpleNamespace(
+        x=scaling.D * x / other.D,
+        z=scaling.E * z / scaling.s * other.s / other.E,
+        s=s / scaling.E * other.E,
+        status=solution.status,
+    )
 
 
 def _unscaled(solution: Any, status: str, scaling: _Scaling) -> SimpleNamespace:

@@ -580,3 +580,41 @@ def test_contact_across_the_border_of_two_zones():
     assert forces == pytest.approx([share * force, (1 - share) * force], rel=0.01)
     first, second = result.footprint.intervals
     assert first.end == pytest.approx(second.start, abs=1e-9)
+
+
+def test_a_corner_that_stands_on_a_face_by_itself_does_not_shift_the_zones_after_it():
+    """Its run has no elements. In the other order of the zones it comes last, and the answer is the same."""
+    outer = [
+        {"name": "right", "start": (29.480841, -6.288642), "end": (24.821675, 29.602894)},
+        {"name": "top", "kind": "arc", "center": (0.9892394619639946, -10.044403169634393),
+         "radius": 46.258979198982985, "angles": (58.9894511637403, 102.47292931792293)},
+        {"name": "slope", "start": (-9.001697, 35.122779), "end": (-32.12002, 16.181986)},
+        {"name": "held", "start": (-32.12002, 16.181986), "end": (-27.93164, -18.617144)},
+        {"name": "round", "kind": "arc", "center": (-16.916169124225174, -14.979734157724142),
+         "radius": 11.600489169674216, "angles": (-161.72630149261775, -56.12127062682131)},
+        {"name": "bottom", "start": (-10.449628, -24.610684), "end": (19.020596, -31.845128)},
+        {"name": "side", "start": (19.020596, -31.845128), "end": (29.480841, -6.288642)},
+    ]  # fmt: skip
+    points = [(0.24844008681662197, 42.6956690132727), (-5.696248163476217, 37.82515085017288),
+              (-11.640722909384339, 32.95437209273957), (-41.36476386353009, 8.602513248721078)]  # fmt: skip
+    zones = {
+        "bent": {"edges": "slope", "surface": {"kind": "polyline", "points": points}},
+        "flat": {"edges": "side", "surface": {"kind": "plane", "point": (24.25, -19.07), "normal": (-0.9255, 0.3788)}},
+    }
+    results = [
+        solve(
+            Problem(
+                name="corner on a polyline",
+                material=STEEL,
+                boundary={"outer": outer},
+                accuracy=0.3,
+                conditions={"held": {"displacement": {"x": 0, "y": 0}}},
+                contact_zones={name: zones[name] for name in names},
+            )  # pyright: ignore[reportArgumentType] # fmt: skip
+        )
+        for names in (("bent", "flat"), ("flat", "bent"))
+    ]
+    for zone in zones:
+        one, other = (result.accuracy.bar_of("force", zone) for result in results)
+        assert one.value == pytest.approx(other.value, rel=1e-9)
+        assert one.bar == pytest.approx(other.bar, rel=1e-6)

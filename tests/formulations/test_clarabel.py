@@ -11,7 +11,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from bemcontact.errors import SolverError
+from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import clarabel
 from bemcontact.formulations.clarabel import ATTEMPTS, ClarabelSettings, minimize_convex
 
@@ -92,7 +92,7 @@ def degenerate_program(seed: int, n: int, rank: int, decades: int) -> tuple[cp.P
     """A program with a known minimum: a point, slacks and multipliers are drawn, and make costs and limits (KKT).
 
     The Hessian is semidefinite to round-off, some constraints are weak, and units span decades. Its least value is
-    ½xᵀHx + cᵀx at the point.
+    ½xᵀHx + cᵀx at the point. Its rank is at least one: without costs there is nothing beside which round-off is small.
     """
     rng = np.random.default_rng(seed)
     factor = rng.standard_normal((rank, n))
@@ -109,7 +109,7 @@ def degenerate_program(seed: int, n: int, rank: int, decades: int) -> tuple[cp.P
 
 
 @settings(max_examples=30, deadline=None)
-@given(seed=st.integers(0, 10**6), n=st.integers(2, 25), rank=st.integers(0, 25), decades=st.integers(0, 3))
+@given(seed=st.integers(0, 10**6), n=st.integers(2, 25), rank=st.integers(1, 25), decades=st.integers(0, 3))
 def test_degenerate_programs_have_the_minimum_they_were_made_with(seed, n, rank, decades):
     problem, given, least = degenerate_program(seed, n, min(rank, n), decades)
     minimize_convex(problem)
@@ -129,6 +129,23 @@ def test_another_attempt_answers_and_is_named(monkeypatch):
     assert problem.value == pytest.approx(least, abs=1e-7)
     assert ATTEMPTS[1].words in answer.note
     assert not answer.failed
+
+
+def test_costs_far_below_one_are_not_taken_for_zero(monkeypatch):
+    """Beside one, in which Clarabel measures, every feasible point would be a minimum of them."""
+    problem, _, least = degenerate_program(1, 6, 3, 0)
+    light = cp.Problem(cp.Minimize(1e-13 * problem.objective.expr), problem.constraints)
+    minimize_convex(light)
+    assert problem.objective.value == pytest.approx(least, abs=1e-6)
+    monkeypatch.setattr(clarabel, "ATTEMPTS", (HOPELESS, *(attempt for attempt in ATTEMPTS if attempt.rescaled)))
+    with pytest.raises(SolverError, match="Clarabel found no solution"):
+        minimize_convex(light)
+
+
+def test_a_parameter_without_a_value_is_named():
+    x, limit = cp.Variable(), cp.Parameter(name="limit")
+    with pytest.raises(ProblemError, match="parameter 'limit' has no value"):
+        minimize_convex(cp.Problem(cp.Minimize(x), [x >= limit]))
 
 
 def test_no_attempt_is_an_error_unless_the_point_is_wanted(monkeypatch):
