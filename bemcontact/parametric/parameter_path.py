@@ -53,7 +53,7 @@ class PathState(Leaf):
     """Error bars at a breakpoint; empty if errors were not estimated."""
 
     def bar_of(self, quantity: Quantity, of: str | None = None, interval: int = 0) -> ErrorBar:
-        """Find the error bar of a quantity by the name of its zone, as `Accuracy.bar_of` does."""
+        """Find the error bar of a quantity by the name of its zone, as ``result.accuracy.bar_of`` does."""
         return Accuracy(asked=None, bars=self.bars, reason="this is no breakpoint").bar_of(quantity, of, interval)
 
     @property
