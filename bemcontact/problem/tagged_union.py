@@ -80,7 +80,8 @@ class TaggedUnion:
             return f"missing; give the kind of {self.what}: {', '.join(self.kinds)}"
         if not isinstance(kind := value["kind"], str):
             return f"expected one of {', '.join(self.kinds)}; found {described(kind)}"
-        return unknown_word("kind", kind, self.kinds)
+        message = unknown_word("kind", kind, self.kinds)
+        return message if "there are" in message else f"{message} There are: {', '.join(self.kinds)}"
 
     def _fitting(self, kind: str, value: Mapping[str, Any]) -> list[str]:
         """List the kinds that have all keys of a mapping, if the default kind does not."""

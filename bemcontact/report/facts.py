@@ -39,6 +39,8 @@ MOST_PLACES = 3
 """Number of places of the largest pressure that are named."""
 UNRESOLVED = 1e-3
 """Share of the length of contact below which no place in it is resolved."""
+MOST_FIGURES = 10
+"""Figures of the ends of a contact far from the origin; five tell all others apart."""
 TRANSLATIONS = "translation along (1, 0)", "translation along (0, 1)"
 """Names of the free motions of a body that only contact holds."""
 
@@ -267,7 +269,10 @@ def _span(interval: JsonObject, along: str, size: float, units: Units) -> str:
     """Ends and length of an interval of contact, which is written as `along`."""
     first, last = interval["arc"]
     length = last - first
-    start, end = vector(interval["start"], scale=size), vector(interval["end"], units.length, scale=size)
+    far = max(map(abs, (*interval["start"], *interval["end"])))
+    figures = 5 if length == 0 else int(np.clip(np.ceil(np.log10(max(far / length, 1.0))) + 2, 5, MOST_FIGURES))
+    start = vector(interval["start"], scale=size, figures=figures)
+    end = vector(interval["end"], units.length, scale=size, figures=figures)
     if length == 0:
         return f"at the point {end} alone"
     all_round = np.allclose(interval["start"], interval["end"], rtol=0, atol=ROUND_OFF * length)

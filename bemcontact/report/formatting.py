@@ -32,9 +32,9 @@ NEGLIGIBLE = 1e-9
 """Share of the largest component, or of a scale, below which a component of a vector is written as zero."""
 
 
-def number(value: float) -> str:
-    """Write a number with five figures: 183.33, 2.1e+05."""
-    return f"{value:.5g}" if value else "0"
+def number(value: float, figures: int = 5) -> str:
+    """Write a number with five figures, or as many as are asked for: 183.33, 2.1e+05."""
+    return f"{value:.{figures}g}" if value else "0"
 
 
 def zero_if_negligible(value: float, scale: float) -> float:
@@ -42,10 +42,10 @@ def zero_if_negligible(value: float, scale: float) -> float:
     return value if abs(value) > NEGLIGIBLE * scale else 0.0
 
 
-def vector(components: tuple[float, float], unit: str = "", *, scale: float = 0.0) -> str:
+def vector(components: tuple[float, float], unit: str = "", *, scale: float = 0.0, figures: int = 5) -> str:
     """Write a point or a force: (2.7685, 0.48) cm; what is negligible beside it, or beside the scale, is zero."""
     largest = max(*map(abs, components), scale)
-    x, y = (number(zero_if_negligible(value, largest)) for value in components)
+    x, y = (number(zero_if_negligible(value, largest), figures) for value in components)
     return with_unit(f"({x}, {y})", unit)
 
 

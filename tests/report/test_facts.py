@@ -184,6 +184,14 @@ def test_a_level_pressure_has_no_place(dips: list[float], others: list[float], o
     assert peak_place(record, UNITS) == (f"({at[0]:g}, 0) cm" if pressed_beside else f"all along {name}")
 
 
+def test_ends_of_a_narrow_contact_far_away_are_told_apart():
+    """A width of 0.094 at a coordinate of 1000 takes seven figures."""
+    ends = {"start": (999.969, 0.0), "end": (1000.063, 0.0), "arc": [0.0, 0.094]}
+    record = {"intervals": [{"zone": "foot", **ends}], "nodes": [[1000.0, 0.0]]}
+    ((_, place),) = contact_intervals(record, Units(length="mm"))
+    assert place == "(999.969, 0) to (1000.063, 0) mm, 0.094 mm long"
+
+
 def test_many_contacts_at_one_place_are_counted():
     """At a sharp corner contact breaks into pieces whose coordinates look the same; one by itself keeps its length."""
 
@@ -196,4 +204,4 @@ def test_many_contacts_at_one_place_are_counted():
         return [place for _, place in contact_intervals(record, Units(length="mm"), merged=True)]
 
     assert contact(0.0, 1e-7, 2e-7, 3.0) == ["narrow, at (25, 15) mm"] * 3 + contact(3.0)
-    assert contact(3.0) == ["(28, 15) to (28, 15) mm, 1e-08 mm long"]
+    assert contact(3.0) == ["(28, 15) to (28.00000001, 15) mm, 1e-08 mm long"]
