@@ -156,8 +156,7 @@ class Body:
         )
         material = self.problem.material
         stated = self.problem.units.doubts(material.young_modulus, material.poisson_ratio)
-        placed = (*stated, *_left_out(self.problem), *self._wedges())
-        return (*placed, *at_zero)
+        return (*_left_out(self.problem), *self._wedges(), *at_zero, *stated)
 
     def _wedges(self) -> Iterator[str]:
         """Note contact points that conditions hold nearly along the rigid normal, and that slide into a wedge."""

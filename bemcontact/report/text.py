@@ -105,7 +105,7 @@ def result_summary(result: Result) -> RenderableType:
         add(shown, "Search", search_in_words(solution.search, result.contact))
     if result.starts is not None:
         add(shown, "Starts", str(result.starts))
-    for note in result.notes:
+    for note in sorted(result.notes, key=lambda note: note in result.contact.notes):  # doubts of the units last
         add(shown, "Note", note)
     for verdict in result_verdicts(result) if solved else ():
         add_verdict(shown, verdict)

@@ -15,6 +15,8 @@ from bemcontact.arrays import Array, BoolArray
 
 SYMBOL_REACH = 18.0
 """Half the length of a symbolic arrow, in pixels of the page."""
+SHALLOW = 0.1
+"""Largest depth of hatching over the extent of a line that turns back."""
 
 
 class Box(NamedTuple):
@@ -64,9 +66,11 @@ class Name:
 def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, color: str) -> Array:
     """Draw a rigid line (k, 2) and hatching of a depth on the side away from its unit normals (k, 2).
 
-    Return points (k, 2) of what the drawing covers.
+    On a small circle the hatching is less deep, and no spiral. Return points (k, 2) of what the drawing covers.
     """
     s = np.concatenate([[0.0], np.hypot(*np.diff(points, axis=0).T).cumsum()])
+    if np.hypot(*(points[-1] - points[0])) < s[-1] / 2:
+        depth = min(depth, SHALLOW * float(np.hypot(*np.ptp(points, axis=0))))
     at = np.linspace(0, s[-1], max(int(s[-1] / (0.6 * depth)), 3))
     roots = np.column_stack([np.interp(at, s, points[:, i]) for i in (0, 1)])
     inward = -np.column_stack([np.interp(at, s, normals[:, i]) for i in (0, 1)])
