@@ -206,10 +206,10 @@ def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool
     first = _equilibrated(data) if equilibrate else (data, _Scaling())
     for attempt in ATTEMPTS:
         scaled, scaling = first
-        if attempt.shrunk or attempt.rescaled:
-            scaled, scaling = (
-                (data, _Scaling()) if equilibrate and not attempt.shrunk else _equilibrated(data, shrunk=attempt.shrunk)
-            )
+        if attempt.shrunk:
+            scaled, scaling = _equilibrated(data, shrunk=True)
+        elif attempt.rescaled:
+            scaled, scaling = (data, _Scaling()) if equilibrate else _equilibrated(data)
         solution, progress = _solve(scaled, attempt.settings, max_iterations or ITERATIONS)
         status, residual = _judged(scaled, solution, shrunk=attempt.shrunk)
         if attempt.rescaled and status not in RAYS:

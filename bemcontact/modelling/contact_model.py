@@ -28,7 +28,7 @@ WIDE = 1e5
 
 
 class ContactProblem(cp.Problem):
-    """A cvxpy problem that is solved as by `ContactModel.solve`; with arguments, by cvxpy, which calls Clarabel."""
+    """A cvxpy problem that is scaled and solved as all models are; with arguments, by cvxpy, which calls Clarabel."""
 
     def solve(self, *args: Any, **options: Any) -> Any:
         """Solve and return the value; arguments, and options such as a solver, are those of `cvxpy.Problem.solve`."""

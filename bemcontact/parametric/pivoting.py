@@ -346,10 +346,10 @@ def _drifted(line: LinearChange, state: State, tangent: Tangent) -> tuple[State,
 
     The pressures do not depend on the position. With it come the points in contact. `ProblemError` if there is no step.
     """
-    contact, ways = tangent.scaled, tangent.open_motions
+    scaled, ways = tangent.scaled, tangent.open_motions
     held = null_space(ways.T)
-    seen, place = contact.rigid_motions @ ways, ways.T @ state.amplitudes
-    fixed = replace(contact, rigid_motions=contact.rigid_motions @ held, motion_load=held.T @ contact.motion_load)
+    seen, place = scaled.rigid_motions @ ways, ways.T @ state.amplitudes
+    fixed = replace(scaled, rigid_motions=scaled.rigid_motions @ held, motion_load=held.T @ scaled.motion_load)
     (offset, load), rate = line.at(state.s), line.rate
     now, rate = Change(offset + seen @ place, held.T @ load), Change(rate.offset, held.T @ rate.motion_load)
     block = Tangent.at(fixed, state.pressure, state.gap, held.T @ state.amplitudes, tangent.unique).after(rate)
