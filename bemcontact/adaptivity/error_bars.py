@@ -26,7 +26,7 @@ INTENSITY, INTENSITY_FLOOR = 3.0, 5.0
 UNKNOWN_EXPONENT = 0.01
 """Least error of the intensity if its exponent is measured."""
 NOTHING = 1e-9
-"""Motion over the largest displacement that is round-off."""
+"""Motion or difference over the largest displacement, or coordinate over the size of the body, that is round-off."""
 
 LEAST_POINTS = 5
 """Points in contact in an interval, those of two elements, below which bisecting elements does not tell the error."""
@@ -92,7 +92,8 @@ def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_f
         yield from _zone_bars(estimate, number, name, m, its)
     sizes = [float(np.hypot(*np.moveaxis(answer.displacement, 2, 0)).max()) for answer in difference.pair]
     bar = estimate.bar(max(_change(*sizes), *changes))
-    yield ErrorBar(quantity="displacement", zone=None, value=estimate.value(*sizes), bar=bar)
+    at = _farthest(*estimate.reported)
+    yield ErrorBar(quantity="displacement", zone=None, value=estimate.value(*sizes), bar=bar, at=at)
     yield from _motion_bars(estimate, max(changes), max(sizes))
 
 
@@ -117,6 +118,24 @@ class _Estimate:
         """Mesh and answer that are reported."""
         one, two = self.difference.pair
         return (self.difference.fine, two) if self.of_fine else (self.difference.coarse, one)
+
+
+def _farthest(solved: Solved, answer: CaseAnswer) -> tuple[float, float] | None:
+    """Node that is displaced most; None if there are several of this kind, or if none is."""
+    moved = np.hypot(*np.moveaxis(answer.displacement, 2, 0))
+    nodes = np.unique(solved.mesh.nodes[solved.mesh.elements[moved >= (1 - NOTHING) * moved.max()]], axis=0)
+    return _written(solved, nodes[0].tolist()) if len(nodes) == 1 else None
+
+
+def _place(solved: Solved, singularity: Singularity) -> tuple[float, float]:
+    """Place of an infinite pressure [L]."""
+    return _written(solved, solved.run(singularity.place.run).point(singularity.place.position))
+
+
+def _written(solved: Solved, place: Sequence[float]) -> tuple[float, float]:
+    """The place (x, y) [L], with zero for what is round-off beside the body."""
+    x, y = (value if abs(value) > NOTHING * solved.mesh.size else 0.0 for value in place)
+    return x, y
 
 
 def _motion_bars(estimate: _Estimate, m: float, largest: float) -> Iterator[ErrorBar]:
@@ -202,9 +221,8 @@ def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Seque
     both = [*zip((estimate.difference.coarse, estimate.difference.fine), estimate.difference.pair, strict=True)]
     peaks = [float(answer.pressure[number].max()) for _, answer in both]
     if its:
-        worst = max(its, key=lambda item: item.exponent).place
-        places = [estimate.difference.fine.run(item.place.run).point(item.place.position) for item in its]
-        at = estimate.difference.fine.run(worst.run).point(worst.position)
+        places = [_place(estimate.difference.fine, item) for item in its]
+        at = max(zip(its, places, strict=True), key=lambda pair: pair[0].exponent)[1]
         others = [f"({x:.5g}, {y:.5g})" for x, y in places if (x, y) != at]
         more = (
             f"; also at {', '.join(others)}" if len(others) <= MOST_PLACES else f"; also at {len(others)} other places"
@@ -288,7 +306,7 @@ def _intensity_bar(difference: MeshDifference, item: Singularity, m: float) -> E
     note = f"p = K s^-{item.exponent:.4g}"
     bar = ErrorBar(
         quantity="intensity", zone=item.place.zone, value=None, bar=None, note=note,
-        at=difference.fine.run(item.place.run).point(item.place.position),
+        at=_place(difference.fine, item),
     )  # fmt: skip
     fits = [fit for part in FITTED if (fit := _fitted(difference, item, part))]
     if not fits:

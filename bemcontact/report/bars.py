@@ -1,12 +1,12 @@
 """Error bars, and numbers with their errors, in words, from the JSON of a result."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from bemcontact.problem import Units
 from bemcontact.report.formatting import (
+    JsonObject,
     number,
     sentence_case,
     vector,
@@ -14,8 +14,6 @@ from bemcontact.report.formatting import (
     zero_if_negligible,
 )
 
-JsonObject = Mapping[str, Any]
-"""A JSON object of a result."""
 NOTHING = "–"
 """Text for a missing number."""
 ROUND_OFF = 1e-9
@@ -153,8 +151,13 @@ def accuracy_rows(accuracy: JsonObject, units: Units) -> Iterator[dict[str, str]
             "value": _bar_value(bar, size, units),
             "share": share if asked and bar["promised"] else NOTHING,
             "color": "bad" if over else "",
-            "note": f"{bar['note']} at {vector(bar['at'], units.length)}" if bar["at"] else sentence_case(bar["note"]),
+            "note": sentence_case(f"{bar['note']} {_at(bar, units)}".strip()),
         }
+
+
+def _at(bar: JsonObject, units: Units) -> str:
+    """Where an error bar belongs to; empty if to no place."""
+    return f"at {vector(bar['at'], units.length)}" if bar["at"] else ""
 
 
 def _bar_value(bar: JsonObject, size: float, units: Units) -> str:

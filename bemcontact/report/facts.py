@@ -107,7 +107,8 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
             place = vector(bar["at"], units.length, scale=size)
             yield "Intensity", f"of {bar['zone']}: K = {value} in {bar['note']} at {place}"
     for bar in bars_of(record, "displacement"):
-        yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most"
+        place = bar["at"] and f", at {vector(bar['at'], units.length, scale=size)}"
+        yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most{place or ''}"
     force = total_force(record, units)
     moment = with_unit(number(zero_if_negligible(record["resultant_moment"], pressed * size)), units.line_moment)
     yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
@@ -116,7 +117,7 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
         yield "Resultant", f"of {zone}: {written}"
     for j, name in enumerate(record["motion_names"]):
         if " of the tool " not in name:  # the line of a tool tells where it is
-            yield "Free motion", f"{_in_sense(name, record, j)}{_amount(record, j, units)}"
+            yield "Mean motion", f"of the zones, {_in_sense(name, record, j)}{_amount(record, j, units)}"
     for tool in record["tools"]:
         yield "Tool", _tool(record, tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
@@ -162,7 +163,7 @@ def _interval_errors(record: JsonObject) -> Iterator[tuple[float | None, float |
 
 
 def _amount(record: JsonObject, motion: int, units: Units) -> str:
-    """How far the body moves along a free motion: a length, or an angle; nothing where the unit is not known."""
+    """Mean motion of all zones along a free motion: a length or an angle; nothing where the unit is not known."""
     moved, angles = record["rigid_amplitudes"][motion], record["rotations"]
     if not record["intervals"]:
         return ": not determined"

@@ -1,13 +1,14 @@
 """Numbers, units and parts of a problem in words, for tables, pictures and pages."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.assessment.contender import Contender
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.solution import LocalSearch, Penalty
+from bemcontact.contact.solution import LocalSearch
 from bemcontact.problem import (
     Circle,
     Condition,
@@ -28,6 +29,8 @@ from bemcontact.problem import (
     Values,
 )
 
+JsonObject = Mapping[str, Any]
+"""A record as it is written in JSON."""
 NEGLIGIBLE = 1e-9
 """Share of the largest component, or of a scale, below which a component of a vector is written as zero."""
 
@@ -180,7 +183,9 @@ def search_in_words(search: LocalSearch, contact: CondensedContact) -> str:
         "the end",
     ]
     if search.penalty is not None:
-        sentences.append(_penalty(search.penalty, contact))
+        words = penalty_in_words(search.penalty.to_dict(), units_of(contact))
+        kept = " where equilibrium is kept" if contact.free_motions and search.penalty.convexity_limit != 0 else ""
+        sentences.append(f"penalty {words.value}, convex{kept} {words.limit}{words.raw_limit}")
     return "; ".join(sentences)
 
 
@@ -190,25 +195,25 @@ def _inertia(inertia: tuple[int, int, int]) -> str:
     return ", ".join(f"{count} {kind}" for count, kind in kinds if count) or "none"
 
 
-def _penalty(penalty: Penalty, contact: CondensedContact) -> str:
-    """Penalty, and the largest penalty for which QP2 is convex."""
-    unit = penalty_unit(penalty.dimension, units_of(contact)) or "in the units of the problem"
-    text = f"penalty {number(penalty.value)} ({number(penalty.raw)} {unit})"
-    kept = " where equilibrium is kept" if contact.free_motions else ""
-    if penalty.convexity_limit is None or penalty.convexity_limit_raw is None:
-        return f"{text}, convex{kept} for every penalty"
-    if penalty.convexity_limit == 0:
-        return f"{text}, convex for no penalty"
-    return (
-        f"{text}, convex{kept} up to {number(penalty.convexity_limit)} ({number(penalty.convexity_limit_raw)} {unit})"
-    )
+class PenaltyWords(NamedTuple):
+    """A penalty μ of QP2, and the largest one for which QP2 is convex, both also in the units of the problem."""
+
+    value: str
+    limit: str
+    """``for every penalty``, ``for no penalty``, or up to which one."""
+    raw_limit: str
+    """The last one in the units of the problem."""
 
 
-def penalty_unit(dimension: str, units: Units) -> str:
-    """Label of the unit of a penalty of QP2; empty if a label is missing."""
-    if not (units.force and units.length):
-        return ""
-    return f"{units.force}/{units.length}⁴" if dimension == "p/L²" else f"{units.length}²/{units.force}"
+def penalty_in_words(penalty: JsonObject, units: Units) -> PenaltyWords:
+    """Write the record of a penalty."""
+    labels = {"p/L²": f"{units.force}/{units.length}⁴", "1/p": f"{units.length}²/{units.force}"}
+    unit = labels[penalty["dimension"]] if units.force and units.length else "in the units of the problem"
+    limit, raw = penalty["convexity_limit"], penalty["convexity_limit_raw"]
+    value = f"{number(penalty['value'])} ({number(penalty['raw'])} {unit})"
+    if not limit:
+        return PenaltyWords(value, "for every penalty" if limit is None else "for no penalty", "")
+    return PenaltyWords(value, f"up to {number(limit)}", f" ({number(raw)} {unit})")
 
 
 def held_by(contact: CondensedContact) -> str:
@@ -234,10 +239,7 @@ def convexity_in_words(contender: Contender) -> str:
     convex = "yes" if contender.convex else "no"
     if search is None or search.penalty is None:
         return convex
-    limit = search.penalty.convexity_limit
-    if limit is None:
-        return f"{convex}, for every μ"
-    return f"{convex}, for no μ" if limit == 0 else f"{convex}, up to μ = {limit:.3g}"
+    return f"{convex}, {penalty_in_words(search.penalty.to_dict(), Units()).limit}"
 
 
 def reference_in_words(reference: Reference) -> str:

@@ -13,7 +13,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from bemcontact.assessment.contender import OUTCOMES, Outcome
 from bemcontact.errors import escaped_lines
 from bemcontact.problem import Units
-from bemcontact.report.bars import BARS_ARE, NOTHING, JsonObject, accuracy_rows, infinite_peaks, with_bar
+from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, infinite_peaks, with_bar
 from bemcontact.report.facts import (
     contact_intervals,
     facts,
@@ -25,8 +25,10 @@ from bemcontact.report.facts import (
     total_force,
 )
 from bemcontact.report.formatting import (
+    JsonObject,
+    PenaltyWords,
     number,
-    penalty_unit,
+    penalty_in_words,
     plural,
     seconds_in_words,
     sentence_case,
@@ -197,19 +199,10 @@ def _record(level: JsonObject) -> JsonObject | None:
     return {**compared["contact"], **answer, "residuals": residuals, "accuracy": level["accuracy"]}
 
 
-def _penalty(contender: JsonObject, units: Units) -> dict[str, str] | None:
-    """Penalty of QP2 and the largest one for which QP2 is convex, in both units."""
+def _penalty(contender: JsonObject, units: Units) -> PenaltyWords | None:
+    """Penalty of QP2 and up to which one it is convex."""
     search = (contender["answer"] or {}).get("search")
-    penalty = search and search["penalty"]
-    if not penalty:
-        return None
-    unit = penalty_unit(penalty["dimension"], units)
-    limit, value = penalty["convexity_limit"], penalty["value"]
-    raw = NOTHING if limit is None else with_unit(number(penalty["convexity_limit_raw"]), unit)
-    return {
-        "value": f"{number(value)} ({with_unit(number(penalty['raw']), unit)})",
-        "limit": "any penalty" if limit is None else "no penalty" if limit == 0 else f"{number(limit)} ({raw})",
-    }
+    return penalty_in_words(search["penalty"], units) if search and search["penalty"] else None
 
 
 def _picture(name: str, svg: bytes, level: JsonObject) -> Picture:

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.report.bars import JsonObject
+from bemcontact.report.formatting import JsonObject
 
 LEVEL = 1e-3
 """Difference from the peak pressure, over that, below which a point counts as one at the peak, whatever its error."""

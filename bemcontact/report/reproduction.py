@@ -9,9 +9,9 @@ from rich.text import Text
 
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.problem import Units
-from bemcontact.report.bars import NOTHING, JsonObject
+from bemcontact.report.bars import NOTHING
 from bemcontact.report.facts import QUALITIES, peak_of, score_verdict, scores_in_words, small
-from bemcontact.report.formatting import number, seconds_in_words, sentence_case, with_unit
+from bemcontact.report.formatting import JsonObject, number, seconds_in_words, sentence_case, with_unit
 from bemcontact.report.page import formulation_name, picture, template
 from bemcontact.report.text import add_verdict, list_of_facts, table_of
 from bemcontact.report.verdicts import Verdict, mesh_verdict

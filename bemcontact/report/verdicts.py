@@ -9,8 +9,8 @@ from bemcontact.analysis.study import Study
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.assessment.penetration import Misfit
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.report.bars import JsonObject, bar_in_words, error_percent, worst_bar
-from bemcontact.report.formatting import number, sentence_case
+from bemcontact.report.bars import bar_in_words, error_percent, worst_bar
+from bemcontact.report.formatting import JsonObject, number, sentence_case
 
 
 class Verdict(NamedTuple):

@@ -3,9 +3,11 @@
 from collections.abc import Callable
 from math import ceil, radians
 
+import numpy as np
 import pytest
 from adaptive_problems import Case, cam_nose, half_disk, hertz_full, hertz_hundredth, partial_load_lifts_off, wave_light
 
+import bemcontact
 from bemcontact.adaptivity.adapt import meshed
 from bemcontact.adaptivity.error_bars import END, FORCE, PEAK, SAFETY, error_bars, pressure_change
 from bemcontact.adaptivity.fields import MeshDifference, solved
@@ -120,3 +122,15 @@ def test_no_bar_of_a_coarse_mesh_is_smaller_than_the_error(case: Callable[[], Ca
         elif (bar.quantity, bar.zone) in known:
             truth, validity = known[bar.quantity, bar.zone]
             assert abs(bar.value / truth - 1) <= bar.bar + validity
+
+
+def test_the_largest_displacement_has_its_place_if_it_is_the_only_one():
+    """A ring that grows moves by the same amount all around."""
+    bent, ring = (bemcontact.load(f"models/{name}.yaml") for name in ("cantilever_flat_surface", "gallery/shrink_fit"))
+    result = bemcontact.solve(bent, accuracy=0.05)
+    bar, moved = result.accuracy.bar_of("displacement"), np.hypot(*np.moveaxis(result.boundary.displacement, 2, 0))
+    assert bar.value == pytest.approx(moved.max(), rel=1e-12)
+    assert np.unique(result.boundary.points[moved == moved.max()], axis=0) == pytest.approx(
+        np.array([bar.at]), rel=1e-12
+    )
+    assert bemcontact.solve(ring, accuracy=0.05).accuracy.bar_of("displacement").at is None

@@ -158,7 +158,8 @@ def test_a_motion_of_unknown_unit_has_no_amount_unless_it_is_zero():
 
 
 def free_motions_of(rotations: tuple[float, ...] | None) -> list[str]:
-    return [words for name, words in facts_of_forces(False, [1.0], rotations) if name == "Free motion"]
+    listed = facts_of_forces(False, [1.0], rotations)
+    return [words.removeprefix("of the zones, ") for name, words in listed if name == "Mean motion"]
 
 
 @given(
