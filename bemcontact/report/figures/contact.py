@@ -245,8 +245,8 @@ NEAR = 0.15
 def draw_deformed(axes: Axes, result: Result) -> None:
     """Draw the boundary before and after deformation; thick lines show contact.
 
-    Displacements are magnified by a stated factor. Rigid surfaces are drawn only if the factor is one. `ValueError` for
-    the result of a condensed problem.
+    Displacements and gaps to the rigid surfaces are magnified by a stated factor. `ValueError` for the result of a
+    condensed problem.
     """
     state = result.boundary
     if state is None:
@@ -260,16 +260,14 @@ def draw_deformed(axes: Axes, result: Result) -> None:
     _draw_touching(axes, result, state, after)
     covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
     size = float(np.hypot(*body_extent(state)))
-    if factor == 1:
-        covered += [draw_ground(axes, *ground, 0.025 * size, GREY) for ground in ground_of(result, NEAR * size)]
+    covered += [draw_ground(axes, *ground, 0.025 * size, GREY) for ground in ground_of(result, NEAR * size, factor)]
     unit = units_of(result.contact).length
     frame_plan(axes, np.concatenate(covered), unit)
     known = (bar.value for bar in result.accuracy.bars if bar.quantity == "displacement")  # as the table has it
     most = next(known, None) or float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
     largest = with_unit(f"{most:.3g}", plain(unit))
-    scale = "displacements to scale" if factor == 1 else f"displacements × {factor:g}"
-    surfaces = "" if factor == 1 else "; rigid surfaces not drawn"
-    title = f"deformed shape, {scale} (largest {largest})\nthick: in contact; dashed: undeformed{surfaces}"
+    scale = "displacements to scale" if factor == 1 else f"displacements and gaps × {factor:g}"
+    title = f"deformed shape, {scale}\nlargest displacement {largest}; thick: in contact; dashed: undeformed"
     axes.set_title(title, loc="left", fontsize=10)
 
 
@@ -300,12 +298,15 @@ def loops_of(state: BoundaryState, curves: Array) -> list[Array]:
     return np.split(curves, np.flatnonzero(breaks) + 1)
 
 
-def ground_of(result: Result, near: float) -> Iterator[tuple[Array, Array]]:
-    """Lines (j, 2) of rigid surface, with normals, no farther than `near` from the deformed body."""
+def ground_of(result: Result, near: float, factor: float = 1.0) -> Iterator[tuple[Array, Array]]:
+    """Lines (j, 2) of rigid surface, with normals, no farther than `near` from the deformed body.
+
+    Its gaps to the undeformed body are magnified by the factor, as displacements are, so that the two meet in contact.
+    """
     contact = result.contact
     moved = contact.tools.motions @ (contact.tools.amplitudes @ result.solution.rigid_amplitudes)
-    feet = contact.points - (contact.initial_gap + moved)[:, None] * contact.normals
-    shown = result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes) <= near
+    feet = contact.points - factor * (contact.initial_gap + moved)[:, None] * contact.normals
+    shown = factor * result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes) <= near
     for piece in pieces_of(contact, result.touching):
         for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
             if shown[stretch[0]] and len(stretch) > 1:
