@@ -194,8 +194,8 @@ def pictures() -> Iterator[tuple[Path, bytes]]:
 
 def _draw(axes: Axes, path: Path) -> None:
     """Draw the contact of a problem."""
-    figures.draw_contact(axes, results(path)[_case(path)])
     axes.set_axis_off()
+    figures.draw_contact(axes, results(path)[_case(path)])
 
 
 def main() -> None:

@@ -43,7 +43,7 @@ SMALL, AROUND = 0.08, 4.0
 """Extent of the contact over the size of the body below which only the part around it is shown, and over how many
 extents to either side."""
 ROOM = 1.5
-"""Room for a fan and its number over the length of the fan, where only a part of the body is shown."""
+"""Room for a fan and its number over the length of the fan."""
 OVERHANG = 0.14
 """Length of a rigid surface beyond its contact zone, and beyond the body, over the size of what is shown."""
 MANY_ELEMENTS = 36
@@ -113,9 +113,10 @@ def draw_contact(axes: Axes, result: Result) -> None:
     reach = size if part else OVERHANG * size
     grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in _surfaces(result, problem, reach)]
     covered = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
+    symbols = list[Array]()
     if not part:
         displacement = _displacement(state)
-        covered += [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
+        symbols = [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
     infinite = result.accuracy.infinite
     scale = min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans)) if fans else 1.0
     length = max(TALL * float(np.sqrt(width * height)), LEAST * size)
@@ -130,12 +131,20 @@ def draw_contact(axes: Axes, result: Result) -> None:
         elif fan.peak == max(other.peak for other in fans if other.zone == fan.zone):
             names.append(_label(fan, tips[-1], "infinite", cut=True))
     beyond = [fan.feet + ROOM * (tip - fan.feet) for fan, tip in zip(fans, tips, strict=True)]
-    drawn = np.concatenate([window, *beyond] if part else [window, *tips, *covered])
+    drawn = np.concatenate([window, *beyond, *([] if part else covered), *symbols])
     frame_plan(axes, drawn, units.length)
     with without_glyph_warnings():
-        place_names(axes, names, drawn, loops)
+        place_names(axes, names, np.concatenate([*loops, *grounds, *symbols, *map(_inked, fans, tips)]), loops)
     for text in axes.texts:
         text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
+
+
+def _inked(fan: Fan, tips: Array) -> Array:
+    """Points (k, 2) all over a fan."""
+    at = np.linspace(0, len(tips) - 1, max(4 * len(tips), 50))
+    rows = [[np.interp(at, np.arange(len(line)), line[:, i]) for i in (0, 1)] for line in (fan.feet, tips)]
+    feet, ends = np.moveaxis(np.array(rows), 1, 2)
+    return (feet + np.linspace(0, 1, 9)[:, None, None] * (ends - feet)).reshape(-1, 2)
 
 
 def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
@@ -202,12 +211,13 @@ def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:
     highest = np.flatnonzero(fan.pressure >= (1 - LEVEL) * fan.peak)
     at = int(highest[len(highest) // 2])
     outward, across = -fan.normals[at], fan.normals[at, ::-1] * (1, -1)
-    directions = np.array([outward, outward + across, outward - across, across, -across])
+    turns = np.radians((0, 45, -45, 90, -90, 22, -22, 67, -67, 110, -110))[:, None]
+    directions = np.cos(turns) * outward + np.sin(turns) * across
     return Name(
         text=text + (",\nfan cut off" if cut else ""),
         color=BLACK,
-        anchors=np.tile(tips[at], (5, 1)),
-        directions=directions / np.hypot(*directions.T)[:, None],
+        anchors=np.tile(tips[at], (len(turns), 1)),
+        directions=directions,
     )
 
 

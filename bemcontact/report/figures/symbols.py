@@ -28,6 +28,10 @@ class Box(NamedTuple):
     top: float
 
 
+COVERED = 1000.0
+"""Weight of the share of a label that another one covers, against one drawn point."""
+
+
 def centered(center: Array, size: tuple[float, float]) -> Box:
     """Return the box of this size (width, height) around a center (2,)."""
     (x, y), (width, height) = center, size
@@ -45,7 +49,7 @@ def crowd(box: Box, taken: Sequence[Box], ink: Array) -> float:
     """Measure what a box covers: the share covered by other boxes, plus one for each drawn point (k, 2) in it."""
     area = (box.right - box.left) * (box.top - box.bottom)
     inside = (ink > (box.left, box.bottom)) & (ink < (box.right, box.top))
-    return 10 * sum(overlap(box, other) for other in taken) / area + float(inside.all(axis=1).sum())
+    return COVERED * sum(overlap(box, other) for other in taken) / area + float(inside.all(axis=1).sum())
 
 
 def least_crowded(centers: Array, size: tuple[float, float], taken: Sequence[Box], ink: Array) -> int:
@@ -106,14 +110,14 @@ def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence
     `drawn` are points (k, 2) of the drawing. The limits of the axes must be set. Return the boxes of the names.
     """
     _settle(axes)
-    to_page, frame = axes.transData, axes.get_window_extent()
+    to_page, frame = axes.transData, _room(axes)
     ink = to_page.transform(drawn)
     walls = [Path(to_page.transform(loop)) for loop in loops]
     taken: list[Box] = []
     for name in names:
         text = axes.text(0, 0, name.text, color=name.color, fontsize=9, ha="center", va="center", zorder=6)
         extent = text.get_window_extent()
-        size = (extent.width + 4, extent.height + 2)
+        size = (extent.width + 10, extent.height + 4)
         anchors, centers = _places(to_page.transform(name.anchors), name.directions, size)
         near_side = ~_beyond(walls, anchors, centers)
         both = near_side & _holds(frame, centers, size)
@@ -150,6 +154,13 @@ def _settle(axes: Axes) -> None:
     page = axes.get_figure(root=True)
     if page is not None:
         page.draw_without_rendering()
+
+
+def _room(axes: Axes) -> Bbox:
+    """Where names may stand on the page: what the layout gives to the axes, but for the sides that have ticks."""
+    own, whole = axes.get_window_extent(), axes.get_position(original=True).transformed(axes.figure.transSubfigure)
+    corner = own if axes.axison else whole
+    return Bbox([[corner.x0, corner.y0], [max(own.x1, whole.x1), max(own.y1, whole.y1)]])
 
 
 def _to_data(axes: Axes, place: Array) -> tuple[float, float]:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from bemcontact.report.figures.symbols import Box, centered, crowd, draw_ground, least_crowded, overlap
+from bemcontact.report.figures.symbols import COVERED, Box, centered, crowd, draw_ground, least_crowded, overlap
 
 NOTHING = np.zeros((0, 2))
 
@@ -20,7 +20,7 @@ def test_overlap_is_the_common_area():
 def test_crowd_counts_drawn_points_and_covered_area():
     ink = np.array([[1.0, 1.0], [2.0, 1.0], [9.0, 9.0]])
     assert crowd(Box(0, 0, 4, 2), [], ink) == 2
-    assert crowd(Box(0, 0, 4, 2), [Box(0, 0, 2, 2)], NOTHING) == pytest.approx(5)
+    assert crowd(Box(0, 0, 4, 2), [Box(0, 0, 2, 2)], NOTHING) == pytest.approx(COVERED / 2)
 
 
 def test_the_first_free_place_wins():
