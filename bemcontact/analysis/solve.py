@@ -88,7 +88,7 @@ def condense(problem: Problem, *, accuracy: AskedAccuracy = "stated") -> Condens
         If the equations of the body have no unique solution.
     """
     ensure_kind(problem, Problem)
-    return meshed(asking(problem, accuracy), errors=False).condensation.contact
+    return meshed(asking(problem, accuracy).without_joints(), errors=False).condensation.contact
 
 
 def ensure_kind(problem: object, *kinds: type) -> None:
@@ -217,7 +217,7 @@ def mesh_of(
 ) -> Meshed:
     """Condense a problem on its mesh or on one that is found, with the accuracy under each load case."""
     with watch.stage("mesh") as say:
-        return meshed(problem, say, errors=errors, singular=singular)
+        return meshed(problem.without_joints(), say, errors=errors, singular=singular)
 
 
 def assessed(

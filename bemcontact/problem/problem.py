@@ -33,6 +33,7 @@ from bemcontact.problem.cross_checks import (
 )
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.geometry import MOST_ELEMENTS
+from bemcontact.problem.joints import without_joints
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, with_entry
 from bemcontact.problem.load_case import Combination, LoadCase
 from bemcontact.problem.material import Material
@@ -289,6 +290,32 @@ class Problem(SpecModel):
             prescribed = {*self.conditions}.union(*(case.conditions for case in self.load_cases.values()))
             self._edges[zone] = zone_edges(self.boundary, self.contact_zones[zone], prescribed)
         return self._edges[zone]
+
+    def without_joints(self) -> Self:
+        """Copy in which edges that go on in the next one without any change are one edge, without variants.
+
+        They have the same curve, conditions and zones, and state no elements. The name of the one edge has all theirs.
+        """
+        loops = zip(self.boundary.loop_specs, self.boundary.loops, strict=True)
+        joined = [without_joints(stated, edges, self._alike) for stated, edges in loops]
+        names = {part: edge.name for loop in joined for edge, parts in loop for part in parts}
+        if all(old == new for old, new in names.items()):
+            return self
+        outer, *holes = [tuple(edge for edge, _ in loop) for loop in joined]
+        data = self.model_dump(exclude={"variants", "boundary"})
+        for group in (data, *data["load_cases"].values()):
+            group["conditions"] = {names[edge]: condition for edge, condition in group["conditions"].items()}
+        for zone in data["contact_zones"].values():
+            zone["edges"] = zone["edges"] and tuple(dict.fromkeys(names[edge] for edge in zone["edges"]))
+        return type(self)(**data, boundary=Boundary(outer=outer, holes=tuple(holes)))
+
+    def _alike(self, one: str, other: str) -> bool:
+        """Whether two edges have the same conditions under all load cases, and are named by the same zones."""
+        groups = [self.conditions, *(case.conditions for case in self.load_cases.values())]
+        named = [zone.edges for zone in self.contact_zones.values() if zone.edges is not None]
+        return all(group.get(one) == group.get(other) for group in groups) and all(
+            (one in edges) == (other in edges) for edges in named
+        )
 
     def edge(self, name: str) -> Edge:
         """Edge with a name; `ProblemError` if there is none."""

@@ -1,0 +1,79 @@
+"""Joints between edges that change nothing: neither the curve, nor the conditions, nor the zones."""
+
+from collections.abc import Callable, Sequence
+from math import degrees, dist, fsum, pi
+
+import numpy as np
+
+from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc, Segment, cross
+from bemcontact.problem.geometry import AnyEdge, Arc, Line
+
+FULL_TURN = 360.0
+SAME = 1e-9
+"""Angle [rad], or difference over a radius, up to which a curve goes on in the next edge: round-off of coordinates."""
+
+
+def without_joints(
+    loop: Sequence[AnyEdge], edges: Sequence[Edge], alike: Callable[[str, str], bool]
+) -> list[tuple[AnyEdge, tuple[str, ...]]]:
+    """Edges of a loop, where those that go on in the next one are one edge, each with the names of its parts.
+
+    Edges with elements, or with places where elements end, stay as they are. A loop keeps one joint.
+
+    Parameters
+    ----------
+    loop : edges as they are stated
+    edges : the same with both ends
+    alike : whether the edges of two names have the same conditions and zones
+    """
+    pairs = [*zip(loop, edges, strict=True)]
+    joints = [not _goes_on(pairs[i - 1], pair, alike) for i, pair in enumerate(pairs)]
+    joints[0] |= not any(joints)
+    first = joints.index(True)
+    groups: list[list[tuple[AnyEdge, Edge]]] = []
+    for pair, joint in zip(pairs[first:] + pairs[:first], joints[first:] + joints[:first], strict=True):
+        if joint:
+            groups.append([])
+        groups[-1].append(pair)
+    return [(_as_one(group), tuple(edge.name for edge, _ in group)) for group in groups]
+
+
+def _goes_on(before: tuple[AnyEdge, Edge], after: tuple[AnyEdge, Edge], alike: Callable[[str, str], bool]) -> bool:
+    """Whether an edge, stated and with both ends, goes on in the next one."""
+    free = all(edge.elements is None and not edge.places for edge, _ in (before, after))
+    return free and _same_curve(before[1].curve, after[1].curve) and alike(before[0].name, after[0].name)
+
+
+def _same_curve(one: Curve, other: Curve) -> bool:
+    """Whether a curve goes on in another one that begins at its end."""
+    match one, other:
+        case Segment(), Segment():
+            way, further = np.subtract(one.end, one.start), np.subtract(other.end, other.start)
+            return bool(abs(cross(way, further)) <= SAME * (way @ further))
+        case (CircularArc(), CircularArc()) | (EllipticArc(), EllipticArc()):
+            near = SAME * max(one.radii)
+            turns = [curve.rotation for curve in (one, other) if isinstance(curve, EllipticArc)]
+            alike = dist(one.center, other.center) <= near and dist(one.radii, other.radii) <= near
+            return alike and turns[:1] == turns[1:] and one.sweep * other.sweep > 0
+    return False
+
+
+def _as_one(group: Sequence[tuple[AnyEdge, Edge]]) -> AnyEdge:
+    """One edge in place of several that go on in each other."""
+    (stated, first), (_, last) = group[0], group[-1]
+    if len(group) == 1:
+        return stated
+    name = " + ".join(edge.name for edge, _ in group)
+    if isinstance(stated, Line):
+        return Line(name=name, start=first.start, end=last.end)
+    angles = [edge.angles for edge, _ in group if not isinstance(edge, Line) and edge.angles is not None]
+    if len(angles) == len(group):
+        whole = (angles[0][0], angles[0][0] + fsum(end - start for start, end in angles))
+        return stated.model_copy(update={"name": name, "angles": whole})
+    curves = [edge.curve for _, edge in group if isinstance(edge.curve, CircularArc)]
+    sweep = fsum(curve.sweep for curve in curves)
+    if abs(sweep) < (1 - SAME) * 2 * pi:
+        return Arc(name=name, center=curves[0].center, start=first.start, end=last.end, clockwise=sweep < 0)
+    start = degrees(curves[0].start_angle)
+    angles = (start, start + (FULL_TURN if sweep > 0 else -FULL_TURN))
+    return Arc(name=name, center=curves[0].center, radius=curves[0].radii[0], angles=angles)

@@ -1,0 +1,119 @@
+"""Edges that go on in the next one without any change are one edge, wherever they were cut."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import bemcontact
+from bemcontact.problem import Problem
+
+PLANE = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+CORNERS = [(0.0, 0.0), (40.0, 0.0), (40.0, 20.0), (0.0, 20.0)]
+
+
+def plate(cuts: list[list[float]], hole: list[float], begin: int = 0, **more) -> Problem:
+    """A plate with a hole: each side cut at shares of its length, the circle at angles; the loop begins at an edge."""
+    outer = [
+        {"name": f"{number}.{i}".replace(".", "-"), "start": [x0 + share * (x1 - x0), y0 + share * (y1 - y0)]}
+        for number, ((x0, y0), (x1, y1)) in enumerate(zip(CORNERS, CORNERS[1:] + CORNERS[:1], strict=True))
+        for i, share in enumerate([0.0, *sorted(cuts[number])])
+    ]
+    angles = [0.0, *sorted(hole, reverse=True), -360.0]
+    circle = [
+        {"name": f"hole {i}", "kind": "arc", "center": [20, 12], "radius": 3, "angles": [angles[i], angles[i + 1]]}
+        for i in range(len(angles) - 1)
+    ]
+    names = [[edge["name"] for edge in outer if edge["name"].startswith(f"{side}-")] for side in range(4)]
+    data: dict = {
+        "name": "plate", "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+        "boundary": {"outer": outer[begin:] + outer[:begin], "holes": [circle]},
+        "conditions": {name: {"pressure": 10} for name in names[2]},
+        "contact_zones": {"foot": {"edges": names[0], "surface": PLANE}},
+    }  # fmt: skip
+    return Problem(**{**data, **more})
+
+
+shares = st.lists(st.floats(0.01, 0.99).map(lambda x: round(x, 3)), max_size=3, unique=True)
+
+
+@given(st.tuples(shares, shares, shares, shares), st.lists(st.integers(-359, -1), max_size=3, unique=True), st.data())
+def test_cuts_are_undone(cuts: tuple[list[float], ...], hole: list[int], data: st.DataObject):
+    """Four sides and one circle are left, of the same length and conditions; and nothing more can be undone."""
+    begin = data.draw(st.integers(0, 3 + sum(map(len, cuts))))
+    problem = plate([*cuts], [float(angle) for angle in hole], begin)
+    whole = problem.without_joints()
+    lengths = [[edge.length for edge in loop] for loop in whole.boundary.loops]
+    assert sorted(lengths[0]) == pytest.approx([20, 20, 40, 40])
+    assert lengths[1] == pytest.approx([6 * np.pi])
+    assert [whole.edge(name).length for name in whole.conditions] == [pytest.approx(40)]
+    (foot,) = whole.edges_of("foot")
+    assert [y for _, y in (whole.edge(foot).start, whole.edge(foot).end)] == [0, 0]
+    assert whole.without_joints() is whole
+    assert (whole is problem) == (not any(cuts) and not hole)
+    assert {part for edge in whole.boundary.edges for part in edge.name.split(" + ")} == {
+        edge.name for edge in problem.boundary.edges
+    }
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"conditions": {"2-0": {"pressure": 10}, "2-1": {"pressure": 11}}},
+        {"conditions": {}, "load_cases": {"half": {"conditions": {"2-0": {"pressure": 10}}}}},
+        {"contact_zones": {"foot": {"edges": "0-0", "surface": PLANE}, "top": {
+            "edges": "2-0", "surface": {"kind": "plane", "point": [0, 20], "normal": [0, -1]}}}},
+    ],
+)  # fmt: skip
+def test_what_changes_at_a_joint_keeps_it(more: dict):
+    problem = plate([[], [], [0.5], []], [], **{"conditions": {}, **more})
+    assert problem.without_joints() is problem
+
+
+@pytest.mark.parametrize("places", [{"elements": 4}, {"ends_at": [0.5]}])
+def test_stated_elements_keep_a_joint(places: dict):
+    problem = plate([[0.5], [], [], []], [])
+    ((key, value),) = places.items()
+    problem = problem.with_value(f"boundary.outer.0-1.{key}", value)
+    assert problem.without_joints() is problem
+
+
+def test_arcs_between_points_and_of_ellipses_become_one():
+    """A lens of an arc in three parts, the last one on another circle, and an ellipse in two."""
+    ellipse = {"kind": "ellipse", "center": [0, 5], "semi_axes": [8, 5]}
+    for outer, left in (
+        ([{"name": "a", "kind": "arc", "center": [0, 0], "start": [-5, 0], "end": [0, -5]},
+          {"name": "b", "kind": "arc", "center": [0, 0], "end": [4, -3]}, {"name": "c", "end": [-5, 0]}],
+         ["a + b", "c"]),
+        ([{"name": "a", "kind": "arc", "center": [0, 0], "start": [-5, 0], "end": [0, -5]},
+          {"name": "b", "kind": "arc", "center": [0, 0], "end": [5, 0]},
+          {"name": "c", "kind": "arc", "center": [0, 0], "end": [-5, 0]}], ["a + b + c"]),
+        ([{"name": "a", **ellipse, "angles": [-180, -30]}, {"name": "b", **ellipse, "angles": [-30, 0]},
+          {"name": "c", "end": [-8, 5]}], ["a + b", "c"]),
+    ):  # fmt: skip
+        data: dict = {
+            "name": "round", "material": {"young_modulus": 1.0, "poisson_ratio": 0.3}, "boundary": {"outer": outer},
+            "contact_zones": {"foot": {"edges": ["a", "b"], "surface": {**PLANE, "point": [0, -9]}}},
+        }  # fmt: skip
+        problem = Problem(**data)
+        if len(left) == 1:
+            problem = problem.with_value("contact_zones.foot.edges", ["a", "b", "c"])
+        whole = problem.without_joints()
+        assert [edge.name for edge in whole.boundary.edges] == left
+        perimeters = (sum(edge.length for edge in each.boundary.edges) for each in (whole, problem))
+        assert next(perimeters) == pytest.approx(next(perimeters), rel=1e-12)
+
+
+def test_edges_cut_otherwise_have_the_same_bars():
+    """Within the contact and beside it, on the hole, and where the loop begins."""
+    circle = {"kind": "circle", "center": [20, -300], "radius": 300, "body": "outside"}
+    bars = []
+    for cuts, hole, begin in (([[], [], [], []], [], 0), ([[0.3, 0.52], [0.5], [0.9], [0.1]], [-100.0, -200.0], 2)):
+        problem = plate(cuts, hole, begin)
+        zone = {"foot": {"edges": problem.contact_zones["foot"].edges, "surface": circle}}
+        result = bemcontact.solve(Problem(**{**problem.model_dump(), "contact_zones": zone}))
+        bars.append([(bar.quantity, bar.value, bar.bar) for bar in result.accuracy.bars])
+    for (what, value, error), (other, same, again) in zip(*bars, strict=True):
+        assert what == other
+        assert value == pytest.approx(same, rel=1e-6)
+        assert error == pytest.approx(again, rel=1e-6, abs=1e-12)
