@@ -256,7 +256,8 @@ class ContactModel(WithHints):
             answer = minimize_convex(chosen, max_iterations, leave_point=pure, as_stated=not pure)
         except SolverError as error:
             raise SolverError(". ".join(filter(None, (str(error), light)))) from error
-        return self._read_back(chosen, answer._replace(note=". ".join(filter(None, (answer.note, light)))))
+        notes = [answer.note] if answer.accurate else [answer.note, light]
+        return self._read_back(chosen, answer._replace(note=". ".join(filter(None, notes))))
 
     def _from_last(self) -> ModelResult | None:
         """The contact state by a few active-set steps from the last solve; None if they do not lead to one."""
