@@ -1,5 +1,9 @@
 """The model in cvxpy: its optimum is the contact state, its parameters are the data, what is added is judged."""
 
+import copy
+import pickle
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -330,6 +334,56 @@ def test_a_result_is_taken_out_before_the_next_solve():
         model.result(one)
     assert kept.solution.polished
     assert not kept.pressure.flags.writeable
+
+
+def reread(model):
+    return pickle.loads(pickle.dumps(model))
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, reread])
+@pytest.mark.parametrize("solved", [False, True])
+@pytest.mark.parametrize("contact", CONTACTS.values(), ids=CONTACTS)
+def test_a_copy_is_a_model_of_its_own_with_the_same_values(copied, solved, contact):
+    """It has the values and multipliers of the original, is solved and extended as one, and changes nothing in it."""
+    model = bemcontact.model(contact)
+    gap = contact.at_rest().initial_gap + 0.01 * contact.scales.displacement
+    model.initial_gap.value = gap
+    if solved:
+        model.solve()
+    other = copied(model)
+    np.testing.assert_array_equal(other.initial_gap.value, gap)
+    assert (other.pressure.value is not None) == solved
+    if solved:
+        np.testing.assert_array_equal(other.pressure.value, model.pressure.value)
+        assert all(np.array_equal(other.duals[name], dual) for name, dual in model.duals.items())
+    other.initial_gap.value = contact.at_rest().initial_gap
+    np.testing.assert_array_equal(model.initial_gap.value, gap)
+    same_pressure(other.solve().pressure, contact)
+    assert {v.id for v in other.objective.variables()}.isdisjoint(v.id for v in model.objective.variables())
+    limited = other.solve(cp.sum(other.pressure) * 1e-9, [other.pressure <= 10 * other.pressure.value.max()])
+    assert limited.status is Status.SOLVED
+
+
+def test_variables_of_another_process_are_not_those_of_a_model_that_was_read():
+    """Each process counts the variables of cvxpy from one on."""
+    written = pickle.dumps(bemcontact.model(random_contact(4, 6, 1)))
+    code = (
+        "import sys, pickle, cvxpy; model = pickle.loads(sys.stdin.buffer.read());"
+        "own = {item.id for item in (*model.objective.variables(), *model.objective.parameters())};"
+        "sys.exit(any(cvxpy.Variable().id in own for _ in range(500)))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], input=written, check=False).returncode == 0
+
+
+def test_a_problem_of_a_model_is_not_copied():
+    """Of copied expressions cvxpy has compiled others, which ends the process where it is solved."""
+    model = bemcontact.model(random_contact(4, 6, 1))
+    problem = model.problem()
+    for solved in (False, True):
+        with pytest.raises(ProblemError, match=r"a problem of a model cannot be copied, .* copy the model"):
+            copy.deepcopy({"model": model, "problem": problem})
+        if not solved:
+            problem.solve()
 
 
 def test_a_design_variable_composes_with_the_gap():
