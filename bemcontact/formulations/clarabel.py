@@ -5,18 +5,21 @@ small beside one, whatever the unit of a row is. So rows and columns are brought
 unless the problem is dimensionless already: units are taken out by the means of logarithms (Curtis and Reid, J. Inst.
 Maths Applics 10, 1972, 118-124), and the largest entries become one (Ruiz, RAL-TR-2001-034). Ruiz's method alone stops
 at any matrix whose largest entries are one, and leaves small what has a unit of its own, as a variable that cvxpy adds.
+Limits and costs become one, too: under a light load the gaps of far points are millions of displacements, and beside
+them everything else is small.
 
 No settings serve all programs. Clarabel's own regularization is too weak for Hessians that are semidefinite to
 round-off, a stronger one slows down others. So a few `ATTEMPTS` are made. The residuals of each end are computed anew
 from the data of the program, and so are violations of the constraints as the user wrote them, relative to their terms.
-They alone decide whether it is an answer.
+They alone decide whether it is an answer. Where no attempt has one, a proof that there is none is looked for.
 """
 
 import signal
 import threading
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -27,11 +30,12 @@ from scipy.sparse import csc_array, diags_array, triu
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
+from bemcontact.formulations.linear_rays import infeasible_ray, unbounded_ray
 from bemcontact.formulations.presolve import FixedVariables
 
 ASKED, RAY = 1e-11, 1e-13
 """Tolerances that are asked of Clarabel, for a point and for a ray."""
-AT_ONCE, GOOD, POOR = 1e-10, 1e-8, 1e-5
+AT_ONCE, GOOD, POOR = 1e-9, 1e-8, 1e-5
 """Residual that ends the attempts; up to which the best of them is an optimum; up to which it is an inaccurate one."""
 PROOF = 1e-6
 """Error of a ray up to which it is a proof: nothing feasible is then smaller than a million times the data."""
@@ -63,12 +67,12 @@ LARGEST_COUNT = 2**32 - 1
 
 
 class ClarabelSettings(NamedTuple):
-    """Settings of Clarabel; whether the program is scaled the other way; whether large right-hand sides become one."""
+    """Settings of Clarabel; whether the program is scaled the other way; whether its largest cost becomes one."""
 
     words: str
     settings: Mapping[str, Any]
     rescaled: bool = False
-    shrunk: bool = False
+    costly: bool = False
 
 
 ATTEMPTS = (
@@ -76,7 +80,7 @@ ATTEMPTS = (
     ClarabelSettings("with less regularization", {"static_regularization_constant": 1e-8}),
     ClarabelSettings("in another scaling", {"static_regularization_constant": 1e-7, **REFINEMENT}, rescaled=True),
     ClarabelSettings("with more regularization", {"static_regularization_constant": 1e-6, **REFINEMENT}),
-    ClarabelSettings("in a larger unit", {"static_regularization_constant": 1e-7, **REFINEMENT}, shrunk=True),
+    ClarabelSettings("in a larger unit of costs", {"static_regularization_constant": 1e-7, **REFINEMENT}, costly=True),
 )
 """Made one after the other until one gives an answer."""
 
@@ -89,11 +93,13 @@ class Answer(NamedTuple):
     progress : (iterations + 1, 2) the objective without its constant, and the residual of the constraints that Clarabel
         holds against its tolerance; one row less if Clarabel gave up in the last iteration
     failed : whether all attempts failed, so that the point that is left is no optimum
+    accurate : whether the tolerance was reached, or nothing was to be reached, as with a proof
     note : which attempt gave the answer, or how inaccurate it is; empty if the first one did what was asked
     """
 
     progress: Array
     failed: bool
+    accurate: bool
     note: str
 
 
@@ -137,13 +143,15 @@ def minimize_convex(
     if as_stated:
         ends = (_as_stated(end, problem, put) for end in ends)
     end = _best_end(ends, max_iterations)
+    if end.residual > GOOD and end.status != LIMIT:
+        end = _proved(data, end)
     failed = end.residual > POOR and end.status != LIMIT
     if (failed and not leave_point) or not np.isfinite(end.residual):
         raise SolverError(
             "Clarabel found no solution of this model; look for terms of very different size, or loosen what was added"
         )
     put(end)
-    return Answer(_finite(end.progress / np.array([end.scaling.s, 1.0])), failed, end.note)
+    return Answer(_finite(end.progress / np.array([end.scaling.s, 1.0])), failed, end.residual <= GOOD, end.note)
 
 
 LIMIT = "MaxIterations"
@@ -160,6 +168,24 @@ class _End(NamedTuple):
     solution: Any
     progress: Array
     scaling: _Scaling
+
+
+def _proved(data: dict[str, Any], end: _End) -> _End:
+    """A proof that there is no solution, if there is one; else the end of the attempts."""
+    scalings = _equilibrated(data), _equilibrated(data, costly=True)
+    for ray_of in (infeasible_ray, _end_without_costs, unbounded_ray):
+        for scaled, scaling in scalings:
+            ray = ray_of(scaled)
+            status, residual = _judged_in(scalings, ray, scaling) if ray else ("", np.inf)
+            if status in RAYS and residual == 0.0:
+                return end._replace(status=status, residual=0.0, note="", solution=ray, scaling=scaling)
+    return end
+
+
+def _end_without_costs(data: dict[str, Any]) -> Any:
+    """Clarabel's end of a program without its costs, of which it may otherwise see nothing else."""
+    nothing = {name: 0.0 * data[name] for name in ("P", "c") if name in data}
+    return _solve(data | nothing, ATTEMPTS[0].settings, ITERATIONS)[0]
 
 
 def _best_end(made: Iterator[_End], max_iterations: int | None) -> _End:
@@ -202,23 +228,37 @@ def _terms(part: Any) -> float:
 
 
 def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> Iterator[_End]:
-    """Make the attempts. A point of the other scaling is judged in the first one too, where sizes are one."""
+    """Make the attempts. A point of another scaling is judged in the first one too, where sizes are one.
+
+    A proof has to hold in each scaling: what is small beside the numbers of one may be all there is in another.
+    """
     first = _equilibrated(data) if equilibrate else (data, _Scaling())
+    costly = cache(lambda: _equilibrated(data, costly=True))
     for attempt in ATTEMPTS:
-        scaled, scaling = first
-        if attempt.shrunk:
-            scaled, scaling = _equilibrated(data, shrunk=True)
+        chosen = first
+        if attempt.costly:
+            chosen = costly()
         elif attempt.rescaled:
-            scaled, scaling = (data, _Scaling()) if equilibrate else _equilibrated(data)
-        solution, progress = _solve(scaled, attempt.settings, max_iterations or ITERATIONS)
-        status, residual = _judged(scaled, solution, shrunk=attempt.shrunk)
-        if attempt.rescaled and status not in RAYS:
-            status, residual = max(
-                (status, residual), _judged(first[0], _moved(solution, scaling, first[1])), key=lambda end: end[1]
-            )
+            chosen = (data, _Scaling()) if equilibrate else _equilibrated(data)
+        solution, progress = _solve(chosen[0], attempt.settings, max_iterations or ITERATIONS)
+        status, residual = _judged(chosen[0], solution)
+        others = [first, costly()] if status in RAYS else [first]
+        status, residual = max(
+            (status, residual),
+            _judged_in([other for other in others if other is not chosen], solution, chosen[1]),
+            key=lambda end: end[1],
+        )
         if status not in RAYS and residual > GOOD and solution.iterations >= (max_iterations or np.inf):
             status = LIMIT
-        yield _End(status, residual, _note(attempt, status, residual), solution, progress, scaling)
+        yield _End(status, residual, _note(attempt, status, residual), solution, progress, chosen[1])
+
+
+def _judged_in(
+    scalings: Sequence[tuple[dict[str, Any], _Scaling]], solution: Any, scaling: _Scaling
+) -> tuple[str, float]:
+    """The worst that `_judged` says of a point or ray of one scaling in others; nothing, with none of them."""
+    ends = (_judged(scaled, _moved(solution, scaling, other)) for scaled, other in scalings)
+    return max(ends, key=lambda end: end[1], default=("", -np.inf))
 
 
 def _note(attempt: ClarabelSettings, status: str, residual: float) -> str:
@@ -229,11 +269,11 @@ def _note(attempt: ClarabelSettings, status: str, residual: float) -> str:
     return "; ".join(notes)
 
 
-def _judged(data: dict[str, Any], solution: Any, *, shrunk: bool = False) -> tuple[str, float]:
+def _judged(data: dict[str, Any], solution: Any) -> tuple[str, float]:
     """The status that the residuals of an end allow, and the largest of them: relative for a point, 0 for a proof.
 
-    A gap between the objectives is relative to them or to one. In a larger unit any gap is small beside one, so there
-    it is relative to the terms of the objectives.
+    A row is held against its own terms, or one. A column is held against its own terms, one, or the part of the largest
+    terms that was asked of Clarabel.
     """
     x, z, s = (np.array(part) for part in (solution.x, solution.z, solution.s))
     A, b, c = data["A"], data["b"], data["c"]
@@ -245,12 +285,11 @@ def _judged(data: dict[str, Any], solution: Any, *, shrunk: bool = False) -> tup
     if status == RAYS[1]:
         return (status, 0.0) if _is_ray(c, x, np.append(curved, A @ x + s)) else ("Unsolved", np.inf)
     primal, dual = c @ x + x @ curved / 2, -(b @ z) - x @ curved / 2
-    terms = np.abs(c) @ np.abs(x) + np.abs(b) @ np.abs(z)
-    size = terms or 1.0 if shrunk else max(1.0, min(abs(primal), abs(dual)))
+    terms = np.maximum(1.0, np.abs(curved) + np.abs(c) + abs(A).T @ np.abs(z))
     residuals = (
-        _size(A @ x + s - b) / max(1.0, _size(b) + _size(x) + _size(s)),
-        _size(curved + c + A.T @ z) / max(1.0, _size(c) + _size(x) + _size(z)),
-        abs(primal - dual) / size,
+        _size((A @ x + s - b) / np.maximum(1.0, abs(A) @ np.abs(x) + np.abs(b))),
+        _size((curved + c + A.T @ z) / np.maximum(terms, ASKED / GOOD * _size(terms))),
+        abs(primal - dual) / max(1.0, min(abs(primal), abs(dual))),
         _outside(data["dims"], s, z),
     )
     residual = float(np.max(residuals))  # with nan if one is
@@ -351,27 +390,48 @@ def _finite(progress: Array) -> Array:
     return progress[np.logical_and.accumulate(np.isfinite(progress).all(axis=1))]
 
 
-def _equilibrated(data: dict[str, Any], *, shrunk: bool = False) -> tuple[dict[str, Any], _Scaling]:
-    """Bring min ½xᵀP x + cᵀx, b - A x in cones, to size one."""
-    # By the constraints alone: costs have a unit of their own, which would scale the columns too. D contains the size
-    # of b if that is below one, the least that Clarabel compares with. Beside a large b, small numbers count as zero,
-    # so that rays are seen where there are none; a `shrunk` b costs digits of what is large.
-    A, c, b = csc_array(data["A"]), data["c"], data["b"]
-    P = _symmetric(data)
-    cone, work = _cone_of_rows(data["dims"]), A.tocoo()
-    D, E = _without_units(work, cone, A.shape)
-    for _ in range(ROUNDS):
-        entries = E[work.row] * np.abs(work.data) * D[work.col]
-        column = _largest(entries, work.col, len(c))
-        row = _largest(entries, cone[work.row], len(b))[cone]
-        D, E = D / np.sqrt(np.where(column > 0, column, 1.0)), E / np.sqrt(np.where(row > 0, row, 1.0))
-    size = _size(E * b) or 1.0
-    size = size if shrunk else min(size, 1.0)
-    D, E = size * D, E / size
-    P, c = diags_array(D) @ P @ diags_array(D), D * c
-    s = 1.0 / (max(float(np.abs(P.data).max(initial=0.0)), float(np.abs(c).max(initial=0.0))) or 1.0)
+def _equilibrated(data: dict[str, Any], *, costly: bool = False) -> tuple[dict[str, Any], _Scaling]:
+    """Bring min ½xᵀP x + cᵀx, b - A x in cones, to size one: constraints, then limits, then costs.
+
+    Limits that are wide become one by their rows, so that they do not hide the others. Costs have a unit of their own.
+    It is that of the Hessian, and variables with larger costs have a smaller unit, unless the program is `costly`.
+    """
+    A, b = csc_array(data["A"]), data["b"]
+    cone = _cone_of_rows(data["dims"])
+    D, E = _of_constraints(A, b, cone)
+    D, s = _of_costs(data, D, costly=costly)
+    P, c = diags_array(D) @ _symmetric(data) @ diags_array(D), D * data["c"]
     scaled = {**data, "A": csc_array(diags_array(E) @ A @ diags_array(D)), "b": E * b, "c": s * c}
     return scaled | ({"P": csc_array(s * P)} if "P" in data else {}), _Scaling(D, E, s)
+
+
+def _of_constraints(A: csc_array, b: Array, cone: IntArray) -> tuple[Array, Array]:
+    """Factors of columns and rows with which the largest entry of each is one, and no limit is above one.
+
+    If all limits are small, the unit of all variables is their size: the least that Clarabel compares with is one.
+    """
+    work = A.tocoo()
+    D, E = _without_units(work, cone, A.shape)
+    for limit in (np.zeros(len(b)), np.abs(b)):
+        for _ in range(ROUNDS):
+            entries = E[work.row] * np.abs(work.data) * D[work.col]
+            column = _largest(entries, work.col, len(D))
+            row = np.maximum(_largest(entries, work.row, len(b)), E * limit)
+            row = _largest(row, cone, len(b))[cone]
+            D, E = D / np.sqrt(np.where(column > 0, column, 1.0)), E / np.sqrt(np.where(row > 0, row, 1.0))
+        size = min(_size(E * b) or 1.0, 1.0)
+        D, E = size * D, E / size
+    return D, E
+
+
+def _of_costs(data: dict[str, Any], D: Array, *, costly: bool) -> tuple[Array, float]:
+    """Factors of columns, which make costs above one to one unless the program is `costly`, and of the costs."""
+    P, c = diags_array(D) @ _symmetric(data) @ diags_array(D), np.abs(D * data["c"])
+    curved, costs = float(np.abs(P.data).max(initial=0.0)), c[c > 0]
+    if costly:
+        return D, 1.0 / (max(curved, _size(c)) or 1.0)
+    s = 1.0 / (curved or float(np.exp(np.log(costs).mean() if costs.size else 0.0)))
+    return D / np.maximum(1.0, s * c), s
 
 
 def _without_units(entries: Any, cone: IntArray, shape: Any) -> tuple[Array, Array]:

@@ -26,7 +26,10 @@ from bemcontact.options import FormulationName, SolveOptions, options_of
 PIVOT = 1e-11
 TIE = 1e-12
 VANISHED = 1e-13
-ROUND_OFF = 1e-11
+ROUND_OFF, CLEAR = 1e-11, 1e-8
+"""Part of the terms of a sum that is rounding; from which a sum has a sign."""
+VERIFIED, LEAST = 1e-10, 1e-4
+"""Part of the terms of a number that may be rounding; part of the largest variable that any variable counts with."""
 REFRESH = 50
 """Pivots after which the inverse of the basis is computed anew, against the growth of round-off."""
 BALANCED = 1e-12
@@ -85,7 +88,8 @@ def lemke(M: Array, q: Array, covering: Array | None = None, limit: int | None =
         left = basis.exchange(row, entering, column)
         covers.append(unit * basis.cover_value)
         if left == basis.cover:
-            return LemkeEnd(status=Status.SOLVED, active=basis.active, covers=tuple(covers))
+            status = Status.SOLVED if _is_solution(M, q, basis.active) else Status.NO_SOLUTION_FOUND
+            return LemkeEnd(status=status, active=basis.active, covers=tuple(covers))
         entering = left + n if left < n else left - n
         column = basis.column(entering)
         row = basis.leaving_row(column)
@@ -104,6 +108,31 @@ def equilibrating(M: Array) -> Array:
         largest = np.maximum(equal.max(axis=0, initial=0.0), equal.max(axis=1, initial=0.0))
         factors /= np.sqrt(np.where(largest > 0, largest, 1.0))
     return powers_of_two(factors)
+
+
+def holds(M: Array, q: Array, z: Array) -> bool:
+    """Whether z (n,) solves the problem up to rounding: each number beside the terms it is made of.
+
+    Where w is not zero, z has to be too small to matter in any row. A z that is small beside others has their rounding,
+    so that units of variables should be even.
+    """
+    size = np.abs(z)
+    terms = VERIFIED * (np.abs(M) @ np.maximum(size, LEAST * size.max(initial=0.0)) + np.abs(q))
+    w = q + M @ z
+    faint = (np.abs(M) * size <= terms[:, None]).all(axis=0)
+    return bool((w >= -terms).all() and ((z >= 0) | faint).all() and ((w <= terms) | faint).all())
+
+
+def basic_solution(M: Array, q: Array, active: BoolArray) -> Array:
+    """The z (n,) with w = q + M z = 0 where `active` and z = 0 elsewhere; the shortest one where there are several."""
+    z = np.zeros(len(q))
+    z[active] = -np.linalg.lstsq(M[np.ix_(active, active)], q[active], rcond=None)[0]
+    return z
+
+
+def _is_solution(M: Array, q: Array, active: BoolArray) -> bool:
+    """Whether the values of a basis solve the problem."""
+    return holds(M, q, basic_solution(M, q, active))
 
 
 class _Basis:
@@ -165,16 +194,23 @@ class _Basis:
 
 
 def _end_of_ray(M: Array, q: Array, basis: _Basis, entering: int, column: Array) -> Status:
-    """A direction y >= 0 of z along which nothing falls proves infeasibility if Mᵀy <= 0 and qᵀy < 0 (Farkas)."""
-    if basis.cover_value <= VANISHED:
+    """Infeasible, if the direction y >= 0 of z along which nothing falls proves it."""
+    if basis.cover_value <= VANISHED and _is_solution(M, q, basis.active):
         return Status.SOLVED
     direction = np.zeros(basis.cover + 1)
     direction[basis.basic] = -column
     direction[entering] = 1.0
     y = np.maximum(direction[len(q) : basis.cover], 0.0)
-    y /= max(y.max(), 1e-300)
-    proved = (M.T @ y).max() <= ROUND_OFF and q @ y < -1e3 * ROUND_OFF
-    return Status.INFEASIBLE if proved else Status.NO_SOLUTION_FOUND
+    return Status.INFEASIBLE if excludes(M, q, y) else Status.NO_SOLUTION_FOUND
+
+
+def excludes(M: Array, q: Array, y: Array) -> bool:
+    """Whether y >= 0 (n,) proves that no z >= 0 has w >= 0: Mᵀy <= 0 and qᵀy < 0 (Farkas), beside their own terms.
+
+    Rows of a scaled problem may differ in size by many orders, and so may q.
+    """
+    terms = np.abs(M).T @ np.maximum(y, LEAST * y.max(initial=0.0))
+    return bool((M.T @ y <= ROUND_OFF * terms).all() and q @ y < -CLEAR * (np.abs(q) @ y))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -230,8 +266,12 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
         weights=np.ones(n),
     )
     search = _search(contact, None)
-    z = factors * search.end.pressure * T
-    return LcpResult(z=z, w=q + M @ z, status=search.status, iterations=search.iterations, method=search.method)
+    z, status = search.end.pressure * T, search.status
+    if status is not Status.INFEASIBLE and not holds(even, right, z):
+        path = lemke(even, right)
+        z, status = np.maximum(basic_solution(even, right, path.active), 0.0), path.status
+    z = factors * z
+    return LcpResult(z=z, w=q + M @ z, status=status, iterations=search.iterations, method=search.method)
 
 
 def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:

@@ -37,6 +37,13 @@ class ContactProblem(cp.Problem):
         minimize_convex(self, as_stated=True)
         return self.value
 
+    def __deepcopy__(self, memo: dict[int, Any]) -> "ContactProblem":
+        """Refuse: cvxpy keeps what it compiled with the old variables, and aborts the process when it meets the new."""
+        raise ProblemError(
+            "a problem of a model cannot be copied, because cvxpy confuses its variables; copy the model, and state "
+            "the problem again with its method 'problem'"
+        )
+
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ContactModel(WithHints):
@@ -73,6 +80,24 @@ class ContactModel(WithHints):
     constraints: dict[str, cp.Constraint]
     scales: ContactScales
     notes: tuple[str, ...] = ()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Build copies, and what pickle reads, anew with the present values.
+
+        cvxpy tells variables by numbers. In copied expressions those that it has compiled are wrong, and in another
+        process new variables may have them.
+        """
+        parameters, variables, constraints = self._parts
+        values = [part.value for part in (*parameters, *variables)], [item.dual_value for item in constraints]
+        return _rebuilt, (self.original, *values)
+
+    @property
+    def _parts(self) -> tuple[list[cp.Parameter], list[cp.Variable], list[cp.Constraint]]:
+        """Parameters, variables and constraints, all of which have values."""
+        own, expressions = self.parameters, (self.pressure, self.motions)
+        given = (own.initial_gap, own.case_factors, own.tool_position, own.tool_force)
+        variables = [variable for item in expressions if item is not None for variable in item.variables()]
+        return [item for item in given if item is not None], variables, list(self.constraints.values())
 
     def __repr__(self) -> str:
         """One line: name, points, what may change."""
@@ -256,7 +281,8 @@ class ContactModel(WithHints):
             answer = minimize_convex(chosen, max_iterations, leave_point=pure, as_stated=not pure)
         except SolverError as error:
             raise SolverError(". ".join(filter(None, (str(error), light)))) from error
-        return self._read_back(chosen, answer._replace(note=". ".join(filter(None, (answer.note, light)))))
+        notes = [answer.note] if answer.accurate else [answer.note, light]
+        return self._read_back(chosen, answer._replace(note=". ".join(filter(None, notes))))
 
     def _from_last(self) -> ModelResult | None:
         """The contact state by a few active-set steps from the last solve; None if they do not lead to one."""
@@ -350,6 +376,18 @@ def model(contact: CondensedContact) -> ContactModel:
         scales=scales,
         notes=notes,
     )
+
+
+def _rebuilt(contact: CondensedContact, values: list[Any], duals: list[Any]) -> ContactModel:
+    """The model of a contact problem with these values of parameters and variables, and multipliers."""
+    copied = model(contact)
+    parameters, variables, constraints = copied._parts
+    for part, value in zip((*parameters, *variables), values, strict=True):
+        part.value = value
+    for constraint, dual in zip(constraints, duals, strict=True):
+        if dual is not None:
+            constraint.save_dual_value(dual)
+    return copied
 
 
 def _is_constraint(item: object) -> bool:

@@ -1,17 +1,28 @@
 """The direct solver: against all contact sets, on the classical worst cases, on bodies that contact alone holds."""
 
 import itertools
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from contact_problems import in_units, random_contact
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.complementarity import escape_note, lemke, polish, solve, solve_lcp, standard_form
+from bemcontact.formulations import complementarity
+from bemcontact.formulations.complementarity import (
+    equilibrating,
+    escape_note,
+    holds,
+    lemke,
+    polish,
+    solve,
+    solve_lcp,
+    standard_form,
+)
 from bemcontact.formulations.scaling import scale
 
 
@@ -438,6 +449,89 @@ def test_semidefinite_integer_problems_are_solved_or_refused_with_proof(data):
     if end.status is Status.SOLVED:
         z, w = values(M, q, end.active)
         assert min(z.min(), w.min()) >= -1e-10
+
+
+def has_solution(M: np.ndarray, q: np.ndarray) -> bool:
+    """Whether one of all 2ⁿ active sets, solved in fractions, has z >= 0 and w >= 0."""
+    whole = [[Fraction(int(entry)) for entry in row] for row in np.column_stack([M, q])]
+    sets = (active for size in range(len(q) + 1) for active in itertools.combinations(range(len(q)), size))
+    return any(_solves(whole, active) for active in sets)
+
+
+def _solves(whole: list[list[Fraction]], active: tuple[int, ...]) -> bool:
+    """Whether w = 0 on the active set, by Gauss and Jordan, gives z >= 0 there and w >= 0 elsewhere."""
+    rows = [[whole[i][j] for j in active] + [-whole[i][-1]] for i in active]
+    for c in range(len(rows)):
+        pivot = next((row for row in rows[c:] if row[c]), None)
+        if pivot is None:
+            return False
+        place = rows.index(pivot, c)
+        rows[place], rows[c] = rows[c], [entry / pivot[c] for entry in pivot]
+        rows = [rows[c] if k == c else _less(row, row[c], rows[c]) for k, row in enumerate(rows)]
+    z = [row[-1] for row in rows]
+    others = (row[-1] + sum(row[j] * value for j, value in zip(active, z, strict=True)) for row in whole)
+    return min(z, default=0) >= 0 and min(others) >= 0
+
+
+def _less(row: list[Fraction], factor: Fraction, other: list[Fraction]) -> list[Fraction]:
+    """A row less a multiple of another."""
+    return [entry - factor * item for entry, item in zip(row, other, strict=True)]
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 10**6), n=st.integers(3, 6), decades=st.sampled_from([0, 0, 7]))
+@example(seed=16617, n=6, decades=7)
+def test_skew_integer_problems_against_all_active_sets(seed, n, decades):
+    """Semidefinite parts of any rank: right, or, where integers span seven decades, honestly open."""
+    rng = np.random.default_rng(seed)
+    S = rng.integers(-9, 10, (n, n)) * 10 ** rng.integers(0, decades + 1, (n, n))
+    B = rng.integers(-3, 4, (n, int(rng.integers(0, 3))))
+    M, q = (S - S.T + B @ B.T).astype(float), rng.integers(-9, 10, n).astype(float)
+    result = solve_lcp(M, q)
+    assert decades or result.status in (Status.SOLVED, Status.INFEASIBLE)
+    if result.status in (Status.SOLVED, Status.INFEASIBLE):
+        assert has_solution(M, q) == (result.status is Status.SOLVED)
+    if result.status is Status.SOLVED:
+        factors = equilibrating(M)
+        assert holds(factors[:, None] * M * factors, factors * q, result.z / factors)
+
+
+def test_a_solution_holds_beside_its_terms_only():
+    """M = diag(1, 1e-6), q = (-1, -1e-9): z = (1, 1e-3). A row of small numbers counts as much as the other."""
+    M, q = np.diag([1.0, 1e-6]), np.array([-1.0, -1e-9])
+    assert holds(M, q, np.array([1.0, 1e-3]))
+    assert not holds(M, q, np.array([1.0, 0.0]))
+    assert not holds(M, q, np.array([1.0, 2e-3]))
+    assert not holds(M, -q, np.array([0.0, -1e-3]))
+    assert holds(M, -q, np.zeros(2))
+
+
+def test_a_path_whose_end_does_not_hold_claims_nothing(monkeypatch):
+    monkeypatch.setattr(complementarity, "holds", lambda *_: False)
+    result = solve_lcp(np.eye(2), np.array([-1.0, 1.0]))
+    assert result.status is Status.NO_SOLUTION_FOUND
+
+
+def skew_in_units(seed: int, n: int, decades: int) -> tuple[Status, bool]:
+    """How D M D and D q end, D positive and M = S - Sᵀ and q of integers, and whether M and q have a solution."""
+    rng = np.random.default_rng(seed)
+    S, q, units = rng.integers(-9, 10, (n, n)), rng.integers(-9, 10, n), 10.0 ** rng.uniform(-decades, decades, n)
+    return lemke(units[:, None] * (S - S.T) * units, units * q).status, has_solution(S - S.T, q)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 10**6), n=st.integers(3, 6), decades=st.integers(0, 8))
+def test_infeasibility_is_proved_in_other_units(seed, n, decades):
+    """About every fourth problem is infeasible. With units of ten decades and more, it may be left open."""
+    status, solvable = skew_in_units(seed, n, decades)
+    left_open = decades > 4 and status is Status.NO_SOLUTION_FOUND
+    assert left_open or status is (Status.SOLVED if solvable else Status.INFEASIBLE)
+
+
+@pytest.mark.parametrize(("seed", "n", "decades"), [(337, 4, 6), (1519, 6, 6), (1600, 3, 5), (2192, 3, 5)])
+def test_a_proof_by_rows_of_small_numbers_counts(seed, n, decades):
+    """Where qᵀy is 1e-8 of the largest numbers of q and y, but not of its own terms."""
+    assert skew_in_units(seed, n, decades) == (Status.INFEASIBLE, False)
 
 
 def test_ray_that_proves_infeasibility():

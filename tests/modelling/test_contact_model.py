@@ -1,5 +1,9 @@
 """The model in cvxpy: its optimum is the contact state, its parameters are the data, what is added is judged."""
 
+import copy
+import pickle
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,7 +20,7 @@ import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import NotConvexError, ProblemError, SolverError
-from bemcontact.formulations import complementarity
+from bemcontact.formulations import clarabel, complementarity
 from bemcontact.formulations.clarabel import minimize_convex
 
 GALLERY = Path(__file__).parents[2] / "models" / "gallery"
@@ -191,16 +195,94 @@ def test_a_load_that_is_small_beside_the_gaps_is_carried(seed, motions, power):
         assert answer.pressure == pytest.approx(direct.solution.pressure, abs=1e-6 * largest)
 
 
-def test_a_light_load_with_an_addition_says_what_to_do():
-    """Gaps of a million displacements: whatever the solver ends with, the sentence says where the digits are."""
+def pressed(seed: int, n: int, load: float) -> CondensedContact:
+    """A body that can only be lifted, pressed down; gaps of size one, some of them zero, and n points of weight one."""
+    rng = np.random.default_rng(seed)
+    A = rng.standard_normal((n, n))
+    gaps = np.append(0.0, rng.integers(0, 3, n - 1) * rng.uniform(0.5, 2.0, n - 1))
+    return CondensedContact.from_compliance(
+        A @ A.T / n + 0.1 * np.eye(n), gaps, rigid_motions=np.ones(n), motion_load=-load
+    )
+
+
+LIGHT = st.integers(0, 9).map(lambda power: 10.0**-power)
+"""Loads down to a billionth of the one that closes gaps."""
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6), n=st.integers(2, 12), load=LIGHT, share=st.sampled_from([0.3, 0.99, 1.01, 1.5]))
+def test_a_limit_is_infeasible_exactly_if_the_load_cannot_be_carried_under_it(seed, n, load, share):
+    """A lift opens all gaps, so that only Σp = load and p <= limit remain: feasible if n limits exceed the load."""
+    contact = pressed(seed, n, load)
+    model = bemcontact.model(contact)
+    result = model.solve(extra_constraints=[model.pressure <= share * load / n])
+    assert result.status is (Status.SOLVED if share > 1 else Status.INFEASIBLE)
+    assert ("cannot be satisfied" in result.words) == (share < 1)
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6), n=st.integers(4, 14), motions=st.sampled_from([0, 1, 3]), load=LIGHT)
+@example(seed=3075, n=8, motions=3, load=1.6e-7)
+def test_additions_that_contradict_each_other_are_infeasible(seed, n, motions, load):
+    """Two bounds, a sum of pressures below zero, and two cones: none of them needs the rest of the model."""
+    contact = random_contact(seed, n, motions)
+    model = bemcontact.model(replace(contact, motion_load=load * contact.motion_load))
+    p, y = model.pressure / model.scales.pressure, cp.Variable(n)
+    for added in (
+        [p[0] >= 2, p[0] <= 1.9],
+        [cp.sum(p) <= -0.01],
+        [cp.norm(p - y) <= 1, y >= 3 + p],
+    ):
+        assert model.solve(extra_constraints=added).status is Status.INFEASIBLE
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6), motions=st.sampled_from([0, 1, 3]), load=LIGHT, cost=st.floats(-3, 3))
+@example(seed=29, motions=3, load=10.0**-4.6, cost=0.1)
+@example(seed=89, motions=3, load=10.0**-6.9, cost=1.4)
+def test_what_decreases_the_objective_without_end_is_unbounded(seed, motions, load, cost):
+    """A variable with a cost: free, of one sign, beside another one, under a gap; with a bound there is an optimum."""
+    contact = random_contact(seed, 6, motions)
+    if not bemcontact.solve(contact := replace(contact, motion_load=load * contact.motion_load)).certified:
+        return
+    model = bemcontact.model(contact)
+    U, T = model.scales
+    unit, x, y = 10.0**cost * U * T * contact.weights.max(), cp.Variable(), cp.Variable()
+    for goal, added in (
+        (x, []),
+        (-x, [x >= 0]),
+        (x - 2 * y, [y <= x + 1, y >= x - 1, x >= 0]),
+        (x, [x <= model.gap[0] / U]),
+    ):
+        assert model.solve(unit * goal, added).status is Status.UNBOUNDED
+    assert model.solve(unit * x, [x >= -1]).status is Status.SOLVED
+    assert x.value == pytest.approx(-1, rel=1e-6)
+
+
+@pytest.mark.parametrize("load", 10.0 ** np.arange(-2, -10, -1))
+@pytest.mark.parametrize("share", [0.7, 0.4, 0.3])
+def test_a_limit_shifts_a_light_load_to_the_next_gaps(load, share):
+    """F3 then is Σ q p but for a part as small as the load, so that points are filled in the order of their gaps q.
+
+    A note on the load is not needed where the tolerance of the solver was reached.
+    """
+    contact = replace(pressed(0, 5, load), initial_gap=np.array([0.0, 1.0, 2.0, 3.0, 4.0]))
+    model = bemcontact.model(contact)
+    result = model.solve(extra_constraints=[model.pressure <= share * load])
+    filled = np.minimum(share, np.maximum(1 - share * np.arange(5), 0.0))
+    assert result.status is Status.SOLVED
+    assert result.pressure / load == pytest.approx(filled, abs=1e-6)
+    assert result.objective == pytest.approx(load * filled @ contact.initial_gap, rel=20 * load + 1e-6)
+    assert "The load is light" not in result.words
+
+
+def test_a_light_load_that_leaves_no_digits_says_what_to_do(monkeypatch):
+    """Where the tolerance is not reached, the sentence says where the digits are."""
     contact = random_contact(9, 6, 3)
     model = bemcontact.model(replace(contact, motion_load=1e-8 * contact.motion_load))
-    try:
-        words = model.solve(extra_constraints=[model.pressure <= 1e-3]).words
-    except SolverError as error:
-        words = str(error)
-    assert "The load is light" in words
-    assert "Draw the body where it touches" in words
+    monkeypatch.setattr(clarabel, "ATTEMPTS", (clarabel.ClarabelSettings("", {"max_iter": 1}),))
+    with pytest.raises(SolverError, match=r"The load is light: .* Draw the body where it touches"):
+        model.solve(extra_constraints=[model.pressure <= 1e-3])
 
 
 def test_a_model_without_an_optimum_is_a_status_in_words():
@@ -252,6 +334,56 @@ def test_a_result_is_taken_out_before_the_next_solve():
         model.result(one)
     assert kept.solution.polished
     assert not kept.pressure.flags.writeable
+
+
+def reread(model):
+    return pickle.loads(pickle.dumps(model))
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, reread])
+@pytest.mark.parametrize("solved", [False, True])
+@pytest.mark.parametrize("contact", CONTACTS.values(), ids=CONTACTS)
+def test_a_copy_is_a_model_of_its_own_with_the_same_values(copied, solved, contact):
+    """It has the values and multipliers of the original, is solved and extended as one, and changes nothing in it."""
+    model = bemcontact.model(contact)
+    gap = contact.at_rest().initial_gap + 0.01 * contact.scales.displacement
+    model.initial_gap.value = gap
+    if solved:
+        model.solve()
+    other = copied(model)
+    np.testing.assert_array_equal(other.initial_gap.value, gap)
+    assert (other.pressure.value is not None) == solved
+    if solved:
+        np.testing.assert_array_equal(other.pressure.value, model.pressure.value)
+        assert all(np.array_equal(other.duals[name], dual) for name, dual in model.duals.items())
+    other.initial_gap.value = contact.at_rest().initial_gap
+    np.testing.assert_array_equal(model.initial_gap.value, gap)
+    same_pressure(other.solve().pressure, contact)
+    assert {v.id for v in other.objective.variables()}.isdisjoint(v.id for v in model.objective.variables())
+    limited = other.solve(cp.sum(other.pressure) * 1e-9, [other.pressure <= 10 * other.pressure.value.max()])
+    assert limited.status is Status.SOLVED
+
+
+def test_variables_of_another_process_are_not_those_of_a_model_that_was_read():
+    """Each process counts the variables of cvxpy from one on."""
+    written = pickle.dumps(bemcontact.model(random_contact(4, 6, 1)))
+    code = (
+        "import sys, pickle, cvxpy; model = pickle.loads(sys.stdin.buffer.read());"
+        "own = {item.id for item in (*model.objective.variables(), *model.objective.parameters())};"
+        "sys.exit(any(cvxpy.Variable().id in own for _ in range(500)))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], input=written, check=False).returncode == 0
+
+
+def test_a_problem_of_a_model_is_not_copied():
+    """Of copied expressions cvxpy has compiled others, which ends the process where it is solved."""
+    model = bemcontact.model(random_contact(4, 6, 1))
+    problem = model.problem()
+    for solved in (False, True):
+        with pytest.raises(ProblemError, match=r"a problem of a model cannot be copied, .* copy the model"):
+            copy.deepcopy({"model": model, "problem": problem})
+        if not solved:
+            problem.solve()
 
 
 def test_a_design_variable_composes_with_the_gap():

@@ -73,7 +73,7 @@ def run_phases(progress: SearchState, sides: Sides) -> tuple[Finding, Inertia]:
         working, certificate = reach_feasibility(progress, sides, FINER**failures)
         sides = working.sides
         if certificate is not None:
-            certificate = certified(progress.statement, certificate)
+            certificate = certified(progress.statement, certificate, progress.x)
             if certificate is not None:
                 return _finding(progress, QPStatus.INFEASIBLE, sides, certificate=certificate), start or (0, 0, 0)
             failures += 1

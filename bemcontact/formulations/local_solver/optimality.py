@@ -26,6 +26,8 @@ IN_CONE = 1e-11
 """A unit direction whose product with an inward normal is above -IN_CONE is in the cone."""
 OF_RAY = (1e-13, 1e-12, 1e-11, 1e-10)
 """Sizes of the components of a ray that may be rounding, relative to the largest; tried one after the other."""
+FEIGNED = 2.0
+"""A sum is positive if it is larger than that of its rounding by this factor."""
 FEW = 100
 PROBES = 8
 DESCENTS = 30
@@ -325,16 +327,22 @@ def _rounding_of_ray(statement: Statement, d: Array) -> float:
     return lost if lost > IN_CONE else 0.0
 
 
-def separates(statement: Statement, certificate: Array) -> bool:
-    """Whether y proves infeasibility: [I; A]ᵀy = 0, and y lower (y > 0) plus y upper (y < 0) is positive."""
+def separates(statement: Statement, certificate: Array, near: Array) -> bool:
+    """Whether y proves infeasibility: [I; A]ᵀy = 0, and y lower (y > 0) plus y upper (y < 0) is positive.
+
+    Rounding in [I; A]ᵀy counts with the size of the point (n,) `near` which a feasible one would be, or one: where rows
+    are nearly parallel, multipliers are large, and what they leave of each other is not small beside the sum.
+    """
     y = certificate
     used = y != 0.0
     bounds = np.where(y > 0.0, statement.lower, statement.upper)[used]
     if not np.all(np.isfinite(bounds)):
         return False
     terms = y[used] * bounds
-    cancels = np.abs(statement.transposed(y)) <= _noise(statement, y)
-    return bool(np.all(cancels)) and float(terms.sum()) > 1e-10 * float(np.abs(terms).sum())
+    n, size, rest = near.size, np.abs(y), np.abs(statement.transposed(y))
+    rounding = rest + EPS * (size[:n] + size[n:] @ statement.absolute[2])
+    left = max(1e-10 * float(np.abs(terms).sum()), FEIGNED * float(rounding @ np.maximum(np.abs(near), 1.0)))
+    return bool(np.all(rest <= _noise(statement, y))) and float(terms.sum()) > left
 
 
 def _noise(statement: Statement, y: Array) -> Array:
@@ -345,11 +353,14 @@ def _noise(statement: Statement, y: Array) -> Array:
     return np.maximum(of_terms, 4.0 * EPS * A.max(axis=0, initial=0.0) * float(size[n:].sum()))
 
 
-def certified(statement: Statement, certificate: Array) -> Array | None:
-    """The certificate with recomputed multipliers of the bounds, if it proves infeasibility; else None."""
+def certified(statement: Statement, certificate: Array, near: Array) -> Array | None:
+    """The certificate with recomputed multipliers of the bounds, if it proves infeasibility; else None.
+
+    The point (n,) `near` is the one at which the sum of violations is least.
+    """
     n = statement.c.size
     y = np.where(np.abs(certificate) > 1e-11 * largest(certificate), certificate, 0.0)
     y[:n] = 0.0
     y[:n] = -statement.transposed(y)
     y[:n][np.abs(y[:n]) <= _noise(statement, np.concatenate([np.zeros(n), y[n:]]))] = 0.0
-    return y if separates(statement, y) else None
+    return y if separates(statement, y, near) else None

@@ -1,5 +1,6 @@
 """The local solver: every claim of a result checked again from the data of the problem."""
 
+from fractions import Fraction
 from itertools import product
 
 import numpy as np
@@ -125,6 +126,56 @@ def test_every_claim_of_a_random_programme_holds(seed):
         assert_first_order(H, c, A, cl, cu, bl, bu, result)
         equal, inwards = cone_of(H, c, A, cl, cu, bl, bu, result.x)
         assert lowest_curvature_on_faces(H, equal, inwards, H @ result.x + c) > -1e-7
+
+
+def nearly_parallel(seed, n):
+    """A program with a feasible point of whole numbers, on rows that differ by 1e-6 to 1e-10 from others."""
+    rng = np.random.default_rng(seed)
+    B, c, x = rng.integers(-3, 4, (n, n)), rng.integers(-3, 4, n).astype(float), rng.integers(-2, 3, n)
+    A, apart = rng.integers(-2, 3, (2, n)).astype(float), 10.0 ** -rng.uniform(6, 10)
+    A = np.vstack([A, *(rng.choice([-1, 1]) * A[i] + apart * rng.integers(-2, 3, n) for i in (0, 0, 1))])
+    low = np.where(rng.random(5) < 0.5, A @ x - rng.choice([0.0, 1.0, apart], 5), -INF)
+    high = np.where(np.isinf(low), A @ x + rng.choice([0.0, 1.0, apart], 5), INF)
+    return (B + B.T).astype(float) * rng.integers(0, 2), c, A, low, high, np.full(n, -4.0), np.full(n, 4.0)
+
+
+@settings(max_examples=200, deadline=None)
+@given(seed=st.integers(0, 10**9), n=st.integers(2, 5))
+@example(4800, 2)
+def test_a_program_with_a_feasible_point_is_not_called_infeasible(seed, n):
+    assert minimize_qp(*nearly_parallel(seed, n)).status is not QPStatus.INFEASIBLE
+
+
+def test_rounding_of_large_multipliers_proves_nothing():
+    """Rows meet in a point. What multipliers of 4e9 leave of each other is 1e-7, as is the sum that separates."""
+    apart, point, H, c = 7.417858771674446e-09, np.array([-1.0, 2.0, -1.0]), np.zeros((3, 3)), np.array([2.0, 1, 0])
+    parallel = [2 + apart, 2 + 2 * apart, 2 - 2 * apart], [2 - apart, 2, 2]
+    A = np.array([[-2.0, 0, 1], [-2, 2, 0], [-2, -2, -2], *parallel])
+    low, high = np.array([1, 6 - apart, -INF, -INF, -INF]), np.array([INF, INF, 0, 1 + 5 * apart, apart])
+    assert (A @ point >= low).all()
+    assert (A @ point <= high).all()
+    result = minimize_qp(H, c, A, low, high, np.array([-INF, -4.0, -4.0]), np.full(3, 4.0))
+    assert result.status is QPStatus.LOCAL_MINIMIZER
+    assert result.violation <= 1e-9
+
+
+@settings(max_examples=200, deadline=None)
+@given(seed=st.integers(0, 10**9))
+def test_no_edge_of_nearly_parallel_rows_goes_down_from_a_minimizer(seed):
+    """In the plane a cone has two edges, along rows that are active: its rows are compared in fractions."""
+    H, c, A, low, high, *box = nearly_parallel(seed, 2)
+    result = minimize_qp(H, c, A, low, high, *box)
+    if result.status is not QPStatus.LOCAL_MINIMIZER:
+        return
+    G, low, high = constraints(A, low, high, *box)
+    values, slope = G @ result.x, H @ result.x + c
+    outwards = [*G[high - values <= 2e-9], *-G[values - low <= 2e-9]]
+    rows = [[Fraction(entry) for entry in row] for row in outwards if row.any()]
+    edges = [(-s * row[1], s * row[0]) for row in rows for s in (-1, 1)] or [tuple(map(Fraction, -slope))]
+    for edge in edges:
+        if all(row[0] * edge[0] + row[1] * edge[1] <= 0 for row in rows):
+            d = np.array(edge, float)
+            assert slope @ d >= -1e-6 * np.linalg.norm(d)
 
 
 def assert_separates(G, low, high, y):
