@@ -32,6 +32,8 @@ LEAST_POINTS = 5
 """Points in contact in an interval, those of two elements, below which bisecting elements does not tell the error."""
 MOST_PLACES = 3
 """Number of places of an infinite pressure that are named besides the first."""
+CHANGES = "the number of contact intervals changes when every element is bisected"
+"""Note on an end of contact that one of two meshes does not have."""
 TIP_ELEMENTS = 2
 """Number of elements beside an infinite pressure that its intensity is not fitted to."""
 
@@ -276,6 +278,13 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
     for run in solved.runs:
         if run.zone != name:
             continue
+        if run.number in answer.around:
+            on_both = run.number in one.around and run.number in two.around
+            yield ErrorBar(
+                quantity="length", zone=name, interval=count, value=run.length, bar=0.0 if on_both else None,
+                note="contact all around has no ends: this is the length of the edges" if on_both else CHANGES,
+            )  # fmt: skip
+            count += 1
         before, after = one.stretches[run.number], two.stretches[run.number]
         for i, item in enumerate(answer.stretches[run.number]):
             ends: tuple[tuple[Literal["start", "end"], bool], ...]
@@ -285,7 +294,7 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
                 position = float(getattr(item, which))
                 bar, note = 0.0, "contact reaches a corner or the end of its zone"
                 if len(before) != len(after):
-                    bar, note = None, "the number of contact intervals changes when every element is bisected"
+                    bar, note = None, CHANGES
                 elif free:
                     moved = abs(getattr(after[i], which) - getattr(before[i], which))
                     moved = min(moved, abs(run.length - moved)) if run.closed else moved

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bemcontact.adaptivity.zone_runs import Stretch, ZoneRun, contact_stretches, zone_runs
+from bemcontact.adaptivity.zone_runs import SAME, Stretch, ZoneRun, contact_stretches, zone_runs
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.bem import reference_element
@@ -36,6 +36,7 @@ class CaseAnswer:
     condensation : with the load case that acts
     solution : of its contact problem
     stretches : stretches of contact by run; two with a slit between them are one
+    around : closed runs in contact all around, which have no stretches, for contact has no ends there
     pressure : (zones, m, 3) [p] by zone, element and local node, zero outside the zone
     state : traction and displacement of the boundary
     """
@@ -43,6 +44,7 @@ class CaseAnswer:
     condensation: Condensation
     solution: ContactSolution
     stretches: Mapping[int, tuple[Stretch, ...]]
+    around: frozenset[int]
     pressure: Array
     state: BoundaryState
 
@@ -149,6 +151,7 @@ def answer_of(
         condensation=condensation,
         solution=solution,
         stretches={run.number: _without_slits(contact_stretches(run, contact, solution, intervals)) for run in runs},
+        around=frozenset(item.run for item in intervals if item.length >= (1 - SAME) * item.perimeter),
         pressure=pressure,
         state=state,
     )

@@ -11,6 +11,7 @@ import numpy as np
 from bemcontact.analysis.linear_theory import Noticed, linear_theory
 from bemcontact.analysis.path_states import FollowedPath
 from bemcontact.analysis.placement import part_of_path, placement
+from bemcontact.analysis.second_order import second_order
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.penetration import ROUND_OFF, Misfit, Penetration, penetration_in_words, tolerated
@@ -42,6 +43,8 @@ def misfit(
     """
     deepest, notes = penetration(gaps, body, contact, solution, infinite=infinite)
     beyond, noticed = linear_theory(body, contact, solution, where, gaps.state)
+    if deepest is None and beyond is None and not noticed:  # what strains change that are noted is not told twice
+        beyond, noticed = second_order(body, gaps.state)
     if deepest is not None and beyond is not None:
         if deepest.kind is Misfit.ITSELF or beyond.depth > 1:
             deepest, beyond = beyond, deepest

@@ -45,7 +45,8 @@ class Penetration(Leaf):
     depth: float
     """Depth of the penetration, distance from the surface, or largest change of the gap by the motion [L]; of a body
     that penetrates itself the distance of the two places before they met [L]; outside linear theory the largest
-    strain, or change of the displacement over the length, a number."""
+    strain, change of the displacement over the length, error of a slender part, or load over the critical one, a
+    number."""
     allowed: float
     """Depth or distance that is tolerated: a hundredth of the displacement; zero of a large motion, and of a body that
     penetrates itself [L]. Outside linear theory the least number that is not small."""

@@ -38,6 +38,11 @@ SAME_FACE = 0.98
 """Cosine of the angle between two normals of a surface up to which they belong to the same face."""
 LARGEST_PART = 0.05
 """Part of a displacement that is excused as an error of linear theory, at most: that of a rotation by a tenth."""
+BESIDE = 2.0
+"""Distance from a crossing, over the motion, up to which a place on an edge that is not turned to the surface moves
+into it because the edge crosses it: the angle between them is at least 45 degrees, and the root of two is enough."""
+HALVINGS = 40
+"""Halvings of the part of an element in which it crosses a surface."""
 TOUCHES = 1e-6
 """Gap of a node, over the largest one of its element, up to which it touches: pressure keeps such nodes at zero."""
 
@@ -62,6 +67,29 @@ class FaceEnd(NamedTuple):
     along: Array
     normal: Array
     reach: float
+
+
+class Crossing(NamedTuple):
+    """Where an edge that is in no zone of a surface crosses it before anything moves.
+
+    Places as near to it as one likes are outside then, and move into the surface if it does. So it is compared itself
+    where the edge is turned to the surface: the mesh does not decide how near a sample is. Where the edge is not, as
+    the side of a leg that reaches behind a floor, nothing is pressed there: the surface ends before it.
+
+    Parameters
+    ----------
+    sample : row and column of the last sample outside
+    local : local coordinate
+    place : (2,) [L]
+    depth : [L] after the motion
+    turned : whether the edge is turned to the surface
+    """
+
+    sample: tuple[int, int]
+    local: float
+    place: Array
+    depth: float
+    turned: bool
 
 
 class Intrusion(NamedTuple):
@@ -182,14 +210,13 @@ class SurfaceGaps:
         for elements, own in ((np.flatnonzero(paired), True), (np.flatnonzero(~paired & near), False)):
             if not len(elements):
                 continue
+            local = self.outline.local[elements]
             if own:
                 depths = self._depth_in_own(zone, elements)
             else:
-                depths, behind[elements], hidden = self._depth_in_other(zone, elements, ends)
+                depths, behind[elements], hidden, local = self._depth_in_other(zone, elements, ends)
             deepest = depths.argmax(axis=1)
-            depth[elements], xi[elements] = (
-                part[np.arange(len(elements)), deepest] for part in (depths, self.outline.local[elements])
-            )
+            depth[elements], xi[elements] = (part[np.arange(len(elements)), deepest] for part in (depths, local))
         excused = ~paired & (depth <= self._second_order(zone))
         return Intrusion(
             depth=np.where(excused, -np.inf, depth), xi=xi, behind=behind, excused=np.where(excused, depth, -np.inf),
@@ -217,21 +244,58 @@ class SurfaceGaps:
 
     def _depth_in_other(
         self, zone: str, elements: IntArray, ends: Sequence[FaceEnd]
-    ) -> tuple[Array, BoolArray, list[float]]:
-        """Depth (k, q) [L] of elements (k,) not of the zone, whether each is behind, and the depth beyond each end."""
+    ) -> tuple[Array, BoolArray, list[float], Array]:
+        """Depth (k, q) [L] of elements (k,) not of the zone at local coordinates (k, q).
+
+        Also whether each is behind, and the depth beyond each end; the local coordinates come last.
+        """
         flush, at = FLUSH * self.problem.boundary.size, self.outline.sampled(elements)
+        motion = self._displacement(elements)
         before, normals = self.undeformed(zone, at.points)
-        after = self.exact(zone, at.points + self._displacement(elements)).gap
-        snug = self._fits(zone, elements, before, np.sum(at.inward * normals, axis=-1) > TURNED)[:, None]
+        after = self.exact(zone, at.points + motion).gap
+        turned = np.sum(at.inward * normals, axis=-1) > TURNED
+        snug = self._fits(zone, elements, before, turned)[:, None]
         behind, mesh = np.zeros(len(self.state.points), bool), self.outline.mesh
         behind[elements] = np.any((before < -flush) & ~snug, axis=1)
-        crosses = (behind | behind[mesh.before] | behind[mesh.elements[:, 2]])[elements, None]
+        crosses: BoolArray = (behind | behind[mesh.before] | behind[mesh.elements[:, 2]])[elements, None]
         outside = (before > flush) | snug | (~crosses & (before >= -flush))
-        depth = np.where(outside, -after, -np.inf)
+        depth, local = np.where(outside, -after, -np.inf), self.outline.local[elements].copy()
+        for crossing in self._crossings(zone, elements, np.where(snug, np.inf, before), crosses, flush):
+            if crossing.turned:
+                depth[crossing.sample] = max(depth[crossing.sample], crossing.depth)
+                local[crossing.sample] = crossing.local
+            else:
+                away = np.hypot(*np.moveaxis(at.points - crossing.place, 2, 0))
+                moved = np.hypot(*np.moveaxis(motion - self.tool_motion(zone, at.points), 2, 0))
+                depth[~turned & (away <= BESIDE * moved)] = -np.inf
         ended = [_opposite(end, at.points - before[..., None] * normals, normals, flush) for end in ends]
         sure = depth > self._second_order(zone)
         hidden = [float(np.max(depth, initial=-np.inf, where=beyond & sure)) for beyond in ended]
-        return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden
+        return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden, local
+
+    def _crossings(
+        self, zone: str, elements: IntArray, before: Array, crosses: BoolArray, flush: float
+    ) -> Iterator[Crossing]:
+        """Where edges cross the surface, on elements (k,), by the last sample outside.
+
+        `before` (k, q) is the distance [L] of the samples from the undisplaced surface, and `crosses` (k, 1) whether an
+        element or its neighbor is behind it.
+        """
+        local = self.outline.local[elements]
+        for step in (1, -1):
+            beyond = np.roll(before, -step, axis=1)
+            beyond[:, -1 if step > 0 else 0] = np.inf
+            for row, column in np.argwhere(crosses & (before > flush) & (beyond <= flush)).tolist():
+                element, outside, inside = elements[[row]], local[row, column], local[row, column + step]
+                for _ in range(HALVINGS):
+                    middle = (outside + inside) / 2
+                    place = self.outline.places(element, np.array([[middle]])).points
+                    outside, inside = (middle, inside) if self.undeformed(zone, place).gap > 0 else (outside, middle)
+                at = self.outline.places(element, np.array([[outside]]))
+                motion = reference_element.values(np.array([outside])) @ self.state.displacement[element]
+                turned = np.sum(at.inward * self.undeformed(zone, at.points).normals) > TURNED
+                depth = -float(self.exact(zone, at.points + motion).gap[0, 0])
+                yield Crossing((row, column), float(outside), at.points[0, 0], depth, bool(turned))
 
     def _fits(self, zone: str, elements: IntArray, before: Array, turned: BoolArray) -> BoolArray:
         """Whether each element (k,) is on a stretch that fits the surface with interference.

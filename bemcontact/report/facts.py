@@ -152,14 +152,17 @@ def _written_ends(interval: JsonObject, size: float, units: Units) -> tuple[str,
 
 
 def _interval_errors(record: JsonObject) -> Iterator[tuple[float | None, float | None]]:
-    """Largest error of the ends of each contact interval [L], and relative error of its length; None if not known."""
+    """Largest error of the ends of each contact interval [L], and relative error of its length; None if not known.
+
+    Contact all around has no ends.
+    """
     bars = [bar for quantity in ("start", "end", "length") for bar in bars_of(record, quantity)]
     count: Counter[str] = Counter()
     for interval in record["intervals"]:
         zone, (first, last) = interval["zone"], interval["arc"]
         own = [bar["bar"] for bar in bars if (bar["zone"], bar["interval"]) == (zone, count[zone])]
         count[zone] += 1
-        yield (None, None) if not own or None in own else (max(own[:2]) * (last - first), own[2])
+        yield (None, None) if not own or None in own else (max(own[:-1], default=0.0) * (last - first), own[-1])
 
 
 def _amount(record: JsonObject, motion: int, units: Units) -> str:

@@ -1,7 +1,7 @@
 """Error bars are no smaller than the change by bisection, and have no unit."""
 
 from collections.abc import Callable
-from math import ceil, radians
+from math import ceil, pi, radians
 
 import numpy as np
 import pytest
@@ -98,6 +98,17 @@ def test_a_zone_without_contact_promises_nothing():
     assert (force.quantity, force.value, force.bar, force.promised) == ("force", 0.0, None, False)
     assert force.note
     assert displacement.promised
+
+
+@pytest.mark.parametrize(("accuracy", "variant"), [(0.01, None), (1e-3, None), (0.01, "stated mesh")])
+def test_contact_all_around_has_the_length_of_its_edges_without_error(accuracy: float, variant: str | None):
+    """The perimeter of the bore is 2 π 10, whatever the mesh; there are no ends."""
+    result = bemcontact.solve(bemcontact.load("models/gallery/shrink_fit.yaml", variant=variant), accuracy=accuracy)
+    bar = result.accuracy.bar_of("length", "pin")
+    assert bar.value == pytest.approx(2 * pi * 10, rel=1e-12)
+    assert bar.bar == 0.0
+    assert "no ends" in bar.note
+    assert not [item for item in result.accuracy.bars if item.quantity in ("start", "end")]
 
 
 def stated(problem: Problem, elements: int) -> Problem:

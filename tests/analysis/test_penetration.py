@@ -163,14 +163,57 @@ def test_the_end_of_a_path_penetrates_as_the_solution_there(key, start, end, pre
         assert path.penetration.depth == pytest.approx(there.penetration.depth, rel=1e-9)
 
 
-def test_what_lies_behind_a_surface_is_noted_and_what_is_flush_is_left_out():
-    """The floor as a plane goes on below the body; a block with a foot reaches behind it."""
+@pytest.mark.parametrize("elements", [2, 3, 5, 8, 20])
+@pytest.mark.parametrize("up", [1, -1])
+@pytest.mark.parametrize("kind", ["circle", "polyline"])
+def test_an_edge_in_no_zone_that_crosses_a_surface_is_judged_at_the_crossing_on_each_mesh(kind: str, up: int, elements):
+    """The top of a block moves up by γ x, and is crossed by a surface at x = 9 last.
+
+    Beside the crossing places are outside before anything moves, as near to it as one likes. They move into the surface
+    by γ x times the component of its normal; down they move out of it.
+    """
+    slope = 1e-3
+    surface, normal = {
+        "circle": ({"kind": "circle", "center": (7.8, 11.6), "radius": 2.0, "body": "outside"}, 0.8),
+        "polyline": ({"kind": "polyline", "points": [(13, 13), (7, 8.5), (11 / 3, 11), (-9, 11)]}, 0.8),
+    }[kind]
+    moved = {"displacement": {"x": 0, "y": {"x": up * slope}}}
+    outer = [{"name": name, "start": start, "elements": n} for name, start, n in
+             (("bottom", (0, 0), 2), ("right", (10, 0), 2), ("top", (10, 10), elements), ("lid", (3, 10), 2),
+              ("left", (0, 10), 2))]  # fmt: skip
+    data = {
+        "name": "crossed",
+        "accuracy": None,
+        "material": {"young_modulus": E, "poisson_ratio": NU},
+        "boundary": {"outer": outer},
+        "conditions": {"bottom": moved, "top": moved},
+        "contact_zones": {"side": {"edges": "lid", "surface": surface}},
+    }
+    result = solve(Problem(**data))  # pyright: ignore[reportArgumentType]
+    assert any("part of 'top' lies behind the rigid surface of 'side'" in note for note in result.notes)
+    if up < 0:
+        assert result.penetration is None
+        return
+    assert result.penetration is not None
+    assert result.penetration.kind is Misfit.PENETRATION
+    assert result.penetration.depth == pytest.approx(9 * slope * normal, rel=9 * slope)  # over the radius
+    assert result.penetration.at == pytest.approx((9, 10), abs=1e-6)
+
+
+@pytest.mark.parametrize("elements", [3, 4, 5, 16])
+def test_what_lies_behind_a_surface_is_noted_and_what_is_flush_is_left_out(elements: int):
+    """The floor as a plane goes on below the body; a block with a foot reaches behind it.
+
+    The side of the foot crosses the floor, and moves along itself: whether a node is there does not matter.
+    """
     outer = [(0, 0), (4, 0), (4, -2), (8, -2), (8, 6), (0, 6)]
     names = ["sole", "step", "under", "right", "top", "left"]
     data = {
         "name": "foot",
         "material": {"young_modulus": E, "poisson_ratio": NU},
-        "boundary": {"outer": [{"name": n, "start": at, "elements": 4} for n, at in zip(names, outer, strict=True)]},
+        "boundary": {
+            "outer": [{"name": n, "start": at, "elements": elements} for n, at in zip(names, outer, strict=True)]
+        },
         "conditions": {"top": {"pressure": 1}, "left": {"displacement": {"x": 0, "y": 0}}},
         "contact_zones": {"floor": {"edges": "sole", "surface": {"kind": "plane", "point": (0, 0), "normal": (0, 1)}}},
     }
