@@ -19,7 +19,7 @@ from bemcontact.problem.conditions import Loads
 STEPS = 6
 """Largest dimension of the space of shapes in which the critical load is looked for."""
 SETTLED = 0.05
-"""StiffnessChange of the load over the critical one by a step, beside one, from which it is settled."""
+"""Change of the loads over the critical ones by one more dimension, over them or one, below which they are settled."""
 PROBE = 0.01
 """Largest slope of a displacement that probes for buckling."""
 WAVES = 2.0
@@ -106,7 +106,7 @@ class ProbedBody:
         """Loads over the critical ones, from displacements of up to this size [L]; 0 where they straighten the body.
 
         A small displacement v changes the answer by K⁻¹ K_g v, with the stiffness K and what the loads take from it,
-        K_g. The largest eigenvalue is sought in the space of v, K⁻¹ K_g v and so on (Arnoldi 1951).
+        K_g. The largest eigenvalue is sought in the space of v, K⁻¹ K_g v and so on (Arnoldi).
         """
         shapes, images, found = list[Array](), list[Array](), 0.0
         image = _waves(self.body.mesh)
