@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import block_diag, null_space
 
-from bemcontact.analysis.displaced import Displaced, displaced, load_after, turn_of_body
+from bemcontact.analysis.displaced_contact import Displaced, displaced, load_after, turn_of_body
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.penetration import Misfit, Penetration, tolerated
