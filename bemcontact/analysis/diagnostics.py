@@ -1,6 +1,6 @@
 """Notes on the mesh and the load of a result that the certificate does not give."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,8 @@ FAR = 10.0
 """Distance of a bulge from contact points over that displacement up to which it may matter."""
 MANY_INTERVALS = 3
 """Number of intervals of a zone with few points up to which each has a note of its own."""
+LEVEL = 1e-9
+"""Slope up to which a surface does not hold a body along it at all."""
 SLOPE = 0.05
 """Largest slope of normals beside a translation that hardly hold a body along it."""
 OF_A_FIT = 10.0
@@ -51,7 +53,7 @@ def diagnostics(
     yield from few_points(contact, touching, where)
     if body is not None:
         yield from coarse_answer(body.problem.asked_accuracy)
-        yield from hardly_held(body, contact, touching)
+        yield from hardly_held(body, contact, touching, solution.undetermined)
         yield from reached_zone_ends(body, touching)
         yield from long_neighbors(body, touching)
         yield from beyond_ends(body, touching)
@@ -113,8 +115,13 @@ def nearly_balanced(contact: CondensedContact, solution: ContactSolution) -> Ite
         )
 
 
-def hardly_held(body: Body, contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator[str]:
-    """Note a translation of the body alone that nothing holds but small slopes of surfaces within the contact."""
+def hardly_held(
+    body: Body, contact: CondensedContact, touching: NDArray[np.bool_], undetermined: Sequence[str]
+) -> Iterator[str]:
+    """Note a translation of the body alone that nothing holds but small slopes of surfaces within the contact.
+
+    One without any slope has another note if motions are `undetermined`.
+    """
     motions = body.seen.coefficients  # (k, 3 + 3 t): x, y and turn of the body, then of tools
     moved = orth(motions.T @ null_space(motions[:, 2:].T))  # pure translations of the body, orthonormal
     if not touching.any() or not moved.size:
@@ -122,7 +129,7 @@ def hardly_held(body: Body, contact: CondensedContact, touching: NDArray[np.bool
     changes = contact.rigid_motions[touching] @ np.linalg.lstsq(motions.T, moved)[0]
     least = np.linalg.svd(changes, full_matrices=False)[2][-1]  # the translation that changes gaps least
     slope = float(np.abs(changes @ least).max())
-    if slope <= SLOPE:
+    if slope <= SLOPE and not (slope <= LEVEL and undetermined):
         direction = (moved @ least)[:2]
         x, y = np.round(np.copysign(1.0, direction[np.argmax(abs(direction))]) * direction, 2) + 0.0
         yield (

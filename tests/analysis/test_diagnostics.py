@@ -46,6 +46,22 @@ def block(angle: float, refine: int = 1, right: dict[str, object] | None = None)
     return bemcontact.solve(problem.refined(refine))
 
 
+def test_a_flat_side_on_knife_edges_is_not_hardly_held_but_not_at_all():
+    """The normal of a flat side on an edge is that of the side: no slope holds it, and one note says so."""
+    edges = {"left": [[5, -20], [20, 0], [35, -20]], "right": [[65, -20], [80, 0], [95, -20]]}
+    data: dict = {
+        "name": "beam on two edges", "material": {"young_modulus": 210e3, "poisson_ratio": 0.3}, "accuracy": 0.3,
+        "boundary": {"outer": [{"name": "bottom", "start": [0, 0]}, {"name": "end", "start": [100, 0]},
+                               {"name": "top", "start": [100, 10]}, {"name": "begin", "start": [0, 10]}]},
+        "conditions": {"top": {"pressure": 0.01}},
+        "contact_zones": {name: {"edges": "bottom", "surface": {"kind": "polyline", "points": points}}
+                          for name, points in edges.items()},
+    }  # fmt: skip
+    notes = " ".join(bemcontact.solve(Problem(**data)).notes)
+    assert "not determined: the translation along (1, 0)" in notes
+    assert "only slopes" not in notes
+
+
 @pytest.mark.parametrize("angle", [0.0, 30.0, 90.0])
 def test_a_flat_side_on_round_supports_is_hardly_held_along_it(angle: float):
     """Circles at half the span: at the contact places, s from their tops, normals have the slopes s / R."""
