@@ -152,14 +152,15 @@ def _motion_bars(estimate: _Estimate, m: float, largest: float) -> Iterator[Erro
     least = angle_of_round_off(contact.points, contact.normals, p > 0)
     undetermined = {name for item in estimate.difference.pair for name in item.solution.undetermined}
     for one, two in zip(*map(_motions, estimate.difference.pair), strict=True):
-        if any(name == one.mover or name.endswith(f" of the tool '{one.mover}'") for name in undetermined):
+        if any(name in (one.mover, two.mover) or name.endswith(f" of the tool '{one.mover}'") for name in undetermined):
             continue  # chosen by a rule
+        mover = two.mover if estimate.of_fine else one.mover  # a center may differ by the error of the mesh
         value = estimate.value(one.size, two.size)
         turns = one.quantity == "rotation"
         if abs(value) * (size if turns else 1.0) > NOTHING * largest and not (turns and abs(value) <= least):
             change = float(np.linalg.norm(two.amount - one.amount)) / abs(value)
             bar = estimate.bar(max(change, m))
-            yield ErrorBar(quantity=one.quantity, zone=None, mover=one.mover, value=value, bar=bar)
+            yield ErrorBar(quantity=one.quantity, zone=None, mover=mover, value=value, bar=bar)
 
 
 class _Motion(NamedTuple):

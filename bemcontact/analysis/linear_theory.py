@@ -121,7 +121,7 @@ def _strained(
         words=(
             f"Strains are not small on {100 * share:.0f} % of contact in '{zone}', up to about {strain[i]:.2g} at "
             f"({x:.5g}, {y:.5g}), where the pressure is {solution.pressure[i] / E:.2g} times Young's modulus: linear "
-            f"theory does not hold. {_sharp(body, contact.points[i]) or _numbers(_modulus(body.problem))}"
+            f"theory does not hold. {_sharp(body, contact.points[i])}{_numbers(_modulus(body.problem))}"
         ),
     )  # fmt: skip
 
@@ -133,7 +133,7 @@ def _sharp(body: Body, place: Array) -> str:
     if not len(corners) or np.hypot(*(corners - place).T).min() > AT_CORNER * mesh.size:
         return ""
     return (
-        "A sharp corner of the body presses there, and a point cannot carry a force. Give the corner its real radius."
+        "A sharp corner of the body presses there, and a point carries no force: give the corner its real radius. Or: "
     )
 
 

@@ -253,7 +253,7 @@ def _ended(gaps: SurfaceGaps, zone: str, ends: Iterable[FaceEnd]) -> Iterator[st
     """Note where a surface is taken to end beside an edge that is in no zone, and the body moves to beyond it."""
     for end in ends:
         edge, (x, y) = gaps.state.edge_names[gaps.state.edge[end.element]], end.at.tolist()
-        if not gaps.in_a_zone(end.element):
+        if end.of_zone and not gaps.in_a_zone(end.element):
             yield (
                 f"the rigid surface of '{zone}' is taken to end at ({x:.5g}, {y:.5g}), where the zone ends: '{edge}' "
                 "lies in it and is in no zone; add it to the zone if the surface goes on"

@@ -226,7 +226,8 @@ def _changed(
         number, change = beyond
     own = np.flatnonzero(contact.zone == number)
     zone, pressure = contact.zone_names[number], np.maximum(solution.pressure, again.pressure if solved else 0.0)[own]
-    i, motion = int(own[np.argmax(pressure)]), moved.motion[own[np.argmax(pressure * np.hypot(*moved.motion[own].T))]]
+    i = int(own[np.argmax(pressure)])
+    motion = _motion_in(contact, moved, number, np.maximum(solution.pressure, again.pressure if solved else 0.0))
     effect = (
         f"with the gaps after this motion, the peak pressure there {'rises' if change > 0 else 'falls'} by "
         f"{100 * abs(change):.2g} %{' of the largest' * (len(contact.zone_names) > 1)}"
@@ -275,8 +276,7 @@ def _moves_on(
     words = (
         f"No contact holds the {contact.motion_names[j]} against the load. Only slopes and levers as drawn seem to "
         f"hold it, and they move with the body. Along this motion contact moves by {_length(before[j], unit)}, and "
-        f"from there on by {_length(further[j], unit)}. Prescribe a displacement that holds the body, or take away the "
-        "load in this direction."
+        f"from there on by {_length(further[j], unit)}. Prescribe a displacement that holds the body in this direction."
     )
     return _misfit(gaps, points, contact, i, Misfit.MOVED, float(further[j]), float(least), words)
 
@@ -299,7 +299,8 @@ def _forces_changed(
     if part < noted(gaps.problem):
         return None, ()
     i = int(np.argmax(own[number] * solution.pressure))
-    zone, motion = contact.zone_names[number], moved.motion[int(np.argmax(np.hypot(*moved.turn.T)))]
+    zone = contact.zone_names[number]
+    motion = _motion_in(contact, moved, int(number), np.maximum(solution.pressure, again.pressure))
     units = gaps.problem.units
     gained = _vector(is_now[number] - was[number], units.line_force)
     words = (
@@ -361,13 +362,22 @@ def _off_by_a_little(zone: str, problem: Problem) -> str:
     )
 
 
+def _motion_in(contact: CondensedContact, moved: Displaced, zone: int, pressure: Array) -> Array:
+    """Motion (2,) [L] of the point of a zone whose pressure (n,) times motion is largest."""
+    weight = np.where(contact.zone == zone, pressure, -1.0) * np.hypot(*moved.motion.T)
+    return moved.motion[int(np.argmax(weight))]
+
+
 def _remedy(gaps: SurfaceGaps, motion: Array) -> str:
     """What to do about a motion: draw the body there if it moves as a whole."""
     displacement = gaps.state.displacement.reshape(-1, 2)
     spread = np.hypot(*np.ptp(displacement, axis=0))
     if spread <= ALIKE * np.hypot(*motion):
         return f"draw the body where it touches: move it by {_vector(motion)}, or the surface by {_vector(-motion)}"
-    return "draw the body near to where it will touch, or expect an error of this size"
+    return (
+        "draw the body near to where it will touch; if it bends as far as that, expect an error of this size, or take "
+        "a program for large displacements"
+    )
 
 
 def _misfit(

@@ -43,6 +43,8 @@ BESIDE = 2.0
 into it because the edge crosses it: the angle between them is at least 45 degrees, and the root of two is enough."""
 HALVINGS = 40
 """Halvings of the part of an element in which it crosses a surface."""
+LITTLE = 1e-3
+"""Motion over the size of the body up to which it is not told on which side of a corner a place comes to lie."""
 TOUCHES = 1e-6
 """Gap of a node, over the largest one of its element, up to which it touches: pressure keeps such nodes at zero."""
 
@@ -51,7 +53,7 @@ class FaceEnd(NamedTuple):
     """Where a straight face of a surface is taken to end: an edge beside the zone goes on in it and is not paired.
 
     A face has not ended where its own line has points further on, nor where it comes back under another edge of the
-    zone; unless the edge beside the zone is in a zone of its own.
+    zone; unless the edge beside the zone is in a zone of its own, or that other edge is: then there are two pads.
 
     Parameters
     ----------
@@ -60,6 +62,7 @@ class FaceEnd(NamedTuple):
     along : (2,) unit vector from there to the places beyond
     normal : (2,) of the face
     reach : length along which it is taken to have ended [L]: up to the next edge of the zone, or the end of the face
+    of_zone : whether the zone itself ends there, not another one with the same face
     """
 
     element: int
@@ -67,6 +70,7 @@ class FaceEnd(NamedTuple):
     along: Array
     normal: Array
     reach: float
+    of_zone: bool
 
 
 class Crossing(NamedTuple):
@@ -215,6 +219,7 @@ class SurfaceGaps:
                 depths = self._depth_in_own(zone, elements)
             else:
                 depths, behind[elements], hidden, local = self._depth_in_other(zone, elements, ends)
+                depths[self._beside_corner(zone, elements)] = -np.inf
             deepest = depths.argmax(axis=1)
             depth[elements], xi[elements] = (part[np.arange(len(elements)), deepest] for part in (depths, local))
         excused = ~paired & (depth <= self._second_order(zone))
@@ -233,8 +238,20 @@ class SurfaceGaps:
         shapes = reference_element.values(self.outline.local[elements])
         dip = np.maximum(-np.sum(shapes * np.where(self._same(zone, here), nodes, 0.0), axis=2), 0.0) * touching
         other = np.sum(here.faces * there.normals, axis=-1) < SAME_FACE
-        beyond = other & (-there.gap > self._second_order(zone))
+        beyond = other & (-there.gap > self._second_order(zone)) & ~self._beside_corner(zone, elements)
         return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
+
+    def _beside_corner(self, zone: str, elements: IntArray) -> BoolArray:
+        """Whether places (k, q) of elements (k,) are nearer to a corner of a polyline than they move, which is little.
+
+        Linear theory leaves open on which side of the corner they come to lie.
+        """
+        places = self.outline.sampled(elements).points
+        moved = np.hypot(*np.moveaxis(self._displacement(elements) - self.tool_motion(zone, places), 2, 0))
+        beside, surface = np.zeros(moved.shape, bool), self.surfaces[zone]
+        for corner in surface.points if isinstance(surface, Polyline) else ():
+            beside |= np.hypot(*np.moveaxis(places - corner, 2, 0)) <= moved
+        return beside & (moved <= LITTLE * self.problem.boundary.size)
 
     def _same(self, zone: str, here: Faces) -> BoolArray:
         """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""
@@ -334,14 +351,28 @@ class SurfaceGaps:
                     along = along / np.hypot(*along)
                     foot = at - self.held[zone].gap[own, last] * normal
                     ahead = min(map(float, self._ahead(zone, paired, foot, along, normal)), default=np.inf)
-                    if ahead == np.inf or self.in_a_zone(beyond):
-                        ends.append(FaceEnd(beyond, foot, along, normal, ahead))
+                    apart = self._between_zones(zone, paired, own, neighbor, normal)
+                    if ahead == np.inf or apart or self.in_a_zone(beyond):
+                        ends.append(FaceEnd(beyond, foot, along, normal, ahead, zone in self._zones_of(own)))
         return ends
+
+    def _between_zones(self, zone: str, paired: BoolArray, own: int, neighbor: IntArray, normal: Array) -> bool:
+        """Whether the boundary goes on straight from the last element of a zone to an edge of another one: two pads."""
+        run, element = list[int](), int(neighbor[own])
+        while not paired[element]:
+            run.append(element)
+            element = int(neighbor[element])
+        at, places = self.state.points[own, 1], self.outline.sampled(np.array(run)).points
+        return self._zones_of(own).isdisjoint(self._zones_of(element)) and self._lies_in_face(zone, places, at, normal)
+
+    def _zones_of(self, element: int) -> set[str]:
+        """Names of the zones that the edge of an element is in."""
+        edge = self.state.edge_names[self.state.edge[element]]
+        return {zone for zone in self.problem.contact_zones if edge in self.problem.edges_of(zone)}
 
     def in_a_zone(self, element: int) -> bool:
         """Whether the edge of an element is in any zone."""
-        edge = self.state.edge_names[self.state.edge[element]]
-        return any(edge in self.problem.edges_of(zone) for zone in self.problem.contact_zones)
+        return bool(self._zones_of(element))
 
     def _lies_in_face(self, zone: str, places: Array, at: Array, normal: Array) -> bool:
         """Whether places (k, q, 2) of elements are on the line through a point (2,) with the normal (2,) of the face.

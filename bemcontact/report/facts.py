@@ -19,6 +19,7 @@ from bemcontact.report.bars import (
     unit_of_bar,
     vector_with_error,
     with_bar,
+    without_digits_beyond,
 )
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
@@ -41,6 +42,8 @@ UNRESOLVED = 1e-3
 """Share of the length of contact below which no place in it is resolved."""
 MOST_FIGURES = 10
 """Figures of the ends of a contact far from the origin; five tell all others apart."""
+TURNS, NEARLY = "rotation ", "nearly a translation"
+"""Words in the name of a free rotation, and in that of one whose center is far away."""
 TRANSLATIONS = "translation along (1, 0)", "translation along (0, 1)"
 """Names of the free motions of a body that only contact holds."""
 
@@ -76,6 +79,11 @@ def _peaks(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
         equal *= len(_peak_places(record, units)) > 1
         words = f"{value} {at}{place}{equal}{_unknown_error(record)}"
         yield "Peak pressure", f"{words}; per UNDEFORMED length"
+        for zone in dict.fromkeys(interval["zone"] for interval in record["intervals"]):
+            largest = max(p for p, of in zip(record["pressure"], record["zone"], strict=True) if of == zone)
+            if largest < (1 - max(peak_bar(record) or 0.0, LEVEL)) * peak["pressure"]:  # else it is named above
+                known = next((bar["bar"] for bar in bars_of(record, "peak") if bar["zone"] == zone), None)
+                yield "Peak pressure", f"of {zone}: {with_unit(with_bar(largest, known), units.stress)}"
     if infinite:
         for bar in bars_of(record, "peak"):
             yield "Peak pressure", f"of {bar['zone']}: {_peak_of_zone(bar, record, units)}"
@@ -109,15 +117,17 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     for bar in bars_of(record, "displacement"):
         place = bar["at"] and f", at {vector(bar['at'], units.length, scale=size)}"
         yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most{place or ''}"
-    force = total_force(record, units)
-    moment = with_unit(number(zero_if_negligible(record["resultant_moment"], pressed * size)), units.line_moment)
+    force, error = total_force(record, units), size * sum(_force_errors(record) or (0.0,))
+    moment = zero_if_negligible(record["resultant_moment"], pressed * size)
+    known = error / abs(moment) if moment and error else None
+    moment = with_unit(without_digits_beyond(moment, known), units.line_moment)
     yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
     forces = zone_forces(record, units)
     for zone, written in forces.items() if len(forces) > 1 else ():
         yield "Resultant", f"of {zone}: {written}"
     for j, name in enumerate(record["motion_names"]):
-        if " of the tool " not in name:  # the line of a tool tells where it is
-            yield "Mean motion", f"of the zones, {_in_sense(name, record, j)}{_amount(record, j, units)}"
+        if name.startswith(TURNS) and " of the tool " not in name and NEARLY not in name:
+            yield "Rotation", f"{_in_sense(name, record, j).removeprefix(TURNS)}{_angle(record, j)}"
     for tool in record["tools"]:
         yield "Tool", _tool(record, tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
@@ -165,22 +175,18 @@ def _interval_errors(record: JsonObject) -> Iterator[tuple[float | None, float |
         yield (None, None) if not own or None in own else (max(own[:-1], default=0.0) * (last - first), own[-1])
 
 
-def _amount(record: JsonObject, motion: int, units: Units) -> str:
-    """Mean motion of all zones along a free motion: a length or an angle; nothing where the unit is not known."""
-    moved, angles = record["rigid_amplitudes"][motion], record["rotations"]
+def _angle(record: JsonObject, motion: int) -> str:
+    """Angle of a free rotation in its sense; nothing where the unit is not known."""
     if not record["intervals"]:
         return ": not determined"
     if _stays(record, motion):
         return ": 0"
-    if angles is None:
+    if record["rotations"] is None:
         return ""
-    angle = angles[motion]
-    if record["motion_names"][motion] in record["undetermined"]:
-        chosen = with_unit(number(angle or moved), "rad" if angle else units.length)
-        return f": not determined; chosen is {chosen}"
-    bar = _bar_of_motion(record, "rotation" if angle else "motion", record["motion_names"][motion])
-    unit = "rad" if angle else units.length
-    return f": {with_unit(with_bar(abs(angle) if angle else moved, bar), unit)}"
+    angle, name = abs(record["rotations"][motion]), record["motion_names"][motion]
+    if name in record["undetermined"]:
+        return f": not determined; chosen is {with_unit(number(angle), 'rad')}"
+    return f": {with_unit(with_bar(angle, _bar_of_motion(record, 'rotation', name)), 'rad')}"
 
 
 def _stays(record: JsonObject, motion: int) -> bool:
@@ -294,16 +300,22 @@ def total_force(record: JsonObject, units: Units) -> str:
 
 
 def _force(components: tuple[float, float], record: JsonObject, zone: str | None, units: Units) -> str:
-    """Write a force with the error of that of a zone; that of the only zone if none is named.
+    """Write a force with the error of that of a zone, or of all zones if none is named.
 
     The resultant on a body that nothing else holds is that of its loads: it has no error.
     """
     unit, pressed = units.line_force, pressed_by(record)
     if zone is None and {*TRANSLATIONS} <= {*record["motion_names"]}:
         return vector(components, unit, scale=pressed)
-    bars = [bar for bar in bars_of(record, "force") if zone in (bar["zone"], None)]
-    errors = [abs(bar["value"]) * bar["bar"] for bar in bars if bar["value"] and bar["bar"] is not None]
-    return vector_with_error(components, errors[0] if len(errors) == len(bars) == 1 else None, unit, pressed)
+    errors = _force_errors(record, zone)
+    return vector_with_error(components, sum(errors) if errors else None, unit, pressed)
+
+
+def _force_errors(record: JsonObject, zone: str | None = None) -> list[float]:
+    """Errors of the force of a zone, or of all that press [p L]; none if one of them is not known."""
+    bars = [bar for bar in bars_of(record, "force") if zone in (bar["zone"], None) and bar["value"]]
+    known = [abs(bar["value"]) * bar["bar"] for bar in bars if bar["bar"] is not None]
+    return known if len(known) == len(bars) else []
 
 
 def scores_in_words(

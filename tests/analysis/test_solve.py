@@ -297,12 +297,8 @@ def test_a_stiff_block_rocks_by_the_difference_of_height_over_the_distance(
     round_off = 1e3 / STIFF
     assert turned.sum() == pytest.approx(-mirror * step / 1.5, abs=round_off)
     assert not np.signbit(turned[turned == 0]).any()
-    (words,) = [
-        text
-        for name, text in facts(result.to_dict(), result.problem.units)
-        if name == "Mean motion" and "clockwise" in text
-    ]
-    assert (" clockwise" if turned.sum() < 0 else " counterclockwise") in words
+    words = dict(facts(result.to_dict(), result.problem.units))["Rotation"]
+    assert words.startswith("clockwise" if turned.sum() < 0 else "counterclockwise")
     assert "-" not in words.rpartition(":")[2].replace("e-", "")
     assert result.to_dict()["rotations"] == pytest.approx(turned, rel=1e-12)
     loaded = FORMULATIONS_BY_NAME["complementarity"](

@@ -250,6 +250,8 @@ MAGNIFIED = 0.05
 
 NEAR = 0.15
 """Share of the body's size up to which the rigid surface across a gap is shown."""
+DISTORTED = 0.1
+"""Part of that share by which magnified gaps may displace a surface that is shown."""
 
 
 def draw_deformed(axes: Axes, result: Result) -> None:
@@ -312,11 +314,14 @@ def ground_of(result: Result, near: float, factor: float = 1.0) -> Iterator[tupl
     """Lines (j, 2) of rigid surface, with normals, no farther than `near` from the deformed body.
 
     Its gaps to the undeformed body are magnified by the factor, as displacements are, so that the two meet in contact.
+    Where that would show it bent or turned, it is left out.
     """
     contact = result.contact
     moved = contact.tools.motions @ (contact.tools.amplitudes @ result.solution.rigid_amplitudes)
     feet = contact.points - factor * (contact.initial_gap + moved)[:, None] * contact.normals
-    shown = factor * result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes) <= near
+    bent = (factor - 1) * abs(contact.initial_gap + moved)
+    gap = result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes)
+    shown = (factor * gap <= near) & (bent <= DISTORTED * near)
     for piece in pieces_of(contact, result.touching):
         for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
             if shown[stretch[0]] and len(stretch) > 1:
