@@ -31,6 +31,8 @@ FAR = 10.0
 """Distance of a bulge from contact points over that displacement up to which it may matter."""
 MANY_INTERVALS = 3
 """Number of intervals of a zone with few points up to which each has a note of its own."""
+MOVED_OUT = 20.0
+"""Depth of a surface in the body over the deformation of the body, from which it was hardly meant as interference."""
 LEVEL = 1e-9
 """Slope up to which a surface does not hold a body along it at all."""
 SLOPE = 0.05
@@ -50,6 +52,7 @@ def diagnostics(
     yield from floating(contact, touching)
     yield from nearly_balanced(contact, solution)
     yield from against_its_force(contact, solution)
+    yield from drawn_inside(contact, solution)
     yield from few_points(contact, touching, where)
     if body is not None:
         yield from coarse_answer(body.problem.asked_accuracy)
@@ -153,6 +156,22 @@ def against_its_force(contact: CondensedContact, solution: ContactSolution) -> I
                 + "; draw it where it touches, and look at it with check --figure: a spline bulges between "
                 "its points"
             )
+
+
+def drawn_inside(contact: CondensedContact, solution: ContactSolution) -> Iterator[str]:
+    """Note a surface that is drawn so far inside a free body that the body does not deform by it, but moves out."""
+    if not contact.free_motions or not solution.pressure.any():
+        return
+    elastic = solution.displacement - contact.rigid_motions @ solution.rigid_amplitudes
+    deepest = int(np.argmin(np.where(solution.pressure > 0, contact.initial_gap, np.inf)))
+    depth, moved = -float(contact.initial_gap[deepest]), float(abs(elastic).max())
+    if depth > MOVED_OUT * moved:
+        (x, y), name = contact.points[deepest].tolist(), contact.zone_names[contact.zone[deepest]]
+        yield (
+            f"the surface of '{name}' is drawn {depth:.3g} {contact.units.get('length', '')}".rstrip()
+            + f" inside the body at ({x:.5g}, {y:.5g}), and the body moves out of it, since nothing else holds it; if "
+            "an interference was meant, hold the body, or else draw the surface where it touches"
+        )
 
 
 def few_points(contact: CondensedContact, touching: NDArray[np.bool_], where: Footprint) -> Iterator[str]:

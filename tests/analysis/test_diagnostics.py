@@ -46,6 +46,17 @@ def block(angle: float, refine: int = 1, right: dict[str, object] | None = None)
     return bemcontact.solve(problem.refined(refine))
 
 
+@pytest.mark.parametrize("depth", [-1.0, -1e-7, 0.0, 1.0])
+def test_a_surface_drawn_inside_a_free_body_is_noted(depth: float):
+    """A block 20 high under 3 N/mm² is compressed by about 2.6e-4: 1 is far more, 1e-7 is not."""
+    held = block(90.0).problem
+    assert held is not None
+    lifted = held.with_value("contact_zones.foot.surface.point", [0, -depth])
+    result = bemcontact.solve(lifted)
+    assert ("is drawn 1 mm inside the body" in " ".join(result.notes)) == (depth == -1.0)
+    assert result.footprint.peak.pressure == pytest.approx(3.0)
+
+
 def test_a_flat_side_on_knife_edges_is_not_hardly_held_but_not_at_all():
     """The normal of a flat side on an edge is that of the side: no slope holds it, and one note says so."""
     edges = {"left": [[5, -20], [20, 0], [35, -20]], "right": [[65, -20], [80, 0], [95, -20]]}
