@@ -53,7 +53,7 @@ def test_a_surface_drawn_inside_a_free_body_is_noted(depth: float):
     assert held is not None
     lifted = held.with_value("contact_zones.foot.surface.point", [0, -depth])
     result = bemcontact.solve(lifted)
-    assert ("is drawn 1 mm inside the body" in " ".join(result.notes)) == (depth == -1.0)
+    assert ("is drawn 1 inside the body" in " ".join(result.notes)) == (depth == -1.0)
     assert result.footprint.peak.pressure == pytest.approx(3.0)
 
 
