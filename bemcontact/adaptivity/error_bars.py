@@ -93,6 +93,9 @@ def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_f
         changes.append(m)
         yield from _zone_bars(estimate, number, name, m, its)
     sizes = [float(np.hypot(*np.moveaxis(answer.displacement, 2, 0)).max()) for answer in difference.pair]
+    if max(sizes) <= NOTHING * _strain(estimate) * difference.fine.mesh.size:  # a body that is pressed and cannot move
+        yield ErrorBar(quantity="displacement", zone=None, value=0.0, bar=0.0)
+        return
     bar = estimate.bar(max(_change(*sizes), *changes))
     at = _farthest(*estimate.reported)
     yield ErrorBar(quantity="displacement", zone=None, value=estimate.value(*sizes), bar=bar, at=at)
@@ -120,6 +123,12 @@ class _Estimate:
         """Mesh and answer that are reported."""
         one, two = self.difference.pair
         return (self.difference.fine, two) if self.of_fine else (self.difference.coarse, one)
+
+
+def _strain(estimate: _Estimate) -> float:
+    """Largest pressure over Young's modulus."""
+    solved, answer = estimate.reported
+    return float(answer.pressure.max(initial=0.0)) / solved.body.problem.material.young_modulus
 
 
 def _farthest(solved: Solved, answer: CaseAnswer) -> tuple[float, float] | None:

@@ -24,6 +24,8 @@ PROBE = 0.01
 """Largest slope of a displacement that probes for buckling."""
 WAVES = 2.0
 """Waves of the first probe over the size of the body."""
+FAINT = 0.02
+"""Part of the largest force, or of the loads, that a force of contact counts with at least."""
 HALF = 0.5
 """Part of its own displacement by which the body is displaced, forth and back."""
 
@@ -74,6 +76,7 @@ class ProbedBody:
 
     def __init__(self, body: Body) -> None:
         refine = body.problem.mesh.refine
+        self.loads = body.pinned.total(body.factors, body.forces)
         self.body = body if refine % 2 else body_of(cut(body.problem, refine // 2))
         self.elastic, self.forces = self._answer(np.zeros_like(self.body.mesh.nodes))
 
@@ -91,16 +94,16 @@ class ProbedBody:
         """Scalar product over the boundary of two displacements (N, 2) of nodes."""
         return float(_nodal_lengths(self.body.mesh) @ np.sum(one * other, axis=1))
 
-    def change(self) -> tuple[StiffnessChange, StiffnessChange]:
-        """How displacements change on the body that they displace, and how the force changes that does so most."""
+    def change(self) -> tuple[StiffnessChange, StiffnessChange, int]:
+        """How displacements change on the body that they displace, and how the force of the zone that does so most."""
         both = [self._answer(part * self.elastic) for part in (HALF, -HALF)]
         square = self._product(self.elastic, self.elastic)
         forth, back = (self._product(displacement, self.elastic) / square for displacement, _ in both)
         forces = np.array([force for _, force in both]) - self.forces
-        loads = self.body.pinned.total(self.body.factors, self.body.forces)  # beside which contact may be a small rest
-        i, largest = int(np.argmax(abs(forces).max(axis=0))), max(self.forces.max(), loads)
-        changed = 1 + forces[:, i] / largest if largest > 0 else np.ones(2)
-        return StiffnessChange.of_displacements(forth, back), StiffnessChange.of_forces(*changed.tolist())
+        least = FAINT * max(self.forces.max(), self.loads)  # beside which contact may be a rest of no interest
+        forces = forces / np.maximum(self.forces, least) if least > 0 else 0.0 * forces
+        i = int(np.argmax(abs(forces).max(axis=0)))
+        return StiffnessChange.of_displacements(forth, back), StiffnessChange.of_forces(*(1 + forces[:, i]).tolist()), i
 
     def critical(self, size: float) -> float:
         """Loads over the critical ones, from displacements of up to this size [L]; 0 where they straighten the body.

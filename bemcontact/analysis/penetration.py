@@ -44,7 +44,7 @@ def misfit(
     deepest, notes = penetration(gaps, body, contact, solution, infinite=infinite)
     beyond, noticed = linear_theory(body, contact, solution, where, gaps.state)
     if deepest is None and beyond is None and not noticed:  # what strains change that are noted is not told twice
-        beyond, noticed = second_order(body, gaps.state)
+        beyond, noticed = second_order(body, gaps.state, contact.initial_gap)
     if deepest is not None and beyond is not None:
         if deepest.kind is Misfit.ITSELF or beyond.depth > 1:
             deepest, beyond = beyond, deepest

@@ -4,6 +4,8 @@ Linear theory writes equilibrium for the undeformed body. In bodies that are not
 strains and rotations, which `linear_theory` judges. In slender ones it may be off by far more.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from bemcontact.adaptivity.first_sizes import ACROSS, OPPOSED
@@ -20,7 +22,7 @@ from bemcontact.problem.conditions import Loads
 
 CHANGED = 0.05
 """Error of displacements or forces from which it is noted, if strains are smaller."""
-MOVED = 0.1
+MOVED = 0.05
 """Displacement over the thickness of the body there, below which stretching does not matter: a strip that is clamped
 at both ends gets stiffer by 3/4 of its square."""
 EULER = np.pi**2 / 48
@@ -29,14 +31,19 @@ SLENDER = 5.0
 """Size of the body over its thickness from which a part is slender, and beam theory holds."""
 PROBE = 0.01
 """Displacement that probes for buckling, over the least thickness of the body."""
+BESIDE_IT = 0.1
+"""Gap over the thickness up to which a surface is so near to a part that it may hold it where it buckles."""
 BESIDE = 2.0
 """Local coordinate up to which a place opposite may be in the next element."""
 SEVERAL = 3.0
 """Displacement over that of linear theory from which its estimate, a series, is not given as a number."""
 
 
-def second_order(body: Body, boundary: BoundaryState) -> Judgment:
-    """Judge stretching and buckling of slender parts, if a first look at thickness and strain allows for either."""
+def second_order(body: Body, boundary: BoundaryState, initial_gap: Array) -> Judgment:
+    """Judge stretching and buckling of slender parts, if a first look at thickness and strain allows for either.
+
+    `initial_gap` (n,) [L] is that of the contact points.
+    """
     mesh, every = body.mesh, np.arange(len(body.mesh.elements))
     thickness, facing, local = across(mesh)
     slender = thickness < mesh.size / SLENDER
@@ -47,23 +54,55 @@ def second_order(body: Body, boundary: BoundaryState) -> Judgment:
     strain = axial_strain(mesh, stressed, every, np.zeros(len(every)))
     middle = (strain + axial_strain(mesh, stressed, facing, local)) / 2
     strut = np.where(slender, -middle / (EULER * (thickness / mesh.size) ** 2), 0.0)
-    most = [_beyond_details(mesh, values) for values in (moved, strut, abs(strain))]
-    if most[0] <= MOVED and most[1] <= CHANGED and _beyond_details(mesh, -strut) <= CHANGED:
+    motion, compressed, strained = (_beyond_details(mesh, values) for values in (moved, strut, abs(strain)))
+    if motion <= MOVED and compressed <= CHANGED:
         return Judgment()
-    return _probed(body, boundary, *most[1:])
+    at, element = body.points.point, body.points.element
+    guided = bool(np.any(slender[element] & (initial_gap[at] <= BESIDE_IT * thickness[element])))
+    return _probed(body, boundary, motion > MOVED, compressed, strained, guided=guided)
 
 
-def _probed(body: Body, boundary: BoundaryState, strut: float, strain: float) -> Judgment:
-    """Displace the body, and look for buckling if it is compressed as this part of a strut that buckles may be."""
+def _probed(body: Body, boundary: BoundaryState, moves: bool, strut: float, strain: float, *, guided: bool) -> Judgment:
+    """Displace the body if it `moves`, and look for buckling if it is compressed as a part of a strut that buckles."""
+    stiffer, of_force, zone, part = 1.0, 0.0, "", 0.0
     try:
         probed = ProbedBody(body)
-        displacements, forces = probed.change()
-        thickness = float(across(body.mesh)[0].min())
-        part = min(strut, probed.critical(PROBE * thickness)) if strut > NOTICED else 0.0
+        if moves:
+            displacements, forces, i = probed.change()
+            given = probed.loads > 0 or not probed.forces.any()
+            stiffer = 1 / displacements.displacement if given else forces.force
+            of_force, zone = abs(forces.force - 1) if given else 0.0, [*body.problem.contact_zones][i]
+        if strut > NOTICED:
+            part = min(strut, probed.critical(PROBE * float(across(body.mesh)[0].min())))
     except BemContactError:
         return Judgment()  # contact does not hold the displaced body, which `placement` finds
-    stiffer = max(1 / displacements.displacement, forces.force, key=_off)
-    return _judged(boundary, stiffer if _off(stiffer) > strain else 1.0, part if part * EULER > strain else 0.0)
+    found = SecondOrder(
+        stiffer=stiffer if _off(stiffer) > strain else 1.0, of_force=of_force if of_force > strain else 0.0, zone=zone,
+        part=part if part * EULER > strain else 0.0, guided=guided,
+        pressed=any(condition.pressure is not None for condition in body.problem.conditions.values()),
+    )  # fmt: skip
+    return _judged(boundary, found)
+
+
+class SecondOrder(NamedTuple):
+    """What the displaced body tells.
+
+    Parameters
+    ----------
+    stiffer : stiffness over that of linear theory; where loads are given, from displacements alone
+    of_force : change of the force of contact of a zone under given loads, over itself
+    zone : its name
+    part : loads over the critical ones
+    guided : whether surfaces are beside a slender part, which may hold it where it buckles
+    pressed : whether a pressure is given, which the probe does not turn with its face
+    """
+
+    stiffer: float
+    of_force: float
+    zone: str
+    part: float
+    guided: bool
+    pressed: bool
 
 
 def _off(stiffer: float) -> float:
@@ -71,26 +110,29 @@ def _off(stiffer: float) -> float:
     return max(stiffer, 1 / stiffer) - 1 if stiffer else np.inf
 
 
-def _judged(boundary: BoundaryState, stiffer: float, part: float) -> Judgment:
-    """Judge a stiffness over that of linear theory, and the loads over the critical ones."""
-    if part >= 1 or _off(stiffer) >= LARGE:
-        return Judgment(_withheld(boundary, stiffer, part))
+def _judged(boundary: BoundaryState, found: SecondOrder) -> Judgment:
+    """Judge a stiffness over that of linear theory, a force of contact, and the loads over the critical ones."""
+    if (found.part >= 1 and not found.guided) or max(_off(found.stiffer), found.of_force) >= LARGE:
+        return Judgment(_withheld(boundary, found))
     told = "; error bars do not include this"
     noticed = list[Noticed]()
-    if part > NOTICED:
-        noticed.append(Noticed("buckling", part, _buckles(part) + told))
-    if _off(stiffer) > CHANGED:
-        noticed.append(Noticed("stiffness", _off(stiffer), _wrong(stiffer) + told))
+    if found.part > NOTICED:
+        noticed.append(Noticed("buckling", found.part, _buckles(found) + told))
+    if _off(found.stiffer) > CHANGED:
+        noticed.append(Noticed("stiffness", _off(found.stiffer), _wrong(found.stiffer) + told))
+    if found.of_force > CHANGED:
+        noticed.append(Noticed("force", found.of_force, _wrong_force(found) + told))
     return Judgment(noticed=tuple(noticed))
 
 
-def _withheld(boundary: BoundaryState, stiffer: float, part: float) -> Penetration:
+def _withheld(boundary: BoundaryState, found: SecondOrder) -> Penetration:
     """Describe a state that linear theory does not tell."""
     i = int(np.argmax(np.hypot(*boundary.displacement[:, 1].T)))
     x, y = boundary.points[i, 1].tolist()
-    unstable = part >= 1
-    size, allowed, words = (part, 1.0, _buckles(part)) if unstable else (_off(stiffer), LARGE, _wrong(stiffer))
-    remedy = "hold it sideways, make it thicker or shorter" if unstable or stiffer < 1 else "make the part thicker"
+    unstable, off = found.part >= 1 and not found.guided, _off(found.stiffer)
+    size, words = max((off, _wrong(found.stiffer)), (found.of_force, _wrong_force(found)))
+    size, allowed, words = (found.part, 1.0, _buckles(found)) if unstable else (size, LARGE, words)
+    remedy = "hold it sideways, make it thicker or shorter" if unstable else "make the part thicker"
     return Penetration(
         kind=Misfit.NOT_SMALL, depth=size, allowed=allowed, at=(x, y), edge=boundary.edge_names[boundary.edge[i]],
         zone="", paired=False,
@@ -101,16 +143,27 @@ def _withheld(boundary: BoundaryState, stiffer: float, part: float) -> Penetrati
     )  # fmt: skip
 
 
-def _buckles(part: float) -> str:
+def _wrong_force(found: SecondOrder) -> str:
+    """Say how far a force of contact is off."""
+    return (
+        f"a slender part gets stiffer or softer as it bends: the force of contact in '{found.zone}' is off by about "
+        f"{100 * found.of_force:.2g} %"
+    )
+
+
+def _buckles(found: SecondOrder) -> str:
     """Say how far the loads are from the critical ones."""
+    less = "; a pressure that turns with its face, as that of a fluid, may buckle it at three quarters of this"
+    part, less = found.part, less if found.pressed else ""
     if part >= 1:
+        beside = "surfaces beside it may hold it" if found.guided else "this state is not stable"
         return (
             f"a slender part buckles: the critical loads are about {1 / part:.2g} times those of the problem, "
-            "prescribed displacements and heat included, and this state is not stable"
+            f"prescribed displacements and heat included, and {beside}{less}"
         )
     return (
         f"a slender part is compressed, and buckles at about {1 / part:.2g} times the loads, prescribed displacements "
-        f"and heat included: where it bends, it bends by up to {1 / (1 - part):.2g} times what linear theory says"
+        f"and heat included: where it bends, it bends by up to {1 / (1 - part):.2g} times what linear theory says{less}"
     )
 
 

@@ -9,6 +9,8 @@ from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc, Seg
 from bemcontact.problem.geometry import AnyEdge, Arc, Line
 
 FULL_TURN = 360.0
+MOST_NAMED = 4
+"""Number of edges that are all named in the name of one in their place."""
 SAME = 1e-9
 """Angle [rad], or difference over a radius, up to which a curve goes on in the next edge: round-off of coordinates."""
 
@@ -63,7 +65,8 @@ def _as_one(group: Sequence[tuple[AnyEdge, Edge]]) -> AnyEdge:
     (stated, first), (_, last) = group[0], group[-1]
     if len(group) == 1:
         return stated
-    name = " + ".join(edge.name for edge, _ in group)
+    parts = [edge.name for edge, _ in group]
+    name = " + ".join(parts if len(parts) <= MOST_NAMED else (parts[0], "…", parts[-1]))
     if isinstance(stated, Line):
         return Line(name=name, start=first.start, end=last.end)
     angles = [edge.angles for edge, _ in group if not isinstance(edge, Line) and edge.angles is not None]

@@ -38,6 +38,7 @@ from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, wi
 from bemcontact.problem.load_case import Combination, LoadCase
 from bemcontact.problem.material import Material
 from bemcontact.problem.reference import ReferenceSpec
+from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.units import Units
 from bemcontact.problem.validation import (
     Count,
@@ -299,8 +300,8 @@ class Problem(SpecModel):
         loops = zip(self.boundary.loop_specs, self.boundary.loops, strict=True)
         joined = [without_joints(stated, edges, self._alike) for stated, edges in loops]
         names = {part: edge.name for loop in joined for edge, parts in loop for part in parts}
-        if all(old == new for old, new in names.items()):
-            return self
+        if all(old == new for old, new in names.items()) or len({*names.values()}) < sum(map(len, joined)):
+            return self  # or a name is taken
         outer, *holes = [tuple(edge for edge, _ in loop) for loop in joined]
         data = self.model_dump(exclude={"variants", "boundary"})
         for group in (data, *data["load_cases"].values()):
@@ -310,7 +311,12 @@ class Problem(SpecModel):
         return type(self)(**data, boundary=Boundary(outer=outer, holes=tuple(holes)))
 
     def _alike(self, one: str, other: str) -> bool:
-        """Whether two edges have the same conditions under all load cases, and are named by the same zones."""
+        """Whether two edges have the same conditions under all load cases, and are named by the same zones.
+
+        A deflected contour is that of edges as they are stated.
+        """
+        if any(isinstance(zone.surface, DeflectedContour) for zone in self.contact_zones.values()):
+            return False
         groups = [self.conditions, *(case.conditions for case in self.load_cases.values())]
         named = [zone.edges for zone in self.contact_zones.values() if zone.edges is not None]
         return all(group.get(one) == group.get(other) for group in groups) and all(

@@ -67,7 +67,7 @@ def test_stretching_of_a_clamped_strip_is_that_of_von_karman(relative: float):
     """The deflection under a uniform load q is q L⁴ / (384 E I) in linear theory."""
     load = relative * 384 * 1e3 / 12 / SLENDER**4
     problem = strip({"left": HELD, "right": HELD, "bottom": {"pressure": load}})
-    displacements, forces = ProbedBody(body_of(problem)).change()
+    displacements, forces, _ = ProbedBody(body_of(problem)).change()
     expected = stretch_of_clamped_strip(relative) * first_order(np.polynomial.Polynomial([0, 0, 1, -2, 1]))
     assert displacements.stretch == pytest.approx(expected, rel=0.02 if relative < 1 else 0.06)  # the shape changes
     assert abs(displacements.tension) < 0.01
@@ -137,7 +137,7 @@ def test_a_strut_with_a_load_sideways_bends_by_more_and_a_tie_by_less(part: floa
     expected = float(-part * np.pi**2 / 4 * (lever * shape).integ()(1.0) / (shape**2).integ()(1.0))
     sideways = {"bottom": {"pressure": 0.5 * 8 * 1e3 / 12 / SLENDER**4}}
     problem = strut("clamped and free", part, conditions=sideways)
-    displacements, _ = ProbedBody(body_of(problem)).change()
+    displacements, _, _ = ProbedBody(body_of(problem)).change()
     assert displacements.tension == pytest.approx(expected, rel=0.02)
     assert abs(displacements.stretch) < 0.02
     result = bemcontact.solve(problem)
@@ -178,7 +178,7 @@ def test_the_force_of_a_pin_on_a_clamped_strip_grows_by_stretching(relative: flo
     problem = strip(
         {"left": HELD, "right": HELD}, contact_zones={"pin": {"edges": "foot", "surface": surface}}, mesh={"refine": 2}
     )
-    _, forces = ProbedBody(body_of(problem)).change()
+    _, forces, _ = ProbedBody(body_of(problem)).change()
     assert forces.stretch == pytest.approx(expected, rel=0.1)
     result = bemcontact.solve(problem)
     assert any("forces too small" in note for note in result.notes) is (CHANGED < expected < LARGE)
@@ -221,3 +221,52 @@ def test_change_is_read_from_two_displaced_bodies():
             change
         )
     assert StiffnessChange(tension=-1.5).displacement == np.inf
+
+
+def test_the_force_of_a_stop_that_a_strip_does_not_reach_is_withheld():
+    """Linear theory takes a clamped strip to 1.06 of the gap; it stretches, w + stretch w³ = 0.53, and stays short."""
+    gap, reached = 0.5, 0.53
+    free = np.roots([stretch_of_clamped_strip(1.0), 0.0, 1.0, -reached])
+    assert free.real[abs(free.imag) < 1e-9].max() < gap
+    surface = {"kind": "circle", "center": [SLENDER / 2, -gap - 5], "radius": 5, "body": "outside"}
+    load = reached * 384 * 1e3 / 12 / SLENDER**4
+    edges = {"left": HELD, "right": HELD, **{name: {"pressure": load} for name in ("top", "foot", "rest")}}
+    problem = strip(edges, contact_zones={"stop": {"edges": "bottom", "surface": surface}})
+    result = bemcontact.solve(problem)
+    assert result.footprint.peak is not None
+    assert result.penetration is not None
+    assert "the force of contact in 'stop' is off" in result.penetration.words
+
+
+@pytest.mark.parametrize("length", [20.0, 60.0, 100.0])
+def test_a_heated_block_that_cannot_move_is_certified(length: float):
+    """Its displacement is zero, and so is its error; the pressure is E α T / (1 - 2 ν) all around."""
+    corners = {"bottom": (0, 0), "right": (length, 0), "top": (length, 10), "left": (0, 10)}
+    planes = {"bottom": ([0, 0], [0, 1]), "right": ([length, 0], [-1, 0]), "top": ([0, 10], [0, -1]),
+              "left": ([0, 0], [1, 0])}  # fmt: skip
+    problem = Problem.model_validate(
+        {
+            "name": "confined", "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": name, "start": at} for name, at in corners.items()]},
+            "loads": {"temperature": {"expansion": 1.2e-5, "change": 100}},
+            "contact_zones": {name: {"edges": name, "surface": {"kind": "plane", "point": point, "normal": normal}}
+                              for name, (point, normal) in planes.items()},
+        }
+    )  # fmt: skip
+    result = bemcontact.solve(problem)
+    assert result.holds, result.words
+    assert result.accuracy.bar_of("displacement").value == 0.0
+    assert result.solution.pressure.max() == pytest.approx(210e3 * 1.2e-3 / 0.4, rel=1e-6)
+
+
+@pytest.mark.parametrize(("clearance", "held"), [(0.05, True), (0.3, False)])
+def test_a_strip_that_a_slot_keeps_straight_is_not_withheld(clearance: float, held: bool):
+    """Beyond its critical load it bends until it touches the slot, which is near or not so near."""
+    walls = {
+        name: {"edges": list(edges), "surface": {"kind": "plane", "point": [0, y], "normal": [0, -np.sign(y)]}}
+        for name, edges, y in (("below", ("bottom",), -clearance), ("above", ("top", "foot", "rest"), 1 + clearance))
+    }
+    problem = strut("both clamped, by heat", 1.5, contact_zones=walls)
+    result = bemcontact.solve(problem)
+    assert (result.penetration is None) is held
+    assert any("surfaces beside it may hold it" in note for note in result.notes) is held

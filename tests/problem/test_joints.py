@@ -117,3 +117,23 @@ def test_edges_cut_otherwise_have_the_same_bars():
         assert what == other
         assert value == pytest.approx(same, rel=1e-6)
         assert error == pytest.approx(again, rel=1e-6, abs=1e-12)
+
+
+def test_many_parts_and_taken_names_are_no_mistake():
+    """A side in 300 parts has a short name; where the name of a joined edge is taken, edges stay as they are."""
+    many = plate([[], [], (np.arange(1, 300) / 300).tolist(), []], [])
+    whole = many.without_joints()
+    assert len(whole.boundary.outer) == 4
+    assert max(len(edge.name) for edge in whole.boundary.edges) < 40
+    data = plate([[0.5], [], [], []], []).model_dump()
+    outer = [{**edge, "name": "0-0 + 0-1"} if edge["name"] == "1-0" else edge for edge in data["boundary"]["outer"]]
+    taken = Problem(**{**data, "boundary": {**data["boundary"], "outer": outer}})
+    assert taken.without_joints() is taken
+
+
+def test_a_deflected_contour_keeps_its_edges():
+    """Its conditions name edges as they are stated."""
+    conditions = {"2-0": {"pressure": 5}, "2-1": {"pressure": 5}}
+    surface = {"kind": "deflected_contour", "direction": [0, 1], "conditions": conditions}
+    problem = plate([[], [], [0.5], []], [], contact_zones={"foot": {"edges": "0-0", "surface": surface}})
+    assert problem.without_joints() is problem

@@ -26,8 +26,8 @@ IN_CONE = 1e-11
 """A unit direction whose product with an inward normal is above -IN_CONE is in the cone."""
 OF_RAY = (1e-13, 1e-12, 1e-11, 1e-10)
 """Sizes of the components of a ray that may be rounding, relative to the largest; tried one after the other."""
-FEIGNED = 2.0
-"""A sum is positive if it is larger than that of its rounding by this factor."""
+FEIGNED = 1e3
+"""A proof of infeasibility holds for points up to so many times the size of the nearest one."""
 FEW = 100
 PROBES = 8
 DESCENTS = 30
