@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import is_definite, orthogonal, unit_rows, unit_sizes
 from bemcontact.formulations.local_solver.progress import SearchState
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
@@ -27,10 +27,14 @@ IN_CONE = 1e-11
 OF_RAY = (1e-13, 1e-12, 1e-11, 1e-10)
 """Sizes of the components of a ray that may be rounding, relative to the largest; tried one after the other."""
 FEIGNED = 1e3
-"""A proof of infeasibility holds for points up to so many times the size of the nearest one."""
+"""A proof of infeasibility holds for points up to so many times the size of the nearest one, in scaled units."""
 FEW = 100
 PROBES = 8
 DESCENTS = 30
+REFINEMENTS = 3
+"""Number of corrections of the multipliers of a proof of infeasibility."""
+CORRECTED = 0.1
+"""Largest part of a multiplier that a correction may change: rows that meet in a point leave nothing of any."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -327,40 +331,34 @@ def _rounding_of_ray(statement: Statement, d: Array) -> float:
     return lost if lost > IN_CONE else 0.0
 
 
-def separates(statement: Statement, certificate: Array, near: Array) -> bool:
-    """Whether y proves infeasibility: [I; A]ᵀy = 0, and y lower (y > 0) plus y upper (y < 0) is positive.
-
-    Rounding in [I; A]ᵀy counts with the size of the point (n,) `near` which a feasible one would be, or one: where rows
-    are nearly parallel, multipliers are large, and what they leave of each other is not small beside the sum.
-    """
-    y = certificate
-    used = y != 0.0
-    bounds = np.where(y > 0.0, statement.lower, statement.upper)[used]
-    if not np.all(np.isfinite(bounds)):
-        return False
-    terms = y[used] * bounds
-    n, size, rest = near.size, np.abs(y), np.abs(statement.transposed(y))
-    rounding = rest + EPS * (size[:n] + size[n:] @ statement.absolute[2])
-    left = max(1e-10 * float(np.abs(terms).sum()), FEIGNED * float(rounding @ np.maximum(np.abs(near), 1.0)))
-    return bool(np.all(rest <= _noise(statement, y))) and float(terms.sum()) > left
-
-
-def _noise(statement: Statement, y: Array) -> Array:
-    """Bound of the rounding in each component of [I; A]ᵀy, from its terms and the entries of its column (n,)."""
-    n, A = statement.c.size, statement.absolute[2]
-    size = np.abs(y)
-    of_terms = 1e-13 * max(10, n) * (size[:n] + size[n:] @ A)
-    return np.maximum(of_terms, 4.0 * EPS * A.max(axis=0, initial=0.0) * float(size[n:].sum()))
-
-
 def certified(statement: Statement, certificate: Array, near: Array) -> Array | None:
-    """The certificate with recomputed multipliers of the bounds, if it proves infeasibility; else None.
+    """The certificate y (n + m,) with multipliers of the bounds from those of the rows, if it proves infeasibility.
 
-    The point (n,) `near` is the one at which the sum of violations is least.
+    It does if [I; A]ᵀy = 0, and y lower (y > 0) plus y upper (y < 0) is positive. Multipliers of rows that are nearly
+    parallel leave no more of each other than rounding, so they are refined to twice the digits. What they leave then at
+    a variable without a bound counts with the size that a feasible one may have, from the point (n,) `near`, at which
+    the sum of violations is least. None if there is no proof.
     """
-    n = statement.c.size
-    y = np.where(np.abs(certificate) > 1e-11 * largest(certificate), certificate, 0.0)
-    y[:n] = 0.0
-    y[:n] = -statement.transposed(y)
-    y[:n][np.abs(y[:n]) <= _noise(statement, np.concatenate([np.zeros(n), y[n:]]))] = 0.0
-    return y if separates(statement, y, near) else None
+    n, size = statement.c.size, FEIGNED * np.maximum(np.abs(near), 1.0)
+    used = np.abs(certificate[n:]) > 1e-11 * largest(certificate)
+    y, lower, upper = certificate[n:][used], statement.lower, statement.upper
+    bounds = np.where(y > 0.0, lower[n:][used], upper[n:][used])
+    if not np.isfinite(bounds).all():
+        return None
+    rows = np.column_stack([statement.A[used], bounds]).T  # the last one gives the sum
+    fine, free = np.zeros_like(y), np.zeros(0, dtype=int)
+    for left in reversed(range(REFINEMENTS + 1)):
+        rest = fine_remainders(np.zeros(n + 1), np.hstack([rows, rows]), np.concatenate([y, fine]))
+        limits = np.where(rest[:n] > 0.0, lower[:n], upper[:n])
+        free = np.union1d(free, (np.abs(limits) > size).nonzero()[0])
+        if left:
+            fine += y * np.linalg.lstsq(rows[free] * y, rest[free])[0]
+    rest[n], limits = -rest[n], np.append(limits, 1.0)
+    lost = float(np.abs(rest[free]) @ size[free])
+    rest[free], limits[free] = 0.0, 0.0
+    lost += 4.0 * EPS * float(np.abs(rest) @ np.abs(limits) + np.abs(y) @ np.abs(bounds))
+    if rest @ limits <= lost or (np.abs(fine) > CORRECTED * np.abs(y)).any():
+        return None
+    proof = np.zeros(lower.size)
+    proof[:n], proof[n:][used] = rest[:n], y + fine
+    return proof

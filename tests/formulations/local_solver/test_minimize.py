@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.optimize import linprog
@@ -144,6 +144,50 @@ def nearly_parallel(seed, n):
 @example(4800, 2)
 def test_a_program_with_a_feasible_point_is_not_called_infeasible(seed, n):
     assert minimize_qp(*nearly_parallel(seed, n)).status is not QPStatus.INFEASIBLE
+
+
+def parallel_to_a_power_of_two(seed):
+    """A program with a feasible point of whole numbers, on rows that differ by 2^-10 to 2^-44, all without rounding."""
+    rng = np.random.default_rng(seed)
+    n, m = rng.integers(1, 7), rng.integers(1, 10)
+    A = rng.integers(-3, 4, n) + 2.0 ** -rng.integers(10, 45) * rng.integers(-3, 4, (m, n))
+    x, sizes = rng.integers(-5, 6, n).astype(float), 2.0 ** rng.integers(-20, 21, m)
+    exact = [sum((Fraction(a) * Fraction(b) for a, b in zip(row, x, strict=True)), Fraction()) for row in A]
+    values = np.array([float(value) for value in exact])
+    assume(all(Fraction(value) == other for value, other in zip(values, exact, strict=True)))
+    low, high = values - rng.choice([0.0, 0.0, INF], m), values + rng.choice([0.0, 1.0, INF], m)
+    box = np.where(rng.random(n) < 0.4, np.minimum(x, 0.0), -INF), np.where(rng.random(n) < 0.3, x, INF)
+    B = rng.integers(-2, 3, (n, n))
+    return (B @ B.T).astype(float), np.ones(n), sizes[:, None] * A, sizes * low, sizes * high, *box
+
+
+@settings(max_examples=300, deadline=None)
+@given(seed=st.integers(0, 10**9))
+def test_rows_that_meet_far_away_are_not_called_infeasible(seed):
+    """Their natural size, bounds over entries, is up to 1e13 times smaller than the only point at which they meet."""
+    assert minimize_qp(*parallel_to_a_power_of_two(seed)).status is not QPStatus.INFEASIBLE
+
+
+def test_two_rows_that_meet_far_away_are_not_called_infeasible():
+    """Both equations hold at (-1, 3); multipliers of 3e11 leave 0.2 of each other, and a sum of 0.6."""
+    A = np.array([[-3.0000000000013642, -1.0000000000013642], [-2.9999999999995453, -1.0]])
+    b = np.array([-2.7284841053187847e-12, -4.547473508864641e-13])
+    result = minimize_qp(np.eye(2), np.array([2.0, -1.0]), A, b, b, [-INF, 0.0])
+    assert result.status is not QPStatus.INFEASIBLE
+
+
+@settings(max_examples=100, deadline=None)
+@given(seed=st.integers(0, 10**9), gap=st.sampled_from([1e-6, 1e-3, 1.0]))
+def test_a_row_that_contradicts_a_sum_of_others_is_called_infeasible(seed, gap):
+    """The row is the sum of others up to rounding, and its bound is above theirs; variables may be free."""
+    rng = np.random.default_rng(seed)
+    n, m = rng.integers(2, 30), rng.integers(2, 40)
+    A, x = rng.standard_normal((m, n)), rng.standard_normal(n)
+    high, weights = A @ x + rng.random(m), np.where(np.arange(m) < 5, rng.random(m) + 0.1, 0.0)
+    box = np.where(rng.random(n) < 0.5, x - 1.0, -INF), np.where(rng.random(n) < 0.5, x + 1.0, INF)
+    rows, low = np.vstack([A, weights @ A]), np.append(np.full(m, -INF), weights @ high + gap)
+    result = minimize_qp(np.eye(n), np.ones(n), rows, low, np.append(high, INF), *box)
+    assert result.status is QPStatus.INFEASIBLE
 
 
 def test_rounding_of_large_multipliers_proves_nothing():
