@@ -19,6 +19,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual, resting_points
+from bemcontact.formulations.infeasibility import proof_of_infeasibility
 from bemcontact.formulations.open_position import with_chosen_position
 from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, unscaled
 from bemcontact.options import FormulationName, SolveOptions, options_of
@@ -26,8 +27,6 @@ from bemcontact.options import FormulationName, SolveOptions, options_of
 PIVOT = 1e-11
 TIE = 1e-12
 VANISHED = 1e-13
-ROUND_OFF, CLEAR = 1e-11, 1e-8
-"""Part of the terms of a sum that is rounding; from which a sum has a sign."""
 VERIFIED, LEAST = 1e-10, 1e-4
 """Part of the terms of a number that may be rounding; part of the largest variable that any variable counts with."""
 REFRESH = 50
@@ -205,12 +204,9 @@ def _end_of_ray(M: Array, q: Array, basis: _Basis, entering: int, column: Array)
 
 
 def excludes(M: Array, q: Array, y: Array) -> bool:
-    """Whether y >= 0 (n,) proves that no z >= 0 has w >= 0: Mᵀy <= 0 and qᵀy < 0 (Farkas), beside their own terms.
-
-    Rows of a scaled problem may differ in size by many orders, and so may q.
-    """
-    terms = np.abs(M).T @ np.maximum(y, LEAST * y.max(initial=0.0))
-    return bool((M.T @ y <= ROUND_OFF * terms).all() and q @ y < -CLEAR * (np.abs(q) @ y))
+    """Whether y >= 0 (n,) proves that no z >= 0 has w >= 0: Mᵀy <= 0 and qᵀy < 0 (Farkas)."""
+    none = np.full(2 * len(q), np.inf)
+    return proof_of_infeasibility(M, np.concatenate([0.0 * q, -q]), none, y, 0.0 * q) is not None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -9,9 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 from bemcontact.arrays import Array, BoolArray, whole_array
 from bemcontact.checks.arguments import shown
 from bemcontact.errors import ProblemError
+from bemcontact.formulations.infeasibility import proof_of_infeasibility
 from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unequilibrated
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
-from bemcontact.formulations.local_solver.optimality import FirstOrder, certified, cleaned_ray, examine, first_order
+from bemcontact.formulations.local_solver.optimality import FirstOrder, cleaned_ray, examine, first_order
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import FINER, PARALLEL, SearchState
@@ -73,7 +74,9 @@ def run_phases(progress: SearchState, sides: Sides) -> tuple[Finding, Inertia]:
         working, certificate = reach_feasibility(progress, sides, FINER**failures)
         sides = working.sides
         if certificate is not None:
-            certificate = certified(progress.statement, certificate, progress.x)
+            statement = progress.statement
+            rows = certificate[progress.x.size :]
+            certificate = proof_of_infeasibility(statement.A, statement.lower, statement.upper, rows, progress.x)
             if certificate is not None:
                 return _finding(progress, QPStatus.INFEASIBLE, sides, certificate=certificate), start or (0, 0, 0)
             failures += 1

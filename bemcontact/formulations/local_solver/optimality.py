@@ -1,4 +1,4 @@
-"""Checks of claims from the data: first and second order, rays, certificates. No factorization of a run is used.
+"""Checks of claims from the data: first and second order, and rays. No factorization of a run is used.
 
 A first-order point of a quadratic program is a local minimizer exactly if H is copositive on its critical cone
 {d : E d = 0, W d >= 0}, E the equalities and the constraints with a nonzero multiplier, W the other active ones
@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, BoolArray, fine_remainders
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.formulations.local_solver.factorizations import is_definite, orthogonal, unit_rows, unit_sizes
 from bemcontact.formulations.local_solver.progress import SearchState
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
@@ -26,15 +26,9 @@ IN_CONE = 1e-11
 """A unit direction whose product with an inward normal is above -IN_CONE is in the cone."""
 OF_RAY = (1e-13, 1e-12, 1e-11, 1e-10)
 """Sizes of the components of a ray that may be rounding, relative to the largest; tried one after the other."""
-FEIGNED = 1e3
-"""A proof of infeasibility holds for points up to so many times the size of the nearest one, in scaled units."""
 FEW = 100
 PROBES = 8
 DESCENTS = 30
-REFINEMENTS = 3
-"""Number of corrections of the multipliers of a proof of infeasibility."""
-CORRECTED = 0.1
-"""Largest part of a multiplier that a correction may change: rows that meet in a point leave nothing of any."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -329,36 +323,3 @@ def _rounding_of_ray(statement: Statement, d: Array) -> float:
     kept = bounded[n:] & (np.abs(along[n:]) <= 1e-10 * (statement.absolute[2] @ np.abs(d)))
     lost = null_space(unit_rows(statement.A[kept][:, free])[0], free.size)[1]
     return lost if lost > IN_CONE else 0.0
-
-
-def certified(statement: Statement, certificate: Array, near: Array) -> Array | None:
-    """The certificate y (n + m,) with multipliers of the bounds from those of the rows, if it proves infeasibility.
-
-    It does if [I; A]ᵀy = 0, and y lower (y > 0) plus y upper (y < 0) is positive. Multipliers of rows that are nearly
-    parallel leave no more of each other than rounding, so they are refined to twice the digits. What they leave then at
-    a variable without a bound counts with the size that a feasible one may have, from the point (n,) `near`, at which
-    the sum of violations is least. None if there is no proof.
-    """
-    n, size = statement.c.size, FEIGNED * np.maximum(np.abs(near), 1.0)
-    used = np.abs(certificate[n:]) > 1e-11 * largest(certificate)
-    y, lower, upper = certificate[n:][used], statement.lower, statement.upper
-    bounds = np.where(y > 0.0, lower[n:][used], upper[n:][used])
-    if not np.isfinite(bounds).all():
-        return None
-    rows = np.column_stack([statement.A[used], bounds]).T  # the last one gives the sum
-    fine, free = np.zeros_like(y), np.zeros(0, dtype=int)
-    for left in reversed(range(REFINEMENTS + 1)):
-        rest = fine_remainders(np.zeros(n + 1), np.hstack([rows, rows]), np.concatenate([y, fine]))
-        limits = np.where(rest[:n] > 0.0, lower[:n], upper[:n])
-        free = np.union1d(free, (np.abs(limits) > size).nonzero()[0])
-        if left:
-            fine += y * np.linalg.lstsq(rows[free] * y, rest[free])[0]
-    rest[n], limits = -rest[n], np.append(limits, 1.0)
-    lost = float(np.abs(rest[free]) @ size[free])
-    rest[free], limits[free] = 0.0, 0.0
-    lost += 4.0 * EPS * float(np.abs(rest) @ np.abs(limits) + np.abs(y) @ np.abs(bounds))
-    if rest @ limits <= lost or (np.abs(fine) > CORRECTED * np.abs(y)).any():
-        return None
-    proof = np.zeros(lower.size)
-    proof[:n], proof[n:][used] = rest[:n], y + fine
-    return proof
