@@ -528,6 +528,17 @@ def test_infeasibility_is_proved_in_other_units(seed, n, decades):
     assert left_open or status is (Status.SOLVED if solvable else Status.INFEASIBLE)
 
 
+@settings(max_examples=100, deadline=None)
+@given(seed=st.integers(0, 10**6), n=st.integers(2, 6))
+def test_units_of_any_size_change_no_claim(seed, n):
+    """D M D and D q, D of powers of two up to 2^60 and 2^-60, which change no digit of integers."""
+    rng = np.random.default_rng(seed)
+    S, B, q = rng.integers(-2, 3, (n, n)), rng.integers(-2, 3, (n, n // 2)), rng.integers(-2, 3, n)
+    M, units = S - S.T + B @ B.T * rng.integers(0, 2), 2.0 ** rng.integers(-60, 61, n)
+    result = solve_lcp(units[:, None] * M * units, units * q)
+    assert result.status is (Status.SOLVED if has_solution(M, q) else Status.INFEASIBLE)
+
+
 @pytest.mark.parametrize(("seed", "n", "decades"), [(337, 4, 6), (1519, 6, 6), (1600, 3, 5), (2192, 3, 5)])
 def test_a_proof_by_rows_of_small_numbers_counts(seed, n, decades):
     """Where qᵀy is 1e-8 of the largest numbers of q and y, but not of its own terms."""
