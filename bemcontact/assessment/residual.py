@@ -33,6 +33,8 @@ class Residuals(Leaf):
     """Work pᵀJδ over U T max J with the tributary weights J; 0 exactly at the solution if p, δ >= 0."""
     equilibrium: float
     """Residual of (12), max |u_n - Δ1 - M p - R a|/U for the best amplitudes a."""
+    equilibrium_round_off: float
+    """Round-off of u_n over U, which the residual of (12) cannot fall below."""
     stiffness_rows: float
     """Residual of the contact stiffness rows, max |K u_n - B p - r|/T: an error of pressure.
 
@@ -52,7 +54,9 @@ def residuals(contact: CondensedContact, solution: ContactSolution, force_balanc
     p, u_n = solution.pressure, solution.displacement
     gap = contact.initial_gap + u_n
     K, B, r = contact.stiffness_rows
+    round_off = _round_off(contact, solution)
     residual = u_n - contact.free_displacement - contact.compliance @ p
+    residual = residual - contact.rigid_motions @ solution.rigid_amplitudes  # what is left has all its digits
     R, root = contact.rigid_motions, np.sqrt(contact.weights)  # on purpose not `amplitudes_of`, which solvers use
     residual = residual - R @ np.linalg.lstsq(root[:, None] * R, root * residual, rcond=None)[0]
     return Residuals(
@@ -61,9 +65,10 @@ def residuals(contact: CondensedContact, solution: ContactSolution, force_balanc
         complementarity=_largest(np.abs(np.minimum(p / T, gap / U))),
         work=float(contact.weights @ (p * gap)) / (U * T * float(contact.weights.max())),
         equilibrium=_largest(np.abs(residual) / U),
+        equilibrium_round_off=_largest(round_off / U),
         stiffness_rows=_largest(np.abs(K @ u_n - B @ p - r) / T),
         balance=_largest(np.abs(contact.imbalance(p)) / (T * np.abs(contact.equilibrium).sum(axis=0))),
-        round_off=_largest(_round_off(contact, solution)[contact.touching(p, u_n)] / U),
+        round_off=_largest(round_off[contact.touching(p, u_n)] / U),
         force_balance=force_balance,
     )
 

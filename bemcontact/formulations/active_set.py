@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 import scipy
 
-from bemcontact.arrays import Array, BoolArray, IntArray, powers_of_two
+from bemcontact.arrays import Array, BoolArray, IntArray, exact_remainders, powers_of_two
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
@@ -20,6 +20,8 @@ from bemcontact.formulations.scaling import ScaledContact
 EPS = float(np.finfo(float).eps)
 STEP_LIMIT = 100
 """Steps allowed beyond one for each point: on slender bodies contact recedes by a point or two in a step."""
+LEAST_SQUARES = 2
+"""Least-squares solutions, each of what the ones before it leave."""
 SETTLED = 1e-14
 """Residual of `ScaledContact.residual` that no further step can lower."""
 
@@ -159,14 +161,17 @@ def primal_dual(scaled: ScaledContact, active: BoolArray, limit: int | None = No
 def solve_active_set(scaled: ScaledContact, active: BoolArray) -> tuple[Array, Array]:
     """Solve δ = 0 on the active set (n,), p = 0 off it, and ℓᵀp = -load for p (n,), of either sign, and a (k,).
 
-    The amplitudes are the shortest least-squares solution if the set holds the body too little or too often.
+    The amplitudes are the shortest least-squares solution if the set holds the body too little or too often. It is
+    refined: a light load must not drown in the rounding of gaps.
     """
     block = ContactBlock(scaled=scaled, points=np.flatnonzero(active))
     right = -np.append(scaled.offset[block.points], scaled.motion_load)
     try:
         unknowns = block.inverse(right)
     except SingularSystemError:
-        unknowns = np.asarray(np.linalg.lstsq(block.matrix, right, rcond=None)[0], float)
+        unknowns = np.zeros_like(right)
+        for _ in range(LEAST_SQUARES):
+            unknowns += np.linalg.lstsq(block.matrix, exact_remainders(right, block.matrix, unknowns))[0]
     pressure = np.zeros(len(active))
     pressure[block.points] = unknowns[: len(block.points)]
     return pressure, unknowns[len(block.points) :]

@@ -352,6 +352,17 @@ def test_no_contact_is_certified():
     assert certificate.relative_error_bound is None
 
 
+@pytest.mark.parametrize("k", [1, 2, 3])
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("share", [0.0, 1e-8, 1e-4])
+def test_light_and_absent_loads_are_certified(seed, k, share):
+    """Gaps are much larger than what the load deforms, and there may be fewer points in contact than free motions."""
+    contact = random_contact(seed, 6, k)
+    light = replace(contact, motion_load=share * contact.motion_load)
+    certificate = judged(light, complementarity.solve(light))
+    assert certificate.certified, certificate.words
+
+
 @pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6)])
 def test_units_do_not_matter(length, stress):
     problem = random_contact(2, 8, 1)
