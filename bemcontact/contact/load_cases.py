@@ -194,7 +194,8 @@ class Pinned:
         work, total = self.load @ factors + self.tools.T @ driven, self.total(factors, forces)
         for motion, turns, done in zip(self.motions, self.turns, work, strict=True):
             if abs(done) > BALANCED * total * (self.length if turns else 1.0):
-                unit = force if turns else f"{force}/{length}" if force and length else ""
+                unit = f"{force}·{length}/{length}" if turns else f"{force}/{length}"
+                unit = unit if force and length else ""
                 size = f"{'moment' if turns else 'resultant'} {done:.6g} {unit}".strip()
                 return (
                     f"nothing holds {motion}, and the loads act along it ({size}); prescribe a displacement that holds "

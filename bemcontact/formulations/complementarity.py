@@ -19,7 +19,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual, resting_points
-from bemcontact.formulations.infeasibility import proof_of_infeasibility
+from bemcontact.formulations.local_solver.infeasibility import proof_of_infeasibility
 from bemcontact.formulations.open_position import with_chosen_position
 from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, unscaled
 from bemcontact.options import FormulationName, SolveOptions, options_of

@@ -5,28 +5,39 @@ from math import degrees, dist, fsum, pi
 
 import numpy as np
 
+from bemcontact.arrays import Array
 from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc, Segment, cross
-from bemcontact.problem.geometry import AnyEdge, Arc, Line
+from bemcontact.problem.geometry import AnyEdge, Arc, EllipseArc, Line
+from bemcontact.problem.rigid_surface import Shape
 
 FULL_TURN = 360.0
 MOST_NAMED = 4
 """Number of edges that are all named in the name of one in their place."""
+SAMPLES, ZOOM, ZOOMS = 256, 16, 6
+"""Places of a closed curve that are compared at first; finer ones on each side of a place; times that is repeated."""
+TURNED = 1e-5
+"""Angle [degrees] by which a closed curve need not begin elsewhere."""
 SAME = 1e-9
 """Angle [rad], or difference over a radius, up to which a curve goes on in the next edge: round-off of coordinates."""
 
 
 def without_joints(
-    loop: Sequence[AnyEdge], edges: Sequence[Edge], alike: Callable[[str, str], bool]
+    loop: Sequence[AnyEdge],
+    edges: Sequence[Edge],
+    alike: Callable[[str, str], bool],
+    surfaces: Sequence[Shape],
 ) -> list[tuple[AnyEdge, tuple[str, ...]]]:
     """Edges of a loop, where those that go on in the next one are one edge, each with the names of its parts.
 
-    Edges with elements, or with places where elements end, stay as they are. A loop keeps one joint.
+    Edges with elements, or with places where elements end, stay as they are. A circle or an ellipse keeps one joint,
+    where it is farthest from all rigid surfaces.
 
     Parameters
     ----------
     loop : edges as they are stated
     edges : the same with both ends
     alike : whether the edges of two names have the same conditions and zones
+    surfaces : all rigid surfaces; none if one of them is not known yet
     """
     pairs = [*zip(loop, edges, strict=True)]
     joints = [not _goes_on(pairs[i - 1], pair, alike) for i, pair in enumerate(pairs)]
@@ -37,13 +48,24 @@ def without_joints(
         if joint:
             groups.append([])
         groups[-1].append(pair)
-    return [(_as_one(group), tuple(edge.name for edge, _ in group)) for group in groups]
+    parts = [tuple(edge.name for edge, _ in group) for group in groups]
+    if len(groups) == 1 and surfaces and _is_free(*pairs):
+        return [(_beginning_far(_as_one(groups[0]), surfaces), parts[0])]
+    return [*zip(map(_as_one, groups), parts, strict=True)]
 
 
 def _goes_on(before: tuple[AnyEdge, Edge], after: tuple[AnyEdge, Edge], alike: Callable[[str, str], bool]) -> bool:
     """Whether an edge, stated and with both ends, goes on in the next one."""
-    free = all(edge.elements is None and not edge.places for edge, _ in (before, after))
-    return free and _same_curve(before[1].curve, after[1].curve) and alike(before[0].name, after[0].name)
+    return (
+        _is_free(before, after)
+        and _same_curve(before[1].curve, after[1].curve)
+        and alike(before[0].name, after[0].name)
+    )
+
+
+def _is_free(*edges: tuple[AnyEdge, Edge]) -> bool:
+    """Whether the elements of edges, stated and with both ends, may end anywhere."""
+    return all(edge.elements is None and not edge.places for edge, _ in edges)
 
 
 def _same_curve(one: Curve, other: Curve) -> bool:
@@ -58,6 +80,34 @@ def _same_curve(one: Curve, other: Curve) -> bool:
             alike = dist(one.center, other.center) <= near and dist(one.radii, other.radii) <= near
             return alike and turns[:1] == turns[1:] and one.sweep * other.sweep > 0
     return False
+
+
+def _beginning_far(edge: AnyEdge, surfaces: Sequence[Shape]) -> AnyEdge:
+    """A circle or an ellipse that begins where it is farthest from the surfaces; of such places at the nearest one."""
+    if isinstance(edge, Line) or edge.angles is None:
+        return edge
+    first, last = edge.angles
+
+    def beginning_at(turned: float) -> Arc | EllipseArc:
+        return edge.model_copy(update={"angles": (first + turned, last + turned)})
+
+    def gaps_at(turned: Array) -> Array:
+        points = np.array([beginning_at(angle).own_ends()[0] for angle in turned.ravel().tolist()])
+        return np.min([surface.closest(points).gap for surface in surfaces], axis=0).reshape(turned.shape)
+
+    turned = FULL_TURN * np.arange(SAMPLES) / SAMPLES
+    gap = gaps_at(turned)
+    size = float(max(edge.semi_axes)) if isinstance(edge, EllipseArc) else edge.radius or 0.0
+    if np.ptp(gap) <= SAME * size:
+        return edge
+    tops = turned[(gap >= np.roll(gap, 1)) & (gap >= np.roll(gap, -1))]
+    for zoom in range(ZOOMS):
+        around = tops[:, None] + FULL_TURN / SAMPLES * np.linspace(-1.0, 1.0, 2 * ZOOM + 1) / ZOOM**zoom
+        tops = around[np.arange(len(tops)), gaps_at(around).argmax(axis=1)]
+    gap = gaps_at(tops)
+    highest = (tops[gap >= gap.max() - SAME * size] + FULL_TURN / 2) % FULL_TURN - FULL_TURN / 2
+    nearest = float(highest[np.abs(highest).argmin()])
+    return edge if abs(nearest) <= TURNED else beginning_at(nearest)
 
 
 def _as_one(group: Sequence[tuple[AnyEdge, Edge]]) -> AnyEdge:

@@ -298,11 +298,14 @@ class Problem(SpecModel):
         They have the same curve, conditions and zones, and state no elements. The name of the one edge has all theirs.
         """
         loops = zip(self.boundary.loop_specs, self.boundary.loops, strict=True)
-        joined = [without_joints(stated, edges, self._alike) for stated, edges in loops]
+        surfaces = [zone.surface for zone in self.contact_zones.values()]
+        known = [surface for surface in surfaces if not isinstance(surface, DeflectedContour)]
+        known = known if len(known) == len(surfaces) else []
+        joined = [without_joints(stated, edges, self._alike, known) for stated, edges in loops]
         names = {part: edge.name for loop in joined for edge, parts in loop for part in parts}
-        if all(old == new for old, new in names.items()) or len({*names.values()}) < sum(map(len, joined)):
+        outer, *holes = whole = [tuple(edge for edge, _ in loop) for loop in joined]
+        if whole == [*map(tuple, self.boundary.loop_specs)] or len({*names.values()}) < sum(map(len, joined)):
             return self  # or a name is taken
-        outer, *holes = [tuple(edge for edge, _ in loop) for loop in joined]
         data = self.model_dump(exclude={"variants", "boundary"})
         for group in (data, *data["load_cases"].values()):
             group["conditions"] = {names[edge]: condition for edge, condition in group["conditions"].items()}

@@ -1,5 +1,6 @@
 """Changes without a new condensation: load cases and tools enter q = ε + Δ1 and the load linearly."""
 
+from dataclasses import replace
 from functools import cache
 from random import Random
 
@@ -183,6 +184,17 @@ def test_forces_that_nothing_resists_are_refused_after_condensing_too():
 def test_none_is_empty():
     assert len(Tools.none(4, 2)) == len(LoadCases.none(4, 2, 0)) == 0
     assert Pinned.none(2, 1).violation(np.ones(3), np.ones(3)) is None
+
+
+@pytest.mark.parametrize(("turns", "size"), [(True, "(moment 3 N·mm/mm)"), (False, "(resultant 3 N/mm)")])
+def test_a_moment_has_its_unit(turns: bool, size: str):
+    """Numbers per thickness, as in the tables."""
+    pinned = replace(
+        Pinned.none(0, 0), motions=("the rotation",), turns=np.array([turns]), load=np.full((1, 1), 3.0),
+        tools=np.zeros((0, 1)), magnitude=np.ones(1),
+    )  # fmt: skip
+    words = pinned.violation(np.ones(1), np.zeros((0, 1)), {"length": "mm", "force": "N"})
+    assert size in (words or "")
 
 
 @settings(max_examples=8, deadline=None)

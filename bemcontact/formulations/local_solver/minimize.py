@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from bemcontact.arrays import Array, BoolArray, whole_array
 from bemcontact.checks.arguments import shown
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.infeasibility import proof_of_infeasibility
 from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unequilibrated
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
+from bemcontact.formulations.local_solver.infeasibility import proof_of_infeasibility
 from bemcontact.formulations.local_solver.optimality import FirstOrder, cleaned_ray, examine, first_order
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
