@@ -17,6 +17,8 @@ ROUND_OFF = 1e-12
 
 COORDINATES = 4 * float(np.finfo(float).eps)
 """Round-off of a gap over the largest coordinate of a contact point."""
+COMPUTABLE = 1e-75, 1e75
+"""Sizes of compliance, displacement and pressure of which products and squares are neither zero nor infinite."""
 UNSEEN = 1e-9
 """Lever over the extent of contact up to which points see no turn."""
 
@@ -34,13 +36,27 @@ def typical_scales(
     """Scales with U = ‖M‖∞ T: the larger of those of the load and of the interference.
 
     From M (n, n) [L/p], the gap without contact q (n,) [L], the magnitudes (n,) [L] of all that is added up in it, R
-    (n, k) and the balancing pressure (n,) [p] of the load.
+    (n, k) and the balancing pressure (n,) [p] of the load. `ProblemError` if their products could not be computed.
     """
     norm = float(np.abs(compliance).sum(axis=1).max(initial=0.0))
+    _ensure_computable("the compliance", norm)
     pressure = float(np.abs(balancing_pressure).max(initial=0.0))
     largest = float(np.maximum(terms, np.abs(offset)).max(initial=0.0))
     displacement = max(norm * pressure, _interference(offset, terms, rigid_motions)) or largest or 1.0
-    return ContactScales(displacement, displacement / norm if norm > 0 else pressure or 1.0)
+    scales = ContactScales(displacement, displacement / norm if norm > 0 else pressure or 1.0)
+    _ensure_computable("the displacement", scales.displacement)
+    _ensure_computable("the pressure", scales.pressure)
+    return scales
+
+
+def _ensure_computable(what: str, size: float) -> None:
+    """Refuse a typical number whose square or cube is zero or infinite."""
+    if size != 0.0 and not COMPUTABLE[0] <= size <= COMPUTABLE[1]:
+        much = "large" if size > 1.0 else "small"
+        raise ProblemError(
+            f"{what} of this contact problem is about {size:.3g}, which is too {much} to compute with; choose other "
+            "units of length and force"
+        )
 
 
 def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:

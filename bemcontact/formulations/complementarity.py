@@ -281,8 +281,12 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
     if status is not Status.INFEASIBLE and not holds(even, right, z):
         path = lemke(even, right)
         z, status = np.maximum(basic_solution(even, right, path.active), 0.0), path.status
-    z = factors * z
-    return LcpResult(z=z, w=q + M @ z, status=status, iterations=search.iterations, method=search.method)
+    with np.errstate(over="ignore", invalid="ignore"):
+        z = factors * z
+        w = q + M @ z
+    if not (np.isfinite(z).all() and np.isfinite(w).all()):
+        raise ProblemError("the solution has numbers that are too large to compute with; scale M or q")
+    return LcpResult(z=z, w=w, status=status, iterations=search.iterations, method=search.method)
 
 
 def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:

@@ -27,6 +27,8 @@ from bemcontact.formulations.local_solver.statement import (
 )
 from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest, supporting
 
+RENEWALS = 3
+"""Largest number of restarts from a stationary point which the run has reached from far away."""
 FAILURES = 6
 """Largest number of restarts with new factors after a claim failed its check."""
 
@@ -68,7 +70,7 @@ def run_phases(progress: SearchState, sides: Sides) -> tuple[Finding, Inertia]:
 
     The second result is the inertia of the reduced Hessian at the start of phase two; zeros if it was not reached.
     """
-    failures = 0
+    failures = renewals = 0
     start: Inertia | None = None
     while failures < FAILURES:
         working, certificate = reach_feasibility(progress, sides, FINER**failures)
@@ -85,10 +87,10 @@ def run_phases(progress: SearchState, sides: Sides) -> tuple[Finding, Inertia]:
             break
         descent = Descent(progress, working)
         start = start or reduced_inertia(descent)
-        end = _second_phase(progress, descent)
+        end = _second_phase(progress, descent, renewals)
         if isinstance(end, Finding):
             return end, start
-        sides = end.sides
+        sides, renewals = end.sides, renewals + 1
         if end.failed:
             failures += 1
             progress.tighten()
@@ -98,8 +100,8 @@ def run_phases(progress: SearchState, sides: Sides) -> tuple[Finding, Inertia]:
     return _finding(progress, status, sides), start or (0, 0, 0)
 
 
-def _second_phase(progress: SearchState, descent: Descent) -> Finding | Restart:
-    """Run phase two, then check the claim that its end suggests."""
+def _second_phase(progress: SearchState, descent: Descent, renewals: int) -> Finding | Restart:
+    """Run phase two, then check the claim that its end suggests; `renewals` is the number of restarts from it."""
     outcome = descent.run()
     if outcome.ending is Ending.LIMIT:
         return _finding(progress, QPStatus.ITERATION_LIMIT, descent.working.sides)
@@ -112,8 +114,11 @@ def _second_phase(progress: SearchState, descent: Descent) -> Finding | Restart:
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     if outcome.ending is Ending.INACCURATE:
         return Restart(sides=descent.working.sides, failed=True)
+    if progress.worn and renewals < RENEWALS:
+        return Restart(sides=descent.working.sides, failed=False)
     multipliers = descent.working.of_all(descent.multipliers)
-    conditions = first_order(progress, descent.working.held, multipliers, descent.working.of_all(descent.zeros))
+    zeros, sizes = (descent.working.of_all(sizes) for sizes in (descent.zeros, descent.sizes))
+    conditions = first_order(progress, descent.working.held, multipliers, zeros, sizes)
     if not conditions.holds:
         return Restart(sides=descent.working.sides, failed=True)
     return _second_order(progress, descent, conditions, multipliers)
@@ -320,16 +325,19 @@ def _wanted(working_set: ArrayLike, size: int) -> BoolArray:
     return wanted != 0
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a point that is not finite is no minimizer
 def _result(stated: Statement, scales: Scales, progress: SearchState, finding: Finding, start: Inertia) -> QPResult:
     """The result in the units of the data."""
     n = stated.c.size
     x = np.minimum(np.maximum(scales.variables * progress.x, stated.lower[:n]), stated.upper[:n])
     multipliers = scales.multipliers(finding.multipliers) / scales.objective
+    objective = stated.objective(x)
+    finite = np.isfinite(x).all() and np.isfinite(multipliers).all() and np.isfinite(objective)
     first = [line.phase for line in progress.lines].count(1)
     return QPResult(
         x=x,
-        status=finding.status,
-        objective=stated.objective(x),
+        status=finding.status if finite else QPStatus.NUMERICAL_FAILURE,
+        objective=objective,
         bound_multipliers=multipliers[:n],
         constraint_multipliers=multipliers[n:],
         working_set=finding.sides,

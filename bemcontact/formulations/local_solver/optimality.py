@@ -196,6 +196,8 @@ DOUBT, DOUBT_OF_ROUGH = 0.03, 0.003
 
 The second is for multipliers with a zero above that of the gradient, as nearly dependent rows have.
 """
+SEEN = 3e-14
+"""Part of its terms from which a multiplier is more than the rounding of the point as it is."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -249,10 +251,14 @@ class FirstOrder:
         return replace(self, strong=self.strong | leaving, weak=weak, sides=sides, doubtful=True)
 
 
-def first_order(progress: SearchState, working: BoolArray, multipliers: Array, zeros: Array) -> FirstOrder:
+def first_order(
+    progress: SearchState, working: BoolArray, multipliers: Array, zeros: Array, terms: Array
+) -> FirstOrder:
     """Recompute the first-order conditions at the point; a multiplier below its entry of `zeros` (n + m,) is zero.
 
-    A constraint that is not in the `working` set is active if its bound is as near as rounding.
+    `terms` (n + m,) are the sizes of what multipliers are made of. A multiplier of the wrong sign that is zero only
+    because points far away had a large rounding is doubtful. A constraint that is not in the `working` set is active if
+    its bound is as near as rounding.
     """
     statement, n = progress.statement, progress.x.size
     values = statement.values(progress.x)
@@ -276,7 +282,10 @@ def first_order(progress: SearchState, working: BoolArray, multipliers: Array, z
         weak=held & ~strong & active,
         sides=sides,
         size=size,
-        doubtful=bool((wrong > np.where(zeros > progress.zero, DOUBT_OF_ROUGH, DOUBT) * zeros).any()),
+        doubtful=bool(
+            (wrong > np.where(zeros > progress.zero, DOUBT_OF_ROUGH, DOUBT) * zeros).any()
+            or (wrong > SEEN * terms).any()
+        ),
     )
 
 

@@ -355,6 +355,12 @@ class Descent:
         no_rows = working.W[:0]  # errors of their multipliers do not change this slope
         return progress.level(direction, progress.fine_zero(terms, no_rows, no_rows.T, self._reach(terms)))
 
+    @property
+    def sizes(self) -> Array:
+        """Sum of the terms of each component of the gradient and of each multiplier of rows (n + r,)."""
+        terms = self.progress.terms(self.multipliers[self.progress.x.size :], self.working.W)
+        return np.concatenate([terms, terms.dot(np.abs(self.working.N))])
+
     def _fine_zero(self, multipliers: Array) -> Array:
         """Size of each component of the gradient and of each multiplier of rows that counts as zero (n + r,)."""
         working, of_rows = self.working, multipliers[self.progress.x.size :]

@@ -27,6 +27,9 @@ FINER = 1e-2
 LOST = EPS
 """A component that was never larger than this, relative to the point or to one, is the rounding of directions."""
 
+WORN = 16.0
+"""Size of a component before, relative to now or to one, from which its rounding counts."""
+
 MANY = 100
 """Largest number of points that are stored before `traveled` is updated."""
 
@@ -95,6 +98,11 @@ class SearchState:
         self._traveled = np.minimum(self.traveled, size)
         self.far = min(self.far, sqrt(size.dot(size)))
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
+
+    @property
+    def worn(self) -> bool:
+        """Whether the point is much nearer than others before it, whose rounding counts."""
+        return bool((self.traveled > WORN * np.maximum(np.abs(self.x), 1.0)).any())
 
     @property
     def sharp(self) -> Array:
