@@ -35,8 +35,8 @@ BALANCED = 1e-12
 """Fraction of the load, by its norm, that may remain without support before the load counts as impossible to carry."""
 POLISH_STEPS = 10
 EQUILIBRATIONS = 10
-UNDECIDED = 1e-10
-"""Weight of a factor of one where numbers decide on no factor."""
+OF_RIGHT, UNDECIDED = 1e-6, 1e-10
+"""Weights of the numbers of q, and of a factor of one, in the choice of natural factors; the numbers of M have one."""
 NAMED = 1e-9
 """Least share of a motion that a sentence names."""
 
@@ -118,7 +118,8 @@ def holds(M: Array, q: Array, z: Array) -> bool:
     so that units of variables should be even.
     """
     size = np.abs(z)
-    terms = VERIFIED * (np.abs(M) @ np.maximum(size, LEAST * size.max(initial=0.0)) + np.abs(q))
+    known = np.where(size > 0, np.maximum(size, LEAST * size.max(initial=0.0)), 0.0)
+    terms = VERIFIED * (np.abs(M) @ known + np.abs(q))
     w = q + M @ z
     faint = (np.abs(M) * size <= terms[:, None]).all(axis=0)
     return bool((w >= -terms).all() and ((z >= 0) | faint).all() and ((w <= terms) | faint).all())
@@ -211,16 +212,21 @@ def excludes(M: Array, q: Array, y: Array) -> bool:
     return proof_of_infeasibility(M, np.concatenate([0.0 * q, -q]), none, y, 0.0 * q) is not None
 
 
-def _natural_factors(M: Array) -> Array:
+def _natural_factors(M: Array, q: Array) -> Array:
     """Powers of two (n,), for rows and columns alike, by which the sum of squares of all logarithms is least.
 
     So units do not matter (Curtis and Reid, J. Inst. Math. Appl. 10 (1972) 118-124). No number counts as rounding.
+    Where M leaves factors open, as of a skew matrix, the numbers of q are made even.
     """
     size = np.maximum(np.abs(M), np.abs(M.T))
-    present = (size > 0).astype(float)
-    logarithms = np.log2(size, where=size > 0, out=np.zeros_like(size)).sum(axis=1)
+    present, given = (size > 0).astype(float), (q != 0).astype(float)
+    of_rows = np.log2(size, where=size > 0, out=np.zeros_like(size)).sum(axis=1)
+    of_right = np.log2(np.abs(q), where=q != 0, out=np.zeros_like(q))
+    share = given / max(1.0, given.sum())
     normal = present + np.diag(present.sum(axis=1) + UNDECIDED * max(1, len(M)))
-    return np.exp2(np.rint(scipy.linalg.solve(normal, -logarithms, assume_a="pos")))
+    normal += OF_RIGHT * (np.diag(given) - np.outer(given, share))
+    right = -of_rows - OF_RIGHT * (of_right - given * (share @ of_right))
+    return np.exp2(np.rint(scipy.linalg.solve(normal, right, assume_a="pos")))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -264,7 +270,7 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
     n = q.size
     if (M.shape, q.shape) != ((n, n), (n,)) and (n or M.size):
         raise ProblemError(f"M (n, n) and q (n,) of finite numbers are needed; found shapes {M.shape} and {q.shape}")
-    factors = _natural_factors(M)  # else a row of small numbers could be violated within the round-off of others
+    factors = _natural_factors(M, q)  # else a row of small numbers could be violated within the round-off of others
     factors *= equilibrating(factors[:, None] * M * factors)
     even, right = factors[:, None] * M * factors, factors * q
     U = float(np.abs(right).max(initial=0.0)) or 1.0

@@ -12,10 +12,10 @@ FEIGNED = 1e3
 """What is left of a variable counts with so many times the size of the nearest point, or of one."""
 SMALL = 1e-11
 """Part of the largest multiplier up to which a multiplier is zero."""
-REFINEMENTS = 3
+REFINEMENTS = 8
 CORRECTED = 0.1
 """Largest part of a multiplier that corrections may change: rows that meet in a point leave nothing of any."""
-ROUNDING = 4.0 * float(np.finfo(float).eps)
+EPS = float(np.finfo(float).eps)
 
 
 def proof_of_infeasibility(A: Array, lower: Array, upper: Array, multipliers: Array, near: Array) -> Array | None:
@@ -54,8 +54,10 @@ def proof_of_infeasibility(A: Array, lower: Array, upper: Array, multipliers: Ar
     free = free[:n]
     of_variables = np.where(free, 0.0, rest[:n])
     held = of_variables * np.where(free, 0.0, limits)
-    lost = np.abs(rest[:n][free]) @ size[free] + ROUNDING * (np.abs(held).sum() + np.abs(y) @ np.abs(bounds))
-    if held.sum() - rest[n] <= lost or (np.abs(fine) > CORRECTED * np.abs(y)).any():
+    lost = np.abs(rest[:n][free]) @ size[free] + 4.0 * EPS * (np.abs(held).sum() + np.abs(y) @ np.abs(bounds))
+    of_entries = EPS * (np.abs(y) @ np.abs(A[used]))
+    far = (np.abs(rest[:n]) > of_entries)[free].any() or (np.abs(fine) > CORRECTED * np.abs(y)).any()
+    if far or held.sum() - rest[n] <= lost:
         return None
     proof = np.zeros(lower.size)
     proof[:n], proof[n:][used] = of_variables, y + fine
