@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import is_definite, orthogonal, unit_rows, unit_sizes
 from bemcontact.formulations.local_solver.progress import SearchState
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
@@ -26,6 +26,8 @@ IN_CONE = 1e-11
 """A unit direction whose product with an inward normal is above -IN_CONE is in the cone."""
 OF_RAY = (1e-13, 1e-12, 1e-11, 1e-10)
 """Sizes of the components of a ray that may be rounding, relative to the largest; tried one after the other."""
+REFINEMENTS = 2
+"""Number of corrections of a ray."""
 FEW = 100
 PROBES = 8
 DESCENTS = 30
@@ -296,16 +298,34 @@ def cleaned_ray(progress: SearchState, ray: Array) -> Array | None:
     size = np.abs(ray) / largest(ray)
     for rounding in OF_RAY:  # what is left is judged from the data, whatever was taken away
         d = np.where(size > rounding, ray, 0.0)
-        d = d / np.linalg.norm(d)
+        d = _refined_ray(progress.statement, d / np.linalg.norm(d))
         if _stays(progress.statement, d) and _has_no_end(progress, d):
             return d
     return None
 
 
+def _refined_ray(statement: Statement, d: Array) -> Array:
+    """The ray after steps by which it keeps, to the last digit, the rows along which it seems not to move."""
+    bounded = np.isfinite(statement.lower) | np.isfinite(statement.upper)
+    n = d.size
+    terms = statement.absolute[2] @ np.abs(d)
+    kept = bounded[n:] & (np.abs(statement.A @ d) <= 1e-10 * terms)
+    free = (d != 0.0) | ~bounded[:n]
+    for _ in range(REFINEMENTS if kept.any() else 0):
+        d = d.copy()
+        d[free] += np.linalg.lstsq(statement.A[kept][:, free], _exact_rest(statement.A[kept], d))[0]
+    return d / np.linalg.norm(d)
+
+
+def _exact_rest(matrix: Array, d: Array) -> Array:
+    """The product of a matrix and a direction, with the other sign, as of numbers with twice the digits."""
+    return fine_remainders(np.zeros(len(matrix)), matrix, d)
+
+
 def _stays(statement: Statement, d: Array) -> bool:
-    """Whether the unit direction leaves no constraint, variables exactly."""
-    along = statement.values(d)
-    within = np.concatenate([np.zeros(d.size), 1e-10 * (statement.absolute[2] @ np.abs(d))])
+    """Whether the unit direction leaves no constraint, variables exactly, rows up to the rounding of their entries."""
+    along = np.concatenate([d, -_exact_rest(statement.A, d)])
+    within = np.concatenate([np.zeros(d.size), 4.0 * EPS * (statement.absolute[2] @ np.abs(d))])
     falls = np.isfinite(statement.lower) & (along < -within)
     rises = np.isfinite(statement.upper) & (along > within)
     return not (falls.any() or rises.any())
@@ -314,9 +334,11 @@ def _stays(statement: Statement, d: Array) -> bool:
 def _has_no_end(progress: SearchState, d: Array) -> bool:
     """Whether the objective falls without end on the unit direction."""
     statement = progress.statement
-    bent = statement.H @ d
+    bent = -_exact_rest(statement.H, d)
+    rounding = max(10, d.size) * EPS * (statement.absolute[0] @ np.abs(d))
+    bent[np.abs(bent) <= rounding] = 0.0  # as of a matrix that is a product
     curvature, slope, lost = float(d @ bent), float(progress.gradient @ d), _rounding_of_ray(statement, d)
-    zero = max(statement.rounding(d), 2.0 * lost * float(np.abs(bent).sum()))
+    zero = max(100.0 * EPS * float(np.abs(d) @ np.abs(bent)), 2.0 * lost * float(np.abs(bent).sum()))
     no_rows = statement.A[:0]
     terms = progress.terms(d[:0], no_rows)
     level = progress.level(d, progress.fine_zero(terms, no_rows, no_rows.T, 0.0 * d))

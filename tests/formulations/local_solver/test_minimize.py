@@ -710,3 +710,28 @@ def test_rows_that_are_nearly_one_end_with_a_status_and_numbers(gap):
     assert np.isfinite(result.x).all()
     assert result.status is QPStatus.LOCAL_MINIMIZER
     assert_allclose(A[0] @ result.x, 1.0, atol=1e-8)
+
+
+@pytest.mark.parametrize("power", [23, 28, 35, 40])
+@pytest.mark.parametrize("kind", ["curved", "saddle", "concave", "linear"])
+def test_a_function_that_turns_far_away_is_not_called_unbounded(kind, power):
+    """On (1 + e) x1 = x2 the first is -(2 + e) x1 + e² x1²/2; the others are bounded, as is 0 <= x1 <= 1/e."""
+    apart = 2.0**-power
+    if kind == "curved":
+        result = minimize_qp([[1, -1], [-1, 1]], [-1, -1], [[1 + apart, -1]], [0], [0])
+    else:
+        H, c = {"saddle": ([[0, -1], [-1, 0]], 0), "concave": (-np.eye(2), 0), "linear": (np.zeros((2, 2)), -1)}[kind]
+        result = minimize_qp(H, [c, c], [[1, -1], [1 + apart, -1]], [-1, -INF], [INF, 0], [0, 0])
+    assert result.status is not QPStatus.UNBOUNDED
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 10**9))
+def test_null_directions_of_products_are_rays(seed):
+    """H = B Bᵀ and rows are rounded, and the objective falls along what both leave free."""
+    rng = np.random.default_rng(seed)
+    n = rng.integers(3, 30)
+    rank = rng.integers(1, n - 1)
+    B, A = rng.standard_normal((n, rank)), rng.standard_normal((rng.integers(1, n - rank), n))
+    result = minimize_qp(B @ B.T, rng.standard_normal(n), A, -np.ones(len(A)), -np.ones(len(A)))
+    assert result.status is QPStatus.UNBOUNDED
