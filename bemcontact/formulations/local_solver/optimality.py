@@ -310,10 +310,11 @@ def _refined_ray(statement: Statement, d: Array) -> Array:
     n = d.size
     terms = statement.absolute[2] @ np.abs(d)
     kept = bounded[n:] & (np.abs(statement.A @ d) <= 1e-10 * terms)
-    free = (d != 0.0) | ~bounded[:n]
+    free = (np.abs(d) > 1e-10) | ~bounded[:n]
     for _ in range(REFINEMENTS if kept.any() else 0):
         d = d.copy()
         d[free] += np.linalg.lstsq(statement.A[kept][:, free], _exact_rest(statement.A[kept], d))[0]
+    d = np.where(np.abs(d) > EPS, d, 0.0)
     return d / np.linalg.norm(d)
 
 
@@ -325,7 +326,8 @@ def _exact_rest(matrix: Array, d: Array) -> Array:
 def _stays(statement: Statement, d: Array) -> bool:
     """Whether the unit direction leaves no constraint, variables exactly, rows up to the rounding of their entries."""
     along = np.concatenate([d, -_exact_rest(statement.A, d)])
-    within = np.concatenate([np.zeros(d.size), 4.0 * EPS * (statement.absolute[2] @ np.abs(d))])
+    rounding = max(10, d.size) * EPS * (statement.absolute[2] @ np.abs(d))
+    within = np.concatenate([np.zeros(d.size), rounding])
     falls = np.isfinite(statement.lower) & (along < -within)
     rises = np.isfinite(statement.upper) & (along > within)
     return not (falls.any() or rises.any())
