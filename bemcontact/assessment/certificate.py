@@ -28,8 +28,8 @@ This sharpens Pang's bound for strongly monotone problems, (1 + ‖DM‖)/λ·|m
 474-484), which does not carry over to bodies with free motions: a small pressure on a body lifted off its support has a
 small min(p, Dδ), however far it is from the solution.
 
-Where λ is not positive, `uniqueness` may still exclude all states outside of an error bound. Inside it there may be
-more than one.
+Where λ is not positive, `uniqueness` may still exclude all states outside of an error bound, or `reweighting` by other
+weights. Inside it there may be more than one.
 """
 
 from dataclasses import dataclass
@@ -41,6 +41,7 @@ from bemcontact.arrays import Array
 from bemcontact.assessment.definiteness import EPS, Definiteness
 from bemcontact.assessment.equations import TIE, ContactEquations, balanced, round_off_of_equilibrium
 from bemcontact.assessment.residual import Residuals
+from bemcontact.assessment.reweighting import reweighted_bound
 from bemcontact.assessment.uniqueness import NearState, effective_eigenvalue, near_bound
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
@@ -203,6 +204,8 @@ def _bound_by(
         bound = float(np.linalg.norm(residual)) / eigenvalue
     if bound > LARGEST_BOUND * y.max() and (contact.free_motions or not stiff.definite):
         bound = min(bound, near_bound(state, D, M, equations.offset, contact.equilibrium, stiff))
+    if bound > LARGEST_BOUND * y.max() and not stiff.definite:
+        bound = min(bound, reweighted_bound(D, M, equations.rigid_motions, y, residual))
     return (off + bound) * T * (1 + 4 * EPS) if bound < np.inf else None
 
 
@@ -243,8 +246,8 @@ def _why_unique(eigenvalue: float | None, definite: bool) -> str:
     if definite:
         return f"no other state exists, because the compliance is positive definite {size}"
     return (
-        "the load and the gaps exclude all states outside the error bound, although the compliance is not positive "
-        f"definite {size}"
+        "the load, the gaps, or other weights exclude all states outside the error bound, although the compliance is "
+        f"not positive definite {size}"
     )
 
 

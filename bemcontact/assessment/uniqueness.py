@@ -157,7 +157,7 @@ def near_bound(state: NearState, D: Array, M: Array, q: Array, ell: Array, whole
     K = np.abs(S[:, None] * (D[:, None] * M) * S)
     norm, y = float(((K + K.T) / 2).sum(axis=1).max()), state.pressure / S
     if ell.size:
-        start = SAFE * _largest_sum(rows, y, lost)
+        start = SAFE * largest_sum(rows, y, lost)
     else:
         start = _largest_pressure(whole, y, -S * D * q) + float(np.linalg.norm(y))
     found = np.inf
@@ -179,7 +179,7 @@ def near_bound(state: NearState, D: Array, M: Array, q: Array, ell: Array, whole
     return found
 
 
-def _largest_sum(rows: Array, y: Array, lost: float) -> float:
+def largest_sum(rows: Array, y: Array, lost: float) -> float:
     """Bound of the sum of any p >= 0 with rowsᵀp = rowsᵀy, rows (n, k) but for `lost`; infinity if there is none.
 
     By duality it is yᵀ(rows v) if rows v >= 1 for all points: no tolerance of the program that gives v enters.

@@ -131,6 +131,59 @@ def test_points_near_contact_prove_lonely_states_only(monkeypatch):
     assert several > 0
 
 
+def nearly_definite(rng: np.random.Generator) -> CondensedContact:
+    """Compliances of which the symmetric part is definite but for a little, in other weights too."""
+    n, k = int(rng.integers(3, 7)), int(rng.integers(0, 3))
+    A, S, J = rng.standard_normal((n, n)), rng.standard_normal((n, n)), 10 ** rng.uniform(-0.3, 0.3, n)
+    less = 10 ** rng.uniform(-2, 0) * rng.integers(0, 2)
+    M = A @ A.T / n + 10 ** rng.uniform(-3, 0.3) * (S - S.T) - less * np.eye(n)
+    M = M / (J * 10 ** rng.uniform(-0.2, 0.2, n))[:, None]
+    R = np.column_stack([np.ones(n), np.arange(n) / n])[:, :k]
+    load = -(J[:, None] * R).T @ np.maximum(rng.standard_normal(n), 0.0)
+    return CondensedContact.from_compliance(M, rng.standard_normal(n), J, rigid_motions=R, motion_load=load)
+
+
+def test_other_weights_prove_lonely_states_only(monkeypatch):
+    """As above, with the proofs by eigenvectors and by points near contact left out."""
+    monkeypatch.setattr("bemcontact.assessment.certificate.effective_eigenvalue", lambda *_: None)
+    monkeypatch.setattr("bemcontact.assessment.certificate.near_bound", lambda *_: np.inf)
+    rng = np.random.default_rng(6)
+    certified = several = 0
+    for _ in range(1500):
+        contact = nearly_definite(rng)
+        solution = complementarity.solve(contact)
+        certificate = certificate_of(contact, solution)
+        if (certificate.smallest_eigenvalue or 1.0) > 0 or certificate.violation:
+            continue
+        states = all_states(contact)
+        several += len(states) > 1
+        certified += certificate.certified
+        assert len(states) == 1 or not certificate.certified
+        wrong = solution.pressure * (1 + 10 ** rng.uniform(-9, -2) * rng.standard_normal(contact.size))
+        moved = contact.gap(wrong, solution.rigid_amplitudes) - contact.initial_gap
+        bound = certificate_of(contact, replace(solution, pressure=wrong, displacement=moved)).error_bound
+        assert bound is None or max(abs(wrong - state).max() for state in states) <= bound
+    assert certified > 100
+    assert several > 5
+
+
+@pytest.mark.parametrize(("length", "elements"), [(500, 40), (800, 60), (1000, 60)])
+def test_long_contact_of_a_slender_beam_is_certified(length: int, elements: int):
+    """Under its weight on a floor, with one end pulled up: contact is half as long as the beam and longer."""
+    edges = [("bottom", (0, 0), elements), ("right", (length, 0), 2), ("top", (length, 10), elements),
+             ("left", (0, 10), 2)]  # fmt: skip
+    problem = Problem(
+        name="beam", accuracy=None, material={"young_modulus": 210e3, "poisson_ratio": 0.3},
+        boundary={"outer": [{"name": name, "start": start, "elements": m} for name, start, m in edges]},
+        conditions={"left": {"displacement": {"x": 0}}, "right": {"traction": {"y": 0.01}}},
+        loads={"gravity": {"density": 7.8e-9, "acceleration": [0, -9810]}},
+        contact_zones={"floor": {"edges": ["bottom"], "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
+    )  # fmt: skip
+    certificate = solve(problem, "complementarity").certificate
+    assert certificate.certified
+    assert (certificate.smallest_eigenvalue or 0) < 0
+
+
 def beam(ratio: int, push: float, parts: int = 1) -> Problem:
     """A beam on a floor, pressed in its middle; its length is `ratio` times its height."""
     L, half = float(ratio), push / 2
