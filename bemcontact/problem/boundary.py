@@ -1,5 +1,6 @@
 """The boundary of the body: closed loops of named edges, counterclockwise outside, clockwise around holes."""
 
+from bisect import bisect
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice
@@ -257,11 +258,12 @@ def _misplaced_ends(path: KeyPath, loop: Sequence[AnyEdge], joined: Sequence[Edg
                     )
                     yield Issue(path=(*path, i, *key), message=message)
                     continue
-            if (off := min(abs(fraction - other) for other in taken)) < APART:
+            at = bisect(taken, fraction)
+            if (off := min(abs(fraction - other) for other in taken[max(at - 1, 0) : at + 1])) < APART:
                 where = "here already" if off < ROUND_OFF else f"{off * shape.length:.2g} away, which is too near"
                 message = f"an element of '{edge.name}' ends {where}; leave this place out, or take another one"
                 yield Issue(path=(*path, i, *key), message=message)
-            taken.append(fraction)
+            taken.insert(at, fraction)
         if edge.elements is not None and edge.elements < len(taken) - 1:
             needed = f"the {len(taken) - 2} element ends of '{edge.name}' need at least {len(taken) - 1} elements"
             yield Issue(path=(*path, i, "elements"), message=f"{needed}, found {edge.elements}")
