@@ -1,5 +1,6 @@
 """Limits of specs: size, depth, aliases, keys; each is refused at its place, soon."""
 
+import re
 import time
 
 import pytest
@@ -43,6 +44,20 @@ def test_deep_nesting_is_refused_at_its_place(depth, start):
     line = refused(start * depth)
     assert "deep" in line
     assert line.startswith("a.yaml:1:")
+
+
+@pytest.mark.parametrize("text", ["{}: 1", "c:\n  {}: {{x: 1}}", "x: {{{}: 1, b: 2}}", "x: [{}: 1]", "{}: a\nb: 1"])
+@pytest.mark.parametrize("quote", ["", "'", '"'])
+@pytest.mark.parametrize("length", [1030, 5000])
+def test_a_key_that_is_too_long_is_said_to_be(text, quote, length):
+    line = refused(text.format(quote + "k" * length + quote))
+    assert re.fullmatch(r"a\.yaml:[12]:\d: a key has at most 1024 characters; shorten it", line)
+
+
+@pytest.mark.parametrize("text", ["name: {} b: 1", "name: [{}, b: c: d]\n", "name: {}\nb: c: d", "{}: a"])
+def test_a_long_text_is_no_long_key(text):
+    words = " ".join(["word"] * (50 if text.startswith("{") else 500))
+    assert "1024" not in refused(text.format(words))
 
 
 def test_depth_counts_through_aliases():
