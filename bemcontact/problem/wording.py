@@ -116,6 +116,11 @@ def _is_number(text: str) -> bool:
     return True
 
 
+def exact(value: float) -> str:
+    """Write a number with all digits, so that it does not look equal to a limit that it misses."""
+    return repr(float(value)).removesuffix(".0")
+
+
 def shortened(text: str, longest: int = 48) -> str:
     """Cut a long text."""
     return text if len(text) <= longest else f"{text[: longest - 3]}..."

@@ -142,3 +142,10 @@ def test_many_ends_of_elements_need_elements():
     assert time.process_time() - start < SOON
     twice = refused(bottom(f"elements: 5000, ends_at: [{', '.join([*ends[:-1], ends[2500]])}]"))
     assert "ends here already" in twice
+
+
+def test_a_body_that_is_too_slender_for_a_mesh_is_told_so():
+    """Its user has stated no elements."""
+    problem = bemcontact.loads(bottom("end: [4e6, 0]").replace("[4, ", "[4e6, "))
+    with pytest.raises(bemcontact.ProblemError, match=r"a mesh of this body needs .* it is too slender"):
+        bemcontact.solve(problem)
