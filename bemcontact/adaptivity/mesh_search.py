@@ -13,6 +13,8 @@ from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
 from bemcontact.adaptivity.sizes import GROWTH, OUTSIDE, Layers, Limit, Loop
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.errors import Issue, ProblemError
+from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.problem import Problem
 
 LAYERS = 5.0
@@ -75,6 +77,10 @@ class MeshSearch:
             marks = [*self.marks[number], *(end.position for end, _ in own)]
             sized = replace(loop, growth=self.growth)
             ends |= sized.element_ends(np.array([*self.sources[number], *narrow]), layers, marks)
+        if (total := sum(len(own) + 1 for own in ends.values())) > MOST_ELEMENTS:
+            needed = f"a mesh of this body needs {total} elements, more than {MOST_ELEMENTS}"
+            message = f"{needed}: it is too slender, or has too small parts; check its coordinates, or state elements"
+            raise ProblemError(Issue(path=("boundary",), message=message))
         return cut(self.problem.with_element_ends(ends), refine)
 
     def solve(self, refine: int) -> Solved:

@@ -4,7 +4,6 @@ The numerical half of the package is imported inside the commands, so that ``bem
 """
 
 import logging
-import os
 import signal
 import sys
 from importlib.metadata import PackageNotFoundError, version
@@ -14,7 +13,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli import check, compare, path, reproduce, solve
-from bemcontact.cli.command import INTERRUPTED, flattened, help_of, refuse, reported
+from bemcontact.cli.command import flattened, help_of, refuse, reported
 from bemcontact.cli.terminal import standard_output
 from bemcontact.errors import LINE_BREAKS, escaped, hidden_character
 
@@ -30,6 +29,8 @@ app = typer.Typer(
 def main() -> None:
     """Run the command line; the entry point of the ``bemcontact`` program."""
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns if it cannot keep its caches
+    if hasattr(signal, "SIGPIPE"):  # a pipe that its reader closes ends the program, as it ends other programs
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a letter that the terminal lacks becomes a question mark
     try:
@@ -39,7 +40,7 @@ def main() -> None:
     except typer.Exit as end:
         sys.exit(end.exit_code)
     finally:
-        signal.signal(signal.SIGINT, lambda *_: os._exit(INTERRUPTED))  # nothing is left that could be interrupted
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is written and said, and the status is known
 
 
 def _refuse_hidden_characters(arguments: list[str]) -> None:

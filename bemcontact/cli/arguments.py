@@ -3,8 +3,10 @@
 import json
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from difflib import get_close_matches
 from enum import StrEnum
 from functools import cached_property
 from math import isfinite
@@ -13,7 +15,7 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 
-from bemcontact.errors import OptionError, ProblemError, SpecError, escaped
+from bemcontact.errors import KeyPath, OptionError, ProblemError, SpecError, escaped
 from bemcontact.options import EXPECTED_ACCURACY, ComparisonOptions, SolveOptions, StartName
 
 Number = TypeVar("Number", int, float)
@@ -206,7 +208,25 @@ def _start(text: str) -> StartName | Path:
     """Read --start: a name, or else a file."""
     if not text.strip():
         raise typer.BadParameter(f"expected {', '.join(StartName)} or the name of a file, found nothing")
-    return StartName(text) if text in [*StartName] else Path(text)
+    if text in [*StartName]:
+        return StartName(text)
+    path = Path(text)
+    meant = get_close_matches(text.lower(), [*StartName], n=1)
+    if meant and path.name == text and not path.suffix and not path.exists():
+        raise typer.BadParameter(f"there is no file '{text}'; did you mean {meant[0]}?")
+    return path
+
+
+@contextmanager
+def by_option(option: str, room: KeyPath | None = None, located: Callable[[Any], str] = str) -> Iterator[None]:
+    """Let errors of an argument begin with its option; with a room, only those about this key of a problem."""
+    try:
+        yield
+    except (ProblemError, SpecError) as error:
+        issues = error.issues if isinstance(error, ProblemError) else ()
+        if room is not None and any(issue.path[:1] != room for issue in issues):
+            raise
+        raise OptionError(f"{option}: {located(error)}") from None
 
 
 def names(text: str) -> list[str]:

@@ -12,7 +12,15 @@ import typer
 
 from bemcontact.checks.memory import ensure_memory
 from bemcontact.cli.arguments import STANDARD_STREAM, Source, option
-from bemcontact.cli.terminal import RenderableType, Report, show, stages, standard_output, tell
+from bemcontact.cli.terminal import (
+    RenderableType,
+    Report,
+    ensure_standard_output,
+    show,
+    stages,
+    standard_output,
+    tell,
+)
 from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError, escaped
 from bemcontact.files import output
 from bemcontact.options import SolveOptions
@@ -93,7 +101,8 @@ def run(
 ) -> NoReturn:
     """Run a command: check outputs, do the work with progress, write and print results, exit with the status."""
     files = {**(files or {}), "--json": None if json_file == STANDARD_STREAM else json_file}
-    with reported(source, (folder, *files.values())), stages() as report:
+    before = {path: _identity(path) for path in (folder, *files.values()) if path is not None}
+    with reported(source, before), stages() as report:
         ensure_memory()
         check_outputs(source, files)
         check_folder(source, folder, files["--json"], kind)
@@ -102,7 +111,7 @@ def run(
         if path := files["--json"]:
             with output.whole_file(path) as temporary:
                 temporary.write_text(outcome.json() + "\n", encoding="utf-8")
-    with reported(source):
+    with reported(source, before):
         if json_file != STANDARD_STREAM:
             show(outcome.summary())
         else:
@@ -174,6 +183,7 @@ def _ensure_possible(option: str, path: Path) -> None:
 
 def write_json(text: str) -> None:
     """Write JSON on standard output, in UTF-8 whatever the encoding of the terminal."""
+    ensure_standard_output()
     with standard_output():
         typer.echo(text.encode() + b"\n", nl=False)
 
@@ -185,21 +195,19 @@ def refuse(message: str) -> NoReturn:
 
 
 @contextmanager
-def reported(source: Source | None = None, outputs: Sequence[Path | None] | None = None) -> Iterator[None]:
+def reported(source: Source | None = None, before: Mapping[Path, int | None] | None = None) -> Iterator[None]:
     """Turn each error that is raised on purpose into one text on standard error and an exit status.
 
-    After an interrupt the text names the outputs written by then; with outputs None it says nothing of them.
+    `before` has the identity of each output before the run, so that the text after an interrupt names those that were
+    written by then; without it, the text says nothing of them.
     """
-    before = {path: _identity(path) for path in outputs or () if path is not None}
     try:
         yield
     except KeyboardInterrupt:
-        written = [str(path) for path, identity in before.items() if _identity(path) != identity]
-        so_far = f"; {', '.join(written) or 'nothing'} was written" if outputs is not None else ""
-        tell("interrupted", so_far)
+        written = [str(path) for path, identity in (before or {}).items() if _identity(path) != identity]
+        so_far = f"; {', '.join(written) or 'no file'} {'were' if len(written) > 1 else 'was'} written"
+        tell("interrupted", "" if before is None else so_far)
         raise typer.Exit(INTERRUPTED) from None
-    except BrokenPipeError:
-        raise
     except (SpecError, OptionError, NotConvexError) as error:
         refuse(str(error))
     except ProblemError as error:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.arguments import JsonOption, Source, names, option, several
+from bemcontact.cli.arguments import JsonOption, Source, by_option, names, option, several
 from bemcontact.cli.command import CommandOutput, run
 from bemcontact.cli.terminal import Report
 from bemcontact.options import ComparisonOptions
@@ -54,6 +54,10 @@ def compare(
 
         parts = several(refine, "--refine", "whole number", int)
         penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
+        given = {"formulations": names(formulations), "weights": names(weights), "penalties": penalties}
+        for name, value in given.items():
+            with by_option(f"--{'penalty' if name == 'penalties' else name}"):
+                ComparisonOptions.of(**{name: value})
         options = ComparisonOptions.of(names(formulations), names(weights), penalties, starts=starts, seed=seed)
         study = comparing.study(options, source.problem(), parts, report, source.changes)
         if out:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.arguments import JsonOption, RefineOption, Source, read_number, with_default
+from bemcontact.cli.arguments import JsonOption, RefineOption, Source, by_option, read_number, with_default
 from bemcontact.cli.command import CommandOutput, run
 from bemcontact.cli.terminal import Report
 
@@ -58,10 +58,15 @@ def path(
 
     def work(report: Report) -> CommandOutput:
         from bemcontact.analysis.follow import follow
+        from bemcontact.problem.key_path import parsed_path
         from bemcontact.report import text
         from bemcontact.report.verdicts import path_shortfall
 
-        followed = follow(source.problem(refine), vary, to, start)
+        problem = source.problem(refine)
+        with by_option("--vary"):
+            room = parsed_path(vary)[:1]
+        with by_option("--vary", room, source.located):  # with the value as stated there is no mistake
+            followed = follow(problem, vary, to, start)
         if out:
             report("drawing", "")
             from bemcontact.report import folder

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.arguments import FigureOption, JsonOption, RefineOption, Source
+from bemcontact.cli.arguments import FigureOption, JsonOption, RefineOption, Source, by_option
 from bemcontact.cli.command import CommandOutput, run
 from bemcontact.cli.terminal import Report
 from bemcontact.errors import OptionError
@@ -57,10 +57,12 @@ def solve(
                 figures.save(figures.figure_of(results), figure)
 
         problem = source.problem(refine)
+        with by_option("--start"):
+            read = analysis.with_start_read(options)
         if problem.load_cases and problem.case is None:
             if vtk_file:
                 raise OptionError("--vtk writes the boundary of one load case; name it with --case")
-            results = load_cases.solve_cases_with(options, problem, report)
+            results = load_cases.solve_cases_with(read, problem, report)
             draw(results)
             return CommandOutput(
                 summary=lambda: text.cases_summary(results),
@@ -70,7 +72,7 @@ def solve(
             )
         several = options.starts or 1
         result = analysis.solve_with(
-            options, problem, lambda done: report("solving", f"start {min(done + 1, several)} of {several}"), report
+            read, problem, lambda done: report("solving", f"start {min(done + 1, several)} of {several}"), report
         )
         draw(result)
         if vtk_file:

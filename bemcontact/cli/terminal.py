@@ -1,6 +1,8 @@
 """Output on a terminal: renderables, one-line messages, and progress."""
 
+import os
 import re
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -21,6 +23,7 @@ Report = Callable[[str, str], None]
 
 def show(renderable: RenderableType) -> None:
     """Print on standard output without hidden characters; into a file or pipe, without blanks at the ends of lines."""
+    ensure_standard_output()
     console = Console(highlight=False, markup=False, emoji=False)
     rendered = (part._replace(text=escaped_lines(part.text)) for part in console.render(renderable))
     visible = Segments([part for part in rendered if not part.control])
@@ -33,21 +36,31 @@ def show(renderable: RenderableType) -> None:
         print(re.sub(r" +$", "", captured.get(), flags=re.MULTILINE), end="", flush=True)
 
 
+def ensure_standard_output() -> None:
+    """Raise `OSError` if the shell has closed standard output, as with ``>&-``."""
+    if sys.stdout is None:
+        raise OSError("standard output is closed; leave it open")
+
+
 @contextmanager
 def standard_output() -> Iterator[None]:
-    """Let errors of writing name standard output; a closed pipe is none."""
+    """Let errors of writing name standard output."""
     try:
         yield
-    except BrokenPipeError:
-        raise
     except OSError as error:
         raise OSError(error.errno, error.strerror, error.filename or "standard output") from error
 
 
 def tell(head: str, message: str, style: str = "bold red") -> None:
-    """Print a message on standard error, without markup and without folding, so that paths stay whole."""
+    """Print a message on standard error, without markup and without folding, so that paths stay whole.
+
+    If it cannot be written, nothing is left to say it on, and the exit status stays what it is.
+    """
     text = Text.assemble((head, style), escaped_lines(message))
-    Console(stderr=True, highlight=False, markup=False, emoji=False).print(text, soft_wrap=True)
+    try:
+        Console(stderr=True, highlight=False, markup=False, emoji=False).print(text, soft_wrap=True)
+    except OSError:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (Python writes to it until the end)
 
 
 @contextmanager

@@ -47,10 +47,7 @@ def _named(path: Path, temporary: Path) -> Iterator[None]:
 def ensure_writable(path: Path) -> None:
     """Raise `OSError` with the reason if `whole_file` cannot write this file."""
     target = real(path)
-    if target.is_dir():
-        raise IsADirectoryError(f"{path} is a directory; name a file in it")
-    if target.exists() and not target.is_file():
-        raise OSError(f"{path} is not a regular file; name a regular or a new file")
+    _ensure_replaceable(path, target)
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no directory {target.parent}; make it first")
     probe = _beside(target)
@@ -61,6 +58,14 @@ def ensure_writable(path: Path) -> None:
         raise OSError(f"{path} cannot be written: {error.strerror}") from error
 
 
+def _ensure_replaceable(path: Path, target: Path) -> None:
+    """Raise `OSError` for a directory, a device or a pipe, which a file must not replace."""
+    if target.is_dir():
+        raise IsADirectoryError(f"{path} is a directory; name a file in it")
+    if target.exists() and not target.is_file():
+        raise OSError(f"{path} is not a regular file; name a regular or a new file")
+
+
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
     """Yield a temporary path that replaces `path` when the block ends without an error; links are followed.
@@ -68,6 +73,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     The temporary file is in the same directory, so that the replacement is one rename; it is removed on a failure.
     """
     target = real(path)
+    _ensure_replaceable(path, target)
     temporary = _beside(target)
     try:
         with _named(path, temporary):

@@ -1,6 +1,7 @@
 """Reading of text files in the encodings of common editors."""
 
 import codecs
+import io
 import os
 import stat
 from difflib import get_close_matches
@@ -10,6 +11,8 @@ from bemcontact.errors import SpecError, escaped
 
 MOST_BYTES = 20_000_000
 """Largest size of a file that is read."""
+PROBLEM = "a YAML file"
+"""What to name where a problem is read."""
 SIMILAR = 0.75
 """Similarity of two names, between 0 and 1, from which one may be meant for the other."""
 
@@ -17,16 +20,22 @@ _CONTROL_BYTES = frozenset(range(32)) - frozenset(b"\t\n\f\r\x1b")
 """Bytes that occur in no text, except in UTF-16."""
 
 
-def text_of(path: str | os.PathLike[str]) -> str:
-    """Text of a file in UTF-8, or in UTF-16 with a byte order mark; `SpecError` if it cannot be read as text."""
+def text_of(path: str | os.PathLike[str], wanted: str = PROBLEM) -> str:
+    """Text of a file in UTF-8, or in UTF-16 with a byte order mark; `SpecError` if it cannot be read as text.
+
+    `wanted` says in errors what kind of file to name.
+    """
     path, name = Path(path), escaped(os.fspath(path))
     try:
         with open(path, "rb", opener=_opened) as file:
-            return decoded(file.read(MOST_BYTES + 1), name)
+            return decoded(file.read(MOST_BYTES + 1), name, wanted)
     except IsADirectoryError:
         raise SpecError(f"{name}: this is a directory; name a file in it") from None
     except FileNotFoundError:
         raise SpecError(f"{name}: {_not_found(path)}") from None
+    except io.UnsupportedOperation:
+        from_stream = ", or write - to read a problem from standard input" if wanted == PROBLEM else ""
+        raise SpecError(f"{name}: this is not a regular file; name {wanted}{from_stream}") from None
     except (OSError, ValueError) as error:
         raise SpecError(f"{name}: the file cannot be read ({getattr(error, 'strerror', None) or error})") from error
 
@@ -38,7 +47,7 @@ def _opened(path: str, flags: int) -> int:
     if stat.S_ISREG(mode) or stat.S_ISDIR(mode):
         return descriptor
     os.close(descriptor)
-    raise ValueError("it is not a regular file; name one, or write - to read a problem from standard input")
+    raise io.UnsupportedOperation
 
 
 def place_after(text: str, name: str) -> str:
@@ -61,7 +70,7 @@ def _not_found(path: Path) -> str:
     return f"there is no such file in {escaped(os.path.realpath(path.parent))}"
 
 
-def decoded(content: bytes, name: str) -> str:
+def decoded(content: bytes, name: str, wanted: str = PROBLEM) -> str:
     """Decoded text without its byte order mark; `SpecError` if it is no text, or too long."""
     if len(content) > MOST_BYTES:
         raise SpecError(f"{name}: the file has more than {MOST_BYTES // 10**6} million bytes; name a smaller one")
@@ -71,7 +80,7 @@ def decoded(content: bytes, name: str) -> str:
         return content.decode(encoding)
     except UnicodeDecodeError as error:
         if _CONTROL_BYTES.intersection(content):
-            raise SpecError(f"{name}: this is not a text file; name a YAML file") from None
+            raise SpecError(f"{name}: this is not a text file; name {wanted}") from None
         place = place_after(content[: error.start].decode(encoding, errors="replace"), name)
         message = f"byte 0x{content[error.start]:02x} is not valid {label}; save the file as UTF-8"
         raise SpecError(f"{place}: {message}") from None

@@ -21,6 +21,8 @@ from bemcontact.formulations.program import Program, minimize_program
 from bemcontact.formulations.scaling import scale, scaled_point, unscaled
 from bemcontact.options import STARTS, SolveOptions, StartName, Weights, ensure_whole
 
+RESULTS = "a JSON file that `bemcontact solve --json FILE` has written"
+"""What to name where a start is read."""
 SPREAD = 2.0
 """Largest random pressure over T, and size of a random displacement over U."""
 SOLUTION = 1e-8
@@ -91,24 +93,19 @@ class Start:
 def read_start(path: str | os.PathLike[str]) -> Start:
     """Read a start from a file that `bemcontact solve --json` wrote; `SpecError` says what is wrong with it."""
     if os.fspath(path) == "-":
-        raise SpecError("a start is read from a file, not from standard input; name one that --json wrote")
-    name, text = escaped(os.fspath(path)), text_of(path)
+        raise SpecError(f"-: a start is not read from standard input; name {RESULTS}")
+    name, text = escaped(os.fspath(path)), text_of(path, RESULTS)
     try:
         record = json.loads(text, parse_int=float)
     except json.JSONDecodeError as error:
-        raise SpecError(
-            f"{name}:{error.lineno}:{error.colno}: is no JSON ({error.msg}); name a file of results"
-        ) from None
+        raise SpecError(f"{name}:{error.lineno}:{error.colno}: is no JSON ({error.msg}); name {RESULTS}") from None
     except RecursionError:
-        raise SpecError(f"{name}: has too many nested brackets; name a file of results") from None
+        raise SpecError(f"{name}: has too many nested brackets; name {RESULTS}") from None
     lists = []
     for key in ("pressure", "normal_displacement"):
         values = record.get(key) if isinstance(record, dict) else None
         if not isinstance(values, list) or not all(type(value) is float and isfinite(value) for value in values):
-            raise SpecError(
-                f"{name}: has no list '{key}' of numbers, one for each contact point; name a file that "
-                "`bemcontact solve --json FILE` has written"
-            )
+            raise SpecError(f"{name}: has no list '{key}' of numbers, one for each contact point; name {RESULTS}")
         lists.append(np.array(values))
     try:
         return Start(pressure=lists[0], displacement=lists[1], label=f"file {escaped(Path(path).name)}")

@@ -1,5 +1,6 @@
 """The boundary of the body: closed loops of named edges, counterclockwise outside, clockwise around holes."""
 
+from bisect import bisect
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice
@@ -158,6 +159,9 @@ def _unknown_joints(path: KeyPath, loop: Sequence[AnyEdge]) -> Iterator[Issue]:
 
 def _out_of_range(path: KeyPath, loop: Sequence[AnyEdge], size: float) -> Iterator[Issue]:
     """Issues of a body too small to compute with, and of coordinates and radii that leave no digits for its shape."""
+    if size == 0:
+        yield Issue(path=path, message="all points of the boundary coincide, so that there is no body; correct them")
+        return
     if size < 1 / LARGEST_STATED:
         message = f"the body has the size {size:.3g}, which is too small to compute with; choose another unit of length"
         yield Issue(path=path, message=message)
@@ -185,7 +189,11 @@ def _ill_joined(path: KeyPath, loop: Sequence[AnyEdge], size: float) -> Iterator
         return
     for i, (edge, joined) in enumerate(zip(loop, _joined(loop), strict=True)):
         if joined.length <= JOINT_TOLERANCE * size:
-            yield Issue(path=(*path, i), message=f"'{edge.name}' has no length; {_remedy_for_no_length(edge)}")
+            message = f"'{edge.name}' has no length; {_remedy_for_no_length(edge)}"
+            if joined.start != joined.end:
+                beside = f"too short beside a body of the size {size:.3g}; make it longer, or leave it out"
+                message = f"'{edge.name}' has the length {joined.length:.3g}, which is {beside}"
+            yield Issue(path=(*path, i), message=message)
         elif isinstance(joined.curve, CircularArc):
             first, last = joined.curve.radii
             if abs(first - last) > RADIUS_TOLERANCE * max(first, last):
@@ -257,11 +265,12 @@ def _misplaced_ends(path: KeyPath, loop: Sequence[AnyEdge], joined: Sequence[Edg
                     )
                     yield Issue(path=(*path, i, *key), message=message)
                     continue
-            if (off := min(abs(fraction - other) for other in taken)) < APART:
+            at = bisect(taken, fraction)
+            if (off := min(abs(fraction - other) for other in taken[max(at - 1, 0) : at + 1])) < APART:
                 where = "here already" if off < ROUND_OFF else f"{off * shape.length:.2g} away, which is too near"
                 message = f"an element of '{edge.name}' ends {where}; leave this place out, or take another one"
                 yield Issue(path=(*path, i, *key), message=message)
-            taken.append(fraction)
+            taken.insert(at, fraction)
         if edge.elements is not None and edge.elements < len(taken) - 1:
             needed = f"the {len(taken) - 2} element ends of '{edge.name}' need at least {len(taken) - 1} elements"
             yield Issue(path=(*path, i, "elements"), message=f"{needed}, found {edge.elements}")

@@ -199,9 +199,10 @@ def _needs_one_zone(reference: RawValue) -> bool:
 
 def mesh_issues(boundary: Boundary, path: KeyPath, refine: int) -> list[Issue]:
     """Issues of a mesh with too many elements for a dense matrix, or too few for its curves."""
-    total = refine * sum(edge.elements or 0 for edge in boundary.edges)
+    total = refine * sum(edge.elements or len(edge.ends_at) + 1 for edge in boundary.edges)
     if total > MOST_ELEMENTS:
-        message = f"{total} elements are too many for a dense matrix; take at most {MOST_ELEMENTS}"
+        at_least = "" if boundary.meshed else "at least "  # an edge without elements gets one or more
+        message = f"{at_least}{total} elements are too many for a dense matrix; take at most {MOST_ELEMENTS}"
         return [Issue(path=("mesh", "refine") if refine > 1 else path, message=message)]
     return [
         Issue(path=(*path, *loop_path, i, "elements"), message=_too_few_elements(edge, refine))

@@ -24,6 +24,8 @@ from bemcontact.problem.wording import described
 
 MOST_ELEMENTS = 10_000
 """Largest number of elements of a problem; its dense matrix takes 13 gigabytes."""
+MOST_ENDS = 100
+"""Largest number of places where elements of an edge must end that does not state its elements."""
 
 SIDES = ("start", "end", "both", "middle")
 """Names of the places of the short elements of an edge."""
@@ -95,13 +97,16 @@ class _EdgeBase(SpecModel):
     """The grading of the stated elements; equal lengths if left out."""
     ends_at: tuple[Place, ...] = ()
     """The places where elements must end: fractions of the length of the edge, or points [x, y] on it. The nearest
-    element ends move to these places, and the others in proportion."""
+    element ends move to these places, and the others in proportion. At most 100, unless elements are stated."""
 
     @model_validator(mode="after")
     def _graded_elements(self) -> Self:
-        """Refuse a grading of elements that are not stated."""
+        """Refuse a grading, and very many ends, of elements that are not stated."""
         if self.elements is None and self.grading is not None:
             raise invalid("grading needs elements; give a number of elements, or leave grading out")
+        if self.elements is None and len(self.ends_at) > MOST_ENDS:
+            given = f"ends_at has {len(self.ends_at)} places, more than {MOST_ENDS}"
+            raise invalid(f"{given}; leave places out, or give the number of elements of the edge too")
         return self
 
     @property

@@ -2,11 +2,11 @@
 
 from typing import Annotated, ClassVar, Self
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, Strict, model_validator
 
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.contact_zone import ToolAction
-from bemcontact.problem.validation import Name, Number, SpecModel, Text, invalid
+from bemcontact.problem.validation import LARGEST_STATED, Name, SpecModel, Text, invalid
 
 
 class LoadCase(SpecModel):
@@ -42,5 +42,16 @@ def _not_empty(value: dict[str, float]) -> dict[str, float]:
     return value
 
 
-Combination = Annotated[dict[Name, Number], AfterValidator(_not_empty), Field(json_schema_extra={"minProperties": 1})]
+def _of_moderate_size(value: float) -> float:
+    """Refuse factors that are no factors of loads."""
+    if value and not 1 / LARGEST_STATED <= abs(value) <= LARGEST_STATED:
+        raise invalid(
+            f"a factor is 0, or between {1 / LARGEST_STATED:g} and {LARGEST_STATED:g} in size, found {value:g}"
+        )
+    return value
+
+
+Factor = Annotated[float, Strict(), AfterValidator(_of_moderate_size)]
+"""Factor of a load case."""
+Combination = Annotated[dict[Name, Factor], AfterValidator(_not_empty), Field(json_schema_extra={"minProperties": 1})]
 """Factors by load case."""

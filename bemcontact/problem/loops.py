@@ -1,7 +1,7 @@
 """Whether loops enclose one body: they do not cross, they have the right orientation, and the holes are inside."""
 
 from collections.abc import Iterator, Sequence
-from math import dist
+from math import dist, pi
 
 import numpy as np
 
@@ -12,13 +12,19 @@ from bemcontact.problem.near_misses import near_miss, sagitta
 
 TOUCHING = 1e-9
 """Distance of two edges, relative to the size of the body, up to which they touch."""
+CUSP = 1e-6
+"""Angle [rad] between two neighbors below which one of them folds back on the other."""
 PAIRS_AT_ONCE = 2**20
 """Pairs of sides whose bounding boxes are compared at once: a few megabytes."""
 
 
 def loop_issues(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> list[Issue]:
-    """Issues of the outer loop and the holes: crossings, else orientations, else positions of holes."""
-    return [*_crossings(loops, paths)] or [*_orientations(loops, paths)] or [*_nestings(loops, paths)]
+    """Issues of the outer loop and the holes: crossings, else orientations, else positions of holes and cusps."""
+    return (
+        [*_crossings(loops, paths)]
+        or [*_orientations(loops, paths)]
+        or [*_nestings(loops, paths), *_cusps(loops, paths)]
+    )
 
 
 def polygon(loop: Sequence[Edge]) -> Array:
@@ -60,8 +66,9 @@ def _crossings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Ite
             reported.add(j)
             what = "itself" if i == j else f"'{one.name}'"
             where = f"at ({point[0]:.6g}, {point[1]:.6g})"
-            message = f"'{other.name}' crosses or touches {what} {where}; neighbors may meet at their common end only"
-            yield Issue(path=path, message=message)
+            same_loop = placed[i][1][:-1] == path[:-1]
+            rule = "neighbors may meet at their common end only" if same_loop else "loops must not meet"
+            yield Issue(path=path, message=f"'{other.name}' crosses or touches {what} {where}; {rule}")
 
 
 def _pairs_close_by(lines: Sequence[Array], tolerance: float) -> list[tuple[int, int]]:
@@ -153,3 +160,14 @@ def _nestings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iter
             if i != j and contains(outlines[j], outlines[i][0]):
                 message = f"the hole of '{name}' is inside the hole of '{loops[j][0].name}'; leave one of them out"
                 yield Issue(path=paths[i], message=message)
+
+
+def _cusps(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iterator[Issue]:
+    """Issues of neighbors that leave their common end in the same direction: the stress there has no meaning."""
+    for loop, path in zip(loops, paths, strict=True):
+        for i, (before, edge) in enumerate(zip((loop[-1], *loop[:-1]), loop, strict=True)):
+            turn = edge.curve.tangent_angle(np.zeros(1))[0] - before.curve.tangent_angle(np.ones(1))[0]
+            if abs(turn % (2 * pi) - pi) < CUSP:
+                where = f"({edge.start[0]:.6g}, {edge.start[1]:.6g})"
+                message = f"'{before.name}' and '{edge.name}' meet at an angle of 0 at {where}; make the corner wider"
+                yield Issue(path=(*path, i), message=message)

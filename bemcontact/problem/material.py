@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, ValidationInfo, field_validator
 
 from bemcontact.problem.validation import Finite, Positive, SpecModel, invalid
+from bemcontact.problem.wording import exact
 
 
 class Material(SpecModel):
@@ -31,7 +32,7 @@ class Material(SpecModel):
     def _in_range(cls, value: float, info: ValidationInfo) -> float:
         """Refuse ν without positive strain energy, and ν = 0.5 in plane strain, which is incompressible."""
         if not -1 < value <= 0.5:
-            raise invalid(f"must be greater than -1 and less than 0.5, found {value:g}")
+            raise invalid(f"must be greater than -1 and less than 0.5, found {exact(value)}")
         if value == 0.5 and info.data.get("state") == "plane_strain":
             raise invalid("must be less than 0.5 in plane strain, found 0.5; take 0.499, or state: plane_stress")
         return value

@@ -23,6 +23,7 @@ from bemcontact.problem.validation import (
     invalid,
     validation_error,
 )
+from bemcontact.problem.wording import exact
 
 
 def _not_blank(value: str) -> str:
@@ -129,7 +130,7 @@ class FlatPunch(ReferenceBase):
             raise invalid("must be 0 if only half of the punch is modeled (half: true)")
         half_width = info.data.get("half_width")
         if half_width is not None and not abs(value) < half_width:
-            raise invalid(f"must be between -half_width and half_width = {half_width:g}, found {value:g}")
+            raise invalid(f"must be between -half_width and half_width = {exact(half_width)}, found {exact(value)}")
         return value
 
 
@@ -162,7 +163,7 @@ class ShrinkFit(ReferenceBase):
         """Refuse a ring without thickness."""
         inner = info.data.get("inner_radius")
         if inner is not None and value <= inner:
-            raise invalid(f"must be greater than inner_radius = {inner:g}, found {value:g}")
+            raise invalid(f"must be greater than inner_radius = {exact(inner)}, found {exact(value)}")
         return value
 
 
@@ -261,7 +262,7 @@ class Values(_PositionedReference):
         if all(getattr(self, quantity) is None for quantity in quantities):
             raise invalid(f"there is no value; give one or more of {', '.join(quantities)}")
         if self.start is not None and self.end is not None and not self.start < self.end:
-            message = f"must be greater than start = {self.start:g}, found {self.end:g}"
+            message = f"must be greater than start = {exact(self.start)}, found {exact(self.end)}"
             raise validation_error("values", [Issue(path=("end",), message=message)])
         return self
 

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Collection, Iterable, Mapping
 from difflib import get_close_matches
+from math import isfinite
 
 LONGEST_NAME = 1000
 """Largest number of characters in a name."""
@@ -13,6 +14,8 @@ _PERCENT = re.compile(r"([-+]?\d+(\.\d+)?) ?%")
 _FORMULA = re.compile(r"[-+*/^().\d eE]*\d ?[-+*/^][-+*/^().\d eE]*")
 _BETWEEN_NAMES = re.compile(r"[,;+&/|]| and ")
 _KEY_AND_VALUE = re.compile(r"([^:=]+)[:=].*", flags=re.DOTALL)
+_PLAIN_NUMBER = re.compile(r"\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*")
+"""A number that YAML reads as one, so that it is a text only in quotes."""
 _NUMBER_AND_UNIT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)? *[^\W\d_][^ ]*")
 
 
@@ -97,7 +100,12 @@ def number_hint(value: object) -> str:
         return f"; write {value.replace(',', '')} without a comma between thousands{otherwise}"
     if not _is_number(value.replace(",", ".", 1)):
         return "; write the number alone, in the units of the file" if _NUMBER_AND_UNIT.fullmatch(value) else ""
-    return "; the decimal sign is a point" if "," in value else "; leave the quotes out"
+    if "," in value:
+        return "; the decimal sign is a point"
+    if _PLAIN_NUMBER.fullmatch(value):
+        return "; leave the quotes out"
+    number = float(value)  # Python also reads nan, inf, 210_000, and the digits of other scripts
+    return f"; write {number:.15g}" if isfinite(number) else f"; {value.strip()} is not a finite number"
 
 
 def _is_number(text: str) -> bool:
@@ -106,6 +114,11 @@ def _is_number(text: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def exact(value: float) -> str:
+    """Write a number with all digits, so that it does not look equal to a limit that it misses."""
+    return repr(float(value)).removesuffix(".0")
 
 
 def shortened(text: str, longest: int = 48) -> str:

@@ -18,7 +18,17 @@ from bemcontact.problem.key_path import RawValue, existing_path, parsed_path
 from bemcontact.problem.readable import readable_part
 from bemcontact.problem.wording import described, number_hint, unknown_word
 from bemcontact.spec.document import Document, LocatedMessage, Mark, Place, error_text
-from bemcontact.spec.yaml_1_2 import MOST_CHARACTERS, MOST_KEYS, READERS, TAG, Budget, Loader, Refused, to_yaml
+from bemcontact.spec.yaml_1_2 import (
+    LONGEST_KEY,
+    MOST_CHARACTERS,
+    MOST_KEYS,
+    READERS,
+    TAG,
+    Budget,
+    Loader,
+    Refused,
+    to_yaml,
+)
 
 Changes = Sequence[str] | Mapping[str, object]
 """Changes as texts ``key=value``, or values by key."""
@@ -176,6 +186,10 @@ def _parsed(text: str, name: str) -> Document:
     except Refused as error:
         raise _refused(error, name) from None
     except yaml.MarkedYAMLError as error:
+        if key := _long_key(error, loader, text):
+            raise SpecError(
+                f"{_marked(key, name).text}: a key has at most {LONGEST_KEY} characters; shorten it"
+            ) from None
         raise SpecError(_not_yaml(error, name)) from None
     except (ValueError, OverflowError) as error:
         mark = _marked(loader.get_mark(), name)
@@ -188,6 +202,14 @@ def _parsed(text: str, name: str) -> Document:
     except Refused as error:
         raise _refused(error, name) from None
     return Document(data=data, places=tree.places, messages=tuple(tree.messages), unread=tuple(tree.unread))
+
+
+def _long_key(error: yaml.MarkedYAMLError, loader: Loader, text: str) -> yaml.Mark | None:
+    """Where a key begins of which the colon, at the place of the error, comes too late; None for another error."""
+    key, colon = loader.long_key, error.problem_mark
+    if not (key and colon and key.line == colon.line and text[key.index] not in "[{&*!"):
+        return None
+    return key if text[colon.index : colon.index + 1] == ":" or "expected ':'" in str(error.problem) else None
 
 
 def _marked(mark: yaml.Mark, name: str) -> Mark:

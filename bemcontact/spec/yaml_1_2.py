@@ -14,6 +14,8 @@ MOST_KEYS = 1000
 """Largest number of keys in one mapping."""
 DEEPEST = 64
 """Largest depth of lists and mappings in each other; a problem needs about ten."""
+LONGEST_KEY = 1024
+"""Largest number of characters of a key in YAML, with its quotes."""
 TAG = "tag:yaml.org,2002:"
 PLAIN_SCALARS = {
     f"{TAG}null": re.compile(r"~|null|Null|NULL|"),
@@ -78,6 +80,20 @@ class Loader(yaml.SafeLoader):
     def __init__(self, text: str) -> None:
         super().__init__(text)
         self._budget, self._depth = Budget(), 0
+        self.long_key: yaml.Mark | None = None
+        """Where the last text begins that is too long for a key."""
+
+    def save_possible_simple_key(self) -> None:
+        """Note where a text begins that may be a key."""
+        self.long_key = None
+        super().save_possible_simple_key()
+
+    def stale_possible_simple_keys(self) -> None:
+        """Give up the search for the colon after a text that is too long for a key."""
+        for key in self.possible_simple_keys.values():
+            if key.line == self.line and self.index - key.index > LONGEST_KEY:
+                self.long_key = key.mark
+        super().stale_possible_simple_keys()
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         """Read a value, and the values in it."""

@@ -53,7 +53,7 @@ def test_an_interrupt_states_that_nothing_was_written(block: Path, monkeypatch: 
     old.write_text("{}")
     answer = run("solve", block, "--json", old, "--figure", block.with_name("new.svg"))
     assert (answer.exit_code, answer.stdout) == (130, "")
-    assert answer.stderr == "interrupted; nothing was written\n"
+    assert answer.stderr == "interrupted; no file was written\n"
     assert sorted(path.name for path in block.parent.iterdir()) == sorted([block.name, old.name])
 
 
@@ -68,10 +68,16 @@ def test_an_interrupt_states_what_was_written_already(block: Path, monkeypatch: 
     assert not answer_file.exists()
 
 
-def test_interrupt_during_the_table_is_stated(block: Path, monkeypatch: pytest.MonkeyPatch):
+def test_an_interrupt_during_the_table_states_the_files(block: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("bemcontact.report.text.result_summary", interrupted)
-    answer = run("solve", block)
-    assert (answer.exit_code, answer.output) == (130, "interrupted\n")
+    vtu, picture = block.with_name("boundary.vtu"), block.with_name("picture.svg")
+    for options, written in (
+        ((), "no file was written"),
+        (("--figure", picture), f"{picture} was written"),
+        (("--figure", picture, "--vtk", vtu), f"{picture}, {vtu} were written"),
+    ):
+        answer = run("solve", block, *options)
+        assert (answer.exit_code, answer.output) == (130, f"interrupted; {written}\n")
 
 
 BROKEN = {

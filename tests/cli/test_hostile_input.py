@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -96,21 +95,48 @@ def test_no_warning_of_a_home_that_cannot_be_written(tmp_path: Path):
     assert ended.stderr == ""
 
 
-def test_an_interrupt_after_the_work_ends_with_its_status():
+@pytest.mark.parametrize("status", [0, 1, 2])
+def test_an_interrupt_after_the_work_does_not_change_its_status(status):
+    """The interpreter takes a moment to end."""
     code = (
-        "import sys, time\nfrom bemcontact import cli\ncli.app = lambda: None\ncli.main()\nprint('done', flush=True)\n"
+        "import sys, time\nfrom bemcontact import cli\ncli.app = lambda: sys.exit(int(sys.argv[1]))\n"
+        "try:\n    cli.main()\nfinally:\n    print('done', flush=True)\n    time.sleep(0.5)\n"
     )
     with subprocess.Popen(
-        [sys.executable, "-c", f"{code}time.sleep(60)"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        [sys.executable, "-c", code, str(status)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         env={**os.environ, "PYTHONPATH": str(Path(bemcontact.__file__).parents[1])},
     ) as process:  # fmt: skip
         assert process.stdout is not None
         process.stdout.readline()
-        time.sleep(0.1)
         process.send_signal(signal.SIGINT)
-        assert process.wait(timeout=30) == cli.INTERRUPTED
+        assert process.wait(timeout=30) == status
         assert process.stderr is not None
         assert process.stderr.read() == ""
+
+
+@pytest.mark.parametrize("before", ["ulimit -f 0; exec 2>messages.txt;", "exec 2>&-;"])
+@pytest.mark.parametrize("arguments", [("solve", "none.yaml"), ("solve", "--none"), ("schema", "--path", "--cases")])
+def test_a_message_that_cannot_be_written_does_not_change_the_status(tmp_path: Path, before: str, arguments):
+    ended = in_a_process(*arguments, before=f"cd {tmp_path}; {before}", PYTHONDONTWRITEBYTECODE="1")
+    assert ended.returncode == 2
+
+
+@pytest.mark.parametrize("arguments", ["schema", f"check {MODEL}"])
+def test_standard_output_that_is_closed_is_said(arguments: str):
+    ended = in_a_process(*arguments.split(), before="exec >&-;")
+    assert ended.returncode == 2
+    assert ended.stderr.startswith("error: standard output is closed")
+
+
+@pytest.mark.parametrize("arguments", ["schema", "--help", "solve none.yaml 2>&1", "solve --none 2>&1"])
+def test_a_pipe_that_its_reader_closes_ends_the_program(arguments: str):
+    """Its status is that of other programs, which the signal SIGPIPE ends."""
+    program = f"{sys.executable} -m bemcontact {arguments} | sleep 0; exit ${{PIPESTATUS[0]}}"
+    root = str(Path(bemcontact.__file__).parents[1])
+    ended = subprocess.run(
+        ["bash", "-c", program], capture_output=True, text=True, check=False, env={**os.environ, "PYTHONPATH": root}
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (128 + signal.SIGPIPE, "", "")
 
 
 def test_a_case_with_any_name_is_found(tmp_path: Path):

@@ -110,7 +110,7 @@ def test_json_on_standard_output_and_the_reason_beside_it():
 def test_invalid_parameters_are_refused_with_their_place(key: str, words: str):
     answer = run(CYLINDER, "--vary", key, "--to", 10)
     assert answer.exit_code == 2
-    assert re.search(r"cylinder_on_plane\.yaml:\d+:\d+: ", answer.stderr)
+    assert re.match(r"error: --vary: .*cylinder_on_plane\.yaml:\d+:\d+: ", answer.stderr)
     assert words in answer.stderr
 
 

@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import os
 import re
 from pathlib import Path
 
@@ -152,7 +153,34 @@ def test_a_file_that_is_no_start_is_refused(block: Path, tmp_path: Path, content
     start = tmp_path / "start.json"
     if content is not None:
         start.write_text(content, encoding="utf-8")
-    assert_refused(run("solve", block, "--formulation", "qp1", "--start", start), pattern)
+    answer = run("solve", block, "--formulation", "qp1", "--start", start)
+    assert_refused(answer, pattern)
+    assert answer.stderr.startswith(("error: --start: ", "error: the start has"))
+
+
+@pytest.mark.parametrize("kind", ["device", "pipe", "bytes", "stream"])
+def test_no_problem_is_named_where_a_start_is_read(block: Path, tmp_path: Path, kind: str):
+    place = {"device": Path("/dev/zero"), "stream": Path("-")}.get(kind, tmp_path / kind)
+    if kind == "pipe":
+        os.mkfifo(place)
+    if kind == "bytes":
+        place.write_bytes(bytes(range(256)))
+    answer = run("solve", block, "--formulation", "qp1", "--start", place)
+    assert_refused(
+        answer, f"error: --start: {place}: .*; name a JSON file that `bemcontact solve --json FILE` has written"
+    )
+    assert "YAML" not in answer.stderr
+    assert "write -" not in answer.stderr
+
+
+@pytest.mark.parametrize("word", ["rand", "Random", "nul"])
+def test_a_start_that_is_misspelled_is_told_its_name(block: Path, monkeypatch: pytest.MonkeyPatch, word: str):
+    monkeypatch.chdir(block.parent)
+    answer = run("solve", block, "--formulation", "qp1", "--start", word)
+    assert answer.exit_code == 2
+    assert f"there is no file '{word}'; did you mean {'null' if word == 'nul' else 'random'}?" in answer.stderr
+    Path(word).write_text("{}")
+    assert "no list 'pressure'" in run("solve", block, "--formulation", "qp1", "--start", word).stderr
 
 
 @pytest.mark.parametrize(

@@ -71,6 +71,15 @@ def test_a_place_that_cannot_be_written_is_refused_with_the_reason(tmp_path: Pat
         output.ensure_writable(tmp_path / ("a" * 250))
 
 
+def test_a_device_or_a_pipe_is_never_replaced(tmp_path: Path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with pytest.raises(OSError, match="not a regular file"), output.whole_file(pipe) as temporary:
+        temporary.write_text("new")
+    assert pipe.is_fifo()
+    assert [*tmp_path.iterdir()] == [pipe]
+
+
 def write_pages(folder: Path, mark: str) -> None:
     with output.whole_folder(folder) as temporary:
         assert temporary.parent == folder.parent

@@ -89,5 +89,5 @@ def test_a_start_of_no_meaning_is_refused(pressure, displacement):
 
 
 def test_a_start_is_not_read_from_standard_input():
-    with pytest.raises(SpecError, match="from a file"):
+    with pytest.raises(SpecError, match="not read from standard input"):
         read_start("-")

@@ -58,10 +58,10 @@ def test_arc_without_angles_runs_in_the_given_direction():
     lines = [Line(name="in", start=(0, 1), end=(0, 0), elements=1), Line(name="out", end=(1, 0), elements=1)]
     quarter = Boundary(outer=[*lines, Arc(name="arc", center=(0, 0), elements=2)])
     assert quarter.edges[2].length == pytest.approx(pi / 2, rel=1e-15)
-    corner = [Line(name="right", start=(1, 0), end=(1, 1), elements=1), Line(name="top", end=(0, 1), elements=1)]
+    corner = [Line(name="low", start=(1, 0), end=(2, 0)), Line(name="far", end=(0, 2)), Line(name="up", end=(0, 1))]
     notch = Boundary(outer=[*corner, Arc(name="arc", center=(0, 0), clockwise=True, elements=2)])
-    assert notch.edges[2].length == pytest.approx(pi / 2, rel=1e-15)
-    assert np.hypot(*notch.edges[2].points(np.array([0.3]))[0]) == pytest.approx(1, rel=1e-15)
+    assert notch.edges[3].length == pytest.approx(pi / 2, rel=1e-15)
+    assert np.hypot(*notch.edges[3].points(np.array([0.3]))[0]) == pytest.approx(1, rel=1e-15)
 
 
 def test_body_with_round_and_elliptic_holes():
@@ -192,3 +192,33 @@ def test_edge_names_are_unique():
 def test_loop_without_edges_is_refused():
     (issue,) = issues(outer=[])
     assert_states(issue, "outer: … at least 1 … found an empty list")
+
+
+@given(st.floats(0.3, 3.0), st.floats(0, 360), st.sampled_from([0.0, 1e-8, -1e-3, -0.5]), st.booleans())
+def test_neighbors_meet_at_an_angle(radius, direction, angle, is_hole):
+    """A sickle between an arc and a line from its end back along the tangent, or at an angle to it, as body or hole."""
+    theta = np.deg2rad(direction + 90)
+    end = radius * np.array([np.cos(theta), np.sin(theta)])
+    back = theta - pi / 2 - angle  # the direction of the line from the end of the arc
+    tip = tuple((end + 2 * radius * np.array([np.cos(back), np.sin(back)])).tolist())
+    if is_hole:
+        arc = Arc(name="arc", center=(0, 0), radius=radius, angles=(direction, direction + 90))
+        corners = {"south": (-20, -20), "east": (20, -20), "north": (20, 20), "west": (-20, 20)}
+        loops = {"outer": [Line(name=name, start=corner) for name, corner in corners.items()]}
+        loops["holes"] = [[arc, Line(name="line", end=tip), Line(name="close")]]
+    else:
+        arc = Arc(name="arc", center=(0, 0), radius=radius, angles=(direction + 90, direction))
+        loops = {"outer": [Line(name="close", end=tip), Line(name="line"), arc]}
+    if angle < -1e-6:
+        assert len(Boundary(**loops).edges) == (7 if is_hole else 3)
+        return
+    (issue,) = issues(**loops)
+    names = "'arc' and 'line'" if is_hole else "'line' and 'arc'"
+    assert_states(issue, f"{names} meet at an angle of 0 at (…; make the corner wider")
+
+
+def test_smooth_joints_are_allowed():
+    """A stadium: lines go on in arcs without a corner."""
+    right, left = (Arc(name=n, center=(x, 0), radius=1, angles=(a, a + 180)) for n, x, a in
+                   (("right", 2, -90), ("left", 0, 90)))  # fmt: skip
+    Boundary(outer=[Line(name="bottom"), right, Line(name="top"), left])

@@ -96,6 +96,30 @@ def test_a_body_too_small_to_compute_with_is_refused(size):
         Boundary(outer=edges)
 
 
+def test_points_that_coincide_and_edges_that_are_too_short_are_said_to_be():
+    corners = [[0, 0], [4e9, 0], [4e9, 2e8], [1e-9, 2e8], [0, 2e8]]
+    edges: Any = [{"name": f"e{i}", "start": corner} for i, corner in enumerate(corners)]
+    with pytest.raises(bemcontact.ProblemError, match="'e3' has the length 1e-09, which is too short beside a body"):
+        Boundary(outer=edges)
+    with pytest.raises(bemcontact.ProblemError, match="all points of the boundary coincide"):
+        Boundary(outer=[{**edge, "start": [1, 1]} for edge in edges])
+
+
+@pytest.mark.parametrize("ratio", [0.5000000001, -1.00000000001, -1.0])
+def test_a_number_out_of_range_does_not_look_like_the_limit(ratio):
+    with pytest.raises(bemcontact.ProblemError) as caught:
+        bemcontact.loads(SPEC).with_value("material.poisson_ratio", ratio)
+    assert str(caught.value).endswith(f"less than 0.5, found {repr(ratio).removesuffix('.0')}")
+
+
+@pytest.mark.parametrize("factor", [1e300, -1e31, 1e-300])
+def test_a_factor_of_a_load_case_has_no_unit(factor):
+    cases = {"load_cases": {"a": {"conditions": {"top": {"pressure": 1}}}}}
+    data = {**DATA, **cases, "combinations": {"b": {"a": factor}}}
+    with pytest.raises(bemcontact.ProblemError, match="a factor is 0, or between 1e-30 and"):
+        bemcontact.Problem(**data)
+
+
 @pytest.mark.parametrize("far", [10 * FARTHEST * 44.7, 1e25])
 def test_bodies_and_surfaces_far_from_the_origin_or_very_wide_are_refused(far):
     for path in (("boundary", "holes", 0, 0, "radius"), ("contact_zones", "foot", "surface", "radius")):
@@ -104,7 +128,7 @@ def test_bodies_and_surfaces_far_from_the_origin_or_very_wide_are_refused(far):
         for key in path[:-1]:
             below = below[key]
         below["radius"] = far
-        with pytest.raises(bemcontact.ProblemError, match=r"leave too few digits|has no length"):
+        with pytest.raises(bemcontact.ProblemError, match=r"leave too few digits|which is too short beside a body"):
             bemcontact.Problem(**data)
 
 

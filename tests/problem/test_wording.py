@@ -1,15 +1,19 @@
 """Errors about values of the wrong kind say what to write, and what they say to write is right."""
 
 from itertools import permutations
+from math import isfinite
 from typing import Any
 
 import pytest
 import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from bemcontact import Problem, ProblemError
 from bemcontact.errors import KeyPath
 from bemcontact.problem.key_path import existing_path, parsed_path, with_entry
 from bemcontact.problem.wording import number_hint, unknown_word
+from bemcontact.spec.yaml_1_2 import READERS, TAG, Loader
 
 FULL: Any = yaml.safe_load(
     """
@@ -130,6 +134,30 @@ def test_a_name_that_has_a_comma_is_a_name():
 )
 def test_a_number_in_another_form_is_told_how_to_write_it(text: str, hint: str):
     assert hint in number_hint(text)
+
+
+def _read(text: str) -> float | None:
+    """The number that a text without quotes is in YAML."""
+    tag = Loader(text).get_single_node().tag
+    return READERS[tag](text) if tag in (f"{TAG}int", f"{TAG}float") else None
+
+
+@settings(max_examples=200)
+@given(st.one_of(
+    st.from_regex(r"[-+]?[0-9]{1,9}(_[0-9]{1,9}){0,2}(\.[0-9]{1,6})?(e-?[0-9]{1,3})?", fullmatch=True),
+    st.text(st.characters(categories=["Nd"]), min_size=1, max_size=9),
+    st.sampled_from(["nan", "-inf", "Infinity", "NaN", "+nan"]),
+))  # fmt: skip
+def test_only_a_number_that_yaml_reads_is_told_to_have_quotes(text: str):
+    """Every other text that Python reads as a number is told the number, or that it is not finite."""
+    hint = number_hint(text)
+    if _read(text) is not None:
+        assert hint == "; leave the quotes out"
+    elif isfinite(float(text)):
+        assert hint.startswith("; write ")
+        assert _read(hint.removeprefix("; write ")) == pytest.approx(float(text), rel=1e-14)
+    else:
+        assert hint == f"; {text} is not a finite number"
 
 
 @pytest.mark.parametrize("text", ["abc", "1.2.3", "-", "", "top-left", "e", "%"])

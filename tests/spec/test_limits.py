@@ -1,5 +1,6 @@
 """Limits of specs: size, depth, aliases, keys; each is refused at its place, soon."""
 
+import re
 import time
 
 import pytest
@@ -7,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import bemcontact
+from bemcontact.problem.geometry import MOST_ELEMENTS, MOST_ENDS
 from bemcontact.spec.yaml_1_2 import DEEPEST, MOST_CHARACTERS, MOST_KEYS, MOST_VALUES
 
 SOON = 5.0
@@ -42,6 +44,20 @@ def test_deep_nesting_is_refused_at_its_place(depth, start):
     line = refused(start * depth)
     assert "deep" in line
     assert line.startswith("a.yaml:1:")
+
+
+@pytest.mark.parametrize("text", ["{}: 1", "c:\n  {}: {{x: 1}}", "x: {{{}: 1, b: 2}}", "x: [{}: 1]", "{}: a\nb: 1"])
+@pytest.mark.parametrize("quote", ["", "'", '"'])
+@pytest.mark.parametrize("length", [1030, 5000])
+def test_a_key_that_is_too_long_is_said_to_be(text, quote, length):
+    line = refused(text.format(quote + "k" * length + quote))
+    assert re.fullmatch(r"a\.yaml:[12]:\d: a key has at most 1024 characters; shorten it", line)
+
+
+@pytest.mark.parametrize("text", ["name: {} b: 1", "name: [{}, b: c: d]\n", "name: {}\nb: c: d", "{}: a"])
+def test_a_long_text_is_no_long_key(text):
+    words = " ".join(["word"] * (50 if text.startswith("{") else 500))
+    assert "1024" not in refused(text.format(words))
 
 
 def test_depth_counts_through_aliases():
@@ -92,3 +108,44 @@ def test_halves_of_a_character_as_json_writes_them_are_the_character():
 
     assert _parsed('"a\\ud83d\\ude00"', "a").data == "a\N{GRINNING FACE}"
     assert "half of a character" in refused('name: "\\ud83d"')
+
+
+BODY = """\
+name: block
+material: {young_modulus: 1000, poisson_ratio: 0.3}
+boundary: {outer: [%s, {name: right, start: [4, 0]}, {name: top, start: [4, 2]}, {name: left, start: [0, 2]}]}
+conditions: {left: {displacement: {x: 0}}, top: {pressure: 1}}
+contact_zones: {foot: {edges: bottom, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}}
+"""
+
+
+def bottom(keys: str) -> str:
+    return BODY % f"{{name: bottom, start: [0, 0], {keys}}}"
+
+
+@pytest.mark.parametrize("elements", [MOST_ELEMENTS, MOST_ELEMENTS - 2])
+def test_each_edge_has_an_element(elements):
+    line = refused(bottom(f"elements: {elements}"))
+    assert f"at least {elements + 3} elements are too many for a dense matrix" in line
+    bemcontact.loads(bottom(f"elements: {MOST_ELEMENTS - 3}"))
+
+
+def test_many_ends_of_elements_need_elements():
+    ends = [f"{k / 5000:.4f}" for k in range(1, 5000)]
+    line = refused(bottom(f"ends_at: [{', '.join(ends)}]"))
+    assert f"ends_at has 4999 places, more than {MOST_ENDS}" in line
+    problem = bemcontact.loads(bottom(f"ends_at: [{', '.join(ends[:MOST_ENDS])}]"))
+    start = time.process_time()
+    others = {edge.name: [0.5] for edge in problem.boundary.edges}
+    problem = problem.with_element_ends({**others, "bottom": [float(end) for end in ends]})
+    assert problem.with_value("material.poisson_ratio", 0.2).edge("bottom").elements == 5000
+    assert time.process_time() - start < SOON
+    twice = refused(bottom(f"elements: 5000, ends_at: [{', '.join([*ends[:-1], ends[2500]])}]"))
+    assert "ends here already" in twice
+
+
+def test_a_body_that_is_too_slender_for_a_mesh_is_told_so():
+    """Its user has stated no elements."""
+    problem = bemcontact.loads(bottom("end: [4e6, 0]").replace("[4, ", "[4e6, "))
+    with pytest.raises(bemcontact.ProblemError, match=r"a mesh of this body needs .* it is too slender"):
+        bemcontact.solve(problem)
