@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from types import NoneType
-from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+from typing import IO, Any, TypeVar, get_args, get_origin, get_type_hints
 from zipfile import ZIP_STORED, BadZipFile, ZipFile
 
 import numpy as np
@@ -29,6 +29,8 @@ HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 """Versions of the form of an array in a file, and how their heads are read."""
 PLAIN = "biufU"
 """Kinds of data of an array that can be read without running anything: truth values, numbers, texts."""
+WORDS: Mapping[Any, str] = {str: "text", float: "number", tuple: "list", Mapping: "list of pairs"}
+"""Types of fields in plain words."""
 AGAIN = "condense the problem again"
 
 
@@ -83,27 +85,26 @@ def _member(package: ZipFile, name: str) -> NDArray[Any]:
         if item.compress_type != ZIP_STORED or item.file_size != item.compress_size:
             raise ProblemError("it is compressed, and CondensedContact.save does not compress")
         with package.open(item) as stream:
-            content = stream.read(item.compress_size)
-            if len(content) != item.file_size or stream.read(1):
-                raise BadZipFile("its size is not the stated one")
-        return _array(content)
+            return _array(stream, item.file_size)
     except Exception as error:  # zipfile and NumPy raise many kinds of errors for damaged bytes
         reason = str(error) if isinstance(error, ProblemError) else "its bytes are no array"
         raise ProblemError(f"member '{name}' is damaged: {reason}; {AGAIN}") from error
 
 
-def _array(content: bytes) -> NDArray[Any]:
-    """The array in the bytes of a member, if its size is the stated one; nothing is unpickled."""
-    stream = io.BytesIO(content)
+def _array(stream: IO[bytes], total: int) -> NDArray[Any]:
+    """The array in a member of `total` bytes, which are read if the head fits them; nothing is unpickled."""
     shape, by_columns, dtype = HEADERS[npy.read_magic(stream)](stream)
-    data = content[stream.tell() :]
+    there = total - stream.tell()
     if dtype.kind not in PLAIN or dtype.shape:
         raise ProblemError(f"it has data of type {dtype}, which is not read")
     size = dtype.itemsize
     for length in shape:
         size *= length
-    if size != len(data) or min(shape, default=0) < 0:
-        raise ProblemError(f"it has {len(data)} bytes where its shape {shape} needs {size}")
+    if size != there or min(shape, default=0) < 0:
+        raise ProblemError(f"it has {there} bytes where its shape {shape} needs {size}")
+    data = stream.read(there)
+    if len(data) != there or stream.read(1):
+        raise BadZipFile("its size is not the stated one")
     flat = np.frombuffer(data, dtype) if data else np.zeros(0, dtype)
     return flat.reshape(shape, order="F" if by_columns else "C")
 
@@ -159,7 +160,8 @@ def _field(hint: Any, arrays: Arrays, key: str) -> Any:
     try:
         return _converted(get_origin(hint) or hint, array)
     except (TypeError, ValueError):
-        raise ProblemError(f"member '{key}' is no {hint}: it has the shape {array.shape}; {AGAIN}") from None
+        kind = WORDS.get(get_origin(hint) or hint, "array of this kind")
+        raise ProblemError(f"member '{key}' is no {kind}: it has the shape {array.shape}; {AGAIN}") from None
 
 
 def _converted(kind: Any, array: NDArray[Any]) -> Any:

@@ -1,6 +1,7 @@
 """Files of condensed problems: whole ones are read back, damaged ones are refused in words, whatever the damage."""
 
 import io
+import tracemalloc
 import zipfile
 from collections.abc import Callable
 from contextlib import suppress
@@ -197,7 +198,7 @@ BREAKS: dict[str, tuple[str, Callable[[np.ndarray], Any], str]] = {
     "negative weights": ("weights", lambda weights: -weights, "weights must be positive"),
     "weights of another zone": ("zone_weights", lambda weights: 2 * weights, "add up to the weights"),
     "no run length": ("run_length", lambda length: -length, "run_length must be positive"),
-    "a name of numbers": ("name", lambda _: np.zeros(3), "member 'name' is no"),
+    "a name of numbers": ("name", lambda _: np.zeros(3), "member 'name' is no text: it has the shape"),
     "names of numbers": ("zone_names", lambda _: np.zeros(2), "zone_names must be a list of texts"),
     "units of nothing": ("units", lambda _: np.zeros(2), "member 'units' is no"),
     "dependent motions": ("rigid_motions", lambda R: 0 * R, "independent columns"),
@@ -292,3 +293,17 @@ def test_another_problem_is_another_answer(whole, tmp_path: Path):
     (tmp_path / "a.npz").write_bytes(packed(mixed))
     with pytest.raises(ProblemError, match="the file is damaged: its checksum does not fit"):
         CondensedContact.load(tmp_path / "a.npz")
+
+
+def test_a_member_is_judged_by_its_head_before_it_is_read(tmp_path: Path):
+    head = io.BytesIO()
+    np.save(head, np.array("bemcontact.condensed.5"))
+    path = tmp_path / "large.npz"
+    with zipfile.ZipFile(path, "w") as package:
+        package.writestr("format.npy", head.getvalue() + bytes(50_000_000))
+    tracemalloc.start()
+    with pytest.raises(ProblemError, match=r"member 'format' is damaged: it has 500000.. bytes where its shape"):
+        CondensedContact.load(path)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 5_000_000
