@@ -28,7 +28,7 @@ from bemcontact.formulations.local_solver.statement import (
 from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest, supporting
 
 RENEWALS = 3
-"""Largest number of restarts from a stationary point which the run has reached from far away."""
+"""Largest number of restarts from a stationary point that is doubtful, or which the run has reached from far away."""
 FAILURES = 6
 """Largest number of restarts with new factors after a claim failed its check."""
 
@@ -114,11 +114,11 @@ def _second_phase(progress: SearchState, descent: Descent, renewals: int) -> Fin
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     if outcome.ending is Ending.INACCURATE:
         return Restart(sides=descent.working.sides, failed=True)
-    if progress.worn and renewals < RENEWALS:
-        return Restart(sides=descent.working.sides, failed=False)
     multipliers = descent.working.of_all(descent.multipliers)
     zeros, sizes = (descent.working.of_all(sizes) for sizes in (descent.zeros, descent.sizes))
     conditions = first_order(progress, descent.working.held, multipliers, zeros, sizes)
+    if (progress.worn or conditions.doubtful) and renewals < RENEWALS:
+        return Restart(sides=descent.working.sides, failed=False)
     if not conditions.holds:
         return Restart(sides=descent.working.sides, failed=True)
     return _second_order(progress, descent, conditions, multipliers)

@@ -26,6 +26,8 @@ IN_CONE = 1e-11
 """A unit direction whose product with an inward normal is above -IN_CONE is in the cone."""
 OF_RAY = (1e-13, 1e-12, 1e-11, 1e-10)
 """Sizes of the components of a ray that may be rounding, relative to the largest; tried one after the other."""
+SADDLE = 1e-4
+"""Part of its terms from which H d of a flat direction d says that directions beside it fall."""
 REFINEMENTS = 2
 """Number of corrections of a ray."""
 FEW = 100
@@ -341,6 +343,8 @@ def _has_no_end(progress: SearchState, d: Array) -> bool:
     bent[np.abs(bent) <= rounding] = 0.0  # as of a matrix that is a product
     curvature, slope, lost = float(d @ bent), float(progress.gradient @ d), _rounding_of_ray(statement, d)
     zero = max(100.0 * EPS * float(np.abs(d) @ np.abs(bent)), 2.0 * lost * float(np.abs(bent).sum()))
+    if largest(bent) > SADDLE * largest(statement.absolute[0] @ np.abs(d)):  # as a semidefinite H never has it
+        zero = max(zero, statement.rounding(d))
     no_rows = statement.A[:0]
     terms = progress.terms(d[:0], no_rows)
     level = progress.level(d, progress.fine_zero(terms, no_rows, no_rows.T, 0.0 * d))
