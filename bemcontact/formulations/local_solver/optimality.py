@@ -307,15 +307,15 @@ def cleaned_ray(progress: SearchState, ray: Array) -> Array | None:
 
 
 def _refined_ray(statement: Statement, d: Array) -> Array:
-    """The ray after steps by which it keeps, to the last digit, the rows along which it seems not to move."""
+    """The ray after steps by which it keeps, to the last digit, rows of A and H along which it seems not to move."""
     bounded = np.isfinite(statement.lower) | np.isfinite(statement.upper)
-    n = d.size
-    terms = statement.absolute[2] @ np.abs(d)
-    kept = bounded[n:] & (np.abs(statement.A @ d) <= 1e-10 * terms)
-    free = (np.abs(d) > 1e-10) | ~bounded[:n]
-    for _ in range(REFINEMENTS if kept.any() else 0):
+    n, size = d.size, np.abs(d)
+    kept = bounded[n:] & (np.abs(statement.A @ d) <= 1e-10 * (statement.absolute[2] @ size))
+    flat = np.abs(statement.H @ d) <= 1e-10 * (statement.absolute[0] @ size)
+    rows, free = np.vstack([statement.A[kept], statement.H[flat]]), (size > 1e-10) | ~bounded[:n]
+    for _ in range(REFINEMENTS if rows.any() else 0):
         d = d.copy()
-        d[free] += np.linalg.lstsq(statement.A[kept][:, free], _exact_rest(statement.A[kept], d))[0]
+        d[free] += np.linalg.lstsq(rows[:, free], _exact_rest(rows, d))[0]
     d = np.where(np.abs(d) > EPS, d, 0.0)
     return d / np.linalg.norm(d)
 
@@ -340,7 +340,7 @@ def _has_no_end(progress: SearchState, d: Array) -> bool:
     statement = progress.statement
     bent = -_exact_rest(statement.H, d)
     rounding = max(10, d.size) * EPS * (statement.absolute[0] @ np.abs(d))
-    bent[np.abs(bent) <= rounding] = 0.0  # as of a matrix that is a product
+    bent = np.zeros_like(bent) if (np.abs(bent) <= rounding).all() else bent  # as of a matrix that is a product
     curvature, slope, lost = float(d @ bent), float(progress.gradient @ d), _rounding_of_ray(statement, d)
     zero = max(100.0 * EPS * float(np.abs(d) @ np.abs(bent)), 2.0 * lost * float(np.abs(bent).sum()))
     if largest(bent) > SADDLE * largest(statement.absolute[0] @ np.abs(d)):  # as a semidefinite H never has it
