@@ -29,6 +29,8 @@ TIE = 1e-12
 VANISHED = 1e-13
 VERIFIED, LEAST = 1e-10, 1e-4
 """Part of the terms of a number that may be rounding; part of the largest variable that any variable counts with."""
+FAINT = 1e-15
+"""Part of the largest variable that may be rounding of it."""
 REFRESH = 50
 """Pivots after which the inverse of the basis is computed anew, against the growth of round-off."""
 BALANCED = 1e-12
@@ -123,6 +125,12 @@ def holds(M: Array, q: Array, z: Array) -> bool:
     w = q + M @ z
     faint = (np.abs(M) * size <= terms[:, None]).all(axis=0)
     return bool((w >= -terms).all() and ((z >= 0) | faint).all() and ((w <= terms) | faint).all())
+
+
+def _holds_row_by_row(M: Array, q: Array, z: Array) -> bool:
+    """Whether z >= 0 (n,) solves the problem, each w held against its own terms alone."""
+    terms, w = VERIFIED * (np.abs(M) @ z + np.abs(q)), q + M @ z
+    return bool((w >= -terms).all() and (w <= terms)[z > 0].all())
 
 
 def basic_solution(M: Array, q: Array, active: BoolArray) -> Array:
@@ -287,6 +295,10 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
     if status is not Status.INFEASIBLE and not holds(even, right, z):
         path = lemke(even, right)
         z, status = np.maximum(basic_solution(even, right, path.active), 0.0), path.status
+    if status is Status.SOLVED:
+        clean = np.where(z > FAINT * z.max(initial=0.0), z, 0.0)  # small numbers may be the rounding of others
+        held = [point for point in (z, clean) if _holds_row_by_row(even, right, point)]
+        z, status = (held[0], status) if held else (z, Status.NO_SOLUTION_FOUND)
     with np.errstate(over="ignore", invalid="ignore"):
         z = factors * z
         w = q + M @ z
