@@ -13,7 +13,7 @@ Q = ED(I - RΦ)M and u = RᵀEDe, which is Rᵀ(E - I)De as e is in equilibrium,
 
 The last sum is at most zero if |uᵀG⁻¹Rᵢ| <= Eᵢ on C, which holds for E near one, since the load bounds all p*. Then a
 positive λ, the smallest eigenvalue of sym(Q) on the equilibrium space, bounds |e|. E is sought by least squares: that
-by which sym(Q) is nearest to the identity, in the metric in which the eigenvalues of sym(DM) are ±1.
+by which sym(Q) is nearest to the identity, in the metric in which the eigenvalues of the form before are ±1.
 """
 
 import numpy as np

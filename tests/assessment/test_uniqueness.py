@@ -102,35 +102,6 @@ def several_surfaces_at_a_node(rng: np.random.Generator) -> CondensedContact:
     return CondensedContact.from_compliance(M, q, weights, rigid_motions=R, motion_load=load)
 
 
-def test_points_near_contact_prove_lonely_states_only(monkeypatch):
-    """Of nodes with several surfaces: each certified problem has one state, and the bound holds for all states.
-
-    Pressures are off by a known amount. Eigenvectors are left out, so that the points near contact prove alone.
-    """
-    monkeypatch.setattr("bemcontact.assessment.certificate.effective_eigenvalue", lambda *_: None)
-    rng = np.random.default_rng(5)
-    certified = several = 0
-    for _ in range(150):
-        contact = several_surfaces_at_a_node(rng)
-        solution = complementarity.solve(contact)
-        certificate = certificate_of(contact, solution)
-        assert certificate.smallest_eigenvalue is not None
-        if certificate.smallest_eigenvalue > 0 or certificate.violation:
-            continue
-        states = all_states(contact)
-        several += len(states) > 1
-        if len(states) > 1:
-            assert certificate.kind is CertificateKind.LOCAL
-        certified += certificate.certified
-        assert len(states) == 1 or not certificate.certified
-        wrong = solution.pressure * (1 + 10 ** rng.uniform(-9, -2) * rng.standard_normal(contact.size))
-        moved = contact.gap(wrong, solution.rigid_amplitudes) - contact.initial_gap
-        bound = certificate_of(contact, replace(solution, pressure=wrong, displacement=moved)).error_bound
-        assert bound is None or max(abs(wrong - state).max() for state in states) <= bound
-    assert certified > 5
-    assert several > 0
-
-
 def nearly_definite(rng: np.random.Generator) -> CondensedContact:
     """Compliances of which the symmetric part is definite but for a little, in other weights too."""
     n, k = int(rng.integers(3, 7)), int(rng.integers(0, 3))
@@ -143,28 +114,39 @@ def nearly_definite(rng: np.random.Generator) -> CondensedContact:
     return CondensedContact.from_compliance(M, rng.standard_normal(n), J, rigid_motions=R, motion_load=load)
 
 
-def test_other_weights_prove_lonely_states_only(monkeypatch):
-    """As above, with the proofs by eigenvectors and by points near contact left out."""
-    monkeypatch.setattr("bemcontact.assessment.certificate.effective_eigenvalue", lambda *_: None)
-    monkeypatch.setattr("bemcontact.assessment.certificate.near_bound", lambda *_: np.inf)
-    rng = np.random.default_rng(6)
+PROOFS = {"effective_eigenvalue": None, "near_bound": np.inf, "reweighted_bound": np.inf}
+"""Proofs without a definite compliance, and what each gives where it proves nothing."""
+
+
+@pytest.mark.parametrize(
+    ("proof", "problem", "count", "least"),
+    [("near_bound", several_surfaces_at_a_node, 150, (6, 1)), ("reweighted_bound", nearly_definite, 1500, (100, 6))],
+)
+def test_each_proof_alone_proves_lonely_states_only(monkeypatch, proof, problem, count, least):
+    """Each certified problem has one state, and the bound holds for all states. Pressures are off by a known amount."""
+    for other, nothing in PROOFS.items():
+        if other != proof:
+            monkeypatch.setattr(f"bemcontact.assessment.certificate.{other}", lambda *_, nothing=nothing: nothing)
+    rng = np.random.default_rng(5)
     certified = several = 0
-    for _ in range(1500):
-        contact = nearly_definite(rng)
+    for _ in range(count):
+        contact = problem(rng)
         solution = complementarity.solve(contact)
         certificate = certificate_of(contact, solution)
         if (certificate.smallest_eigenvalue or 1.0) > 0 or certificate.violation:
             continue
         states = all_states(contact)
         several += len(states) > 1
+        if len(states) > 1:
+            assert certificate.kind is CertificateKind.LOCAL
         certified += certificate.certified
         assert len(states) == 1 or not certificate.certified
         wrong = solution.pressure * (1 + 10 ** rng.uniform(-9, -2) * rng.standard_normal(contact.size))
         moved = contact.gap(wrong, solution.rigid_amplitudes) - contact.initial_gap
         bound = certificate_of(contact, replace(solution, pressure=wrong, displacement=moved)).error_bound
         assert bound is None or max(abs(wrong - state).max() for state in states) <= bound
-    assert certified > 100
-    assert several > 5
+    assert certified >= least[0]
+    assert several >= least[1]
 
 
 @pytest.mark.parametrize(("length", "elements"), [(500, 40), (800, 60), (1000, 60)])
