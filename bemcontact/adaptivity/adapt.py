@@ -3,8 +3,9 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from bemcontact.adaptivity.error_bars import error_bars
-from bemcontact.adaptivity.fields import MeshDifference, solved
+from bemcontact.adaptivity.error_bars import SAFETY, error_bars
+from bemcontact.adaptivity.fields import MeshDifference, Solved, solved
+from bemcontact.adaptivity.hidden_changes import told_apart
 from bemcontact.adaptivity.mesh_search import cut, mesh_search
 from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy
@@ -97,13 +98,19 @@ def _stated(
         progress("every two elements in one" if halved else "every element in two")
         other = solved(cut(problem, refine // 2 if halved else 2 * refine))
         coarse, fine = (other, own) if halved else (own, other)
-        differences = [MeshDifference(coarse=coarse, fine=fine, number=i) for i in range(len(own.answers))]
+        differences = _differences(coarse, fine, asked)
         singular = singular or tuple(map(recognized, differences))
         bars = [error_bars(item, its, of_fine=halved) for item, its in zip(differences, singular, strict=True)]
         accuracies = [Accuracy.of(asked, 1, its) for its in bars]
     except (ProblemError, SingularSystemError, SolverError) as error:
         accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(own.answers)
     return Meshed(problem=problem, condensation=own.condensation, accuracies=tuple(accuracies))
+
+
+def _differences(coarse: Solved, fine: Solved, asked: float) -> list[MeshDifference]:
+    """What bisecting every element changes under each load case, with the parts of forces that may hide errors."""
+    pairs = [MeshDifference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
+    return told_apart(pairs, asked / SAFETY)
 
 
 def first_mesh(problem: Problem) -> Problem:
@@ -141,7 +148,7 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
                 raise
             reason = str(error).splitlines()[0]
             break
-        differences = [MeshDifference(coarse=coarse, fine=fine, number=i) for i in range(len(fine.answers))]
+        differences = _differences(coarse, fine, asked)
         singular = [search.watch.look(item) for item in differences]
         bars = [error_bars(item, its, searched=True) for item, its in zip(differences, singular, strict=True)]
         now = Meshed(

@@ -10,6 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved, norm_squared, penetrations
+from bemcontact.adaptivity.hidden_changes import hidden_change
 from bemcontact.adaptivity.singularities import BESIDE, FITTED, Singularity, logarithmic_rise, run_elements
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside, images
 from bemcontact.arrays import Array, BoolArray, IntArray
@@ -90,8 +91,10 @@ def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_f
         if m is None:
             yield ErrorBar(quantity="force", zone=name, value=0.0, bar=None, note="no contact in this zone")
             continue
+        hidden = hidden_change(difference, number)
+        m = max(m, hidden)
         changes.append(m)
-        yield from _zone_bars(estimate, number, name, m, its)
+        yield from _zone_bars(estimate, number, name, m, hidden, its)
     sizes = [float(np.hypot(*np.moveaxis(answer.displacement, 2, 0)).max()) for answer in difference.pair]
     if max(sizes) <= NOTHING * _strain(estimate) * difference.fine.mesh.size:  # a body that is pressed and cannot move
         yield ErrorBar(quantity="displacement", zone=None, value=0.0, bar=0.0)
@@ -228,7 +231,9 @@ def near_singularities(solved: Solved, answer: CaseAnswer, singularities: Sequen
     return near
 
 
-def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Sequence[Singularity]) -> Iterator[ErrorBar]:
+def _zone_bars(
+    estimate: _Estimate, number: int, name: str, m: float, hidden: float, its: Sequence[Singularity]
+) -> Iterator[ErrorBar]:
     """Error bars of a zone under pressure: peak, force, ends of contact, pressure, intensities."""
     both = [*zip((estimate.difference.coarse, estimate.difference.fine), estimate.difference.pair, strict=True)]
     peaks = [float(answer.pressure[number].max()) for _, answer in both]
@@ -245,8 +250,8 @@ def _zone_bars(estimate: _Estimate, number: int, name: str, m: float, its: Seque
     else:
         bar = estimate.bar(max(_change(*peaks), PEAK * m), smooth=True) + logarithmic_rise(estimate.difference, name)
         yield ErrorBar(quantity="peak", zone=name, value=estimate.value(*peaks), bar=bar)
-    forces = [float((solved.mesh.tributary * answer.pressure[number]).sum()) for solved, answer in both]
-    bar = estimate.bar(max(_change(*forces), FORCE * m))
+    forces = [solved.force(answer, number) for solved, answer in both]
+    bar = estimate.bar(max(_change(*forces), FORCE * m, hidden))
     yield ErrorBar(quantity="force", zone=name, value=estimate.value(*forces), bar=bar)
     yield from _end_bars(estimate, name, m)
     solved, answer = estimate.reported

@@ -11,18 +11,23 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body, body_of
-from bemcontact.bem.condense import Condensation, boundary_state
+from bemcontact.bem.condense import Condensation, boundary_change, boundary_state
 from bemcontact.bem.condense import condense as condense_body
 from bemcontact.bem.mesh import BoundaryState, Mesh
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.surface_gaps import surface_gaps
+from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import ContactSolution, Status
-from bemcontact.errors import SolverError
+from bemcontact.errors import SingularSystemError, SolverError
 from bemcontact.formulations import complementarity
+from bemcontact.formulations.active_set import ContactBlock
+from bemcontact.formulations.scaling import scale, scaled_change, unscaled
 from bemcontact.problem.problem import Problem
 
 SLIT = 1e-3
 """Open length between two stretches of contact, over the shorter of these, that is not taken for an opening."""
+ALIKE = 1e-6
+"""Relative difference below which two elements change alike: both are bisected, or none."""
 PENETRATION = 1e-3
 """Penetration between nodes, over the largest displacement, that a mesh must resolve."""
 
@@ -69,6 +74,24 @@ class CaseAnswer:
         columns = (root[..., None] * motions).reshape(-1, motions.shape[-1])
         return whole - motions @ np.linalg.lstsq(columns, (root * whole).ravel(), rcond=None)[0]
 
+    def force_influence(self) -> Iterator[tuple[Array, Array]]:
+        """Per zone, the boundary's change (displacement, traction) if the points in contact move out by 1 [L].
+
+        By reciprocity an error on the boundary enters the force of the zone by its work in this change, with the points
+        in contact that the answer has: as many as these determine. Rigid motions make the change zero.
+        """
+        contact, pressure = self.condensation.contact, self.solution.pressure
+        block = ContactBlock(scaled=scale(contact), points=np.flatnonzero(pressure > 0))
+        still = np.zeros(contact.free_motions)
+        moved = [scaled_change(contact, Change(-1.0 * (own > 0), still)) for own in contact.weights_by_zone]
+        try:
+            pressures, _, amplitudes = block.solve(*moved)
+        except SingularSystemError:
+            return
+        for p, a in zip(pressures, amplitudes, strict=True):
+            change, _, motion = unscaled(contact, p, a)
+            yield boundary_change(self.condensation, change, motion)
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Solved:
@@ -101,6 +124,10 @@ class Solved:
     def degrees_of_freedom(self) -> int:
         """Number of unknowns, two for each node."""
         return self.mesh.degrees_of_freedom
+
+    def force(self, answer: CaseAnswer, zone: int) -> float:
+        """Force of a zone, the pressure summed up along it [p L]."""
+        return float((self.mesh.tributary * answer.pressure[zone]).sum())
 
     @cached_property
     def in_zone(self) -> BoolArray:
@@ -178,16 +205,23 @@ class MeshDifference:
     ----------
     coarse, fine : one mesh, and the same with every element in two
     number : of the load case
+    partly : a mesh between these two, with some elements in two, if it was needed
     """
 
     coarse: Solved
     fine: Solved
     number: int
+    partly: Solved | None = None
 
     @property
     def pair(self) -> tuple[CaseAnswer, CaseAnswer]:
         """Coarse and fine answer."""
         return self.coarse.answers[self.number], self.fine.answers[self.number]
+
+    @property
+    def meshes(self) -> tuple[Solved, ...]:
+        """The meshes, from the coarse one to the fine one."""
+        return (self.coarse, self.fine) if self.partly is None else (self.coarse, self.partly, self.fine)
 
     @cached_property
     def pressure(self) -> Array:
@@ -197,14 +231,30 @@ class MeshDifference:
 
     @cached_property
     def energy(self) -> Array:
-        """Change (m,) of the energy of each coarse element, h/G ∫|Δt|² + G h ∫|Δu'|², per thickness [p L³]."""
-        one, two = self.pair
+        """Change (m,) of the energy of each coarse element, h/G ∫|Δt|² + G h ∫|Δu'|², per thickness [p L²]."""
+        return self._energy(*((answer.displacement, answer.traction) for answer in self.pair))
+
+    @cached_property
+    def force_errors(self) -> Array:
+        """What the error on each coarse element may change the force of each zone by, (zones, m) per thickness [p L].
+
+        This is the energy of the change of the answer times that of the change of its influence on the force, and no
+        sum of signed parts: the error of a corner and that of all other elements may cancel on one pair of meshes, so
+        that the force itself changes little.
+        """
+        errors = np.zeros((len(self.coarse.in_zone), len(self.coarse.mesh.elements)))
+        for own, *both in zip(errors, *(answer.force_influence() for answer in self.pair), strict=False):
+            own += np.sqrt(self.energy * self._energy(*both))
+        return errors
+
+    def _energy(self, one: tuple[Array, Array], two: tuple[Array, Array]) -> Array:
+        """`energy` of the difference of two fields (displacement, traction), on the coarse and the fine mesh."""
         mesh, weights = self.fine.mesh, self.fine.weights
         shear = self.fine.body.problem.material.shear_modulus
         length = weights.sum(axis=1)
-        traction = _at_gauss(two.traction - halves(one.traction))
+        traction = _at_gauss(two[1] - halves(one[1]))
         xi, _ = reference_element.gauss_legendre(3)
-        slope = reference_element.derivatives(xi) @ (two.displacement - halves(one.displacement))
+        slope = reference_element.derivatives(xi) @ (two[0] - halves(one[0]))
         tangents = mesh.tangents_at(xi)
         rate = slope / np.hypot(tangents[..., 0], tangents[..., 1])[..., None]
         both = (traction**2).sum(axis=2) / shear + shear * (rate**2).sum(axis=2)
@@ -215,6 +265,16 @@ class MeshDifference:
         """∫Δp² (zones, m) of each coarse element [p² L]."""
         squares = (self.fine.weights * self.pressure**2).sum(axis=2)
         return squares.reshape(len(squares), -1, 2).sum(axis=2)
+
+
+def most_of(values: Array, share: float) -> BoolArray:
+    """Fewest elements that have a share of the sum, and those that are like the least of them."""
+    order = np.sort(values)[::-1]
+    total = np.cumsum(order)
+    if not len(values) or not total[-1] > 0:
+        return np.zeros(len(values), bool)
+    last = min(int(np.searchsorted(total, (1 - ALIKE) * share * total[-1])), len(order) - 1)
+    return (values >= (1 - ALIKE) * order[last]) & (values > 0)
 
 
 def norm_squared(solved: Solved, values: Array) -> Array:

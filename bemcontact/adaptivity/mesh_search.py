@@ -7,12 +7,13 @@ from itertools import pairwise
 import numpy as np
 
 from bemcontact.adaptivity.error_bars import SAFETY, near_singularities
-from bemcontact.adaptivity.fields import MeshDifference, Solved, norm_squared, penetrations, solved
+from bemcontact.adaptivity.fields import MeshDifference, Solved, most_of, norm_squared, penetrations, solved
 from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
+from bemcontact.adaptivity.hidden_changes import hiding
 from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
 from bemcontact.adaptivity.sizes import GROWTH, OUTSIDE, Layers, Limit, Loop
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, IntArray
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.problem import Problem
@@ -38,10 +39,10 @@ ENERGY_SHARE, PRESSURE_SHARE = 0.8, 0.5
 """Parts of the changes of energy and pressure whose elements are bisected."""
 TIP, SHORTEST_TIP = 1 / 8, 1e-5
 """Factor of the element at an infinite pressure, and its least length over the contact."""
+MOST_TIPS = 10
+"""Number of elements that may have most of what hides in a force: those at corners of the body."""
 SPOT = 1 / 4
 """Factor of an element under which something penetrates between nodes."""
-ALIKE = 1e-6
-"""Relative difference below which two elements change alike: both are bisected, or none."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,13 +194,17 @@ class MeshSearch:
 
     def refine(self, differences: Sequence[MeshDifference], singular: Sequence[Sequence[Singularity]]) -> bool:
         """Limit the size of elements where bisecting them changes most; whether the mesh will grow."""
-        coarse = differences[0].coarse
+        coarse, asked = differences[0].coarse, self.problem.asked_accuracy
+        assert asked is not None
         wanted = np.zeros(len(coarse.mesh.elements), bool)
         factor = np.full(len(wanted), 0.5)
         for difference, its in zip(differences, singular, strict=True):
-            wanted |= _largest(difference.energy, ENERGY_SHARE)
-            wanted |= _largest(self._change_of_pressure(difference, its), PRESSURE_SHARE)
+            wanted |= most_of(difference.energy, ENERGY_SHARE)
+            wanted |= most_of(self._change_of_pressure(difference, its), PRESSURE_SHARE)
             tips = _tips(difference, its)
+            for errors in hiding(difference, asked / SAFETY):
+                wanted |= most_of(errors, ENERGY_SHARE)
+                tips = np.append(tips, np.flatnonzero(errors > errors.sum() / MOST_TIPS))
             wanted[tips], factor[tips] = True, TIP
         for element in np.flatnonzero(wanted):
             self._limit(coarse, int(element), float(factor[element]))
@@ -302,16 +307,6 @@ def _middles(answer: Solved, outline: SizedOutline) -> tuple[Array, Array]:
             positions.append(loop.start_of[edge.name] + edge.length * (ends[:-1] + ends[1:]) / 2)
             loops.append(np.full(len(ends) - 1, number))
     return np.concatenate(positions), np.concatenate(loops)
-
-
-def _largest(values: Array, share: float) -> BoolArray:
-    """Fewest elements that have a share of the sum, and those that are like the least of them."""
-    order = np.sort(values)[::-1]
-    total = np.cumsum(order)
-    if not len(values) or not total[-1] > 0:
-        return np.zeros(len(values), bool)
-    last = min(int(np.searchsorted(total, (1 - ALIKE) * share * total[-1])), len(order) - 1)
-    return (values >= (1 - ALIKE) * order[last]) & (values > 0)
 
 
 def mesh_search(problem: Problem) -> MeshSearch:

@@ -43,6 +43,8 @@ PRESSED_IN = 0.1
 
 BEHIND = 1e-9
 """Distance over the size of a body that is round-off, where the body lies behind a surface and touches it."""
+HELD_INSIDE = 1e-6
+"""Depth over the size of a body up to which it is drawn as held in a surface: that of coordinates with six digits."""
 MATRICES = 3
 """Number of full matrices of all degrees of freedom that are in memory at the same time."""
 WEDGE = 0.02
@@ -239,6 +241,7 @@ def ensure_held(body: Body) -> None:
     try:
         if violation := body.pinned.violation(body.factors, body.forces, body.problem.units.model_dump()):
             raise ProblemError(violation)
+        _ensure_room_where_held(body)
         _check_support(body)
     except ProblemError as error:
         case = body.problem.case
@@ -246,6 +249,32 @@ def ensure_held(body: Body) -> None:
             raise
         path = ("load_cases" if case in body.problem.load_cases else "combinations", case)
         raise ProblemError(Issue(path=path, message=str(error))) from None
+
+
+def _ensure_room_where_held(body: Body) -> None:
+    """Refuse a surface that lies inside the body where conditions hold it: pressure there would have no bound."""
+    held, problem = body.points.held, body.problem
+    if held is None:
+        return
+    position, given = body.tools.position @ body.factors, body.acting.values.displacement
+    gap = held.gap + np.sum(held.normals * given[held.node], axis=1)
+    for number, tool in enumerate(problem.tools.values()):
+        own = np.isin(held.zone, [[*problem.contact_zones].index(zone) for zone in tool.zones])
+        arm = body.mesh.nodes[held.node] - body.tools.point[number]
+        x, y, turn = position[3 * number : 3 * number + 3]
+        moved = np.array([x, y]) + turn * np.column_stack([-arm[:, 1], arm[:, 0]])
+        gap -= np.where(own, np.sum(held.normals * moved, axis=1), 0.0)
+        gap[own & any(tool.free)] = np.inf
+    if (depth := -gap.min(initial=0.0)) > HELD_INSIDE * body.mesh.size:
+        worst = int(gap.argmin())
+        x, y = body.mesh.nodes[held.node[worst]]
+        inside = f"{depth:.3g} {problem.units.length}".strip()
+        message = (
+            f"where conditions hold the body, at ({x:.5g}, {y:.5g}), this surface is {inside} inside it: no pressure "
+            "makes room there; move the surface, or hold the body elsewhere, or end the contact edge before this place"
+        )
+        zone = [*problem.contact_zones][held.zone[worst]]
+        raise ProblemError(Issue(path=("contact_zones", zone, "surface"), message=message))
 
 
 def _check_support(body: Body) -> None:

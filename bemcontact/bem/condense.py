@@ -130,27 +130,37 @@ def _observe(system: System, response: Array) -> Array:
 
 def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:
     """Recover the boundary from pressure (n,) [p] and rigid amplitudes (k,) [L] of a contact solution."""
-    body, system = condensation.body, condensation.system
-    mesh, gauge = body.mesh, condensation.gauge
-    scaled = np.append(condensation.factors, pressure / system.stress)
-    z = condensation.response @ scaled
-    amplitudes = rigid_amplitudes.copy()
-    amplitudes[: len(gauge.shift_load)] -= gauge.shift_load @ condensation.factors + gauge.shift_pressure @ pressure
-
-    displacement, traction = system.fields(z, body.acting)
-    displacement += body.seen.body.displacement(mesh.nodes) @ amplitudes
-    points = body.points
-    carried = pressure[points.point, None] * points.normals[points.point]
-    np.add.at(traction, (points.element, points.local), carried)
+    mesh = condensation.body.mesh
+    displacement, traction = _boundary(condensation, pressure, rigid_amplitudes, condensation.factors)
     return BoundaryState(
         points=mesh.nodes[mesh.elements],
-        displacement=displacement[mesh.elements],
+        displacement=displacement,
         traction=traction,
         edge=mesh.edge,
         edge_names=mesh.edge_names,
         force_balance=_force_balance(condensation, traction),
-        equilibrium_slack=_slack(condensation, scaled),
+        equilibrium_slack=_slack(condensation, pressure),
     )
+
+
+def boundary_change(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> tuple[Array, Array]:
+    """Displacement (m, 3, 2) [L] and traction (m, 3, 2) [p] of a pressure (n,) and amplitudes (k,) without loads."""
+    return _boundary(condensation, pressure, rigid_amplitudes, np.zeros_like(condensation.factors))
+
+
+def _boundary(
+    condensation: Condensation, pressure: Array, rigid_amplitudes: Array, factors: Array
+) -> tuple[Array, Array]:
+    """Displacement and traction of a pressure, of amplitudes, and of the loadings by these factors, if any."""
+    body, system, gauge = condensation.body, condensation.system, condensation.gauge
+    z = condensation.response @ np.append(factors, pressure / system.stress)
+    amplitudes = rigid_amplitudes.copy()
+    amplitudes[: len(gauge.shift_load)] -= gauge.shift_load @ factors + gauge.shift_pressure @ pressure
+    displacement, traction = system.fields(z, body.acting if factors.any() else None)
+    displacement += body.seen.body.displacement(body.mesh.nodes) @ amplitudes
+    points = body.points
+    np.add.at(traction, (points.element, points.local), pressure[points.point, None] * points.normals[points.point])
+    return displacement[body.mesh.elements], traction
 
 
 def _force_balance(condensation: Condensation, traction: Array) -> float:
@@ -163,8 +173,9 @@ def _force_balance(condensation: Condensation, traction: Array) -> float:
     return float(abs(resultant).max() / magnitude) if magnitude > 0 else 0.0
 
 
-def _slack(condensation: Condensation, scaled: Array) -> float:
+def _slack(condensation: Condensation, pressure: Array) -> float:
     """Border unknowns of the solution, over the sum of the magnitudes that each load and pressure contributes."""
+    scaled = np.append(condensation.factors, pressure / condensation.system.stress)
     slack = condensation.response[condensation.system.unknowns.size :]
     if len(slack) == 0:
         return 0.0

@@ -54,6 +54,7 @@ class ContactPoints:
     held_points : (runs, 2, 2) these nodes [L]
     elements_of_run : elements of each piece in order; none for a corner of the body that stands on a face by itself
     zone_of_run : number of the zone of each piece
+    held : nodes of the zones that are no points
     """
 
     mesh: Mesh
@@ -72,6 +73,7 @@ class ContactPoints:
     held_points: Array
     elements_of_run: tuple[IntArray, ...] = ()
     zone_of_run: tuple[int, ...] = ()
+    held: "HeldNodes | None" = None
 
     @classmethod
     def none(cls, mesh: Mesh) -> Self:
@@ -182,6 +184,7 @@ def contact_points(
                 _Piece(
                     number, tool_of.get(name), elements, elements, length, goes_on, nodes[free], arc[free],
                     normals[free], lies[free], gap[free], held, mesh.nodes[nodes[[0, -1]]],
+                    HeldNodes(np.full(len(nodes), number)[~loose], nodes[~loose], normals[~loose], gap[~loose]),
                 )
             )  # fmt: skip
         if not any(len(piece.nodes) for piece in pieces if piece.zone == number) and (in_zone & choice[middles]).any():
@@ -189,6 +192,15 @@ def contact_points(
             raise ProblemError(Issue(path=("contact_zones", name, "edges"), message=message))
         pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, values.displacement_given)
     return _joined(mesh, pieces)
+
+
+class HeldNodes(NamedTuple):
+    """Nodes (h,) that prescribed displacements hold along the normal of the surface: zone, normals (h, 2), ε [L]."""
+
+    zone: IntArray
+    node: IntArray
+    normals: Array
+    gap: Array
 
 
 class _NodeFaces(NamedTuple):
@@ -279,7 +291,7 @@ def _standing(
         if not _held_along(normals, given[nodes])[0]:
             yield _Piece(
                 zone, tool, elements, elements[:0], np.inf, (False, False), nodes, np.zeros(1), normals, normals,
-                faces.gap[[node], 1], np.full(2, np.nan), mesh.nodes[[node, node]],
+                faces.gap[[node], 1], np.full(2, np.nan), mesh.nodes[[node, node]], None,
             )  # fmt: skip
 
 
@@ -316,6 +328,7 @@ class _Piece(NamedTuple):
     gap: Array
     held_arc: Array
     held_points: Array
+    held: HeldNodes | None
 
 
 def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
@@ -365,6 +378,7 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
         held_points=held_points,
         elements_of_run=tuple(piece.own for piece in pieces),
         zone_of_run=tuple(piece.zone for piece in pieces),
+        held=HeldNodes(*map(np.concatenate, zip(*(piece.held for piece in pieces if piece.held), strict=True))),
     )
 
 

@@ -305,9 +305,15 @@ class System:
         W[self.equations.row[used]] = self.motions.displacement(at)[used]
         return W
 
-    def fields(self, z: Array, loading: Loading) -> tuple[Array, Array]:
-        """Displacement (N, 2) [L] and traction (m, 3, 2) [p] of unknowns z and all prescribed ones, less pressures."""
-        displacement, traction = loading.values.displacement.copy(), loading.values.traction.copy()
+    def fields(self, z: Array, loading: Loading | None) -> tuple[Array, Array]:
+        """Displacement (N, 2) [L] and traction (m, 3, 2) [p] of unknowns z and all prescribed ones, less pressures.
+
+        Without a loading, all prescribed ones are zero.
+        """
+        if loading is None:
+            displacement, traction = np.zeros((len(self.mesh.nodes), 2)), np.zeros((len(self.mesh.elements), 3, 2))
+        else:
+            displacement, traction = loading.values.displacement.copy(), loading.values.traction.copy()
         sought = self.unknowns.displacement >= 0
         displacement[sought] = z[self.unknowns.displacement[sought]] * self.length
         sought = self.unknowns.traction >= 0

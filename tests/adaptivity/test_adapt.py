@@ -596,7 +596,7 @@ def test_a_corner_that_stands_on_a_face_by_itself_does_not_shift_the_zones_after
         {"name": "side", "start": (19.020596, -31.845128), "end": (29.480841, -6.288642)},
     ]  # fmt: skip
     points = [(0.24844008681662197, 42.6956690132727), (-5.696248163476217, 37.82515085017288),
-              (-11.640722909384339, 32.95437209273957), (-41.36476386353009, 8.602513248721078)]  # fmt: skip
+              (-11.640722909384339, 32.95437209273957), (-41.377, 8.618)]  # fmt: skip
     zones = {
         "bent": {"edges": "slope", "surface": {"kind": "polyline", "points": points}},
         "flat": {"edges": "side", "surface": {"kind": "plane", "point": (24.25, -19.07), "normal": (-0.9255, 0.3788)}},

@@ -139,3 +139,51 @@ def test_contradictions_are_reported_where_they_are_stated(own, kept, path):
     with pytest.raises(ProblemError, match="different displacements") as caught:
         body_of(bar(contour(own), kept))
     assert {issue.path[: len(path)] for issue in caught.value.issues} == {path}
+
+
+def clamped(depth, **more):
+    """A block on a plane, whose left side is clamped; the plane is that much above the lower corner of this side."""
+    plane = {"kind": "plane", "point": [0, depth], "normal": [0, 1]}
+    return bar(plane, {"left": HELD, "top": {"pressure": 5}}, **more)
+
+
+def lowered_tool(by):
+    return {"tools": {"anvil": {"zones": ["seat"], "displacement": {"y": by}}}}
+
+
+@pytest.mark.parametrize(
+    ("depth", "more"),
+    [
+        (0.01, {}),
+        (-0.02, lowered_tool(0.03)),
+        (0.0, {"load_cases": {"on": {"tools": {"anvil": {"displacement": {"y": 0.01}}}}}, **lowered_tool(0.0)}),
+    ],
+)
+def test_a_surface_inside_the_body_where_it_is_held_is_refused(depth, more):
+    """The displacement would jump there, and with it the pressure beside it is that of E/r: its force has no bound."""
+    with pytest.raises(ProblemError, match=r"at \(0, 0\), this surface is 0\.01 inside it"):
+        solve_each(clamped(depth, **more))
+
+
+def solve_each(problem):
+    for case in problem.case_names or (None,):
+        solve(problem if case is None else problem.with_case(case))
+
+
+@pytest.mark.parametrize(
+    ("depth", "more"), [(0.0, {}), (-0.01, {}), (1e-7, {}), (0.01, lowered_tool(-0.01)), (0.01, {"free": True})]
+)
+def test_a_surface_that_reaches_no_held_place_is_not(depth, more):
+    """A tool may be moved away, and one that is free to move makes room itself."""
+    if more.pop("free", False):
+        more = {"tools": {"anvil": {"zones": ["seat"], "force": {"y": 1.0}}}}
+    body_of(clamped(depth, **more))
+
+
+def test_a_tool_that_is_pressed_onto_a_held_place_penetrates_it():
+    """It moves until the points beside that place carry its force."""
+    tool = {"tools": {"anvil": {"zones": ["seat"], "force": {"y": 30.0}}}}
+    result = solve(clamped(0.0, **tool))
+    assert result.penetration is not None
+    assert result.penetration.at == pytest.approx((0.0, 0.0))
+    assert not result.holds

@@ -161,7 +161,7 @@ def test_contact_that_continues_beyond_a_held_node(mirrored, graded):
             {"displacement": {"y": 0}}, surface={**PLANE, "point": [0, -0.01]}
         ),  # a step: the gap is open there
         partly_held({"displacement": {"y": 0}}, slope=0.2),  # a corner of 11 degrees
-        partly_held({"displacement": {"y": -0.01}}),  # held where it would be in the plane
+        partly_held({"displacement": {"y": 0.01}}),  # held above the plane
     ],
 )
 def test_contact_that_ends_at_a_held_node(body):

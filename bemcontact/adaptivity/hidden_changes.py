@@ -1,0 +1,60 @@
+"""What the change of a force may hide: errors of opposite sign, such as that of corners and that of all other elements.
+
+Where they nearly cancel on one pair of meshes, the force changes little and its error is not small. Their sizes are
+bounded by energies; where the bound says too much, the elements that have most of it are bisected alone, which tells
+the parts.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bemcontact.adaptivity.fields import MeshDifference, Solved, most_of, solved
+from bemcontact.arrays import Array, BoolArray
+from bemcontact.problem.problem import Problem
+
+SHARE = 0.8
+"""Part of the bound that the elements have which are bisected alone."""
+REMAINS = 0.5
+"""Part of the changes of opposite sign that may remain as an error."""
+
+
+def hidden_change(difference: MeshDifference, zone: int) -> float:
+    """Change of the force of a zone that the change of the force may hide, over the force; zero without pressure."""
+    force = difference.fine.force(difference.pair[1], zone)
+    if not force > 0:
+        return 0.0
+    changes = float(difference.force_errors[zone].sum())
+    if difference.partly is not None:
+        before, between, after = (item.force(item.answers[difference.number], zone) for item in difference.meshes)
+        changes = min(changes, abs(between - before) + abs(after - between))
+    return REMAINS * changes / force
+
+
+def hiding(difference: MeshDifference, most: float) -> list[Array]:
+    """What each element (m,) may change the force of a zone by, of zones where more than `most` of it may be hidden."""
+    return [errors for zone, errors in enumerate(difference.force_errors) if hidden_change(difference, zone) > most]
+
+
+def told_apart(differences: Sequence[MeshDifference], most: float) -> list[MeshDifference]:
+    """Solve on a third mesh where more than `most` of a force may be hidden: the elements of most of it bisected."""
+    elements = np.zeros(len(differences[0].coarse.mesh.elements), bool)
+    for difference in differences:
+        for errors in hiding(difference, most):
+            elements |= most_of(errors, SHARE)
+    if not elements.any():
+        return list(differences)
+    partly = solved(_partly_cut(differences[0].coarse, elements))
+    return [replace(difference, partly=partly) for difference in differences]
+
+
+def _partly_cut(coarse: Solved, elements: BoolArray) -> Problem:
+    """The problem with some elements (m,) of a mesh in two."""
+    problem, ends = coarse.body.problem, dict[str, list[float]]()
+    for number, name in enumerate(coarse.mesh.edge_names):
+        places = problem.edge(name).breakpoints(problem.mesh.refine)
+        middles = (places[:-1] + places[1:]) / 2
+        ends[name] = np.sort(np.append(places[1:-1], middles[elements[coarse.mesh.edge == number]])).tolist()
+    whole = problem.model_copy(update={"mesh": problem.mesh.model_copy(update={"refine": 1})})
+    return whole.with_element_ends(ends)
