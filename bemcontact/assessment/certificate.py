@@ -40,6 +40,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.assessment.definiteness import EPS, Definiteness
 from bemcontact.assessment.equations import TIE, ContactEquations, balanced, round_off_of_equilibrium
+from bemcontact.assessment.reach import points_that_may_touch
 from bemcontact.assessment.residual import Residuals
 from bemcontact.assessment.reweighting import reweighted_bound
 from bemcontact.assessment.uniqueness import NearState, effective_eigenvalue, near_bound
@@ -194,19 +195,28 @@ def _bound_by(
         bound = min(bound, _by_energy(equations, stiff, y, delta, of_gaps, imbalance))
     if bound <= LARGEST_BOUND * y.max() or lacking:
         return (off + bound) * T * (1 + 4 * EPS) if bound < np.inf else None
-    ell, spread = equations.equilibrium, 1.0
-    if contact.free_motions:
-        ell, spread = np.linalg.qr(ell)[0], float(np.linalg.cond(ell))
     state = NearState(
-        pressure=y, contact_set=y > 0, equilibrium=ell, work=work, residual=residual, round_off=len(y) * EPS * spread
-    )
-    if not stiff.definite and (eigenvalue := effective_eigenvalue(state, D, M, contact.equilibrium_space)) is not None:
-        bound = float(np.linalg.norm(residual)) / eigenvalue
-    if bound > LARGEST_BOUND * y.max() and (contact.free_motions or not stiff.definite):
-        bound = min(bound, near_bound(state, D, M, equations.offset, contact.equilibrium, stiff))
-    if bound > LARGEST_BOUND * y.max() and not stiff.definite:
-        bound = min(bound, reweighted_bound(D, M, equations.rigid_motions, y, residual))
+        weights=D, compliance=M, rigid_motions=equations.rigid_motions, offset=equations.offset,
+        equilibrium=contact.equilibrium, pressure=y, work=work, residual=residual, definiteness=stiff,
+    )  # fmt: skip
+    bound = min(bound, _bound_near(state, LARGEST_BOUND * y.max()))
     return (off + bound) * T * (1 + 4 * EPS) if bound < np.inf else None
+
+
+def _bound_near(state: NearState, enough: float) -> float:
+    """Bound of |y - p*| in the largest component by the proofs of other modules, until it is enough."""
+    definite, bound = state.definiteness.definite, np.inf
+    if not definite:
+        state = state.on(points_that_may_touch(state))
+        if state.definiteness.definite:
+            bound = state.definiteness.largest_change(state.residual)
+        elif (eigenvalue := effective_eigenvalue(state)) is not None:
+            bound = float(np.linalg.norm(state.residual)) / eigenvalue
+    if bound > enough and (state.equilibrium.size or not definite):
+        bound = min(bound, near_bound(state))
+    if bound > enough and not state.definiteness.definite:
+        bound = min(bound, reweighted_bound(state))
+    return bound
 
 
 def _by_energy(

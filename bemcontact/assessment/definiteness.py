@@ -59,7 +59,7 @@ class Definiteness:
     def largest_change(self, s: Array, work: float = 0.0) -> float:
         """Change of a pressure, at most, by forces up to s (n,) and work w: max Sᵢ|Zᵢ|(|ZᵀSs|/λ + √(w/λ))."""
         part = min(np.linalg.norm(self.scales * s), self.reach @ (self.scales * s))
-        return float((self.scales * self.reach).max() * (part / self.certain + np.sqrt(work / self.certain)))
+        return float((self.scales * self.reach).max(initial=0.0) * (part / self.certain + np.sqrt(work / self.certain)))
 
     def change_by_energy(self, s: Array, lost: Array) -> float:
         """As `largest_change` for forces s (n,) known but for `lost`: what they do in soft directions is small there.

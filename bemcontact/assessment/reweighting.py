@@ -19,9 +19,8 @@ by which sym(Q) is nearest to the identity, in the metric in which the eigenvalu
 import numpy as np
 from scipy.linalg import eigh
 
-from bemcontact.arrays import Array
 from bemcontact.assessment.definiteness import EPS, LEAST_COMPLIANCE
-from bemcontact.assessment.uniqueness import largest_sum
+from bemcontact.assessment.uniqueness import NearState, largest_sum
 
 ROUNDS = 12
 """Times that weights are sought, each from those before."""
@@ -29,11 +28,9 @@ LEAST = 1e-13
 """Fraction of the largest singular value of the normal equations below which one counts as zero."""
 
 
-def reweighted_bound(D: Array, M: Array, R: Array, pressure: Array, residual: Array) -> float:
-    """Bound of |y - p*| of all states p*, in the largest component; infinity if no weights prove one.
-
-    D (n,), M (n, n), R (n, k), y (n,) in equilibrium, and |s| (n,) with its round-off.
-    """
+def reweighted_bound(state: NearState) -> float:
+    """Bound of |y - p*| of all states p*, in the largest component; infinity if no weights prove one."""
+    D, M, R, pressure, residual = state.weights, state.compliance, state.rigid_motions, state.pressure, state.residual
     n, k = R.shape
     carried = D * pressure
     G = R.T @ (carried[:, None] * R)

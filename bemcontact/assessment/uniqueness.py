@@ -37,6 +37,7 @@ a bound of |e| <= |v| + η that takes the place of B, and so on: in the end litt
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy
@@ -63,32 +64,81 @@ LEAST_REST = 0.05
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NearState:
-    """A pressure near the contact state in scaled numbers.
+    """A pressure near the contact state in scaled numbers, on all points that may be in contact.
 
     Parameters
     ----------
+    weights, compliance, rigid_motions, offset : D (n,), M (n, n), R (n, k), q (n,)
+    equilibrium : (n, k) ℓ
     pressure : (n,) y >= 0 in equilibrium
-    contact_set : (n,) where y may be positive
-    equilibrium : (n, k) ℓ, with columns that are orthonormal, so that the linear programs see each direction
-    work : (n,) g = Dδ - s on all points, zero on the contact set
+    work : (n,) g = Dδ - s, zero on the contact set
     residual : (n,) |sᵢ|, with their round-off
-    round_off : of the eigenvalues
+    definiteness : of M on the equilibrium space
     """
 
-    pressure: Array
-    contact_set: BoolArray
+    weights: Array
+    compliance: Array
+    rigid_motions: Array
+    offset: Array
     equilibrium: Array
+    pressure: Array
     work: Array
     residual: Array
-    round_off: float
+    definiteness: Definiteness
+
+    def on(self, points: BoolArray) -> "NearState":
+        """The same on fewer points, if no state presses on others."""
+        if points.all():
+            return self
+        D, M, ell = self.weights[points], self.compliance[np.ix_(points, points)], self.equilibrium[points]
+        return NearState(
+            weights=D,
+            compliance=M,
+            rigid_motions=self.rigid_motions[points],
+            offset=self.offset[points],
+            equilibrium=ell,
+            pressure=self.pressure[points],
+            work=self.work[points],
+            residual=self.residual[points],
+            definiteness=Definiteness.of(D, M, ell),
+        )
+
+    @property
+    def contact_set(self) -> BoolArray:
+        """Where y is positive (n,)."""
+        return self.pressure > 0
+
+    @cached_property
+    def directions(self) -> Array:
+        """ℓ with columns that are orthonormal (n, k), so that linear programs see each direction."""
+        return np.linalg.qr(self.equilibrium)[0]
+
+    @property
+    def round_off(self) -> float:
+        """That of eigenvalues on the equilibrium space."""
+        spread = float(np.linalg.cond(self.equilibrium)) if self.equilibrium.size else 1.0
+        return len(self.pressure) * EPS * spread
+
+    def bounds(self) -> tuple[float, float]:
+        """Bounds of |S⁻¹(y - p*)| and of Σ Dp* for all states p*; infinity if there are none."""
+        S, D, y = self.definiteness.scales, self.weights, self.pressure
+        if self.equilibrium.size:
+            return SAFE * self._largest_sum(1 / S), self._largest_sum(D)
+        most = _largest_pressure(self.definiteness, y / S, -S * D * self.offset)
+        return most + float(np.linalg.norm(y / S)), most * float(np.linalg.norm(D * S))
+
+    def _largest_sum(self, weights: Array) -> float:
+        """Bound of Σ wᵢp*ᵢ of all states p* for weights w > 0."""
+        columns = self.equilibrium / weights[:, None]
+        columns = columns / np.linalg.norm(columns, axis=0)
+        lost = len(weights) * EPS * float(np.linalg.cond(columns))
+        return largest_sum(np.linalg.qr(columns)[0], weights * self.pressure, lost)
 
 
-def effective_eigenvalue(state: NearState, D: Array, M: Array, Z: Array) -> float | None:
-    """Eigenvalue by which |s| over it bounds how far each state can be from y; None if none is proved.
-
-    D (n,), M (n, n), and Z (n, n - k), an orthonormal basis of the equilibrium space.
-    """
-    weighted = D[:, None] * M
+def effective_eigenvalue(state: NearState) -> float | None:
+    """Eigenvalue by which |s| over it bounds how far each state can be from y; None if none is proved."""
+    weighted, ell = state.weights[:, None] * state.compliance, state.equilibrium
+    Z = np.linalg.qr(ell, mode="complete")[0][:, ell.shape[1] :]
     last = min(MOST, Z.shape[1] - 1)
     values, vectors = eigh(Z.T @ (weighted + weighted.T) @ Z / 2, subset_by_index=(0, last))
     values, vectors = values - state.round_off, Z @ vectors
@@ -132,11 +182,11 @@ def _bound(state: NearState, negative: float, positive: float, X: Array) -> floa
 def _largest(state: NearState, x: Array, g: Array) -> float:
     """Largest |xᵀ(y - p)| for all p >= 0 with the same load and gᵀp <= 1; infinity if it is unbounded."""
     size = np.maximum(1.0, g)
-    columns = (state.equilibrium / size[:, None]).T
+    columns = (state.directions / size[:, None]).T
     ends = [
         scipy.optimize.linprog(
             side * x / size, A_ub=(g / size)[None, :], b_ub=[1.0], A_eq=columns,
-            b_eq=state.equilibrium.T @ state.pressure, bounds=(0, None),
+            b_eq=state.directions.T @ state.pressure, bounds=(0, None),
         )
         for side in (1.0, -1.0)
     ]  # fmt: skip
@@ -145,22 +195,15 @@ def _largest(state: NearState, x: Array, g: Array) -> float:
     return max(at - lowest, -highest - at)
 
 
-def near_bound(state: NearState, D: Array, M: Array, q: Array, ell: Array, whole: Definiteness) -> float:
-    """Bound of |y - p*| of all states p*, in the largest component, by points near contact; infinity if there is none.
-
-    D (n,), M (n, n), q (n,) and ℓ (n, k); `whole` is the definiteness on all points.
-    """
+def near_bound(state: NearState) -> float:
+    """Bound of |y - p*| of all states p*, in the largest component, by points near contact, or infinity."""
+    D, M, ell, whole = state.weights, state.compliance, state.equilibrium, state.definiteness
     S, open_points = whole.scales, ~state.contact_set
     scaled = S[:, None] * ell / np.linalg.norm(S[:, None] * ell, axis=0)
     rows, lost = np.linalg.qr(scaled)[0], len(S) * EPS * float(np.linalg.cond(scaled)) if ell.size else 0.0
     g, residual = S * state.work, float(np.linalg.norm(S * state.residual))
     K = np.abs(S[:, None] * (D[:, None] * M) * S)
-    norm, y = float(((K + K.T) / 2).sum(axis=1).max()), state.pressure / S
-    if ell.size:
-        start = SAFE * largest_sum(rows, y, lost)
-    else:
-        start = _largest_pressure(whole, y, -S * D * q) + float(np.linalg.norm(y))
-    found = np.inf
+    norm, start, found = float(((K + K.T) / 2).sum(axis=1).max()), state.bounds()[0], np.inf
     for h in np.quantile(g[open_points], NEAR) if start < np.inf and open_points.any() else ():
         near = state.contact_set | (g <= h)
         if h <= 0 or (lever := _least_singular(rows[near]) - lost) <= 0:
