@@ -65,7 +65,7 @@ def reweighted_bound(state: NearState) -> float:
     if k:
         total = carried.sum() + largest_sum(R, carried, n * EPS)
         levers = np.abs(R @ np.linalg.solve(G, R[pressure > 0].T)).max(axis=0)
-        if (apart.max() * total * levers > E[pressure > 0]).any():
+        if not total < np.inf or (apart.max() * total * levers > E[pressure > 0]).any():
             return np.inf
     gaps = np.where(pressure > 0, residual / D, 0.0)
     rest = E * residual + apart * D * (np.abs(R) @ (np.abs(seen) @ gaps))

@@ -315,7 +315,8 @@ def _balanced(A: csc_array, z: Array, dims: Any) -> Array:
 
 def _is_ray(slope: Array, ray: Array, rest: Array) -> bool:
     """Whether a ray goes down, and by more than the rest, which should vanish, could feign where the slope is large."""
-    return bool(max(1.0, _size(slope)) * _size(rest) <= -PROOF * (slope @ ray))
+    down = -float(slope @ ray) - len(ray) * float(np.finfo(float).eps) * float(np.abs(slope) @ np.abs(ray))
+    return bool(down > 0.0 and max(1.0, _size(slope)) * _size(rest) <= PROOF * down)
 
 
 def _outside(dims: Any, s: Array, z: Array) -> float:

@@ -204,14 +204,24 @@ class _Basis:
 
 
 def _end_of_ray(M: Array, q: Array, basis: _Basis, entering: int, column: Array) -> Status:
-    """Infeasible, if the direction y >= 0 of z along which nothing falls proves it."""
+    """Infeasible, if the direction y >= 0 of z along which nothing falls proves it, or another one."""
     if basis.cover_value <= VANISHED and _is_solution(M, q, basis.active):
         return Status.SOLVED
     direction = np.zeros(basis.cover + 1)
     direction[basis.basic] = -column
     direction[entering] = 1.0
     y = np.maximum(direction[len(q) : basis.cover], 0.0)
-    return Status.INFEASIBLE if excludes(M, q, y) else Status.NO_SOLUTION_FOUND
+    infeasible = excludes(M, q, y) or excludes(M, q, _separating(M, q))
+    return Status.INFEASIBLE if infeasible else Status.NO_SOLUTION_FOUND
+
+
+def _separating(M: Array, q: Array) -> Array:
+    """The y (n,) with 0 <= y <= 1 and Mᵀy <= 0 for which qᵀy is least, by a linear program.
+
+    The direction in which Lemke's method ends is one for semidefinite M, and not for such M with other weights on rows.
+    """
+    found = scipy.optimize.linprog(q / np.abs(q).max(), A_ub=M.T, b_ub=np.zeros(len(q)), bounds=(0.0, 1.0))
+    return found.x if found.status == 0 else np.zeros(len(q))
 
 
 def excludes(M: Array, q: Array, y: Array) -> bool:
@@ -267,7 +277,8 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
     Returns
     -------
     LcpResult
-        Check its `status`.
+        Check its `status`. Infeasible means that no z >= 0 has w >= 0, for entries of M that differ from these by no
+        more than one unit in the last place of each.
 
     Raises
     ------

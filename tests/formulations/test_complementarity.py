@@ -8,6 +8,7 @@ import pytest
 from contact_problems import in_units, random_contact
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from scipy.sparse.csgraph import connected_components
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
@@ -568,6 +569,22 @@ def test_units_of_any_size_change_no_claim(seed, n):
 def test_a_proof_by_rows_of_small_numbers_counts(seed, n, decades):
     """Where qᵀy is 1e-8 of the largest numbers of q and y, but not of its own terms."""
     assert skew_in_units(seed, n, decades) == (Status.INFEASIBLE, False)
+
+
+@given(seed=st.integers(0, 10**6), n=st.integers(2, 7))
+def test_weights_on_rows_lose_no_answer(seed, n):
+    """A row sufficient matrix stays one if rows are multiplied by positive numbers: there is a solution, or none.
+
+    It is the Laplacian of a random graph; a potential on a part of it adds up the right sides there to a negative sum.
+    """
+    rng = np.random.default_rng(seed)
+    links = np.triu(rng.integers(0, 3, (n, n)), 1)
+    M = np.diag((links + links.T).sum(axis=1)) - (links + links.T) + 0.0
+    q, rows = rng.integers(-3, 2, n) + 0.0, 2.0 ** rng.integers(-2, 3, n)
+    result = solve_lcp(rows[:, None] * M, rows * q)
+    parts = connected_components(links)[1]
+    exists = all(q[parts == part].sum() >= 0 for part in parts)
+    assert result.status is (Status.SOLVED if exists else Status.INFEASIBLE)
 
 
 def test_ray_that_proves_infeasibility():

@@ -1,7 +1,9 @@
 """Proofs that linear constraints have no feasible point, by multipliers (Farkas), to the last digit of the data.
 
 Rows that are nearly parallel meet far away: their multipliers leave no more of each other than rounding, and would seem
-to prove that they do not meet at all.
+to prove that they do not meet at all. What they may leave is what a change of each entry of a row by one unit in its
+last place makes up for. So a proof says that entries this near have no feasible point (Oettli and Prager, Numer. Math.
+6 (1964) 405-409).
 """
 
 import numpy as np
@@ -16,6 +18,8 @@ REFINEMENTS = 8
 CORRECTED = 0.1
 """Largest part of a multiplier that corrections may change: rows that meet in a point leave nothing of any."""
 EPS = float(np.finfo(float).eps)
+ULP = 0.9 * EPS
+"""Change of an entry over the entry: a unit in its last place is between a half and one EPS of it."""
 
 
 def proof_of_infeasibility(A: Array, lower: Array, upper: Array, multipliers: Array, near: Array) -> Array | None:
@@ -55,7 +59,7 @@ def proof_of_infeasibility(A: Array, lower: Array, upper: Array, multipliers: Ar
     of_variables = np.where(free, 0.0, rest[:n])
     held = of_variables * np.where(free, 0.0, limits)
     lost = np.abs(rest[:n][free]) @ size[free] + 4.0 * EPS * (np.abs(held).sum() + np.abs(y) @ np.abs(bounds))
-    of_entries = EPS * (np.abs(y) @ np.abs(A[used]))
+    of_entries = ULP * (np.abs(y) @ np.abs(A[used]))
     far = (np.abs(rest[:n]) > of_entries)[free].any() or (np.abs(fine) > CORRECTED * np.abs(y)).any()
     if far or held.sum() - rest[n] <= lost:
         return None

@@ -200,6 +200,8 @@ DOUBT, DOUBT_OF_ROUGH = 0.03, 0.003
 
 The second is for multipliers with a zero above that of the gradient, as nearly dependent rows have.
 """
+MOST_ROUNDING = 1e-6
+"""Part of the terms of the gradient, multipliers left out, up to which rounding of these is allowed."""
 SEEN = 3e-14
 """Part of its terms from which a multiplier is more than the rounding of the point as it is."""
 
@@ -270,6 +272,8 @@ def first_order(
     feasible = np.count_nonzero(statement.violation(values) <= progress.allowed) == slack.size
     size = np.abs(multipliers)
     rounding = 4.0 * EPS * (size[:n] + size[n:].dot(statement.absolute[2]))
+    own = progress.terms(size[:0], statement.A[:0])  # multipliers of which more is rounding say nothing
+    rounding = np.minimum(rounding, np.maximum(MOST_ROUNDING * own, progress.zero))
     stationary = np.abs(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero + rounding
     sides = statement.sides_reached(values, slack)
     held = sides != 0

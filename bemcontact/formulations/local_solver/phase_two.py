@@ -18,6 +18,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, pivoted_cholesky
+from bemcontact.formulations.local_solver.optimality import SEEN
 from bemcontact.formulations.local_solver.progress import FINE, SearchState
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 from bemcontact.formulations.local_solver.working_set import (
@@ -31,6 +32,8 @@ from bemcontact.formulations.local_solver.working_set import (
 
 REFINEMENTS = 4
 """Largest number of steps of refinement."""
+ROUNDED = 4.0 * EPS / SEEN
+"""Size of a component that is zero in truth, over the numbers whose rounding it is."""
 CLEAR = 1e3
 """A multiplier of the wrong sign is released without refinement if it exceeds the zero of all by this factor."""
 
@@ -357,9 +360,15 @@ class Descent:
 
     @property
     def sizes(self) -> Array:
-        """Sum of the terms of each component of the gradient and of each multiplier of rows (n + r,)."""
-        terms = self.progress.terms(self.multipliers[self.progress.x.size :], self.working.W)
-        return np.concatenate([terms, terms.dot(np.abs(self.working.N))])
+        """Sum of the terms of each component of the gradient and of each multiplier of rows (n + r,).
+
+        A component that is zero in truth is what rounding leaves of multipliers and of the point.
+        """
+        progress, working = self.progress, self.working
+        terms = progress.terms(self.multipliers[progress.x.size :], working.W)
+        of_rows = terms.dot(np.abs(working.N))
+        rounded = of_rows.dot(np.abs(working.W)) + progress.statement.absolute[0].dot(self._reach(terms))
+        return np.concatenate([np.maximum(terms, ROUNDED * rounded), of_rows])
 
     def _fine_zero(self, multipliers: Array) -> Array:
         """Size of each component of the gradient and of each multiplier of rows that counts as zero (n + r,)."""

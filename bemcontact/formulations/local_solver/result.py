@@ -16,6 +16,9 @@ from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 class QPStatus(StrEnum):
     """How a run ended; the value is the text to print.
 
+    Infeasible are the constraints with entries that differ from the stated ones by no more than one unit in the last
+    place of each.
+
     A numerical failure is an end that failed its own check repeatedly with fresh factors: the data are too near to the
     limits of double precision for any claim.
     """

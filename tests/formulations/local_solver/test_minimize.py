@@ -735,3 +735,32 @@ def test_null_directions_of_products_are_rays(seed):
     B, A = rng.standard_normal((n, rank)), rng.standard_normal((rng.integers(1, n - rank), n))
     result = minimize_qp(B @ B.T, rng.standard_normal(n), A, -np.ones(len(A)), -np.ones(len(A)))
     assert result.status is QPStatus.UNBOUNDED
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(2, 6), st.booleans())
+def test_assignments_are_minimized(seed, n, fractional):
+    """Vertices at which many multipliers are zero; HiGHS has the same cost, and the vertices are exact."""
+    rng = np.random.default_rng(seed)
+    A = np.vstack([np.kron(np.eye(n), np.ones(n)), np.kron(np.ones(n), np.eye(n))])
+    supply = rng.integers(1, 4, n) + 0.0
+    sides = np.concatenate([supply, rng.permutation(supply)])
+    cost = rng.integers(0, 6, n * n) / (7.0 if fractional else 1.0)
+    result = minimize_qp(np.zeros((n * n, n * n)), cost, A, sides, sides, np.zeros(n * n))
+    assert result.status is QPStatus.LOCAL_MINIMIZER
+    best = linprog(cost, A_eq=A, b_eq=sides, bounds=(0, None))
+    assert result.objective == pytest.approx(best.fun, rel=1e-12, abs=1e-12)
+
+
+def test_multipliers_that_are_rounding_of_larger_ones_hold_no_point():
+    """Rows that are parallel to 2^-21: with multipliers of 2e17 any gradient seems to vanish, at an objective of -42.9.
+
+    The vertex between row 0 and the side 5 - 2^-21 · 5 of row 2 has multipliers 2 and 2e-7, and the least objective.
+    """
+    e, far = 2.0**-21, np.inf
+    H = np.array([[6.0, 0, 3, 3], [0, 2, -1, 1], [3, -1, 5, 4], [3, 1, 4, 5]])
+    c = np.array([29.000000469386464, -4.999999765306711, 36.999999530613195, 33.99999953061365])
+    A = np.array([[2, 1, -2, -2], [-1, 2, 1, 2], [-2 + e, -1, 2 + 2 * e, 2 - 2 * e], [-2, -1, 2, 2], [-2, -1, 2, 2]])
+    lower, upper = [5.0, -2, -far, -5, -5], [5.0, -1, -5 - 5 * e, far, far]
+    result = minimize_qp(H, c, A, lower, upper, [-far, 0, -far, -far], [far, 2, far, far])
+    if result.status is QPStatus.LOCAL_MINIMIZER:
+        assert result.objective == pytest.approx(-140.5, abs=1e-5)
