@@ -17,6 +17,7 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
+from bemcontact.checks.docstrings import docstring
 from bemcontact.errors import LINE_BREAKS, Issue, ProblemError, hidden_character
 from bemcontact.problem.examples import (
     annotation_at,
@@ -66,6 +67,11 @@ class SpecModel(BaseModel):
     """Whether this is the whole problem."""
     other_words: ClassVar[Mapping[str, str]] = {}
     """Words that are not keys -> what to write instead."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Let the schema of a class have its docstring under ``python -OO`` too."""
+        super().__init_subclass__(**options)
+        cls.__doc__ = docstring(cls)
 
     def __init__(self, /, **data: Any) -> None:
         try:

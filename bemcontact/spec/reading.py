@@ -140,7 +140,7 @@ def schema() -> dict[str, Any]:
     """
     properties = Problem.model_json_schema()
     for definition in (properties, *properties["$defs"].values()):
-        if "description" in definition:  # python -OO has no docstrings
+        if "description" in definition:
             definition["description"] = definition["description"].partition("\n\n")[0]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **properties}
 
