@@ -612,20 +612,27 @@ def test_a_start_outside_the_bounds_is_moved_to_them():
         ({"bl": [INF, 0.0]}, "give a number"),
         ({"x0": [1.0]}, "x0 has shape"),
         ({"working_set": [3, 0]}, "working_set"),
-        ({"options": QPOptions(optimality_tolerance=0.0)}, "optimality_tolerance"),
-        ({"options": QPOptions(search=-1)}, "search"),
-        ({"options": QPOptions(search=1.5)}, "search"),
-        ({"options": QPOptions(max_iterations="a")}, "max_iterations"),
-        ({"options": QPOptions(log=True)}, "log is True"),
         ({"options": {"search": 3}}, "options is a dict"),
         ({"H": np.eye(2) * 1j}, "H must contain real numbers; found complex numbers"),
         ({"H": np.zeros((0, 0)), "c": []}, "c is empty"),
-        ({"options": QPOptions(max_iterations=-1)}, "max_iterations"),
     ],
 )
 def test_invalid_input_is_refused_with_the_reason(change, message):
     with pytest.raises(ProblemError, match=message):
         minimize_qp(**({"H": np.eye(2), "c": np.zeros(2)} | change))
+
+
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [
+        ("optimality_tolerance", 0.0), ("optimality_tolerance", -1e-9), ("feasibility_tolerance", np.nan),
+        ("feasibility_tolerance", "1e-9"), ("search", -1), ("search", 1.5), ("max_iterations", "a"),
+        ("max_iterations", -1), ("log", True), ("scale", 2),
+    ],
+)  # fmt: skip
+def test_invalid_options_are_refused_when_they_are_made(option, value):
+    with pytest.raises(ProblemError, match=f"^{option} is {value!r}: give "):
+        QPOptions(**{option: value})
 
 
 @pytest.mark.parametrize("far", [1e6, 1e9, 1e12, 1e20])
