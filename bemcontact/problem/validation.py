@@ -17,6 +17,7 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
+from bemcontact.checks.arguments import label_fault
 from bemcontact.checks.docstrings import docstring
 from bemcontact.errors import LINE_BREAKS, Issue, ProblemError, hidden_character
 from bemcontact.problem.examples import (
@@ -29,7 +30,7 @@ from bemcontact.problem.examples import (
     text_hint,
     types_in,
 )
-from bemcontact.problem.wording import LONGEST_NAME, MANY_WORDS, described, near_by, number_hint, unknown_word
+from bemcontact.problem.wording import MANY_WORDS, described, near_by, number_hint, unknown_word
 
 LARGEST_STATED = 1e30
 """Largest number in a problem. Its eighth power is still finite, so that products of any four numbers can be squared.
@@ -127,10 +128,8 @@ def _readable(value: str) -> str:
 
 def _one_line(value: str) -> str:
     """Refuse labels of several lines."""
-    if hidden := hidden_character(value):
-        raise invalid(f"a name or label is one line of text, but contains the character {hidden}; remove it")
-    if len(value) > LONGEST_NAME:
-        raise invalid(f"a name or label has at most {LONGEST_NAME} characters, found {len(value)}")
+    if fault := label_fault(value):
+        raise invalid(fault)
     return value
 
 
