@@ -249,6 +249,29 @@ def test_compressed_members_are_refused_before_they_are_read(whole, tmp_path: Pa
         CondensedContact.load(tmp_path / "a.npz")
 
 
+@pytest.mark.parametrize(
+    ("name", "large"),
+    [
+        ("weights", np.zeros(1 << 16)), ("compliance", np.zeros((1 << 8, 1 << 8))), ("name", np.array("a" * (1 << 16))),
+        ("format", np.array("a" * (1 << 16))), ("notes", np.array(["a" * (1 << 8)] * (1 << 8))),
+    ],
+)  # fmt: skip
+def test_a_member_that_no_problem_of_this_size_has_is_not_read(name: str, large, whole, tmp_path: Path, monkeypatch):
+    """Its head states what the file has, beside four contact points."""
+    monkeypatch.setattr(archive, "ROOM", 1 << 12)
+    place = tmp_path / "large.npz"
+    place.write_bytes(packed({**members_of(whole["plain"]), f"{name}.npy": npy(large)}))
+    with pytest.raises(ProblemError, match=rf"member '{name}' is damaged: it has \d+ bytes where compliance and"):
+        CondensedContact.load(place)
+
+
+def test_a_problem_of_the_least_room_is_read(whole, tmp_path: Path, monkeypatch):
+    """What is saved needs no more than its head, its names and four times its compliance."""
+    monkeypatch.setattr(archive, "ROOM", 1 << 12)
+    assert read_back(whole["plain"], tmp_path / "a.npz") is not None
+    assert read_back(whole["body"], tmp_path / "b.npz") is not None
+
+
 @pytest.mark.parametrize("shape", [(1 << 40,), (1 << 62, 1 << 62), (-4, 4), (1 << 31, 1 << 31, 0)])
 def test_declared_sizes_are_not_believed(shape: tuple[int, ...], whole, tmp_path: Path):
     members = members_of(whole["plain"])
