@@ -346,6 +346,14 @@ def test_stated_elements_are_the_coarsest():
     assert np.diff(mesh).max() <= 1 / 80 * (1 + 1e-9)
 
 
+def test_more_stated_elements_than_a_search_can_have_are_refused_before_any_work():
+    """A thousand elements have the 4000 unknowns of the finest mesh; none would be left for the other edges."""
+    problem = block_on_flat_floor()[0].with_value("boundary.outer.bottom.elements", 1001)
+    for work in (first_mesh, meshed):
+        with pytest.raises(ProblemError, match=r"boundary: 1001 elements are stated, and .* found has at most 1000; "):
+            work(problem)
+
+
 def test_contact_of_a_point_ends_honestly(monkeypatch: pytest.MonkeyPatch):
     """A beam on two knife edges touches points, which have no width: elements get shorter until there are too many."""
     monkeypatch.setattr(adapt, "MOST_UNKNOWNS", 700)
