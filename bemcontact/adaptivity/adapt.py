@@ -3,8 +3,10 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from bemcontact.adaptivity.error_bars import error_bars
-from bemcontact.adaptivity.fields import MeshDifference, solved
+from bemcontact.adaptivity.fields import MeshDifference, Solved, solved
 from bemcontact.adaptivity.mesh_search import MeshSearch, cut, mesh_search
 from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy
@@ -20,6 +22,8 @@ HOPELESS, STALLED = 1.0, 4
 """Error that ends the search where it did not halve, and the passes that it had for that."""
 MOST_FAILURES = 3
 """Number of first meshes that may have no contact state."""
+ROUNDED = 100 * float(np.finfo(float).eps)
+"""Deformation over the largest coordinate or displacement, below which gaps are round-off."""
 MOST_UNKNOWNS = 4000
 """Largest number of unknowns of the finer mesh."""
 UNKNOWNS = 4
@@ -168,6 +172,9 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
         best = now if best is None or now.worst <= best.worst else best
         if all(item.met for item in best.accuracies):
             return best
+        if lost := _lost_digits(fine):
+            reason = lost
+            break
         errors.append(now.worst)
         if best.worst > HOPELESS and len(errors) > STALLED and best.worst > errors[-1 - STALLED] / 2:
             reason = f"the error did not halve in {STALLED} passes"
@@ -175,6 +182,20 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
         search.layers = search.with_counts(search.ends_of_contact(fine)[0])
         search.refine(differences, singular)
     return _unsolved(search.mesh(1), asked, reason) if best is None else best.because(reason)
+
+
+def _lost_digits(answer: Solved) -> str | None:
+    """Say that contact deforms the body by less than the rounding of its coordinates and displacements."""
+    modulus = answer.body.problem.material.young_modulus
+    for item in answer.answers:
+        deformed = float(item.condensation.contact.weights @ item.solution.pressure) / modulus
+        largest = float(max(np.abs(answer.mesh.nodes).max(), np.abs(item.displacement).max()))
+        if 0 < deformed < ROUNDED * largest:
+            return (
+                f"contact deforms the body by about {deformed:.1g}, which is lost in the rounding of coordinates and "
+                f"displacements of up to {largest:.3g}, on any mesh; check loads, lengths and Young's modulus"
+            )
+    return None
 
 
 def _unsolved(problem: Problem, asked: float | None, reason: str) -> Meshed:

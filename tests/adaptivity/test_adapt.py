@@ -383,6 +383,21 @@ def test_a_cap_of_the_unknowns_is_told(monkeypatch: pytest.MonkeyPatch):
     assert "300 unknowns" in judged.reason
 
 
+@pytest.mark.parametrize("change", [("material.young_modulus", 1e20), ("conditions.axis.displacement.x", 1e15)])
+def test_a_deformation_below_the_rounding_ends_the_search_at_once(change: tuple[str, float]):
+    """A modulus or a displacement of which nobody knows the unit: what matters is their ratio to the rest."""
+    (judged,) = found(half_disk(20.0).with_value(*change)).accuracies
+    assert judged.met is False
+    assert judged.passes == 1
+    assert "is lost in the rounding of coordinates and displacements of up to" in judged.reason
+
+
+def test_a_stiff_body_on_a_flat_surface_is_exact():
+    """Its deformation is far below the rounding of coordinates, but no gap is."""
+    (judged,) = found(block_on_flat_floor()[0].with_value("material.young_modulus", 1e25)).accuracies
+    assert judged.met
+
+
 def test_passes_are_told():
     told: list[str] = []
     result = meshed(half_disk(2000.0).with_value("accuracy", 1e-2), told.append)
