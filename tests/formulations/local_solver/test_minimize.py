@@ -1,5 +1,6 @@
 """The local solver: every claim of a result checked again from the data of the problem."""
 
+from contextlib import suppress
 from fractions import Fraction
 from itertools import product
 
@@ -742,3 +743,25 @@ def test_null_directions_of_products_are_rays(seed):
     B, A = rng.standard_normal((n, rank)), rng.standard_normal((rng.integers(1, n - rank), n))
     result = minimize_qp(B @ B.T, rng.standard_normal(n), A, -np.ones(len(A)), -np.ones(len(A)))
     assert result.status is QPStatus.UNBOUNDED
+
+
+SIZES = [0.0, 5e-324, 1e-310, 1e-300, 1e-20, 1.0, 1e19, 1e100]
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_numbers_of_any_size_have_an_answer_or_an_error_and_no_warning(seed: int):
+    """Denormal numbers beside huge ones; warnings are errors in tests."""
+    rng = np.random.default_rng(seed)
+    n, m = int(rng.integers(1, 4)), int(rng.integers(0, 4))
+
+    def drawn(*shape: int) -> np.ndarray:
+        return rng.choice(SIZES, shape) * rng.choice([-1, 1], shape)
+
+    H, rows = np.triu(drawn(n, n)), drawn(m)
+    with suppress(ProblemError):
+        minimize_qp(H + H.T, drawn(n), drawn(m, n), rows, rows, -np.abs(drawn(n)), np.abs(drawn(n)))
+
+
+def test_numbers_that_double_precision_cannot_bring_together_are_refused():
+    with pytest.raises(ProblemError, match="too far apart for double precision; choose other units"):
+        minimize_qp(np.diag([1e100, 5e-324]), [5e-324, 1e100], [[5e-324, 1e100]], [1e100], [1e100], [0, 0], [1, 5e-324])
