@@ -200,13 +200,15 @@ BREAKS: dict[str, tuple[str, Callable[[np.ndarray], Any], str]] = {
     "no run length": ("run_length", lambda length: -length, "run_length must be positive"),
     "a name of numbers": ("name", lambda _: np.zeros(3), "member 'name' is no text: it has the shape"),
     "names of numbers": ("zone_names", lambda _: np.zeros(2), "zone_names must be a list of texts"),
-    "units of nothing": ("units", lambda _: np.zeros(2), "member 'units' is no"),
+    "units of nothing": ("units", lambda _: np.zeros(2), "member 'units' is no list of pairs: it has the shape"),
+    "notes of nothing": ("notes", lambda _: np.array(1.0), "member 'notes' is no list: it has the shape"),
     "dependent motions": ("rigid_motions", lambda R: 0 * R, "independent columns"),
     "tools as numbers": (
         "tools.free",
         lambda free: free.astype(float),
         "tools.free must contain True and False",
     ),
+    "a length of many": ("pinned.length", lambda _: np.zeros(3), "member 'pinned.length' is no number"),
     "a length of nothing": ("pinned.length", lambda _: np.array(np.nan), "pinned.length must be a finite number"),
 }
 
