@@ -4,7 +4,6 @@ In all of them [L] is the unit of length and [p] that of pressure, force over le
 number without either has no unit.
 """
 
-import inspect
 import json
 from abc import ABC, abstractmethod
 from functools import cache
@@ -16,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
 from bemcontact.checks.attributes import WithHints
+from bemcontact.checks.docstrings import docstring
 from bemcontact.errors import escaped_json
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -76,6 +76,11 @@ class Record(BaseModel):
 
     model_config = CONFIG
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Let the schema of a class have its docstring under ``python -OO`` too."""
+        super().__init_subclass__(**options)
+        cls.__doc__ = docstring(cls)
+
     def to_dict(self) -> dict[str, Any]:
         """Return all fields as numbers, lists and texts, ready for JSON."""
         return self.model_dump(mode="json")
@@ -114,7 +119,15 @@ class _Schema(GenerateJsonSchema):
 
     def dataclass_schema(self, schema: Any) -> dict[str, Any]:
         """Describe a dataclass by its docstring, as Pydantic does by itself from 2.13 on."""
-        return {**super().dataclass_schema(schema), "description": inspect.getdoc(schema["cls"])}
+        stated, described = super().dataclass_schema(schema), schema["cls"]
+        for name, part in stated["properties"].items():
+            if "description" not in part:  # a property, of which Python has removed the docstring
+                part["description"] = docstring(getattr(described, name))
+        return {**stated, "description": docstring(described)}
+
+    def enum_schema(self, schema: Any) -> dict[str, Any]:
+        """Describe an enumeration by its docstring, as Pydantic does if Python has it."""
+        return {**super().enum_schema(schema), "description": docstring(schema["cls"])}
 
 
 def schema_of(result: type[Leaf] | type[Record]) -> dict[str, Any]:

@@ -3,15 +3,17 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from bemcontact.adaptivity.error_bars import SAFETY, error_bars
 from bemcontact.adaptivity.fields import MeshDifference, Solved, solved
 from bemcontact.adaptivity.hidden_changes import told_apart
-from bemcontact.adaptivity.mesh_search import cut, mesh_search
+from bemcontact.adaptivity.mesh_search import MeshSearch, cut, mesh_search
 from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import Condensation, condense
-from bemcontact.errors import ProblemError, SingularSystemError, SolverError
+from bemcontact.errors import Issue, ProblemError, SingularSystemError, SolverError
 from bemcontact.problem.problem import Problem
 
 NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
@@ -21,8 +23,12 @@ HOPELESS, STALLED = 1.0, 4
 """Error that ends the search where it did not halve, and the passes that it had for that."""
 MOST_FAILURES = 3
 """Number of first meshes that may have no contact state."""
+ROUNDED = 100 * float(np.finfo(float).eps)
+"""Deformation over the largest coordinate or displacement, below which gaps are round-off."""
 MOST_UNKNOWNS = 4000
 """Largest number of unknowns of the finer mesh."""
+UNKNOWNS = 4
+"""Unknowns of an element: two displacements at each of two nodes, for the third is that of the next element."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,14 +121,26 @@ def _differences(coarse: Solved, fine: Solved, asked: float) -> list[MeshDiffere
 
 def first_mesh(problem: Problem) -> Problem:
     """The problem on the first mesh, from the geometry alone and the elements that are stated."""
-    return mesh_search(problem).mesh(1)
+    return _search(problem).mesh(1)
+
+
+def _search(problem: Problem) -> MeshSearch:
+    """Begin to search for a mesh; `ProblemError` if the stated elements alone are more than it can have."""
+    stated = sum(edge.elements or 0 for edge in problem.boundary.edges)
+    if (most := MOST_UNKNOWNS // UNKNOWNS) < stated:
+        message = (
+            f"{stated} elements are stated, and a mesh that is found has at most {most}; state fewer, or elements on "
+            "all edges and no accuracy, so that the mesh is taken as it is"
+        )
+        raise ProblemError(Issue(path=("boundary",), message=message))
+    return mesh_search(problem)
 
 
 def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
     """Find a mesh on which all error bars are below the accuracy asked, and solve on it."""
     asked = problem.asked_accuracy
     assert asked is not None
-    search = mesh_search(problem)
+    search = _search(problem)
     best: Meshed | None = None
     errors: list[float] = []
     reason = f"no better mesh was found in {MOST_PASSES} passes"
@@ -161,6 +179,9 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
         best = now if best is None or now.worst <= best.worst else best
         if all(item.met for item in best.accuracies):
             return best
+        if lost := _lost_digits(fine):
+            reason = lost
+            break
         errors.append(now.worst)
         if best.worst > HOPELESS and len(errors) > STALLED and best.worst > errors[-1 - STALLED] / 2:
             reason = f"the error did not halve in {STALLED} passes"
@@ -168,6 +189,20 @@ def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
         search.layers = search.with_counts(search.ends_of_contact(fine)[0])
         search.refine(differences, singular)
     return _unsolved(search.mesh(1), asked, reason) if best is None else best.because(reason)
+
+
+def _lost_digits(answer: Solved) -> str | None:
+    """Say that contact deforms the body by less than the rounding of its coordinates and displacements."""
+    modulus = answer.body.problem.material.young_modulus
+    for item in answer.answers:
+        deformed = float(item.condensation.contact.weights @ item.solution.pressure) / modulus
+        largest = float(max(np.abs(answer.mesh.nodes).max(), np.abs(item.displacement).max()))
+        if 0 < deformed < ROUNDED * largest:
+            return (
+                f"contact deforms the body by about {deformed:.1g}, which is lost in the rounding of coordinates and "
+                f"displacements of up to {largest:.3g}, on any mesh; check loads, lengths and Young's modulus"
+            )
+    return None
 
 
 def _unsolved(problem: Problem, asked: float | None, reason: str) -> Meshed:

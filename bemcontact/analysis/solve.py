@@ -110,7 +110,7 @@ def ensure_acting(problem: Problem | CondensedContact) -> None:
     ensure_kind(problem)
     if isinstance(problem, Problem) and problem.load_cases and problem.case is None:
         message = (
-            f"choose the one that acts, with case, --case or with_case: {', '.join(problem.case_names)}; "
+            f"choose the one that acts as case (in Python by with_case): {', '.join(problem.case_names)}; "
             "or solve all of them"
         )
         raise ProblemError(Issue(path=("load_cases",), message=message))

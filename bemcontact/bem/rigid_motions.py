@@ -326,13 +326,18 @@ def _to_points(levers: Array, radius: float) -> Array:
 
 def _split(basis: Array, motions: Array) -> tuple[Array, Array]:
     """Separate motions (k, components) that move contact points from those that move none."""
-    _, values, vectors = np.linalg.svd(np.vstack([basis @ motions.T, np.zeros((len(motions), len(motions)))]))
+    values, vectors = _short_svd(basis @ motions.T)
     unseen = values <= UNSEEN * np.sqrt(len(basis))
     return echelon(vectors[~unseen] @ motions), echelon(vectors[unseen] @ motions)
 
 
 def _null_vectors(matrix: Array) -> Array:
     """Orthonormal null vectors (k, j) of a matrix (n, k)."""
-    k = matrix.shape[1]
-    _, values, vectors = np.linalg.svd(np.vstack([matrix, np.zeros((k, k))]))
+    values, vectors = _short_svd(matrix)
     return vectors[values <= UNSEEN * np.sqrt(max(len(matrix), 1))].T
+
+
+def _short_svd(matrix: Array) -> tuple[Array, Array]:
+    """Singular values (k,), zeros included, and right singular vectors (k, k) of a matrix (n, k)."""
+    k = matrix.shape[1]
+    return np.linalg.svd(np.vstack([matrix, np.zeros((k, k))]), full_matrices=False)[1:]

@@ -13,7 +13,7 @@ from pathlib import Path
 from reprlib import Repr
 from typing import Any, TypeVar, cast
 
-from bemcontact.errors import ProblemError
+from bemcontact.errors import LINE_BREAKS, ProblemError, hidden_character
 
 Kind = TypeVar("Kind")
 
@@ -21,6 +21,8 @@ LARGEST_NUMBER = 1e100
 """Largest number in arrays and arguments. Its square is still finite, so that products can be computed. Numbers that a
 problem states have a lower limit, for those in arrays are products of them."""
 
+LONGEST_NAME = 1000
+"""Largest number of characters in a name."""
 LARGEST_COUNT = 2**63 - 1
 """Largest whole number, which fits into all places that count."""
 
@@ -74,6 +76,36 @@ def text_of_argument(value: object, what: str) -> str:
     if not isinstance(value, str):
         raise ProblemError(f"{what} must be a text; found {shown(value)}")
     return value
+
+
+def label_fault(text: str) -> str | None:
+    """Say what is wrong with a name or label; None if it is one line of visible text."""
+    if hidden := hidden_character(text):
+        return f"a name or label is one line of text, but contains the character {hidden}; remove it"
+    if len(text) > LONGEST_NAME:
+        return f"a name or label has at most {LONGEST_NAME} characters, found {len(text)}"
+    return None
+
+
+def label(value: object, what: str) -> str:
+    """Refuse all but a name or label, as specs do."""
+    text = text_of_argument(value, what)
+    if fault := label_fault(text):
+        raise ProblemError(f"{what}: {fault}")
+    return text
+
+
+def labels(value: object, what: str) -> tuple[str, ...]:
+    """Read a sequence of names or labels."""
+    return tuple(label(item, what) for item in texts(value, what))
+
+
+def visible_texts(value: object, what: str) -> tuple[str, ...]:
+    """Read a sequence of texts, of several lines or not, without other hidden characters."""
+    for text in (read := texts(value, what)):
+        if hidden := hidden_character(text, LINE_BREAKS):
+            raise ProblemError(f"{what}: a text must not contain the hidden character {hidden}; remove it")
+    return read
 
 
 def texts(value: object, what: str) -> tuple[str, ...]:

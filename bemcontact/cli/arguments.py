@@ -136,9 +136,23 @@ class Source:
     @property
     def changes(self) -> list[str]:
         """All changes as --set writes them."""
-        options = {"case": self.case, "accuracy": self.accuracy}
-        stated = [f"{key}={json.dumps(value)}" for key, value in options.items() if value is not None]
-        return [*(self.overrides or ()), *stated]
+        return [change for change, _ in self._options_of_changes()]
+
+    def _options_of_changes(self) -> Iterator[tuple[str, str]]:
+        """Each change, and the option that made it."""
+        yield from ((setting, f"--set {setting}") for setting in self.overrides or ())
+        for key, value in (("case", self.case), ("accuracy", self.accuracy)):
+            if value is not None:
+                yield f"{key}={json.dumps(value)}", f"--{key} {value}"
+
+    def _in_options(self, error: SpecError) -> SpecError:
+        """An error whose lines name options where those of a library call name a variant or an override."""
+        lines = str(error).split("\n")
+        pairs = [(f"override {escaped(change)}: ", option) for change, option in self._options_of_changes()]
+        variant = f"variant {self.variant or repr(self.variant)}"
+        for said, option in (*pairs, (f"{variant}: ", f"--{variant}")):
+            lines = [f"{option}: {line.removeprefix(said)}" if line.startswith(said) else line for line in lines]
+        return SpecError("\n".join(lines))
 
     @property
     def name(self) -> str:
@@ -160,9 +174,10 @@ class Source:
         """Read the problem, with each element split."""
         from bemcontact import spec
 
-        problem = spec.loads(self.text, self.name, self.changes, self.variant)
         try:
-            return problem.refined(refine)
+            return spec.loads(self.text, self.name, self.changes, self.variant).refined(refine)
+        except SpecError as error:
+            raise self._in_options(error) from None
         except ProblemError as error:
             raise OptionError(f"--refine {refine}: {'; '.join(issue.message for issue in error.issues)}") from None
 
@@ -182,7 +197,7 @@ class Source:
         """The text of an error with file, line and column."""
         from bemcontact import spec
 
-        return str(spec.located(error, self.text, self.name, self.changes, self.variant))
+        return str(self._in_options(spec.located(error, self.text, self.name, self.changes, self.variant)))
 
 
 def option(kind: type[SolveOptions | ComparisonOptions], name: str) -> Any:

@@ -10,6 +10,7 @@ from typing import Annotated, Any, NoReturn, get_type_hints
 
 import typer
 
+from bemcontact.checks.docstrings import docstring
 from bemcontact.checks.memory import ensure_memory
 from bemcontact.cli.arguments import STANDARD_STREAM, Source, option
 from bemcontact.cli.terminal import (
@@ -63,7 +64,7 @@ def _refuse_extra(arguments: Sequence[str], command: str) -> None:
 
 def help_of(command: Callable[..., None]) -> str:
     """Help of a command, from its docstring; the lines of its examples are not folded."""
-    return inspect.cleandoc(command.__doc__ or "").replace("\n\nExamples\n", "\n\n\b\nExamples\n")
+    return docstring(command).replace("\n\nExamples\n", "\n\n\b\nExamples\n")
 
 
 def _parameters_of(group: Any) -> Iterator[inspect.Parameter]:

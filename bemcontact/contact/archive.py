@@ -1,7 +1,8 @@
 """Frozen dataclasses of arrays as one ``.npz`` file. The name of an array is the path to its field, with dots.
 
-Members are not compressed, so that nothing grows when it is read, and known members alone are read. The checksum tells
-a damaged file from a whole one; the dataclasses check what it contains.
+Members are not compressed, so that nothing grows when it is read. Known members alone are read, and only if they are no
+larger than a problem of this many contact points can need. The checksum tells a damaged file from a whole one; the
+dataclasses check what it contains.
 """
 
 import hashlib
@@ -31,6 +32,10 @@ PLAIN = "biufU"
 """Kinds of data of an array that can be read without running anything: truth values, numbers, texts."""
 WORDS: Mapping[Any, str] = {str: "text", float: "number", tuple: "list", Mapping: "list of pairs"}
 """Types of fields in plain words."""
+ROOM = 1 << 26
+"""Bytes of a member, such as of names or notes, that need no matrix beside it."""
+SQUARES = 4
+"""Matrices as large as the compliance that a member may be: the motions of tools are three of them."""
 AGAIN = "condense the problem again"
 
 
@@ -84,11 +89,19 @@ def _member(package: ZipFile, name: str) -> NDArray[Any]:
         item = package.getinfo(f"{name}.npy")
         if item.compress_type != ZIP_STORED or item.file_size != item.compress_size:
             raise ProblemError("it is compressed, and CondensedContact.save does not compress")
+        if item.file_size > (most := _most_bytes(package)):
+            raise ProblemError(f"it has {item.file_size} bytes where compliance and weights leave room for {most}")
         with package.open(item) as stream:
             return _array(stream, item.file_size)
     except Exception as error:  # zipfile and NumPy raise many kinds of errors for damaged bytes
         reason = str(error) if isinstance(error, ProblemError) else "its bytes are no array"
         raise ProblemError(f"member '{name}' is damaged: {reason}; {AGAIN}") from error
+
+
+def _most_bytes(package: ZipFile) -> int:
+    """Largest size of a member, by the number of contact points that weights and compliance both have."""
+    sizes = {item.filename: item.file_size for item in package.infolist()}
+    return ROOM + SQUARES * min(sizes.get("compliance.npy", 0), sizes.get("weights.npy", 0) ** 2 // 8)
 
 
 def _array(stream: IO[bytes], total: int) -> NDArray[Any]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from bemcontact.arrays import Array, Dimensions, IntArray, read_arrays, real_array, whole_array
-from bemcontact.checks.arguments import shown, text_of_argument, texts
+from bemcontact.checks.arguments import label, labels, shown, visible_texts
 from bemcontact.errors import ProblemError
 
 UNIT = 1e-9
@@ -60,13 +60,14 @@ def ensure_independent(rigid_motions: Array) -> None:
 
 
 def ensure_labels(contact: Any) -> None:
-    """Refuse labels that are no texts."""
-    text_of_argument(contact.name, "name")
-    for field in ("zone_names", "notes", "motion_names"):
-        object.__setattr__(contact, field, texts(getattr(contact, field), field))
+    """Refuse labels that are no texts, or that a spec could not have."""
+    label(contact.name, "name")
+    for field, read in (("zone_names", labels), ("notes", visible_texts), ("motion_names", visible_texts)):
+        object.__setattr__(contact, field, read(getattr(contact, field), field))
     units = contact.units
     if not isinstance(units, Mapping) or not all(isinstance(text, str) for pair in units.items() for text in pair):
         raise ProblemError(f"units must be a mapping such as {{'length': 'mm'}}; found {shown(units)}")
+    labels([text for pair in units.items() for text in pair], "units")
     if len({*contact.zone_names}) < len(contact.zone_names):
         raise ProblemError(f"zone_names must be different from each other; found {', '.join(contact.zone_names)}")
 

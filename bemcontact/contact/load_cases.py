@@ -3,7 +3,7 @@
 Their factors, displacements and forces enter the gap without contact, q = ε + Δ1, and the load in ℓᵀp = -load linearly.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple, Self
@@ -11,7 +11,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, flag_array, freeze_arrays, read_arrays
-from bemcontact.checks.arguments import real_number, texts
+from bemcontact.checks.arguments import labels, real_number, visible_texts
 from bemcontact.errors import ProblemError
 
 BALANCED = 1e-9
@@ -160,7 +160,7 @@ class Pinned:
 
     def __post_init__(self) -> None:
         """Refuse arrays of other shapes, and numbers that are not finite; make arrays read-only."""
-        j = len(_names(self, "motions", "pinned.motions"))
+        j = len(_names(self, "motions", "pinned.motions", visible_texts))
         read_arrays(self, {"turns": (j,)}, "pinned.", flag_array)
         read_arrays(self, {"load": (j, None), "tools": (None, j), "magnitude": (None,)}, "pinned.")
         object.__setattr__(self, "length", real_number(self.length, "pinned.length"))
@@ -204,9 +204,11 @@ class Pinned:
         return None
 
 
-def _names(instance: object, field: str, what: str) -> tuple[str, ...]:
+def _names(
+    instance: object, field: str, what: str, read: Callable[[object, str], tuple[str, ...]] = labels
+) -> tuple[str, ...]:
     """Read a field of a frozen dataclass as different texts."""
-    names = texts(getattr(instance, field), what)
+    names = read(getattr(instance, field), what)
     if len({*names}) < len(names):
         raise ProblemError(f"{what} must be different from each other; found {', '.join(names)}")
     object.__setattr__(instance, field, names)

@@ -17,7 +17,7 @@ EXCHANGES = {"linux": ("renameat2", 2), "darwin": ("renameatx_np", 2)}
 HERE = {"linux": -100, "darwin": -2}
 """System -> descriptor of the working directory (AT_FDCWD)."""
 ABANDONED = 3600.0
-"""Age in seconds above which a temporary folder is no longer in use."""
+"""Age in seconds above which a temporary file or folder is no longer in use."""
 
 
 def _beside(target: Path) -> Path:
@@ -70,10 +70,12 @@ def _ensure_replaceable(path: Path, target: Path) -> None:
 def whole_file(path: Path) -> Iterator[Path]:
     """Yield a temporary path that replaces `path` when the block ends without an error; links are followed.
 
-    The temporary file is in the same directory, so that the replacement is one rename; it is removed on a failure.
+    The temporary file is in the same directory, so that the replacement is one rename; it is removed on a failure. If
+    the run is killed, a hidden file ``.NAME.xxxxxxxx.part`` may remain; a run that starts an hour later removes it.
     """
     target = real(path)
     _ensure_replaceable(path, target)
+    _remove_abandoned(target)
     temporary = _beside(target)
     try:
         with _named(path, temporary):
@@ -171,11 +173,11 @@ def _exchanged(one: Path, other: Path) -> bool:
 
 
 def _remove_abandoned(target: Path) -> None:
-    """Remove the temporary folders of runs that were killed long ago."""
-    for folder in target.parent.glob(f".{glob.escape(target.name)}.????????.part"):
+    """Remove the temporary files or folders of runs that were killed long ago."""
+    for left in target.parent.glob(f".{glob.escape(target.name)}.????????.part"):
         with suppress(OSError):  # another run may have removed it
-            if time.time() - folder.stat().st_mtime > ABANDONED:
-                shutil.rmtree(folder, ignore_errors=True)
+            if time.time() - left.lstat().st_mtime > ABANDONED:
+                shutil.rmtree(left) if left.is_dir() else left.unlink()
 
 
 def _flush(folder: Path) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from bemcontact.arrays import Array, real_array
-from bemcontact.checks.arguments import text_of_argument
+from bemcontact.checks.arguments import label
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, LocalSearch, Penalty, Status, Trace, traces_in_turn
 from bemcontact.errors import OptionError, ProblemError, SpecError, escaped
@@ -87,7 +87,7 @@ class Start:
                 f"a start needs one pressure and one displacement for each contact point; found {self.pressure.size} "
                 f"pressures and {self.displacement.size} displacements"
             )
-        text_of_argument(self.label, "the label of a start")
+        label(self.label, "the label of a start")
 
 
 def read_start(path: str | os.PathLike[str]) -> Start:

@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from dataclasses import field, fields
 from difflib import get_close_matches
 from enum import StrEnum
-from inspect import cleandoc
 from textwrap import fill
 from typing import Any, TypeVar, cast
 
 from bemcontact.checks.arguments import LARGEST_COUNT, shown, whole_number
+from bemcontact.checks.docstrings import docstring
 from bemcontact.errors import OptionError, ProblemError
 
 Name = TypeVar("Name", bound=StrEnum)
@@ -49,7 +49,7 @@ def redeclared(options: type[Any], name: str, meaning: str = "") -> Any:
 
 def documented(options: type[Options]) -> type[Options]:
     """Write the meanings of options into the docstring of their class, for `help` and documentation."""
-    head, rule, rest = cleandoc(options.__doc__ or "").partition("\n\nRaises\n")  # Python 3.13 has no indent there
+    head, rule, rest = docstring(options).partition("\n\nRaises\n")
     about = (f"{item.name} : {item.metadata['meaning']}" for item in fields(cast(Any, options)))
     lines = "\n".join(fill(text, 96, subsequent_indent="    ") for text in about)
     options.__doc__ = f"{head}\n\nParameters\n----------\n{lines}{rule}{rest}"

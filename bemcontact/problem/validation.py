@@ -17,6 +17,8 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
+from bemcontact.checks.arguments import label_fault
+from bemcontact.checks.docstrings import docstring
 from bemcontact.errors import LINE_BREAKS, Issue, ProblemError, hidden_character
 from bemcontact.problem.examples import (
     annotation_at,
@@ -28,7 +30,7 @@ from bemcontact.problem.examples import (
     text_hint,
     types_in,
 )
-from bemcontact.problem.wording import LONGEST_NAME, MANY_WORDS, described, near_by, number_hint, unknown_word
+from bemcontact.problem.wording import MANY_WORDS, described, near_by, number_hint, unknown_word
 
 LARGEST_STATED = 1e30
 """Largest number in a problem. Its eighth power is still finite, so that products of any four numbers can be squared.
@@ -66,6 +68,11 @@ class SpecModel(BaseModel):
     """Whether this is the whole problem."""
     other_words: ClassVar[Mapping[str, str]] = {}
     """Words that are not keys -> what to write instead."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Let the schema of a class have its docstring under ``python -OO`` too."""
+        super().__init_subclass__(**options)
+        cls.__doc__ = docstring(cls)
 
     def __init__(self, /, **data: Any) -> None:
         try:
@@ -121,10 +128,8 @@ def _readable(value: str) -> str:
 
 def _one_line(value: str) -> str:
     """Refuse labels of several lines."""
-    if hidden := hidden_character(value):
-        raise invalid(f"a name or label is one line of text, but contains the character {hidden}; remove it")
-    if len(value) > LONGEST_NAME:
-        raise invalid(f"a name or label has at most {LONGEST_NAME} characters, found {len(value)}")
+    if fault := label_fault(value):
+        raise invalid(fault)
     return value
 
 

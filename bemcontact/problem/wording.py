@@ -5,8 +5,8 @@ from collections.abc import Collection, Iterable, Mapping
 from difflib import get_close_matches
 from math import isfinite
 
-LONGEST_NAME = 1000
-"""Largest number of characters in a name."""
+from bemcontact.checks.arguments import LONGEST_NAME
+
 MANY_WORDS = 100
 """Number of known or unknown words from which they are not compared with each other, which would take long."""
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")

@@ -140,7 +140,7 @@ def schema() -> dict[str, Any]:
     """
     properties = Problem.model_json_schema()
     for definition in (properties, *properties["$defs"].values()):
-        if "description" in definition:  # python -OO has no docstrings
+        if "description" in definition:
             definition["description"] = definition["description"].partition("\n\n")[0]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **properties}
 
@@ -353,7 +353,7 @@ class _Tree:
 
 def _overridden(document: Document, override: str) -> Document:
     """Document after an override ``key.path=value``."""
-    start = f"--set {escaped(override)}"
+    start = f"override {escaped(override)}"
     keys, equals, text = override.partition("=")
     if not equals:
         raise SpecError(f"{start}: there is no '='; write key.path=value")
@@ -365,7 +365,7 @@ def _overridden(document: Document, override: str) -> Document:
         entry = _parsed(text, start)
     except SpecError as error:
         raise SpecError(f"{start}: {str(error).removeprefix(start).partition(': ')[2]}") from None
-    return document.changed(path, entry, Mark(0, 0, escaped(f"--case {entry.data}") if path == ("case",) else start))
+    return document.changed(path, entry, Mark(-1, 0, start))  # before all lines
 
 
 def _varied(document: Document, name: str) -> Iterator[Document]:
@@ -375,7 +375,7 @@ def _varied(document: Document, name: str) -> Iterator[Document]:
     """
     variants = {item.name: item for item in RawValue((), document.data).below(Problem, "variants").named()}
     if name not in variants:
-        raise SpecError(f"--variant {name or repr(name)}: {unknown_word('variant', name, variants)}")
+        raise SpecError(f"variant {name or repr(name)}: {unknown_word('variant', name, variants)}")
     variant = variants[name].read(Variant)
     if variant is None:
         return

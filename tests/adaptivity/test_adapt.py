@@ -346,6 +346,14 @@ def test_stated_elements_are_the_coarsest():
     assert np.diff(mesh).max() <= 1 / 80 * (1 + 1e-9)
 
 
+def test_more_stated_elements_than_a_search_can_have_are_refused_before_any_work():
+    """A thousand elements have the 4000 unknowns of the finest mesh; none would be left for the other edges."""
+    problem = block_on_flat_floor()[0].with_value("boundary.outer.bottom.elements", 1001)
+    for work in (first_mesh, meshed):
+        with pytest.raises(ProblemError, match=r"boundary: 1001 elements are stated, and .* found has at most 1000; "):
+            work(problem)
+
+
 def test_contact_of_a_point_ends_honestly(monkeypatch: pytest.MonkeyPatch):
     """A beam on two knife edges touches points, which have no width: elements get shorter until there are too many."""
     monkeypatch.setattr(adapt, "MOST_UNKNOWNS", 700)
@@ -373,6 +381,21 @@ def test_a_cap_of_the_unknowns_is_told(monkeypatch: pytest.MonkeyPatch):
     assert judged.met is False
     assert judged.worst > 1e-4
     assert "300 unknowns" in judged.reason
+
+
+@pytest.mark.parametrize("change", [("material.young_modulus", 1e20), ("conditions.axis.displacement.x", 1e15)])
+def test_a_deformation_below_the_rounding_ends_the_search_at_once(change: tuple[str, float]):
+    """A modulus or a displacement of which nobody knows the unit: what matters is their ratio to the rest."""
+    (judged,) = found(half_disk(20.0).with_value(*change)).accuracies
+    assert judged.met is False
+    assert judged.passes == 1
+    assert "is lost in the rounding of coordinates and displacements of up to" in judged.reason
+
+
+def test_a_stiff_body_on_a_flat_surface_is_exact():
+    """Its deformation is far below the rounding of coordinates, but no gap is."""
+    (judged,) = found(block_on_flat_floor()[0].with_value("material.young_modulus", 1e25)).accuracies
+    assert judged.met
 
 
 def test_passes_are_told():

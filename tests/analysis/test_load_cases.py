@@ -389,7 +389,7 @@ def test_case_that_contact_cannot_hold_is_refused_by_its_name():
 
 
 def test_a_case_must_be_chosen_where_one_is_solved():
-    with pytest.raises(ProblemError, match="with case, --case or with_case: wind, heat, push, all; or solve all"):
+    with pytest.raises(ProblemError, match=r"as case \(in Python by with_case\): wind, heat, push, all; or solve all"):
         bemcontact.solve(made(FREE, **FREE_CASES))
     with pytest.raises(ProblemError, match="states no load cases"):
         bemcontact.solve_cases(made(FREE))

@@ -1,9 +1,12 @@
 """Motions of body and tools that no condition prevents: those that contact sees, and their names."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from tool_problems import FREE, HELD, ROLLER, WEDGE, Spec, made
 
+from bemcontact.bem import rigid_motions
 from bemcontact.bem.body import Body, body_of
 from bemcontact.bem.rigid_motions import FAR, FreeMotions, RigidMotions, toward
 
@@ -192,3 +195,14 @@ def test_a_pole_that_is_far_away_is_said_to_be_nearly_a_translation(far: float, 
     moved, middle = (motion.displacement(at)[..., 0] for at in (points, np.array([[1.0, 2]])))
     if abs(far) > FAR:
         assert np.linalg.norm(moved - middle, axis=1).max() <= abs(far) / FAR
+
+
+def test_free_motions_of_many_points_need_no_square_matrix():
+    """A square matrix of these points has 72 MB."""
+    seen = np.random.default_rng(0).standard_normal((3000, 3))
+    tracemalloc.start()
+    moving, still = rigid_motions._split(seen, np.eye(3))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert (moving.shape, still.shape) == ((3, 3), (0, 3))
+    assert peak < 1 << 20

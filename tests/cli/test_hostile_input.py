@@ -78,8 +78,11 @@ def test_a_file_that_cannot_grow_is_named(tmp_path: Path, name):
     assert [*tmp_path.iterdir()] == []
 
 
-def test_schema_without_docstrings():
-    assert in_a_process("schema", flags=("-OO",)).returncode == 0
+@pytest.mark.parametrize("arguments", ["--help", "solve --help", "schema", "schema --result", "schema --reproduction"])
+def test_help_and_schemas_are_the_same_where_python_removes_docstrings(arguments: str):
+    with_them, without = (in_a_process(*arguments.split(), flags=flags) for flags in ((), ("-OO",)))
+    assert without.stdout == with_them.stdout
+    assert without.returncode == 0
 
 
 def test_little_memory_is_said_before_any_work():

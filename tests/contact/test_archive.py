@@ -200,13 +200,15 @@ BREAKS: dict[str, tuple[str, Callable[[np.ndarray], Any], str]] = {
     "no run length": ("run_length", lambda length: -length, "run_length must be positive"),
     "a name of numbers": ("name", lambda _: np.zeros(3), "member 'name' is no text: it has the shape"),
     "names of numbers": ("zone_names", lambda _: np.zeros(2), "zone_names must be a list of texts"),
-    "units of nothing": ("units", lambda _: np.zeros(2), "member 'units' is no"),
+    "units of nothing": ("units", lambda _: np.zeros(2), "member 'units' is no list of pairs: it has the shape"),
+    "notes of nothing": ("notes", lambda _: np.array(1.0), "member 'notes' is no list: it has the shape"),
     "dependent motions": ("rigid_motions", lambda R: 0 * R, "independent columns"),
     "tools as numbers": (
         "tools.free",
         lambda free: free.astype(float),
         "tools.free must contain True and False",
     ),
+    "a length of many": ("pinned.length", lambda _: np.zeros(3), "member 'pinned.length' is no number"),
     "a length of nothing": ("pinned.length", lambda _: np.array(np.nan), "pinned.length must be a finite number"),
 }
 
@@ -247,6 +249,29 @@ def test_compressed_members_are_refused_before_they_are_read(whole, tmp_path: Pa
     (tmp_path / "a.npz").write_bytes(packed(members_of(whole["body"]), zipfile.ZIP_DEFLATED))
     with pytest.raises(ProblemError, match="member 'format' is damaged: it is compressed"):
         CondensedContact.load(tmp_path / "a.npz")
+
+
+@pytest.mark.parametrize(
+    ("name", "large"),
+    [
+        ("weights", np.zeros(1 << 16)), ("compliance", np.zeros((1 << 8, 1 << 8))), ("name", np.array("a" * (1 << 16))),
+        ("format", np.array("a" * (1 << 16))), ("notes", np.array(["a" * (1 << 8)] * (1 << 8))),
+    ],
+)  # fmt: skip
+def test_a_member_that_no_problem_of_this_size_has_is_not_read(name: str, large, whole, tmp_path: Path, monkeypatch):
+    """Its head states what the file has, beside four contact points."""
+    monkeypatch.setattr(archive, "ROOM", 1 << 12)
+    place = tmp_path / "large.npz"
+    place.write_bytes(packed({**members_of(whole["plain"]), f"{name}.npy": npy(large)}))
+    with pytest.raises(ProblemError, match=rf"member '{name}' is damaged: it has \d+ bytes where compliance and"):
+        CondensedContact.load(place)
+
+
+def test_a_problem_of_the_least_room_is_read(whole, tmp_path: Path, monkeypatch):
+    """What is saved needs no more than its head, its names and four times its compliance."""
+    monkeypatch.setattr(archive, "ROOM", 1 << 12)
+    assert read_back(whole["plain"], tmp_path / "a.npz") is not None
+    assert read_back(whole["body"], tmp_path / "b.npz") is not None
 
 
 @pytest.mark.parametrize("shape", [(1 << 40,), (1 << 62, 1 << 62), (-4, 4), (1 << 31, 1 << 31, 0)])

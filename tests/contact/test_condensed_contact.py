@@ -9,8 +9,10 @@ from contact_problems import in_units, random_contact
 import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import MotionAlgebra, fix_gauge
+from bemcontact.contact.load_cases import LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
+from bemcontact.formulations.search import Start
 from bemcontact.options import Weights
 
 
@@ -80,6 +82,30 @@ def test_arrays_are_read_only():
 def test_arrays_that_state_no_problem_are_refused(changes, text):
     with pytest.raises(ProblemError, match=text):
         replace(random_contact(0, 12, 2), **changes)
+
+
+HIDDEN, PLAIN = "a\x1b[31m", CondensedContact.from_compliance([[1.0]], [-1.0])
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda: CondensedContact.from_compliance([[1.0]], [-1.0], name=HIDDEN),
+        lambda: CondensedContact.from_compliance([[1.0]], [-1.0], name="two\nlines"),
+        lambda: CondensedContact.from_compliance([[1.0]], [-1.0], name="a" * 1001),
+        lambda: replace(PLAIN, zone_names=(HIDDEN,)),
+        lambda: replace(PLAIN, units={"length": HIDDEN}),
+        lambda: replace(PLAIN, notes=(HIDDEN,)),
+        lambda: replace(PLAIN, tools=replace(Tools.none(1, 0), names=(HIDDEN,))),
+        lambda: replace(PLAIN, cases=replace(LoadCases.none(1, 0, 0), names=(HIDDEN,))),
+        lambda: replace(PLAIN, pinned=replace(Pinned.none(0, 0), motions=(HIDDEN,))),
+        lambda: Start(pressure=[0.0], displacement=[0.0], label=HIDDEN),
+    ],
+)
+def test_names_follow_the_rule_of_specs(made):
+    """No hidden characters, and one line of at most 1000 characters, but for notes, which are longer texts."""
+    with pytest.raises(ProblemError, match=r"U\+00(1B|0A); remove it|at most 1000 characters, found 1001"):
+        made()
 
 
 def test_missing_weights_are_refused():

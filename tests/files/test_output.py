@@ -1,6 +1,7 @@
 """Files and folders are complete, or do not appear at all."""
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -155,6 +156,30 @@ def test_what_a_killed_run_left_long_ago_is_removed(tmp_path: Path):
         os.utime(folder, (time.time() - 3700,) * 2)
     write_pages(tmp_path / "report", "new")
     assert sorted(tmp_path.iterdir()) == sorted([young, other, tmp_path / "report"])
+
+
+def test_a_file_that_a_killed_run_left_long_ago_is_removed(tmp_path: Path):
+    """SIGTERM, or SIGPIPE as another thread writes to a pipe that its reader closed, ends a run without a farewell."""
+    code = (
+        "import os, signal, sys\nfrom pathlib import Path\nfrom bemcontact.files import output\n"
+        "with output.whole_file(Path(sys.argv[1])) as temporary:\n"
+        "    temporary.write_text('half')\n    signal.signal(signal.SIGPIPE, signal.SIG_DFL)\n"
+        "    os.kill(os.getpid(), signal.SIGPIPE)\n"
+    )
+    target = tmp_path / "a.json"
+    root = str(Path(output.__file__).parents[2])
+    ended = subprocess.run(
+        [sys.executable, "-c", code, str(target)], check=False, env={**os.environ, "PYTHONPATH": root}
+    )
+    assert ended.returncode == -signal.SIGPIPE
+    (left,) = tmp_path.iterdir()
+    assert left != target
+    for age, kept in ((0, [left, target]), (3700, [target])):
+        os.utime(left, (time.time() - age,) * 2)
+        with output.whole_file(target) as temporary:
+            temporary.write_text("whole")
+        assert sorted(tmp_path.iterdir()) == kept
+    assert target.read_text() == "whole"
 
 
 KILLED = """

@@ -19,6 +19,15 @@ from bemcontact.options import Equilibrium, Rows, SolveOptions, Weights
 PENALIZED = SolveOptions.of("qp2", equilibrium=Equilibrium.PENALTY)
 
 
+@pytest.mark.parametrize("gap", [0.0, 1.0])
+def test_the_least_load_of_all_has_an_answer(gap: float):
+    """5e-324, of which the displacement is zero; warnings are errors in tests."""
+    contact = CondensedContact.from_compliance(
+        [[2.0, 1.0], [1.0, 2.0]], [gap, gap], rigid_motions=[[1.0], [1.0]], motion_load=[-5e-324]
+    )
+    assert judged(contact, "qp2").certified
+
+
 @pytest.mark.parametrize("length", [1.0, 0.1])
 @pytest.mark.parametrize("stress", [1.0, 1e3])
 @pytest.mark.parametrize("k", [0, 2])

@@ -146,7 +146,7 @@ def test_error_of_a_crossing_names_both_edges_and_the_point():
     corners = [(0, 0), (2, 0), (0, 2), (2, 2)]
     lines = [Line(name=f"side {i}", start=corner, elements=1) for i, corner in enumerate(corners)]
     (issue,) = issues(outer=lines)
-    assert issue.startswith("outer[3]: 'side 3' crosses or touches 'side 1' at (1, 1); ")
+    assert issue.startswith("outer[3]: 'side 3' crosses or touches 'side 1' at (1, 1); neighbors may meet")
 
 
 def test_loop_that_touches_itself_in_a_corner_is_refused():
@@ -162,9 +162,16 @@ def test_edge_that_folds_back_on_its_neighbor_is_refused():
 
 
 def test_hole_that_crosses_the_outer_loop_or_another_hole_is_refused():
-    assert "'bore' crosses or touches" in issues(outer=square(), holes=[[circle(center=(2, 1))]])[0]
+    (issue,) = issues(outer=square(), holes=[[circle(center=(2, 1))]])
+    assert_states(issue, "'bore' crosses or touches … at … ; loops must not meet")
     holes = [[circle()], [circle(name="other", center=(1.2, 1.0))]]
-    assert issues(outer=square(), holes=holes)[0].startswith("holes[1][0]: 'other' crosses or touches 'bore' at")
+    assert_states(
+        issues(outer=square(), holes=holes)[0],
+        "holes[1][0]: 'other' crosses or touches 'bore' at … ; loops must not meet",
+    )
+    touching = [[circle(center=(0.6, 1), radius=0.4)], [circle(name="other", center=(1.4, 1), radius=0.4)]]
+    (issue,) = issues(outer=square(), holes=touching)
+    assert_states(issue, "holes[1][0]: 'other' crosses or touches 'bore' at … ; loops must not meet")
 
 
 def test_all_loops_with_the_wrong_orientation_are_reported():

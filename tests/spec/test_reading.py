@@ -570,7 +570,7 @@ def test_changes_may_be_a_mapping_of_values_by_key():
 def test_mistake_in_an_override_points_to_it(override, words):
     lines = error_lines(SPEC, [override])
     assert len(lines) == 1
-    assert lines[0].startswith(f"--set {override}: ")
+    assert lines[0].startswith(f"override {override}: ")
     assert_states(lines[0], words)
 
 
@@ -578,7 +578,7 @@ def test_only_new_issues_are_attributed_to_an_override():
     text = SPEC.replace("young_modulus: 1e3", "young_modulus: 0")
     lines = error_lines(text, ["mesh.refine=2", "conditions.top.pressure=", "material.poisson_ratio=0.2"])
     assert [line.split(": ")[:2] for line in lines] == [
-        ["--set conditions.top.pressure=", "conditions.top"],
+        ["override conditions.top.pressure=", "conditions.top"],
         ["block.yaml:4:18", "material.young_modulus"],
     ]
 
@@ -595,7 +595,7 @@ def test_later_issues_are_located_in_the_file(tmp_path):
         ProblemError(issues), path.read_text(), str(path), ["conditions.right={pressure: 1}"]
     )
     assert str(error).splitlines() == [
-        "--set conditions.right={pressure: 1}: conditions.right: conflicts too",
+        "override conditions.right={pressure: 1}: conditions.right: conflicts too",
         f"{path}: nothing holds the body",
         f"{path}:24:28: conditions.left.displacement.x: conflicts with its neighbor",
     ]
@@ -639,8 +639,8 @@ def test_variant_of_the_file_equals_that_of_the_problem(variant, tmp_path):
         ("outer.bottom", "outer.bot", None, "block.yaml:32:36: variants.fine.set.boundary.outer.bot.elements: "),
         ("outer.bottom", "outer.bot", "fine", "block.yaml:32:36: variants.fine.set.boundary.outer.bot.elements: "),
         ("    set:", "    sat:", "fine", "block.yaml:31:5: variants.fine.sat: unknown … 'sat' … 'set'"),
-        ("", "", "fime", "--variant fime: unknown … 'fime' … 'fine'"),
-        ("", "", "", "--variant '': … empty; … fine, steep"),
+        ("", "", "fime", "variant fime: unknown … 'fime' … 'fine'"),
+        ("", "", "", "variant '': … empty; … fine, steep"),
     ],
 )
 def test_mistakes_in_variants_are_located(old, new, variant, line):

@@ -76,6 +76,11 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
         (TOP, f"{TOP}, ends_at: [2]"),
         ("conditions:\n", HOLE.format("radius: 10, angles: [360, 0]")),
         ("conditions:\n", HOLE.format("radius: 5, angles: [0, 360]")),
+        (
+            "conditions:\n",
+            "  holes:\n    - [{name: g, kind: arc, center: [18, 10], radius: 3, angles: [360, 0]}]\n"
+            "    - [{name: h, kind: arc, center: [22, 10], radius: 3, angles: [360, 0]}]\nconditions:\n",
+        ),
     ],
     "Lists, mappings and texts": [
         ("edges: bottom", "edges: bottom, left"),

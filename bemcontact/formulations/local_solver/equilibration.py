@@ -6,6 +6,7 @@ from math import frexp, ldexp, sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorizations import posv, row_lengths
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 
@@ -38,11 +39,13 @@ def unequilibrated(statement: Statement) -> tuple[Statement, Scales]:
     return statement, Scales(variables=np.ones(n), rows=np.ones(m), objective=1.0)
 
 
+@np.errstate(over="ignore", divide="ignore", invalid="ignore")  # what overflows is refused at the end
 def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     """Scale by natural factors, then columns and rows of A to size one, and the largest entry of H and c to one.
 
     If all bounds are smaller than one, the unit of all variables is made smaller, as absolute tolerances assume.
-    All factors are powers of two, so that no digit of the data changes.
+    All factors are powers of two, so that no digit of the data changes. `ProblemError` if entries are so far apart that
+    no factors bring them together.
     """
     n, bounds = statement.c.size, np.array([statement.lower, statement.upper])
     natural = natural_factors(statement, bounds)
@@ -58,13 +61,19 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     E = _power_of_two(E / row_lengths(E[:, None] * statement.A * D))
     A = E[:, None] * statement.A * D
     bounds *= np.concatenate([1.0 / D, E])
-    smaller = _smaller_unit(bounds)
+    smaller = _smaller_unit(bounds, max(largest(E), largest(1.0 / D)))
     if smaller < 1.0:
         D, E, bounds = smaller * D, E / smaller, bounds / smaller
     H, c = D[:, None] * statement.H * D, D * statement.c
     unit = _near_power(1.0 / (max(largest(H), largest(c)) or 1.0))
     H *= unit
     c *= unit
+    finite = all(np.isfinite(part).all() for part in (H, c, A, D, E, 1.0 / D, 1.0 / E))
+    if not finite or np.count_nonzero(np.isfinite(bounds)) < np.isfinite([statement.lower, statement.upper]).sum():
+        raise ProblemError(
+            "the sizes of entries and bounds are too far apart for double precision; choose other units, or write 0 "
+            "for what is round-off"
+        )
     return Statement(H=H, c=c, A=A, lower=bounds[0], upper=bounds[1]), Scales(variables=D, rows=E, objective=unit)
 
 
@@ -135,11 +144,14 @@ def _smaller_bounds(bounds: Array) -> Array:
     return smaller
 
 
-def _smaller_unit(bounds: Array) -> float:
-    """Factor of all variables by which the largest bound is about one if all are smaller, as tolerances assume."""
+def _smaller_unit(bounds: Array, factor: float) -> float:
+    """Factor of all variables by which the largest bound is about one if all are smaller, as tolerances assume.
+
+    The largest factor over it, of a row or of one over a variable, is still a number.
+    """
     sizes = np.abs(bounds)
     size = largest(sizes[sizes < np.inf])
-    return _near_power(size) if 0.0 < size < 1.0 else 1.0
+    return min(_near_power(max(size, ldexp(factor, -1000))), 1.0) if 0.0 < size < 1.0 else 1.0
 
 
 def _near_power(factor: float) -> float:

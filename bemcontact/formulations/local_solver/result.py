@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
+from bemcontact.checks.arguments import shown
+from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 
 
@@ -78,6 +80,11 @@ class QPOptions:
     scale : equilibrate rows and variables by powers of two, which changes no digit of the data
     search : most faces of the critical cone that are examined behind zero multipliers before the status is undecided
     log : called with each ``LogLine``
+
+    Raises
+    ------
+    ProblemError
+        A value is out of range or of another kind.
     """
 
     max_iterations: int | None = None
@@ -86,6 +93,31 @@ class QPOptions:
     scale: bool = True
     search: int = 2000
     log: Callable[[LogLine], None] | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse options that are out of range."""
+        for name in ("feasibility_tolerance", "optimality_tolerance"):
+            value = getattr(self, name)
+            if not _is_number(value) or not 0.0 < value < 1e-2:
+                raise ProblemError(f"{name} is {shown(value)}: give a number between 0 and 0.01, such as 1e-9")
+        if self.max_iterations is not None and not _counts(self.max_iterations):
+            raise ProblemError(f"max_iterations is {shown(self.max_iterations)}: give a whole number >= 0, or None")
+        if not isinstance(self.scale, bool | np.bool_):
+            raise ProblemError(f"scale is {shown(self.scale)}: give True or False")
+        if not _counts(self.search):
+            raise ProblemError(f"search is {shown(self.search)}: give the number of faces to examine, >= 0")
+        if self.log is not None and not callable(self.log):
+            raise ProblemError(f"log is {shown(self.log)}: give a function of a LogLine, such as print")
+
+
+def _is_number(value: object) -> bool:
+    """Whether this is a real number."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
+def _counts(value: object) -> bool:
+    """Whether this is a whole number that is not negative."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(value >= 0)
 
 
 @dataclass(frozen=True, kw_only=True)

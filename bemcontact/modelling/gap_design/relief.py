@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import scipy
@@ -41,6 +41,11 @@ class Relief:
     shapes : functions of the arc position (m,) that g is a combination of, or their values (m, s) at the points of the
         interval; without them each point has a value of its own
     coefficients : (least, largest) of the shapes' coefficients, numbers or (s,) each
+
+    Raises
+    ------
+    ProblemError
+        Bounds that are no numbers or exclude each other, shapes of another kind, or coefficients without shapes.
     """
 
     lower: ArrayLike | None = None
@@ -49,6 +54,31 @@ class Relief:
     curvature: Range | None = None
     shapes: Sequence[ReliefShape] | Array | None = None
     coefficients: tuple[ArrayLike, ArrayLike] | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what no interval could make right."""
+        for name, pair in self._bounds.items():
+            _limits(pair, None, name)
+        if isinstance(self.shapes, np.ndarray):
+            real_array(self.shapes, "shapes")
+        elif self.shapes is None:
+            if self.coefficients is not None:
+                raise ProblemError("coefficients belong to shapes; give shapes, or lower and upper values")
+        elif not isinstance(self.shapes, Sequence) or not all(map(callable, self.shapes)):
+            raise ProblemError(
+                "shapes must be a list of functions of the arc position, or an array (m, s) of their values at m "
+                f"points; found {shown(self.shapes)}"
+            )
+
+    @property
+    def _bounds(self) -> dict[str, tuple[ArrayLike | None, ArrayLike | None]]:
+        """What is bounded -> the least and the largest, as given."""
+        given = self.lower is not None or self.upper is not None
+        pairs: dict[str, Any] = {"values": (self.lower, self.upper)} if given else {}
+        for name in ("slope", "curvature"):
+            if (given := getattr(self, name)) is not None:
+                pairs[name] = given if isinstance(given, tuple) else _both_signs(given, name)
+        return pairs if self.coefficients is None else {**pairs, "coefficients": self.coefficients}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -233,19 +263,12 @@ def _shapes(relief: Relief, position: Array) -> Array:
     """The shapes (m, s) as they were given; the unit vectors if none were."""
     m = len(position)
     if relief.shapes is None:
-        if relief.coefficients is not None:
-            raise ProblemError("coefficients belong to shapes; give shapes, or lower and upper values")
         return np.eye(m)
     if isinstance(relief.shapes, np.ndarray):
         shapes = np.atleast_2d(real_array(relief.shapes, "shapes"))
-    elif isinstance(relief.shapes, Sequence) and all(map(callable, relief.shapes)):
+    else:
         columns = [_on_points(shape(position), number, m) for number, shape in enumerate(relief.shapes)]
         shapes = np.column_stack(columns) if columns else np.zeros((m, 0))
-    else:
-        raise ProblemError(
-            f"shapes must be a list of functions of the arc position, or an array ({m}, s) of their values; found "
-            f"{shown(relief.shapes)}"
-        )
     if shapes.ndim != 2 or shapes.shape[0] != m or not shapes.shape[1]:
         raise ProblemError(
             f"shapes need finite values at the {m} points of the interval; found an array {shapes.shape}"
@@ -263,18 +286,18 @@ def _families(relief: Relief, shapes: Array, sizes: Array, position: Array, run:
     bent = np.flatnonzero((np.diff(inner) == 1) & (run[inner[:-1]] == run[inner[1:]])) if len(inner) > 1 else inner[:0]
     width = (step[inner[bent]] + step[inner[bent] + 1]) / 2
     curvatures = (slopes[bent + 1] - slopes[bent]) / width[:, None]
+    rows = {
+        "values": shapes,
+        "slope": slopes @ shapes,
+        "curvature": curvatures @ shapes,
+        "coefficients": np.eye(len(sizes)),
+    }
     families: dict[str, Bounds] = {}
-    if relief.lower is not None or relief.upper is not None:
-        limits = _limits((relief.lower, relief.upper), m, "values")
-        families["values"] = Bounds(shapes, *limits)
-    for name, rows, given in (("slope", slopes, relief.slope), ("curvature", curvatures, relief.curvature)):
-        if given is not None and len(rows):
-            pair = given if isinstance(given, tuple) else _both_signs(given, name)
-            families[name] = Bounds(rows @ shapes, *_limits(pair, len(rows), name))
-    if relief.coefficients is not None:
-        low, high = _limits(relief.coefficients, len(sizes), "coefficients")
-        families["coefficients"] = Bounds(np.eye(len(sizes)), low * sizes, high * sizes)
-    families = {name: bounds for name, bounds in families.items() if len(bounds.low)}
+    for name, pair in relief._bounds.items():
+        if len(rows[name]):
+            low, high = _limits(pair, len(rows[name]), name)
+            size = sizes if name == "coefficients" else 1.0
+            families[name] = Bounds(rows[name], low * size, high * size)
     if not families:
         raise ProblemError("nothing bounds the profile; give lower and upper values, or shapes with coefficients")
     return families
@@ -291,6 +314,8 @@ def _on_points(values: ArrayLike, number: int, count: int) -> Array:
 def _both_signs(given: object, what: str) -> tuple[float, float]:
     """The bounds ± a number."""
     number = real_number(given, f"the bound on {what}, or each of a pair (least, largest),")
+    if number < 0:
+        raise ProblemError(f"the bound on {what} holds in both directions, so it is not negative; found {number:g}")
     return -number, number
 
 
@@ -300,18 +325,20 @@ def _pair(given: object, what: str) -> tuple[float, float]:
     return float(array[0]), float(array[1])
 
 
-def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int, what: str) -> tuple[Array, Array]:
-    """Least and largest (count,), infinite where not given."""
-    limits = []
+def _limits(pair: tuple[ArrayLike | None, ArrayLike | None], count: int | None, what: str) -> tuple[Array, Array]:
+    """Least and largest (count,), infinite where not given; without a count, as many as are given."""
     if not isinstance(pair, tuple | list) or len(pair) != 2:
         raise ProblemError(f"bounds on {what} are a least and a largest one, (least, largest); found {shown(pair)}")
+    limits = []
     for given, otherwise in zip(pair, (-np.inf, np.inf), strict=True):
         numbers = real_array(otherwise if given is None else given, f"bounds on {what}", finite=False)
-        real_array(numbers[np.isfinite(numbers)], f"bounds on {what}")  # none is too large; infinite ones are allowed
+        real_array(numbers[~np.isinf(numbers)], f"bounds on {what}")  # none is too large; infinite ones are allowed
+        limits.append(numbers)
+    count = max(numbers.size for numbers in limits) if count is None else count
+    for numbers in limits:
         if numbers.ndim and numbers.shape != (count,):
             raise ProblemError(f"bounds on {what} are a number or {count} of them; found an array {numbers.shape}")
-        limits.append(np.broadcast_to(numbers, count).astype(float))
-    low, high = limits
-    if not (low <= high).all():  # false also for what is not a number
-        raise ProblemError(f"the lower bound on {what} is above the upper one, or no number; exchange them")
+    low, high = (np.broadcast_to(numbers, count).astype(float) for numbers in limits)
+    if not (low <= high).all():
+        raise ProblemError(f"the lower bound on {what} is above the upper one; exchange them")
     return low, high

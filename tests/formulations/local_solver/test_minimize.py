@@ -1,5 +1,6 @@
 """The local solver: every claim of a result checked again from the data of the problem."""
 
+from contextlib import suppress
 from fractions import Fraction
 from itertools import product
 
@@ -612,20 +613,27 @@ def test_a_start_outside_the_bounds_is_moved_to_them():
         ({"bl": [INF, 0.0]}, "give a number"),
         ({"x0": [1.0]}, "x0 has shape"),
         ({"working_set": [3, 0]}, "working_set"),
-        ({"options": QPOptions(optimality_tolerance=0.0)}, "optimality_tolerance"),
-        ({"options": QPOptions(search=-1)}, "search"),
-        ({"options": QPOptions(search=1.5)}, "search"),
-        ({"options": QPOptions(max_iterations="a")}, "max_iterations"),
-        ({"options": QPOptions(log=True)}, "log is True"),
         ({"options": {"search": 3}}, "options is a dict"),
         ({"H": np.eye(2) * 1j}, "H must contain real numbers; found complex numbers"),
         ({"H": np.zeros((0, 0)), "c": []}, "c is empty"),
-        ({"options": QPOptions(max_iterations=-1)}, "max_iterations"),
     ],
 )
 def test_invalid_input_is_refused_with_the_reason(change, message):
     with pytest.raises(ProblemError, match=message):
         minimize_qp(**({"H": np.eye(2), "c": np.zeros(2)} | change))
+
+
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [
+        ("optimality_tolerance", 0.0), ("optimality_tolerance", -1e-9), ("feasibility_tolerance", np.nan),
+        ("feasibility_tolerance", "1e-9"), ("search", -1), ("search", 1.5), ("max_iterations", "a"),
+        ("max_iterations", -1), ("log", True), ("scale", 2),
+    ],
+)  # fmt: skip
+def test_invalid_options_are_refused_when_they_are_made(option, value):
+    with pytest.raises(ProblemError, match=f"^{option} is {value!r}: give "):
+        QPOptions(**{option: value})
 
 
 @pytest.mark.parametrize("far", [1e6, 1e9, 1e12, 1e20])
@@ -764,3 +772,25 @@ def test_multipliers_that_are_rounding_of_larger_ones_hold_no_point():
     result = minimize_qp(H, c, A, lower, upper, [-far, 0, -far, -far], [far, 2, far, far])
     if result.status is QPStatus.LOCAL_MINIMIZER:
         assert result.objective == pytest.approx(-140.5, abs=1e-5)
+
+
+SIZES = [0.0, 5e-324, 1e-310, 1e-300, 1e-20, 1.0, 1e19, 1e100]
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_numbers_of_any_size_have_an_answer_or_an_error_and_no_warning(seed: int):
+    """Denormal numbers beside huge ones; warnings are errors in tests."""
+    rng = np.random.default_rng(seed)
+    n, m = int(rng.integers(1, 4)), int(rng.integers(0, 4))
+
+    def drawn(*shape: int) -> np.ndarray:
+        return rng.choice(SIZES, shape) * rng.choice([-1, 1], shape)
+
+    H, rows = np.triu(drawn(n, n)), drawn(m)
+    with suppress(ProblemError):
+        minimize_qp(H + H.T, drawn(n), drawn(m, n), rows, rows, -np.abs(drawn(n)), np.abs(drawn(n)))
+
+
+def test_numbers_that_double_precision_cannot_bring_together_are_refused():
+    with pytest.raises(ProblemError, match="too far apart for double precision; choose other units"):
+        minimize_qp(np.diag([1e100, 5e-324]), [5e-324, 1e100], [[5e-324, 1e100]], [1e100], [1e100], [0, 0], [1, 5e-324])

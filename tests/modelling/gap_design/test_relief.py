@@ -74,22 +74,39 @@ def test_the_profile_that_is_next_to_none():
         (Relief(), "toe", None, "nothing bounds the profile; give lower and upper values"),
         (Relief(lower=0), "toe", None, "the profile has no bound; give lower and upper values"),
         (Relief(slope=1.0), "toe", None, "the profile has no bound"),
-        (Relief(lower=1, upper=0), "toe", None, "the lower bound on values is above the upper one"),
-        (Relief(lower="0", upper=1), "toe", None, "bounds on values must contain real numbers; found texts"),
-        (Relief(lower=0, upper=np.nan), "toe", None, "above the upper one, or no number"),
         (Relief(lower=(0, 0, 0), upper=1), "toe", None, r"bounds on values are a number or 2 of them; .* \(3,\)"),
         (Relief(lower=(0, 5), upper=(1, 6), slope=1), "toe", None, "no profile keeps the bounds on values and slope"),
         (Relief(lower=0, upper=1, slope=(2, 3), curvature=9), "foot", None, "bounds on values and slope; widen one"),
-        (Relief(lower=0, upper=1, coefficients=(0, 1)), "toe", None, "coefficients belong to shapes"),
         (Relief(shapes=[np.sin], coefficients=(0, 1), lower=1, upper=2), "toe", None, "bounds on values; widen it"),
         (Relief(shapes=np.ones((3, 1)), coefficients=(0, 1)), "toe", None, r"the 2 points .* array \(3, 1\)"),
         (Relief(shapes=[np.zeros_like], coefficients=(0, 1)), "toe", None, "shape 0 is zero on the interval"),
         (Relief(shapes=[np.ones_like]), "toe", None, "nothing bounds the profile"),
     ],
 )
-def test_invalid_relief_is_refused(relief, zone, arc, words):
+def test_relief_that_does_not_fit_the_interval_is_refused(relief, zone, arc, words):
     with pytest.raises(ProblemError, match=words):
         Profiles.of(contact(), relief, zone, arc)
+
+
+@pytest.mark.parametrize(
+    ("bounds", "words"),
+    [
+        ({"lower": 1, "upper": 0}, "the lower bound on values is above the upper one"),
+        ({"lower": "0", "upper": 1}, "bounds on values must contain real numbers; found texts"),
+        ({"lower": 0, "upper": np.nan}, "bounds on values has entries that are not finite numbers"),
+        ({"lower": (0, 0), "upper": (1, 1, 1)}, r"bounds on values are a number or 3 of them; .* \(2,\)"),
+        ({"lower": 0, "upper": 1, "slope": -1.0}, "the bound on slope holds in both directions.* found -1"),
+        ({"lower": 0, "upper": 1, "curvature": (2, 1)}, "the lower bound on curvature is above the upper one"),
+        ({"lower": 0, "upper": 1, "slope": "steep"}, "the bound on slope, .* must be a finite number; found 'steep'"),
+        ({"lower": 0, "upper": 1, "coefficients": (0, 1)}, "coefficients belong to shapes"),
+        ({"shapes": [np.ones_like], "coefficients": 3}, "bounds on coefficients are a least and a largest one"),
+        ({"shapes": [1.0], "coefficients": (0, 1)}, "shapes must be a list of functions"),
+        ({"shapes": np.array([[np.inf]]), "coefficients": (0, 1)}, "shapes has entries that are not finite"),
+    ],
+)
+def test_relief_that_no_interval_could_have_is_refused_when_it_is_made(bounds, words):
+    with pytest.raises(ProblemError, match=words):
+        Relief(**bounds)
 
 
 @pytest.mark.parametrize("size", [1e-9, 1e6])
