@@ -1,7 +1,7 @@
 """Joints between edges that change nothing: neither the curve, nor the conditions, nor the zones."""
 
 from collections.abc import Callable, Sequence
-from math import degrees, dist, fsum, pi
+from math import copysign, degrees, dist, fsum, pi
 
 import numpy as np
 
@@ -9,12 +9,15 @@ from bemcontact.arrays import Array
 from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc, Segment, cross
 from bemcontact.problem.geometry import AnyEdge, Arc, EllipseArc, Line
 from bemcontact.problem.rigid_surface import Shape
+from bemcontact.problem.validation import Point
 
 FULL_TURN = 360.0
 MOST_NAMED = 4
 """Number of edges that are all named in the name of one in their place."""
-SAMPLES, ZOOM, ZOOMS = 256, 16, 6
+SAMPLES, ZOOM, ZOOMS = 256, 16, 11
 """Places of a closed curve that are compared at first; finer ones on each side of a place; times that is repeated."""
+EXACT = 2.0**-36
+"""Angle [degrees] of which a beginning is a multiple, so that no digit of a full turn from there is lost."""
 TURNED = 1e-5
 """Angle [degrees] by which a closed curve need not begin elsewhere."""
 SAME = 1e-9
@@ -26,6 +29,7 @@ def without_joints(
     edges: Sequence[Edge],
     alike: Callable[[str, str], bool],
     surfaces: Sequence[Shape],
+    near: Point | None = None,
 ) -> list[tuple[AnyEdge, tuple[str, ...]]]:
     """Edges of a loop, where those that go on in the next one are one edge, each with the names of its parts.
 
@@ -38,6 +42,7 @@ def without_joints(
     edges : the same with both ends
     alike : whether the edges of two names have the same conditions and zones
     surfaces : all rigid surfaces; none if one of them is not known yet
+    near : of places that are equally far a circle begins at the one nearest to this; else to where it is stated to
     """
     pairs = [*zip(loop, edges, strict=True)]
     joints = [not _goes_on(pairs[i - 1], pair, alike) for i, pair in enumerate(pairs)]
@@ -50,7 +55,7 @@ def without_joints(
         groups[-1].append(pair)
     parts = [tuple(edge.name for edge, _ in group) for group in groups]
     if len(groups) == 1 and surfaces and _is_free(*pairs):
-        return [(_beginning_far(_as_one(groups[0]), surfaces), parts[0])]
+        return [(_beginning_far(_as_one(groups[0]), surfaces, near), parts[0])]
     return [*zip(map(_as_one, groups), parts, strict=True)]
 
 
@@ -82,18 +87,21 @@ def _same_curve(one: Curve, other: Curve) -> bool:
     return False
 
 
-def _beginning_far(edge: AnyEdge, surfaces: Sequence[Shape]) -> AnyEdge:
+def _beginning_far(edge: AnyEdge, surfaces: Sequence[Shape], near: Point | None) -> AnyEdge:
     """A circle or an ellipse that begins where it is farthest from the surfaces; of such places at the nearest one."""
     if isinstance(edge, Line) or edge.angles is None:
         return edge
     first, last = edge.angles
 
     def beginning_at(turned: float) -> Arc | EllipseArc:
-        return edge.model_copy(update={"angles": (first + turned, last + turned)})
+        start = round((first + turned) / EXACT) * EXACT
+        return edge.model_copy(update={"angles": (start, start + copysign(FULL_TURN, last - first))})
+
+    def points_at(turned: Array) -> Array:
+        return np.array([beginning_at(angle).own_ends()[0] for angle in turned.ravel().tolist()])
 
     def gaps_at(turned: Array) -> Array:
-        points = np.array([beginning_at(angle).own_ends()[0] for angle in turned.ravel().tolist()])
-        return np.min([surface.closest(points).gap for surface in surfaces], axis=0).reshape(turned.shape)
+        return np.min([surface.closest(points_at(turned)).gap for surface in surfaces], axis=0).reshape(turned.shape)
 
     turned = FULL_TURN * np.arange(SAMPLES) / SAMPLES
     gap = gaps_at(turned)
@@ -104,9 +112,12 @@ def _beginning_far(edge: AnyEdge, surfaces: Sequence[Shape]) -> AnyEdge:
     for zoom in range(ZOOMS):
         around = tops[:, None] + FULL_TURN / SAMPLES * np.linspace(-1.0, 1.0, 2 * ZOOM + 1) / ZOOM**zoom
         tops = around[np.arange(len(tops)), gaps_at(around).argmax(axis=1)]
-    gap = gaps_at(tops)
+    gap, step = gaps_at(tops), FULL_TURN / SAMPLES / ZOOM
+    before, after = gaps_at(tops - step), gaps_at(tops + step)
+    tops = tops + step * (after - before) / (2 * (2 * gap - before - after))  # a flat top has half of its digits
     highest = (tops[gap >= gap.max() - SAME * size] + FULL_TURN / 2) % FULL_TURN - FULL_TURN / 2
-    nearest = float(highest[np.abs(highest).argmin()])
+    away = np.abs(highest) if near is None else np.hypot(*(points_at(highest) - near).T)
+    nearest = float(highest[away.argmin()])
     return edge if abs(nearest) <= TURNED else beginning_at(nearest)
 
 

@@ -297,11 +297,14 @@ class Problem(SpecModel):
 
         They have the same curve, conditions and zones, and state no elements. The name of the one edge has all theirs.
         """
-        loops = zip(self.boundary.loop_specs, self.boundary.loops, strict=True)
+        loops = [*zip(self.boundary.loop_specs, self.boundary.loops, strict=True)]
         surfaces = [zone.surface for zone in self.contact_zones.values()]
         known = [surface for surface in surfaces if not isinstance(surface, DeflectedContour)]
         known = known if len(known) == len(surfaces) else []
-        joined = [without_joints(stated, edges, self._alike, known) for stated, edges in loops]
+        (stated, edges), *others = loops
+        first = without_joints(stated, edges, self._alike, known)
+        near = first[0][0].own_ends()[0] or edges[0].start
+        joined = [first, *(without_joints(*loop, self._alike, known, near) for loop in others)]
         names = {part: edge.name for loop in joined for edge, parts in loop for part in parts}
         outer, *holes = whole = [tuple(edge for edge, _ in loop) for loop in joined]
         if whole == [*map(tuple, self.boundary.loop_specs)] or len({*names.values()}) < sum(map(len, joined)):

@@ -169,7 +169,7 @@ def test_each_proof_alone_proves_lonely_states_only(monkeypatch, proof, problem,
     assert several >= least[1]
 
 
-@pytest.mark.parametrize(("length", "elements"), [(500, 40), (800, 60), (1000, 60)])
+@pytest.mark.parametrize(("length", "elements"), [(500, 40), (800, 60), (1000, 60), (1500, 160)])
 def test_long_contact_of_a_slender_beam_is_certified(length: int, elements: int):
     """Under its weight on a floor, with one end pulled up: contact is half as long as the beam and longer."""
     edges = [("bottom", (0, 0), elements), ("right", (length, 0), 2), ("top", (length, 10), elements),

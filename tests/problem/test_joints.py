@@ -142,7 +142,7 @@ def bars_of(outer: list[dict], surfaces: list[dict], aside: float) -> np.ndarray
     return np.array([(bar.value, bar.bar) for bar in bars if bar.bar is not None], float)
 
 
-@pytest.mark.parametrize(("surfaces", "aside"), [(V_BLOCK, 0.3), (BORE, 0.0)])
+@pytest.mark.parametrize(("surfaces", "aside"), [(V_BLOCK, 0.3), (V_BLOCK, 0.0), (BORE, 0.0)])
 @pytest.mark.parametrize("kind", [{"kind": "arc", "radius": 10}, {"kind": "ellipse", "semi_axes": [10, 9.5]}])
 def test_a_closed_edge_has_the_same_bars_wherever_it_begins(surfaces: list[dict], aside: float, kind: dict):
     """A roller in a V, or in a bore: one edge from the right, or three from elsewhere."""
@@ -170,3 +170,22 @@ def test_a_deflected_contour_keeps_its_edges():
     surface = {"kind": "deflected_contour", "direction": [0, 1], "conditions": conditions}
     problem = plate([[], [], [0.5], []], [], contact_zones={"foot": {"edges": "0-0", "surface": surface}})
     assert problem.without_joints() is problem
+
+
+def test_a_ring_begins_on_one_side_inside_and_outside():
+    """Both sides are equally far from the planes above and below; the hole follows the rim, wherever it is cut."""
+    planes = {
+        "below": {"edges": "rim", "surface": {"kind": "plane", "point": [0, -10], "normal": [0, 1]}},
+        "above": {"edges": "rim", "surface": {"kind": "plane", "point": [0, 10], "normal": [0, -1]}},
+    }
+    for begin in (0.0, 17.0, 163.7, -91.0):
+        circle = {"kind": "arc", "center": [0, 0]}
+        ring = Problem(
+            name="ring", material={"young_modulus": 1.0, "poisson_ratio": 0.3}, contact_zones=planes,
+            boundary={"outer": [{"name": "rim", **circle, "radius": 10, "angles": [20, 380]}],
+                      "holes": [[{"name": "bore", **circle, "radius": 6, "angles": [begin, begin - 360]}]]},
+        )  # fmt: skip  # pyright: ignore[reportArgumentType]
+        rim, bore = ring.without_joints().boundary.edges
+        assert rim.start == pytest.approx((10, 0), abs=1e-9)
+        assert bore.start == pytest.approx((6, 0), abs=1e-9)
+        assert bore.length == pytest.approx(12 * np.pi)
