@@ -23,7 +23,7 @@ from .errors import ProblemError as ProblemError
 from .errors import SingularSystemError as SingularSystemError
 from .errors import SolverError as SolverError
 from .errors import SpecError as SpecError
-from .formulations.complementarity import solve_lcp as solve_lcp
+from .formulations.lcp import solve_lcp as solve_lcp
 from .formulations.local_solver import QPOptions as QPOptions
 from .formulations.local_solver import QPResult as QPResult
 from .formulations.local_solver import QPStatus as QPStatus

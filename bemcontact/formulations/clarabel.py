@@ -2,11 +2,7 @@
 
 Clarabel is called directly, because cvxpy does not pass on the progress of a solver. Clarabel stops where residuals are
 small beside one, whatever the unit of a row is. So rows and columns are brought to size one before, cone by cone,
-unless the problem is dimensionless already: units are taken out by the means of logarithms (Curtis and Reid, J. Inst.
-Maths Applics 10, 1972, 118-124), and the largest entries become one (Ruiz, RAL-TR-2001-034). Ruiz's method alone stops
-at any matrix whose largest entries are one, and leaves small what has a unit of its own, as a variable that cvxpy adds.
-Limits and costs become one, too: under a light load the gaps of far points are millions of displacements, and beside
-them everything else is small.
+unless the problem is dimensionless already (`conic_scaling`).
 
 No settings serve all programs. Clarabel's own regularization is too weak for Hessians that are semidefinite to
 round-off, a stronger one slows down others. So a few `ATTEMPTS` are made. The residuals of each end are computed anew
@@ -20,16 +16,15 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import csc_array, diags_array, triu
+from scipy.sparse import csc_array, triu
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SolverError
+from bemcontact.formulations.conic_scaling import Scaling, equilibrated, moved, size_of, symmetric, unscaled_end
 from bemcontact.formulations.linear_rays import infeasible_ray, unbounded_ray
 from bemcontact.formulations.presolve import FixedVariables
 
@@ -40,10 +35,6 @@ AT_ONCE, GOOD, POOR = 1e-9, 1e-8, 1e-5
 PROOF = 1e-6
 """Error of a ray up to which it is a proof: nothing feasible is then smaller than a million times the data."""
 ITERATIONS = 200
-MEANS = 20
-"""Iterations of the means of logarithms."""
-ROUNDS = 12
-"""Iterations of Ruiz's method; each takes the square root of how far rows and columns are from one."""
 REFINEMENT = {
     "iterative_refinement_max_iter": 50,
     "iterative_refinement_stop_ratio": 1.5,
@@ -103,14 +94,6 @@ class Answer(NamedTuple):
     note: str
 
 
-class _Scaling(NamedTuple):
-    """x = D x', rows times E, costs times s: arrays or numbers."""
-
-    D: Array | float = 1.0
-    E: Array | float = 1.0
-    s: float = 1.0
-
-
 @np.errstate(over="ignore", invalid="ignore")  # an attempt may diverge: what is not finite is no answer
 def minimize_convex(
     problem: Any,
@@ -137,7 +120,7 @@ def minimize_convex(
 
     def put(end: _End) -> None:
         with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status says the same
-            problem.unpack_results(_unscaled(end.solution, end.status, end.scaling), chain, inverse)
+            problem.unpack_results(unscaled_end(end.solution, end.status, end.scaling), chain, inverse)
 
     ends = _ends(data, max_iterations, equilibrate=equilibrate)
     if as_stated:
@@ -167,12 +150,12 @@ class _End(NamedTuple):
     note: str
     solution: Any
     progress: Array
-    scaling: _Scaling
+    scaling: Scaling
 
 
 def _proved(data: dict[str, Any], end: _End) -> _End:
     """A proof that there is no solution, if there is one; else the end of the attempts."""
-    scalings = _equilibrated(data), _equilibrated(data, costly=True)
+    scalings = equilibrated(data), equilibrated(data, costly=True)
     for ray_of in (infeasible_ray, _end_without_costs, unbounded_ray):
         for scaled, scaling in scalings:
             ray = ray_of(scaled)
@@ -212,7 +195,7 @@ def _as_stated(end: _End, problem: Any, put: Callable[[_End], None]) -> _End:
 
 def _violation(constraint: Any) -> float:
     """Violation of a constraint at the present values, relative to the largest of the terms in it."""
-    violation = _size(np.asarray(constraint.violation(), float))
+    violation = size_of(np.asarray(constraint.violation(), float))
     if violation <= AT_ONCE:  # a variable that vanishes has no size
         return 0.0
     return violation / max((_terms(part) for part in constraint.args), default=1.0)
@@ -223,8 +206,8 @@ def _terms(part: Any) -> float:
     size = np.abs(np.asarray(part.value)).ravel(order="F").astype(float)
     for variable, slope in part.grad.items():
         if slope is not None:
-            size = size + np.asarray(np.abs(slope).sum(axis=0)).ravel() * _size(np.asarray(variable.value))
-    return max(_size(size), AT_ONCE)
+            size = size + np.asarray(np.abs(slope).sum(axis=0)).ravel() * size_of(np.asarray(variable.value))
+    return max(size_of(size), AT_ONCE)
 
 
 def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> Iterator[_End]:
@@ -232,14 +215,14 @@ def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool
 
     A proof has to hold in each scaling: what is small beside the numbers of one may be all there is in another.
     """
-    first = _equilibrated(data) if equilibrate else (data, _Scaling())
-    costly = cache(lambda: _equilibrated(data, costly=True))
+    first = equilibrated(data) if equilibrate else (data, Scaling())
+    costly = cache(lambda: equilibrated(data, costly=True))
     for attempt in ATTEMPTS:
         chosen = first
         if attempt.costly:
             chosen = costly()
         elif attempt.rescaled:
-            chosen = (data, _Scaling()) if equilibrate else _equilibrated(data)
+            chosen = (data, Scaling()) if equilibrate else equilibrated(data)
         solution, progress = _solve(chosen[0], attempt.settings, max_iterations or ITERATIONS)
         status, residual = _judged(chosen[0], solution)
         others = [first, costly()] if status in RAYS else [first]
@@ -254,10 +237,10 @@ def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool
 
 
 def _judged_in(
-    scalings: Sequence[tuple[dict[str, Any], _Scaling]], solution: Any, scaling: _Scaling
+    scalings: Sequence[tuple[dict[str, Any], Scaling]], solution: Any, scaling: Scaling
 ) -> tuple[str, float]:
     """The worst that `_judged` says of a point or ray of one scaling in others; nothing, with none of them."""
-    ends = (_judged(scaled, _moved(solution, scaling, other)) for scaled, other in scalings)
+    ends = (_judged(scaled, moved(solution, scaling, other)) for scaled, other in scalings)
     return max(ends, key=lambda end: end[1], default=("", -np.inf))
 
 
@@ -277,7 +260,7 @@ def _judged(data: dict[str, Any], solution: Any) -> tuple[str, float]:
     """
     x, z, s = (np.array(part) for part in (solution.x, solution.z, solution.s))
     A, b, c = data["A"], data["b"], data["c"]
-    curved = _symmetric(data) @ x
+    curved = symmetric(data) @ x
     status = str(solution.status).removeprefix("Almost")
     if status == RAYS[0]:
         z = _balanced(csc_array(A), z, data["dims"])
@@ -287,8 +270,8 @@ def _judged(data: dict[str, Any], solution: Any) -> tuple[str, float]:
     primal, dual = c @ x + x @ curved / 2, -(b @ z) - x @ curved / 2
     terms = np.maximum(1.0, np.abs(curved) + np.abs(c) + abs(A).T @ np.abs(z))
     residuals = (
-        _size((A @ x + s - b) / np.maximum(1.0, abs(A) @ np.abs(x) + np.abs(b))),
-        _size((curved + c + A.T @ z) / np.maximum(terms, ASKED / GOOD * _size(terms))),
+        size_of((A @ x + s - b) / np.maximum(1.0, abs(A) @ np.abs(x) + np.abs(b))),
+        size_of((curved + c + A.T @ z) / np.maximum(terms, ASKED / GOOD * size_of(terms))),
         abs(primal - dual) / max(1.0, min(abs(primal), abs(dual))),
         _outside(data["dims"], s, z),
     )
@@ -298,16 +281,10 @@ def _judged(data: dict[str, Any], solution: Any) -> tuple[str, float]:
     return "Solved" if residual <= GOOD else "AlmostSolved", residual
 
 
-def _symmetric(data: dict[str, Any]) -> Any:
-    """P, of which cvxpy gives all entries."""
-    n = len(data["c"])
-    return csc_array(data["P"]) if "P" in data else csc_array((n, n))
-
-
 def _balanced(A: csc_array, z: Array, dims: Any) -> Array:
     """Multipliers for which Aᵀz is zero up to rounding: the least change of equations and of inequalities in use."""
     row = np.arange(len(z))
-    signed = (row >= dims.zero) & (row < dims.zero + dims.nonneg) & (z > PROOF * _size(z))
+    signed = (row >= dims.zero) & (row < dims.zero + dims.nonneg) & (z > PROOF * size_of(z))
     used, changed = signed | (row < dims.zero), z.copy()
     changed[used] -= np.linalg.lstsq(A[used].T.toarray(), A.T @ z)[0]
     return changed if (changed[signed] >= 0.0).all() else z
@@ -316,18 +293,13 @@ def _balanced(A: csc_array, z: Array, dims: Any) -> Array:
 def _is_ray(slope: Array, ray: Array, rest: Array) -> bool:
     """Whether a ray goes down, and by more than the rest, which should vanish, could feign where the slope is large."""
     down = -float(slope @ ray) - len(ray) * float(np.finfo(float).eps) * float(np.abs(slope) @ np.abs(ray))
-    return bool(down > 0.0 and max(1.0, _size(slope)) * _size(rest) <= PROOF * down)
+    return bool(down > 0.0 and max(1.0, size_of(slope)) * size_of(rest) <= PROOF * down)
 
 
 def _outside(dims: Any, s: Array, z: Array) -> float:
     """How far slacks and multipliers of equations and inequalities are outside; other cones Clarabel never leaves."""
     inequalities = slice(dims.zero, dims.zero + dims.nonneg)
-    return max(_size(s[: dims.zero]), *(_size(np.minimum(part[inequalities], 0.0)) for part in (s, z)))
-
-
-def _size(values: Array) -> float:
-    """Largest magnitude."""
-    return float(np.abs(values).max(initial=0.0))
+    return max(size_of(s[: dims.zero]), *(size_of(np.minimum(part[inequalities], 0.0)) for part in (s, z)))
 
 
 def _solve(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations: int) -> tuple[Any, Array]:
@@ -352,7 +324,7 @@ def _solve_rest(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations:
     settings.tol_infeas_abs = settings.tol_infeas_rel = RAY
     for name, value in chosen.items():
         setattr(settings, name, value)
-    P = triu(_symmetric(data), format="csc")
+    P = triu(symmetric(data), format="csc")
     solver = DefaultSolver(P, data["c"], data["A"], data["b"], dims_to_solver_cones(data["dims"]), settings)
     rows: list[tuple[float, float]] = []
 
@@ -389,98 +361,3 @@ def interrupts() -> Iterator[list[int]]:
 def _finite(progress: Array) -> Array:
     """The rows before the first that is not finite."""
     return progress[np.logical_and.accumulate(np.isfinite(progress).all(axis=1))]
-
-
-def _equilibrated(data: dict[str, Any], *, costly: bool = False) -> tuple[dict[str, Any], _Scaling]:
-    """Bring min ½xᵀP x + cᵀx, b - A x in cones, to size one: constraints, then limits, then costs.
-
-    Limits that are wide become one by their rows, so that they do not hide the others. Costs have a unit of their own.
-    It is that of the Hessian, and variables with larger costs have a smaller unit, unless the program is `costly`.
-    """
-    A, b = csc_array(data["A"]), data["b"]
-    cone = _cone_of_rows(data["dims"])
-    D, E = _of_constraints(A, b, cone)
-    D, s = _of_costs(data, D, costly=costly)
-    P, c = diags_array(D) @ _symmetric(data) @ diags_array(D), D * data["c"]
-    scaled = {**data, "A": csc_array(diags_array(E) @ A @ diags_array(D)), "b": E * b, "c": s * c}
-    return scaled | ({"P": csc_array(s * P)} if "P" in data else {}), _Scaling(D, E, s)
-
-
-def _of_constraints(A: csc_array, b: Array, cone: IntArray) -> tuple[Array, Array]:
-    """Factors of columns and rows with which the largest entry of each is one, and no limit is above one.
-
-    If all limits are small, the unit of all variables is their size: the least that Clarabel compares with is one.
-    """
-    work = A.tocoo()
-    D, E = _without_units(work, cone, A.shape)
-    for limit in (np.zeros(len(b)), np.abs(b)):
-        for _ in range(ROUNDS):
-            entries = E[work.row] * np.abs(work.data) * D[work.col]
-            column = _largest(entries, work.col, len(D))
-            row = np.maximum(_largest(entries, work.row, len(b)), E * limit)
-            row = _largest(row, cone, len(b))[cone]
-            D, E = D / np.sqrt(np.where(column > 0, column, 1.0)), E / np.sqrt(np.where(row > 0, row, 1.0))
-        size = min(_size(E * b) or 1.0, 1.0)
-        D, E = size * D, E / size
-    return D, E
-
-
-def _of_costs(data: dict[str, Any], D: Array, *, costly: bool) -> tuple[Array, float]:
-    """Factors of columns, which make costs above one to one unless the program is `costly`, and of the costs."""
-    P, c = diags_array(D) @ _symmetric(data) @ diags_array(D), np.abs(D * data["c"])
-    curved, costs = float(np.abs(P.data).max(initial=0.0)), c[c > 0]
-    if costly:
-        return D, 1.0 / (max(curved, _size(c)) or 1.0)
-    s = 1.0 / (curved or float(np.exp(np.log(costs).mean() if costs.size else 0.0)))
-    return D / np.maximum(1.0, s * c), s
-
-
-def _without_units(entries: Any, cone: IntArray, shape: Any) -> tuple[Array, Array]:
-    """Factors of columns and rows with which the logarithms of entries have the mean zero in each column and cone."""
-    present = entries.data != 0
-    row, column, logs = cone[entries.row[present]], entries.col[present], np.log(np.abs(entries.data[present]))
-    cones = int(cone.max(initial=-1)) + 1
-    in_row, in_column = (np.maximum(np.bincount(i, minlength=m), 1) for i, m in ((row, cones), (column, shape[1])))
-    r, d = np.zeros(cones), np.zeros(shape[1])
-    for _ in range(MEANS):
-        r = -np.bincount(row, logs + d[column], cones) / in_row
-        d = -np.bincount(column, logs + r[row], shape[1]) / in_column
-    return np.exp(d), np.exp(r)[cone]
-
-
-def _largest(entries: Array, index: NDArray[np.integer], size: int) -> Array:
-    """Largest of the entries (none negative) of each index, (size,)."""
-    largest = np.zeros(size)
-    np.maximum.at(largest, index, entries)
-    return largest
-
-
-def _cone_of_rows(dims: Any) -> IntArray:
-    """Number of the cone of each row; each equation and inequality is a cone by itself."""
-    sizes = [1] * (dims.zero + dims.nonneg) + list(dims.soc) + [k * (k + 1) // 2 for k in dims.psd]
-    sizes += [3] * (dims.exp + len(dims.p3d)) + [len(powers) + 1 for powers in getattr(dims, "pnd", ())]
-    return np.repeat(np.arange(len(sizes)), sizes)
-
-
-def _moved(solution: Any, scaling: _Scaling, other: _Scaling) -> SimpleNamespace:
-    """A point of one scaled problem in the numbers of another."""
-    x, z, s = (np.array(part) for part in (solution.x, solution.z, solution.s))
-    return SimpleNamespace(
-        x=scaling.D * x / other.D,
-        z=scaling.E * z / scaling.s * other.s / other.E,
-        s=s / scaling.E * other.E,
-        status=solution.status,
-    )
-
-
-def _unscaled(solution: Any, status: str, scaling: _Scaling) -> SimpleNamespace:
-    """Clarabel's solution of the scaled problem, in the numbers of the problem itself."""
-    D, E, s = scaling
-    return SimpleNamespace(
-        x=D * np.array(solution.x),
-        z=E * np.array(solution.z) / s,
-        status=status,
-        obj_val=solution.obj_val / s,
-        solve_time=solution.solve_time,
-        iterations=solution.iterations,
-    )

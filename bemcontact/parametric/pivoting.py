@@ -32,7 +32,7 @@ from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.formulations.active_set import EPS, ContactBlock
-from bemcontact.formulations.complementarity import equilibrating, lemke
+from bemcontact.formulations.lemke import equilibrating, lemke
 from bemcontact.formulations.open_position import farthest
 from bemcontact.formulations.scaling import ScaledContact
 

@@ -23,7 +23,8 @@ from bemcontact.adaptivity.fields import penetrations, solved
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import first_active_set, primal_dual
-from bemcontact.formulations.complementarity import ACCEPTED, lemke, standard_form
+from bemcontact.formulations.complementarity import ACCEPTED, standard_form
+from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import scale
 from bemcontact.problem import Problem
 
