@@ -12,9 +12,9 @@ from typing import Annotated, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, TypeAdapter
-from pydantic.json_schema import GenerateJsonSchema
 
 from bemcontact.checks.attributes import WithHints
+from bemcontact.checks.described_schema import DescribedSchema, with_descriptions
 from bemcontact.checks.docstrings import docstring
 from bemcontact.errors import escaped_json
 
@@ -24,7 +24,6 @@ CONFIG = ConfigDict(
     frozen=True,
     arbitrary_types_allowed=True,
     defer_build=True,
-    use_attribute_docstrings=True,
     json_schema_serialization_defaults_required=True,
     ser_json_inf_nan="constants",
 )
@@ -110,7 +109,7 @@ def json_text(record: dict[str, Any], indent: int | None = 2) -> str:
     return escaped_json(json.dumps(record, indent=indent, allow_nan=False, ensure_ascii=False))
 
 
-class _Schema(GenerateJsonSchema):
+class _Schema(DescribedSchema):
     """JSON Schema of written results, without defaults."""
 
     def default_schema(self, schema: Any) -> dict[str, Any]:
@@ -119,7 +118,8 @@ class _Schema(GenerateJsonSchema):
 
     def dataclass_schema(self, schema: Any) -> dict[str, Any]:
         """Describe a dataclass by its docstring, as Pydantic does by itself from 2.13 on."""
-        stated, described = super().dataclass_schema(schema), schema["cls"]
+        described = schema["cls"]
+        stated = with_descriptions(super().dataclass_schema(schema), described)
         for name, part in stated["properties"].items():
             if "description" not in part:  # a property, of which Python has removed the docstring
                 part["description"] = docstring(getattr(described, name))

@@ -18,7 +18,7 @@ from pydantic import (
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
 from bemcontact.checks.arguments import label_fault
-from bemcontact.checks.docstrings import docstring
+from bemcontact.checks.docstrings import attribute_docstrings, docstring
 from bemcontact.errors import LINE_BREAKS, Issue, ProblemError, hidden_character
 from bemcontact.problem.examples import (
     annotation_at,
@@ -61,7 +61,7 @@ def issues_of(error: ValidationError) -> list[Issue]:
 class SpecModel(BaseModel):
     """Base class of all parts of a problem: frozen, strict about types; `ProblemError` lists every issue at once."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
     example: ClassVar[str]
     """A value as YAML has it, for error messages."""
     root: ClassVar[bool] = False
@@ -284,8 +284,7 @@ def _unknown_key(cls: type[BaseModel], key: str) -> str:
 
 def _missing(cls: type[BaseModel], key: str) -> str:
     """Say that a key is missing, and what to give for it: its description in the class."""
-    text = cls.model_fields[key].description if key in cls.model_fields else None
-    text = " ".join((text or "").split())
+    text = " ".join(attribute_docstrings(cls).get(key, "").split())
     return f"missing; give {text[0].lower()}{text[1:].rstrip('.')}" if text else "missing"
 
 

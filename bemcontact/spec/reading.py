@@ -11,6 +11,7 @@ import numpy as np
 import yaml
 
 from bemcontact.checks.arguments import shown, text_of_argument, texts
+from bemcontact.checks.described_schema import DescribedSchema
 from bemcontact.errors import Issue, KeyPath, ProblemError, SpecError, escaped
 from bemcontact.files.text import place_after, text_of
 from bemcontact.problem import Problem, Variant
@@ -138,7 +139,7 @@ def schema() -> dict[str, Any]:
     dict
         JSON Schema (draft 2020-12), of texts, numbers, lists and mappings.
     """
-    properties = Problem.model_json_schema()
+    properties = Problem.model_json_schema(schema_generator=DescribedSchema)
     for definition in (properties, *properties["$defs"].values()):
         if "description" in definition:
             definition["description"] = definition["description"].partition("\n\n")[0]
