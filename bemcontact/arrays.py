@@ -6,6 +6,7 @@ from math import fsum
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from bemcontact.checks.arguments import LARGEST_NUMBER, is_real, shown
@@ -188,6 +189,21 @@ def _halves(numbers: Array) -> tuple[Array, Array]:
     shifted = (2.0**27 + 1.0) * numbers
     upper = shifted - (shifted - numbers)
     return upper, numbers - upper
+
+
+def nonnegative_fit(columns: Array, right: Array) -> tuple[Array, float]:
+    """The x >= 0 (n,) with the least |A x - b|, for columns A (k, n) and b (k,), and that distance.
+
+    With one row, the largest entry of the sign of b carries it alone, or none does: then no solver is imported.
+    """
+    if len(right) > 1 or not columns.size:
+        solution, distance = scipy.optimize.nnls(columns, right)
+        return solution, float(distance)
+    solution, towards = np.zeros(columns.shape[1]), np.sign(right) * columns[0]
+    largest = int(towards.argmax())
+    if towards[largest] > 0.0:
+        solution[largest] = abs(right[0]) / towards[largest]
+    return solution, float(abs(columns[0] @ solution - right[0]))
 
 
 def powers_of_two(sizes: Array) -> Array:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
 from bemcontact.arrays import Array, exact_remainders, powers_of_two, product_remainders, sum_remainders
 from bemcontact.assessment.definiteness import EPS
@@ -145,7 +145,8 @@ def _least_change(
         return _tilted(ell, carries, left, gaps, round_off, axes[-1])
     columns, size = np.vstack([ell, -ell[carries]]).T, 0.0
     for load, part in zip(np.eye(len(left))[left > 0], left[left > 0], strict=True):
-        ends = [linprog(np.ones(columns.shape[1]), A_eq=columns, b_eq=sign * load) for sign in (1.0, -1.0)]
+        cost = np.ones(columns.shape[1])
+        ends = [scipy.optimize.linprog(cost, A_eq=columns, b_eq=sign * load) for sign in (1.0, -1.0)]
         if any(end.status != 0 for end in ends):
             return np.inf, beside, None
         size += float(max(end.fun for end in ends)) * part

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 import scipy
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, nonnegative_fit
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.loading import Loading, case_loadings, combined, particular_solution, permanent_loading
 from bemcontact.bem.mesh import BoundaryValues, Mesh, boundary_values, build
@@ -280,7 +280,7 @@ def _ensure_room_where_held(body: Body) -> None:
 def _check_support(body: Body) -> None:
     """Refuse loads that no pressure p >= 0 can balance, and a body that no load presses on."""
     R, load = body.relative_load
-    forces, residual = scipy.optimize.nnls(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
+    forces, residual = nonnegative_fit(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
     if residual > BALANCED:
         raise ProblemError(_pull(body, body.seen.combined((R.T @ forces + load)[:, None])))
     if not load.any() and body.idle_motion is not None:

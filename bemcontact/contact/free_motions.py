@@ -60,12 +60,20 @@ def _ensure_computable(what: str, size: float) -> None:
 
 
 def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:
-    """Least s >= 0 [L] with q + R a >= -s for some a, by a linear program; zero where it is round-off."""
+    """Least s >= 0 [L] with q + R a >= -s for some a, by a linear program; zero where it is round-off.
+
+    Along one motion it is decided by one point, or by two that the motion opens and closes.
+    """
     n, k = rigid_motions.shape
     q = np.where(np.abs(offset) > ROUND_OFF * terms, offset, 0.0)
     widest = float(np.abs(q).max(initial=0.0))
     if k == 0 or not (q < 0).any():
         return -float(q.min(initial=0.0))
+    if k == 1:
+        (opens, closes), r = ((rigid_motions[:, 0] * side > 0 for side in (1, -1)), np.abs(rigid_motions[:, 0]))
+        both = np.add.outer(q[opens] / r[opens], q[closes] / r[closes])
+        least = min((both / np.add.outer(1 / r[opens], 1 / r[closes])).min(initial=0.0), q[r == 0].min(initial=0.0))
+        return -float(least) if -least > INTERFERENCE * widest else 0.0
     columns = np.column_stack([rigid_motions, np.ones(n)])
     cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
     optimum = scipy.optimize.linprog(cost, A_ub=-columns, b_ub=q / widest, bounds=bounds)

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linprog
+import scipy
 from scipy.sparse import csr_array, diags_array, vstack
 
 from bemcontact.arrays import Array
@@ -55,7 +55,7 @@ def _least(cost: Array, equal: Any, below: Any, bounds: Any) -> Array | None:
     if not largest:
         return None
     limits = {"A_eq": equal, "b_eq": np.zeros(equal.shape[0]), "A_ub": below, "b_ub": np.zeros(below.shape[0])}
-    end = linprog(cost / largest, bounds=bounds, options=FINEST, **limits)
+    end = scipy.optimize.linprog(cost / largest, bounds=bounds, options=FINEST, **limits)
     return end.x if end.status == 0 and end.fun < 0.0 else None
 
 
