@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved, norm_squared, penetrations
-from bemcontact.adaptivity.hidden_changes import hidden_change
+from bemcontact.adaptivity.hidden_changes import hidden_change, hidden_displacement
 from bemcontact.adaptivity.singularities import BESIDE, FITTED, Singularity, logarithmic_rise, run_elements
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside, images
 from bemcontact.arrays import Array, BoolArray, IntArray
@@ -95,7 +95,8 @@ def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_f
         m = max(m, hidden)
         changes.append(m)
         yield from _zone_bars(estimate, number, name, m, hidden, its)
-    sizes = [float(np.hypot(*np.moveaxis(answer.displacement, 2, 0)).max()) for answer in difference.pair]
+    changes.append(hidden_displacement(difference))
+    sizes = [answer.largest_displacement for answer in difference.pair]
     if max(sizes) <= NOTHING * _strain(estimate) * difference.fine.mesh.size:  # a body that is pressed and cannot move
         yield ErrorBar(quantity="displacement", zone=None, value=0.0, bar=0.0)
         return
@@ -171,7 +172,8 @@ def _motion_bars(estimate: _Estimate, m: float, largest: float) -> Iterator[Erro
         turns = one.quantity == "rotation"
         if abs(value) * (size if turns else 1.0) > NOTHING * largest and not (turns and abs(value) <= least):
             change = float(np.linalg.norm(two.amount - one.amount)) / abs(value)
-            bar = estimate.bar(max(change, m))
+            noise = m * largest / (abs(value) * (size if turns else 1.0))  # a motion this small is that of the mesh
+            bar = estimate.bar(max(change, m, noise if noise > 1.0 else 0.0))
             yield ErrorBar(quantity=one.quantity, zone=None, mover=mover, value=value, bar=bar)
 
 

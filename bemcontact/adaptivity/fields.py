@@ -74,6 +74,11 @@ class CaseAnswer:
         columns = (root[..., None] * motions).reshape(-1, motions.shape[-1])
         return whole - motions @ np.linalg.lstsq(columns, (root * whole).ravel(), rcond=None)[0]
 
+    @cached_property
+    def largest_displacement(self) -> float:
+        """Largest magnitude of `displacement` [L]."""
+        return float(np.hypot(*np.moveaxis(self.displacement, 2, 0)).max())
+
     def force_influence(self) -> Iterator[tuple[Array, Array]]:
         """Per zone, the boundary's change (displacement, traction) if the points in contact move out by 1 [L].
 

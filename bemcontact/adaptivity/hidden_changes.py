@@ -1,8 +1,8 @@
-"""What the change of a force may hide: errors of opposite sign, such as that of corners and that of all other elements.
+"""What a small change may hide: errors of opposite sign, such as that of corners and that of all other elements.
 
-Where they nearly cancel on one pair of meshes, the force changes little and its error is not small. Their sizes are
+Where they nearly cancel on one pair of meshes, a force changes little and its error is not small. Their sizes are
 bounded by energies; where the bound says too much, the elements that have most of it are bisected alone, which tells
-the parts.
+the parts. Without contact this is done for the displacement, of which no pressure tells the error.
 """
 
 from collections.abc import Sequence
@@ -32,17 +32,30 @@ def hidden_change(difference: MeshDifference, zone: int) -> float:
     return REMAINS * changes / force
 
 
+def hidden_displacement(difference: MeshDifference) -> float:
+    """Change of the largest displacement that its change may hide, over it; zero if it was not told apart."""
+    if difference.partly is None or difference.pair[1].pressure.any():
+        return 0.0
+    before, between, after = (item.answers[difference.number].largest_displacement for item in difference.meshes)
+    return REMAINS * (abs(between - before) + abs(after - between)) / after if after > 0 else 0.0
+
+
 def hiding(difference: MeshDifference, most: float) -> list[Array]:
     """What each element (m,) may change the force of a zone by, of zones where more than `most` of it may be hidden."""
     return [errors for zone, errors in enumerate(difference.force_errors) if hidden_change(difference, zone) > most]
 
 
 def told_apart(differences: Sequence[MeshDifference], most: float) -> list[MeshDifference]:
-    """Solve on a third mesh where more than `most` of a force may be hidden: the elements of most of it bisected."""
+    """Solve on a third mesh where more than `most` of a force may be hidden: the elements of most of it bisected.
+
+    Without contact it has those bisected in which most of the energy changes.
+    """
     elements = np.zeros(len(differences[0].coarse.mesh.elements), bool)
     for difference in differences:
         for errors in hiding(difference, most):
             elements |= most_of(errors, SHARE)
+        if not difference.pair[1].pressure.any():
+            elements |= most_of(difference.energy, SHARE)
     if not elements.any():
         return list(differences)
     partly = solved(_partly_cut(differences[0].coarse, elements))

@@ -13,8 +13,8 @@ from bemcontact.formulations.complementarity import find_state
 from bemcontact.formulations.lemke import basic_solution, equilibrating, holds, holds_row_by_row, lemke
 from bemcontact.formulations.scaling import ScaledContact
 
-FAINT = 1e-15
-"""Part of the largest variable that may be rounding of it."""
+FAINT = 0.0, 1e-15, 1e-14, 1e-13, 1e-12
+"""Parts of the largest variable that are taken for rounding, in turn, until each row holds beside its own terms."""
 OF_RIGHT, UNDECIDED = 1e-6, 1e-10
 """Weights of the numbers of q, and of a factor of one, in the choice of natural factors; the numbers of M have one."""
 
@@ -79,8 +79,8 @@ def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
         path = lemke(even, right)
         z, status = np.maximum(basic_solution(even, right, path.active), 0.0), path.status
     if status is Status.SOLVED:
-        clean = np.where(z > FAINT * z.max(initial=0.0), z, 0.0)  # small numbers may be the rounding of others
-        held = [point for point in (z, clean) if holds_row_by_row(even, right, point)]
+        points = (np.where(z > part * z.max(initial=0.0), z, 0.0) for part in FAINT)
+        held = [point for point in points if holds_row_by_row(even, right, point)]
         z, status = (held[0], status) if held else (z, Status.NO_SOLUTION_FOUND)
     with np.errstate(over="ignore", invalid="ignore"):
         z = factors * z

@@ -22,6 +22,8 @@ VERIFIED, LEAST = 1e-10, 1e-4
 REFRESH = 50
 """Pivots after which the inverse of the basis is computed anew, against the growth of round-off."""
 EQUILIBRATIONS = 10
+FINEST = 1e-10
+"""The least tolerance of HiGHS."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -199,7 +201,10 @@ def _separating(M: Array, q: Array) -> Array:
 
     The direction in which Lemke's method ends is one for semidefinite M, and not for such M with other weights on rows.
     """
-    found = scipy.optimize.linprog(q / np.abs(q).max(), A_ub=M.T, b_ub=np.zeros(len(q)), bounds=(0.0, 1.0))
+    found = scipy.optimize.linprog(
+        q / np.abs(q).max(), A_ub=M.T, b_ub=np.zeros(len(q)), bounds=(0.0, 1.0),
+        options={"primal_feasibility_tolerance": FINEST, "dual_feasibility_tolerance": FINEST},
+    )  # fmt: skip
     return found.x if found.status == 0 else np.zeros(len(q))
 
 

@@ -347,3 +347,17 @@ def test_nothing_to_do():
     end = lemke(np.eye(3), np.zeros(3))
     assert end.status is Status.SOLVED
     assert not end.active.any()
+
+
+@given(seed=st.integers(0, 10**6), n=st.integers(6, 24))
+@settings(max_examples=40, deadline=None)
+def test_zeros_that_rounding_left_are_taken_away(seed, n):
+    """Semidefinite M = A Aᵀ of low rank in units of its own, with rows in which zeros of z meet zeros of q."""
+    rng = np.random.default_rng(seed)
+    A = rng.integers(-3, 4, (n, max(1, n // 3))) + 0.0
+    z, w = rng.integers(0, 3, n) + 0.0, rng.integers(0, 3, n) + 0.0
+    w[z > 0] = 0.0
+    units = 2.0 ** rng.integers(-12, 13, n)
+    M = units[:, None] * (A @ A.T) * units
+    result = solve_lcp(M, units * (w - A @ (A.T @ z)))
+    assert result.status is Status.SOLVED

@@ -277,6 +277,11 @@ def first_order(
     stationary = np.abs(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero + rounding
     sides = statement.sides_reached(values, slack)
     held = sides != 0
+    ends = np.maximum(np.abs(values - statement.lower), np.abs(values - statement.upper))
+    thin = (
+        (ends <= progress.sharp) & ~statement.equality & (multipliers != 0.0)
+    )  # rounding decides which bound is reached
+    sides = np.where(thin, np.where(multipliers > 0.0, -1, 1), sides).astype(sides.dtype)
     wrong = np.where(held, sides * multipliers, size)
     wrong[statement.equality] = 0.0
     held[n:] &= np.logical_or.reduce(statement.A, axis=1)  # a row of zeros holds nothing

@@ -794,3 +794,18 @@ def test_numbers_of_any_size_have_an_answer_or_an_error_and_no_warning(seed: int
 def test_numbers_that_double_precision_cannot_bring_together_are_refused():
     with pytest.raises(ProblemError, match="too far apart for double precision; choose other units"):
         minimize_qp(np.diag([1e100, 5e-324]), [5e-324, 1e100], [[5e-324, 1e100]], [1e100], [1e100], [0, 0], [1, 5e-324])
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 2, 1000]))
+@settings(max_examples=60)
+def test_ranges_as_thin_as_rounding_have_an_answer(seed, width):
+    """Bounds that differ by units in the last place, as 0.3 and 0.1 + 0.2: rounding decides which one is reached."""
+    rng = np.random.default_rng(seed)
+    n, m = int(rng.integers(1, 7)), int(rng.integers(1, 5))
+    A, x = rng.integers(-3, 4, (m, n)) + 0.0, 0.1 * rng.integers(0, 4, n)
+    lower = A @ x
+    cost = A.T @ rng.integers(-3, 4, m) + rng.integers(0, 2, n)
+    result = minimize_qp(np.zeros((n, n)), cost, A, lower, lower + width * np.spacing(np.abs(lower)), np.zeros(n))
+    best = linprog(cost, A_eq=A, b_eq=lower, bounds=(0, None))
+    assert result.status is QPStatus.LOCAL_MINIMIZER
+    assert result.objective == pytest.approx(best.fun, abs=1e-8)
