@@ -60,11 +60,11 @@ class Relief:
         for name, pair in self._bounds.items():
             _limits(pair, None, name)
         if isinstance(self.shapes, np.ndarray):
-            real_array(self.shapes, "shapes")
+            real_array(self.shapes, "shapes", (None, None))
         elif self.shapes is None:
             if self.coefficients is not None:
                 raise ProblemError("coefficients belong to shapes; give shapes, or lower and upper values")
-        elif not isinstance(self.shapes, Sequence) or not all(map(callable, self.shapes)):
+        elif not isinstance(self.shapes, Sequence) or not self.shapes or not all(map(callable, self.shapes)):
             raise ProblemError(
                 "shapes must be a list of functions of the arc position, or an array (m, s) of their values at m "
                 f"points; found {shown(self.shapes)}"

@@ -101,6 +101,8 @@ def test_relief_that_does_not_fit_the_interval_is_refused(relief, zone, arc, wor
         ({"lower": 0, "upper": 1, "coefficients": (0, 1)}, "coefficients belong to shapes"),
         ({"shapes": [np.ones_like], "coefficients": 3}, "bounds on coefficients are a least and a largest one"),
         ({"shapes": [1.0], "coefficients": (0, 1)}, "shapes must be a list of functions"),
+        ({"shapes": [], "coefficients": (0, 1)}, "shapes must be a list of functions"),
+        ({"shapes": np.ones(3), "coefficients": (0, 1)}, r"shapes has shape \(3,\)"),
         ({"shapes": np.array([[np.inf]]), "coefficients": (0, 1)}, "shapes has entries that are not finite"),
     ],
 )
