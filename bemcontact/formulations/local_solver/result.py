@@ -177,4 +177,9 @@ class QPResult:
     def __str__(self) -> str:
         """The end in one line."""
         phases = f"{self.phase_one_iterations} + {self.phase_two_iterations}"
-        return f"{self.status.value}: objective {self.objective:.9g} after {phases} iterations (phase 1 + phase 2)"
+        reached = f"objective {self.objective:.9g}"
+        if self.status is QPStatus.INFEASIBLE:
+            reached = f"violation of up to {self.violation:.3g} at the nearest point"
+        elif self.status is QPStatus.UNBOUNDED:
+            reached = f"the objective falls without end from {self.objective + 0.0:.9g}"
+        return f"{self.status.value}: {reached} after {phases} iterations (phase 1 + phase 2)"

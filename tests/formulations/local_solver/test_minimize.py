@@ -809,3 +809,11 @@ def test_ranges_as_thin_as_rounding_have_an_answer(seed, width):
     best = linprog(cost, A_eq=A, b_eq=lower, bounds=(0, None))
     assert result.status is QPStatus.LOCAL_MINIMIZER
     assert result.objective == pytest.approx(best.fun, abs=1e-8)
+
+
+def test_an_end_without_a_minimizer_shows_no_objective_as_if_it_were_one():
+    """An interval that is empty by 2, and a line that falls without end."""
+    nothing, falls = np.zeros((1, 1)), np.array([-1.0])
+    empty = minimize_qp(nothing, falls, [[1.0], [1.0]], [5.0, -9.0], [9.0, 3.0], [0.0], [10.0])
+    assert str(empty).startswith("infeasible: violation of up to 2 at the nearest point after ")
+    assert str(minimize_qp(nothing, falls)).startswith("unbounded: the objective falls without end from 0 after ")
