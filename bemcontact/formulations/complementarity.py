@@ -42,7 +42,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     carried = replace(scaled, motion_load=scaled.motion_load - loose_load(scaled))
     search = find_state(carried, options.max_iterations)
     if search.status is Status.INFEASIBLE:
-        note = "Lemke's method ended on a ray, which proves that no pressure satisfies the conditions"
+        note = "Lemke's method ended on a ray, and multipliers prove that no pressure satisfies the conditions"
         empty = _without_contact(contact, note)
         return replace(empty, solver=search.method, iterations=search.iterations, history=search.history)
     p, u_n, a = unscaled(contact, search.end.pressure, search.end.amplitudes)

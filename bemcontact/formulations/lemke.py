@@ -1,7 +1,7 @@
 """Lemke's complementary pivoting for w = q + M z >= 0, z >= 0, z·w = 0, and what holds and excludes a solution.
 
 Cottle, Pang and Stone, "The Linear Complementarity Problem", 1992, section 4.4, with the lexicographic rule of section
-4.9, which makes it finite. For a row sufficient M the path ends at a solution or proves that there is none.
+4.9, which makes it finite. For a row sufficient M the path ends at a solution, or on a ray if there is none.
 """
 
 from contextlib import suppress
@@ -12,6 +12,7 @@ import scipy
 
 from bemcontact.arrays import Array, BoolArray, powers_of_two
 from bemcontact.contact.solution import Status
+from bemcontact.formulations.linear_rays import FINEST
 from bemcontact.formulations.local_solver.infeasibility import proof_of_infeasibility
 
 PIVOT = 1e-11
@@ -22,15 +23,13 @@ VERIFIED, LEAST = 1e-10, 1e-4
 REFRESH = 50
 """Pivots after which the inverse of the basis is computed anew, against the growth of round-off."""
 EQUILIBRATIONS = 10
-FINEST = 1e-10
-"""The least tolerance of HiGHS."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LemkeEnd:
     """How the path of pivots ended: its status, where z is basic (n,), and z0 after each pivot (`covers`).
 
-    The status is SOLVED, INFEASIBLE (proved by a ray), ITERATION_LIMIT, or NO_SOLUTION_FOUND (no proof).
+    The status is SOLVED, INFEASIBLE (proved by multipliers), ITERATION_LIMIT, or NO_SOLUTION_FOUND (no proof).
     """
 
     status: Status
@@ -203,7 +202,7 @@ def _separating(M: Array, q: Array) -> Array:
     """
     found = scipy.optimize.linprog(
         q / np.abs(q).max(), A_ub=M.T, b_ub=np.zeros(len(q)), bounds=(0.0, 1.0),
-        options={"primal_feasibility_tolerance": FINEST, "dual_feasibility_tolerance": FINEST},
+        options=FINEST,
     )  # fmt: skip
     return found.x if found.status == 0 else np.zeros(len(q))
 

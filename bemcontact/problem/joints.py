@@ -114,7 +114,10 @@ def _beginning_far(edge: AnyEdge, surfaces: Sequence[Shape], near: Point | None)
         tops = around[np.arange(len(tops)), gaps_at(around).argmax(axis=1)]
     gap, step = gaps_at(tops), FULL_TURN / SAMPLES / ZOOM
     before, after = gaps_at(tops - step), gaps_at(tops + step)
-    tops = tops + step * (after - before) / (2 * (2 * gap - before - after))  # a flat top has half of its digits
+    bend = (
+        2 * gap - before - after
+    )  # the top of a parabola, for places where the gap is largest have half of the digits
+    tops = tops + np.where(bend > SAME * size, step * (after - before) / (2 * np.maximum(bend, SAME * size)), 0.0)
     highest = (tops[gap >= gap.max() - SAME * size] + FULL_TURN / 2) % FULL_TURN - FULL_TURN / 2
     away = np.abs(highest) if near is None else np.hypot(*(points_at(highest) - near).T)
     nearest = float(highest[away.argmin()])

@@ -189,3 +189,18 @@ def test_a_ring_begins_on_one_side_inside_and_outside():
         assert rim.start == pytest.approx((10, 0), abs=1e-9)
         assert bore.start == pytest.approx((6, 0), abs=1e-9)
         assert bore.length == pytest.approx(12 * np.pi)
+
+
+@pytest.mark.parametrize("begin", [0.0, 17.3, -100.0])
+def test_a_rim_that_is_equally_far_over_a_stretch_begins_on_it(begin: float):
+    """In a bore around the same center the gap is 0.01; the floor below, at a gap of 0.002, is nearer at the bottom."""
+    bore = {"kind": "circle", "center": [0, 0], "radius": 10.01, "body": "inside"}
+    floor = {"kind": "plane", "point": [0, -10.002], "normal": [0, 1]}
+    rim = {"name": "rim", "kind": "arc", "center": [0, 0], "radius": 10, "angles": [begin, begin + 360]}
+    roller = Problem(
+        name="roller", material={"young_modulus": 1.0, "poisson_ratio": 0.3}, boundary={"outer": [rim]},
+        contact_zones={"bore": {"edges": "rim", "surface": bore}, "floor": {"edges": "rim", "surface": floor}},
+    )  # fmt: skip  # pyright: ignore[reportArgumentType]
+    x, y = roller.without_joints().boundary.edges[0].start
+    assert np.hypot(x, y) == pytest.approx(10)
+    assert y + 10.002 >= 0.01 - 1e-8
