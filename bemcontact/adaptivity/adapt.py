@@ -5,20 +5,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bemcontact.adaptivity.error_bars import SAFETY, error_bars
+from bemcontact.adaptivity.coarse_mesh import CoarseMesh
+from bemcontact.adaptivity.error_bars import SAFETY, error_bars, resolved
 from bemcontact.adaptivity.fields import MeshDifference, Solved, solved
 from bemcontact.adaptivity.hidden_changes import told_apart
 from bemcontact.adaptivity.mesh_search import MeshSearch, cut, mesh_search
 from bemcontact.adaptivity.singularities import Singularity, recognized
-from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import Condensation, condense
 from bemcontact.errors import Issue, ProblemError, SingularSystemError, SolverError
-from bemcontact.problem.problem import Problem
+from bemcontact.problem.problem import ACCURACY, Problem
 
 NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
 NOT_ESTIMATED = "the errors of this mesh were not estimated"
-MOST_PASSES = 14
+MOST_PASSES, PASSES_TO_COMPARE = 14, 4
+"""Largest number of passes for an answer, and for a mesh beside a stated one."""
 HOPELESS, STALLED = 1.0, 4
 """Error that ends the search where it did not halve, and the passes that it had for that."""
 MOST_FAILURES = 3
@@ -107,10 +109,27 @@ def _stated(
         differences = _differences(coarse, fine, asked)
         singular = singular or tuple(map(recognized, differences))
         bars = [error_bars(item, its, of_fine=halved) for item, its in zip(differences, singular, strict=True)]
+        if not halved and not all(resolved(item, of_fine=False) for item in differences):
+            bars = _compared(own, bars, progress)
         accuracies = [Accuracy.of(asked, 1, its) for its in bars]
     except (ProblemError, SingularSystemError, SolverError) as error:
         accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(own.answers)
     return Meshed(problem=problem, condensation=own.condensation, accuracies=tuple(accuracies))
+
+
+def _compared(
+    own: Solved, bars: Sequence[Sequence[ErrorBar]], progress: Callable[[str], object]
+) -> list[tuple[ErrorBar, ...]]:
+    """Error bars under each load case of a mesh that is too coarse to tell them, from a mesh that is found."""
+    problem = own.body.problem
+    wanted = problem.to_be_meshed(max(problem.asked_accuracy or 0.0, ACCURACY))
+    try:
+        found = _found(wanted, lambda words: progress(f"to compare with: {words}"), PASSES_TO_COMPARE)
+        finer = solved(found.problem)
+    except (ProblemError, SingularSystemError, SolverError):
+        return [*map(tuple, bars)]  # they say themselves that they are not known
+    known = enumerate(zip(bars, found.accuracies, strict=True))
+    return [CoarseMesh(own=own, finer=finer, number=i, known=its.bars).bars(stated) for i, (stated, its) in known]
 
 
 def _differences(coarse: Solved, fine: Solved, asked: float) -> list[MeshDifference]:
@@ -136,15 +155,15 @@ def _search(problem: Problem) -> MeshSearch:
     return mesh_search(problem)
 
 
-def _found(problem: Problem, progress: Callable[[str], object]) -> Meshed:
+def _found(problem: Problem, progress: Callable[[str], object], passes: int = MOST_PASSES) -> Meshed:
     """Find a mesh on which all error bars are below the accuracy asked, and solve on it."""
     asked = problem.asked_accuracy
     assert asked is not None
     search = _search(problem)
     best: Meshed | None = None
     errors: list[float] = []
-    reason = f"no better mesh was found in {MOST_PASSES} passes"
-    for number in range(1, MOST_PASSES + 1):
+    reason = f"no better mesh was found in {passes} passes"
+    for number in range(1, passes + 1):
         start = f"pass {number}" + (f", error at most {100 * best.worst:.2g} %" if best else "")
         try:
             coarse = search.fitted(

@@ -62,6 +62,11 @@ def _with_change(note: str, bar: float | None) -> str:
     return f"{note}; by the change when every element is bisected it is about {100 * bar:.2g} %" if bar else note
 
 
+def resolved(difference: MeshDifference, *, of_fine: bool) -> bool:
+    """Whether bisecting elements tells the error of the fine mesh, or of the coarse one."""
+    return not _unresolved(difference, of_fine=of_fine)
+
+
 def _unresolved(difference: MeshDifference, *, of_fine: bool) -> str:
     """Why bisecting elements does not tell the error of the fine mesh, or of the coarse one; empty if it does."""
     one, two = difference.pair
@@ -164,7 +169,7 @@ def _motion_bars(estimate: _Estimate, m: float, largest: float) -> Iterator[Erro
     contact, p = answer.condensation.contact, answer.solution.pressure
     least = angle_of_round_off(contact.points, contact.normals, p > 0)
     undetermined = {name for item in estimate.difference.pair for name in item.solution.undetermined}
-    for one, two in zip(*map(_motions, estimate.difference.pair), strict=True):
+    for one, two in zip(*map(motions, estimate.difference.pair), strict=True):
         if any(name in (one.mover, two.mover) or name.endswith(f" of the tool '{one.mover}'") for name in undetermined):
             continue  # chosen by a rule
         mover = two.mover if estimate.of_fine else one.mover  # a center may differ by the error of the mesh
@@ -190,7 +195,7 @@ class _Motion(NamedTuple):
         return float(self.amount[0] if len(self.amount) == 1 else np.hypot(*self.amount))
 
 
-def _motions(answer: CaseAnswer) -> Iterator[_Motion]:
+def motions(answer: CaseAnswer) -> Iterator[_Motion]:
     """Motions along the free ways of the body, and of tools that are free."""
     contact, amplitudes = answer.condensation.contact, answer.solution.rigid_amplitudes
     angles, arms = contact.rotations(amplitudes), contact.motion_arms

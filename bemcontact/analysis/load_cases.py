@@ -62,9 +62,8 @@ class CaseResults(Recorded):
         worst = "no contact" if self.worst is None else f"largest peak pressure in '{self.worst}'"
         worst = f"infinite peak pressure in {', '.join(self.infinite)}" if self.infinite else worst
         equations = "unique solutions proved" if self.certified else "NOT all solutions proved"
-        error = max(result.accuracy.worst for result in self.results.values())
-        known = all(result.accuracy.met is not None for result in self.results.values())
-        mesh = f"error at most {100 * error:.2g} %" if known else "error not estimated"
+        accuracies = [result.accuracy for result in self.results.values()]
+        mesh = max(accuracies, key=lambda item: (item.met is None, item.worst)).in_short
         return f"<CaseResults of {self.name!r}: {', '.join(self.results)}: {equations}, {mesh}, {worst}>"
 
     @property

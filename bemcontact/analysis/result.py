@@ -140,9 +140,8 @@ class Result(Recorded):
         if self.penetration is not None:
             zone = self.penetration.zone
             equations = f"{self.penetration.kind}: '{zone}'" if zone else str(self.penetration.kind)
-        known, accuracy = bool(self.accuracy.bars), self.accuracy
-        mesh = f"error at most {100 * accuracy.worst:.2g} %" if known else "error not estimated"
-        return f"<Result of {self.contact.name!r} by {self.solution.formulation}: {equations}, {mesh}, {peak}>"
+        by = f"{self.contact.name!r} by {self.solution.formulation}"
+        return f"<Result of {by}: {equations}, {self.accuracy.in_short}, {peak}>"
 
     @property
     def certified(self) -> bool:

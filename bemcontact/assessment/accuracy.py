@@ -115,6 +115,13 @@ class Accuracy(Leaf):
         return max((inf if item.bar is None else item.bar for item in judged), default=0.0)
 
     @property
+    def in_short(self) -> str:
+        """The largest error in a few words."""
+        if self.met is None:
+            return "error not estimated"
+        return f"error at most {100 * self.worst:.2g} %" if self.worst < inf else "error not known"
+
+    @property
     def infinite(self) -> tuple[str, ...]:
         """Names of the zones whose peak pressure is infinite."""
         return tuple(item.zone or "" for item in self.infinite_peaks)

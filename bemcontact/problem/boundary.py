@@ -110,6 +110,12 @@ class Boundary(SpecModel):
             raise ProblemError(issues)
         return changed
 
+    def without_elements(self) -> Self:
+        """Copy in which no edge states elements."""
+        none = {"elements": None, "grading": None, "ends_at": ()}
+        outer, *holes = [tuple(edge.model_copy(update=none) for edge in loop) for loop in self.loop_specs]
+        return type(self).model_construct(outer=outer, holes=tuple(holes))
+
     @property
     def edges(self) -> tuple[Edge, ...]:
         """All edges in order of the loops."""

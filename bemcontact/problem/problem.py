@@ -403,6 +403,11 @@ class Problem(SpecModel):
         mesh = self.mesh.model_copy(update={"adapt": False})
         return self.model_copy(update={"boundary": boundary, "mesh": mesh, "variants": {}})
 
+    def to_be_meshed(self, accuracy: float) -> Self:
+        """Copy whose mesh is to be found for an accuracy: no edge states elements, and there are no variants."""
+        mesh, boundary = MeshDensity(), self.boundary.without_elements()
+        return self.model_copy(update={"boundary": boundary, "mesh": mesh, "accuracy": accuracy, "variants": {}})
+
     def with_value(self, path: str, value: Any) -> Self:
         """Copy with one value changed.
 

@@ -30,7 +30,8 @@ LEAST_SHOWN = 1e-5
 TWO_FIGURES = 3.5
 """Leading figures of an error up to which it keeps two: 0.34, but 0.4; rounding up adds a quarter at most."""
 BARS_ARE = (
-    "Error bars are estimates, from the change of each quantity when every element is cut in two. They are not proved."
+    "Error bars are estimates, from the change of each quantity when every element is cut in two, or where a note says "
+    "so from the difference of two meshes. They are not proved."
 )
 """What an error bar is."""
 

@@ -1,25 +1,32 @@
 """Meshes that nobody makes: true errors are below their bars, in any unit and from any side."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from math import asin, cos, pi, radians, sin, sqrt, tan
 
 import numpy as np
 import pytest
 from adaptive_problems import (
+    Case,
     block_on_flat_floor,
     block_on_two_rods,
     cam_nose,
     flat_punch_at_corner,
     half_disk,
     hertz,
+    hertz_full,
     no_contact,
+    partial_load_lifts_off,
+    wave_light,
 )  # fmt: skip
 
 from bemcontact import solve
 from bemcontact.adaptivity import adapt
 from bemcontact.adaptivity.adapt import Meshed, first_mesh, meshed
-from bemcontact.adaptivity.fields import penetrations, solved
+from bemcontact.adaptivity.coarse_mesh import CoarseMesh
+from bemcontact.adaptivity.error_bars import error_bars, pressure_change
+from bemcontact.adaptivity.fields import MeshDifference, norm_squared, penetrations, solved
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.active_set import first_active_set, primal_dual
@@ -301,22 +308,60 @@ def test_bars_depend_on_neither_units_nor_direction(how: dict, plain: Meshed):
     assert told(result) == pytest.approx(told(plain), rel=1e-6, abs=1e-9)
 
 
-def stated(problem: Problem, elements: Sequence[int]) -> Problem:
+def stated(problem: Problem, elements: Sequence[int] | int) -> Problem:
     """The problem with a number of elements on each outer edge."""
-    for edge, count in zip(problem.boundary.outer, elements, strict=True):
+    outer = problem.boundary.outer
+    for edge, count in zip(outer, [elements] * len(outer) if isinstance(elements, int) else elements, strict=True):
         problem = problem.with_value(f"boundary.outer.{edge.name}.elements", count)
     return problem
 
 
 def test_a_stated_mesh_is_judged_and_left_alone():
     """The nose of a cam on 24 elements, of which about one is in contact: a half-width of 0.047 on 1.05 / 24 each."""
-    problem = stated(cam_nose()[0], [24, 24, 24, 24]).with_value("mesh.adapt", False)
-    result = found(problem)
+    problem, known = cam_nose()
+    peak, validity = known["peak", "tip"]
+    result = found(stated(problem, 24).with_value("mesh.adapt", False))
     (judged,) = result.accuracies
     assert (judged.met, judged.passes) == (False, 1)
     assert result.condensation.body.mesh.edge.size == 96
-    assert entry(result, "peak").bar is None  # the peak of Hertz is 28 % away, and bisecting changes it by 9 %
-    assert "too few points in contact" in entry(result, "peak").note
+    bar = entry(result, "peak")  # the peak of Hertz is 28 % away, and bisecting changes it by 9 %
+    assert bar.bar == pytest.approx(abs(bar.value / peak - 1), abs=2 * 0.01 + validity)  # its mesh is found to 1 %
+    assert "too coarse to tell its own error" in bar.note
+    assert judged.worst == bar.bar
+
+
+def test_a_mesh_too_coarse_to_show_the_intervals_of_contact_has_no_error_bars():
+    """Four contacts under the crests of a wave, of which four elements show two."""
+    (judged,) = found(stated(wave_light()[0], 4).with_value("mesh.adapt", False)).accuracies
+    assert (judged.met, {item.bar for item in judged.bars}) == (False, {None})
+    assert "error not known" in judged.in_short
+
+
+@pytest.mark.parametrize("case", [cam_nose, partial_load_lifts_off, hertz_full])
+def test_error_bars_of_a_coarse_mesh_hold_the_answer_of_a_fine_one(case: Callable[[], Case]):
+    """Every quantity, beside a mesh for a thirtieth of the accuracy, which may be off by its own bars."""
+    problem, _ = case()
+    (coarse,) = found(stated(problem, 8).with_value("mesh.adapt", False)).accuracies
+    (fine,) = found(problem.with_value("accuracy", 3e-4)).accuracies
+    assert len(coarse.bars) == len(fine.bars)
+    for bar in coarse.bars:
+        true = fine.bar_of(bar.quantity, bar.zone or bar.mover)
+        sizes = abs(bar.value), abs(true.value)
+        if bar.quantity in ("start", "end"):
+            sizes = coarse.bar_of("length", bar.zone).value, fine.bar_of("length", bar.zone).value
+        assert abs(bar.value - true.value) <= bar.bar * sizes[0] + true.bar * sizes[1]
+
+
+def test_the_distance_of_two_meshes_is_that_of_halved_elements():
+    """The integral of the squared difference of pressures, over halves and over the pieces of both meshes."""
+    problem = stated(partial_load_lifts_off()[0], 16)
+    coarse, fine = solved(problem), solved(problem.refined(2))
+    difference = MeshDifference(coarse=coarse, fine=fine, number=0)
+    exact = [replace(bar, bar=0.0) for bar in error_bars(difference, ())]
+    bars = CoarseMesh(own=coarse, finer=fine, number=0, known=exact).bars(exact)
+    one, two = (norm_squared(mesh, mesh.answers[0].pressure[0]).sum() ** 0.5 for mesh in (coarse, fine))
+    apart = pressure_change(difference, 0, ()) * two
+    assert [bar.bar for bar in bars if bar.quantity == "pressure"] == pytest.approx([apart / min(one, two)], rel=1e-12)
 
 
 def test_a_stated_mesh_is_judged_unless_no_accuracy_is_asked_for():

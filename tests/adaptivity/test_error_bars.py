@@ -146,7 +146,7 @@ def test_no_bar_of_a_coarse_mesh_is_smaller_than_the_error(case: Callable[[], Ca
             assert bar.note
         elif (bar.quantity, bar.zone) in known:
             truth, validity = known[bar.quantity, bar.zone]
-            assert abs(bar.value / truth - 1) <= bar.bar + validity
+            assert abs(bar.value / truth - 1) <= bar.bar + validity, bar
 
 
 def test_the_largest_displacement_has_its_place_if_it_is_the_only_one():
