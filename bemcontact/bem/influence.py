@@ -126,6 +126,15 @@ class Influence:
         return self.nodes[self.mesh.elements]
 
     @cached_property
+    def _inner_angles(self) -> Array:
+        """Angle (m,) inside the body where each element starts, of the nodes as they are here, rounded.
+
+        A different rounding of an angle between short elements would act as a turn of all displacements there.
+        """
+        _, c1, c2 = kernels.element_coefficients(self.element_nodes)
+        return np.mod(np.angle(-(c1 + 2 * c2)[self.mesh.before] / (c1 - 2 * c2)), 2 * np.pi)
+
+    @cached_property
     def _known(self) -> Array:
         """`known` as (s, 2, 3, m)."""
         return self.known.transpose(0, 3, 2, 1) if len(self.known) else np.zeros((0, 2, 3, len(self.mesh.elements)))
@@ -333,7 +342,7 @@ class Influence:
         corner = collocation.corner[block.rows]
         row = np.flatnonzero(corner >= 0)
         for diagonal in range(2):
-            block.F[diagonal, corner[row], row] += self._factors.normal * -self.mesh.inner_angles[corner[row]]
+            block.F[diagonal, corner[row], row] += self._factors.normal * -self._inner_angles[corner[row]]
 
 
 def _places(of: IntArray, count: int) -> IntArray:

@@ -332,3 +332,27 @@ def test_two_zones_that_meet_on_one_surface():
     two = solve(problem(halves, {"a": (["a"], PLANE), "b": (["b"], PLANE)}, conditions=conditions))
     assert two.certified
     assert two.solution.pressure == pytest.approx(one.solution.pressure, rel=1e-9)
+
+
+def bent_strip(angle: float) -> np.ndarray:
+    """Free displacement of a strip of 50:1 in elements of 1e-6 of its length, clamped on the left, then turned."""
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    edges = rectangle(100.0, 2.0, 12, 2)
+    for edge in edges:
+        edge |= {key: (turn @ edge[key]).tolist() for key in ("start", "end")}
+    plane = {"kind": "plane", "point": (turn @ [0, -1]).tolist(), "normal": turn[:, 1].tolist()}
+    held, pressed = {"displacement": {"x": 0, "y": 0}}, {"pressure": 1e-4}
+    strip = problem(edges, {"base": (["bottom"], plane)}, conditions={"left": held, "top": pressed})
+    short = (0.9 + 1e-6 * np.arange(-4, 5)).tolist()
+    strip = strip.with_element_ends({"bottom": [*np.linspace(0, 1, 12)[1:-2], *short]})
+    contact = condense(body_of(strip)).contact
+    return contact.free_displacement[np.abs(contact.arc_position - 90) <= 4.5e-4]
+
+
+def test_short_elements_of_a_turned_body_keep_their_digits():
+    """Coordinates are rounded to 1e-14, and so a direction between them to 1e-10, which is not the error of u."""
+    straight = bent_strip(0.0)
+    turned = bent_strip(np.radians(30))
+    assert len(straight) == len(turned) == 17
+    assert np.abs(straight).min() > 1
+    assert np.ptp(turned - straight) < 100 * np.finfo(float).eps
