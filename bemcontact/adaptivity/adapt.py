@@ -109,12 +109,17 @@ def _stated(
         differences = _differences(coarse, fine, asked)
         singular = singular or tuple(map(recognized, differences))
         bars = [error_bars(item, its, of_fine=halved) for item, its in zip(differences, singular, strict=True)]
-        if not halved and not all(resolved(item, of_fine=False) for item in differences):
+        if not halved and not all(_tells_its_error(item) for item in differences):
             bars = _compared(own, bars, progress)
         accuracies = [Accuracy.of(asked, 1, its) for its in bars]
     except (ProblemError, SingularSystemError, SolverError) as error:
         accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(own.answers)
     return Meshed(problem=problem, condensation=own.condensation, accuracies=tuple(accuracies))
+
+
+def _tells_its_error(difference: MeshDifference) -> bool:
+    """Whether bisecting a stated mesh tells its error; without contact a coarse one looks better than it is."""
+    return resolved(difference, of_fine=False) and bool(difference.pair[0].pressure.any())
 
 
 def _compared(

@@ -19,6 +19,8 @@ from bemcontact.bem import reference_element
 
 FOUND = "by the difference from a mesh that was found: this one is too coarse to tell its own error"
 """Note on such an error bar."""
+OTHER = "on a mesh that was found, contact is in other zones, or in another number of intervals"
+"""Note where the two meshes cannot be compared."""
 GAUSS_POINTS = 3
 """Points of integration between two element ends, for the square of a difference of quadratic pressures."""
 
@@ -45,10 +47,10 @@ class CoarseMesh:
         return self.own.answers[self.number], self.finer.answers[self.number]
 
     def bars(self, stated: Sequence[ErrorBar]) -> tuple[ErrorBar, ...]:
-        """The entries of the stated mesh with error bars; as they are where contact is not alike on both meshes."""
+        """The entries of the stated mesh with error bars, of which none is known if contact is not alike on both."""
         one, two = ((_contact(answer), answer.around) for answer in self.pair)
         if one != two:
-            return tuple(stated)
+            return tuple(replace(item, bar=None, note=item.note if item.bar is None else OTHER) for item in stated)
         there = {_of(item): item for item in self.known}
         return tuple(self._with_bar(item, there[_of(item)]) if _of(item) in there else item for item in stated)
 

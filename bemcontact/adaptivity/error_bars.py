@@ -33,6 +33,8 @@ LEAST_POINTS = 5
 """Points in contact in an interval, those of two elements, below which bisecting elements does not tell the error."""
 MOST_PLACES = 3
 """Number of places of an infinite pressure that are named besides the first."""
+COMES_OR_GOES = "contact in {} comes or goes when every element is bisected"
+"""Note on a zone that is under pressure on one of two meshes only."""
 CHANGES = "the number of contact intervals changes when every element is bisected"
 """Note on an end of contact that one of two meshes does not have."""
 TIP_ELEMENTS = 2
@@ -78,7 +80,7 @@ def _unresolved(difference: MeshDifference, *, of_fine: bool) -> str:
     names = [*difference.coarse.body.problem.contact_zones]
     for number, name in enumerate(names):
         if one.pressure[number].any() != two.pressure[number].any():
-            return f"contact in {name} comes or goes when every element is bisected"
+            return COMES_OR_GOES.format(name)
     for solved, answer in ((difference.coarse, one), (difference.fine, two)):
         if next(penetrations(solved, answer), None):
             return "a surface passes between the nodes"
@@ -94,7 +96,10 @@ def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_f
         its = [item for item in singularities if item.place.zone == name]
         m = pressure_change(difference, number, its)
         if m is None:
-            yield ErrorBar(quantity="force", zone=name, value=0.0, bar=None, note="no contact in this zone")
+            solved, answer = estimate.reported
+            force = solved.force(answer, number)
+            note = COMES_OR_GOES.format(name) if force > 0 else "no contact in this zone"
+            yield ErrorBar(quantity="force", zone=name, value=force, bar=None, note=note)
             continue
         hidden = hidden_change(difference, number)
         m = max(m, hidden)
@@ -215,14 +220,16 @@ def motions(answer: CaseAnswer) -> Iterator[_Motion]:
 
 
 def pressure_change(difference: MeshDifference, zone: int, singularities: Sequence[Singularity]) -> float | None:
-    """‖Δp‖/‖p‖ of a zone, away from infinite pressures; None without pressure."""
+    """‖Δp‖/‖p‖ of a zone, away from infinite pressures if there is pressure away from them; None without pressure."""
     _, two = difference.pair
-    compared = ~near_singularities(difference.fine, two, singularities)
-    norm = norm_squared(difference.fine, two.pressure[zone])[compared].sum()
-    if not norm > 0:
+    norm = norm_squared(difference.fine, two.pressure[zone])
+    if not norm.sum() > 0:
         return None
-    change = (difference.fine.weights * difference.pressure[zone] ** 2).sum(axis=1)[compared].sum()
-    return float(np.sqrt(change / norm))
+    change = (difference.fine.weights * difference.pressure[zone] ** 2).sum(axis=1)
+    compared = ~near_singularities(difference.fine, two, singularities)
+    if not norm[compared].sum() > 0:
+        compared[:] = True
+    return float(np.sqrt(change[compared].sum() / norm[compared].sum()))
 
 
 def near_singularities(solved: Solved, answer: CaseAnswer, singularities: Sequence[Singularity]) -> BoolArray:

@@ -12,7 +12,7 @@ from bemcontact.bem.mesh import Mesh, build
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.nearest_places import nearest_places, surface_corners
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import Circle, RigidSurface
+from bemcontact.problem.rigid_surface import Circle, Plane, RigidSurface
 from bemcontact.problem.surface_lines import Polyline, Spline
 
 SAMPLES = np.linspace(-1.0, 1.0, 17)
@@ -101,6 +101,6 @@ def _narrow_places(edge: Edge, surface: RigidSurface, *, paired: bool) -> Iterab
     """
     if isinstance(surface, Polyline):
         return (corner.fraction for corner in surface_corners(edge, surface))
-    if isinstance(surface, Circle) or (paired and isinstance(surface, Spline)):
+    if isinstance(surface, Circle | Plane) or (paired and isinstance(surface, Spline)):
         return nearest_places(edge.curve, surface)
     return ()

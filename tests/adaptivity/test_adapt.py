@@ -13,11 +13,14 @@ from adaptive_problems import (
     block_on_two_rods,
     cam_nose,
     flat_punch_at_corner,
+    floor,
     half_disk,
     hertz,
     hertz_full,
     no_contact,
     partial_load_lifts_off,
+    problem,
+    rectangle,
     wave_light,
 )  # fmt: skip
 
@@ -687,3 +690,54 @@ def test_a_corner_that_stands_on_a_face_by_itself_does_not_shift_the_zones_after
         one, other = (result.accuracy.bar_of("force", zone) for result in results)
         assert one.value == pytest.approx(other.value, rel=1e-9)
         assert one.bar == pytest.approx(other.bar, rel=1e-6)
+
+
+@pytest.mark.parametrize("depth", [1e-6, 1e-4])
+@pytest.mark.parametrize("angle", [-10.0, 3.0])
+def test_contact_far_narrower_than_the_first_elements_is_found_on_a_plane(angle: float, depth: float):
+    """A round foot of radius 20 is pressed by a depth onto the plane that it is tangent to: it cannot but touch."""
+    out = np.array([sin(radians(angle)), -cos(radians(angle))])
+    x, y = (20 * out + [0, 20]).tolist()
+    rise = 20 - sqrt(20**2 - 8**2)
+    outer = [
+        {"name": "foot", "kind": "arc", "center": [0, 20], "start": [-8, rise], "end": [8, rise]},
+        {"name": "right", "end": [8, rise + 10]},
+        {"name": "top", "end": [-8, rise + 10]},
+        {"name": "left"},
+    ]
+    plane = {"kind": "plane", "point": [x, y], "normal": (-out).tolist()}
+    moved = {"x": float(depth * out[0]), "y": float(depth * out[1])}
+    pressed = problem(
+        "foot", outer, {"foot": {"edges": "foot", "surface": plane}}, conditions={"top": {"displacement": moved}}
+    )
+    result = solve(pressed, accuracy=0.05)
+    assert result.certified
+    assert result.accuracy.met
+    assert 0 < result.accuracy.bar_of("length", "foot").value < 20 * sqrt(depth)
+    assert result.accuracy.bar_of("force", "foot").value > 0
+
+
+def tip(elements: int, across: int, pressure: float) -> Problem:
+    """A cantilever of 60 by 4 whose tip is 0.05 above a floor, on a stated mesh."""
+    loads = {"left": {"displacement": {"x": 0, "y": 0}}, "right": {"traction": {"y": -pressure}}}
+    strip = problem("tip", rectangle(60, 4), {"tip": {"edges": "bottom", "surface": floor(-0.05)}}, conditions=loads)
+    return stated(strip, [elements, across, across, across]).with_value("mesh.adapt", False)
+
+
+@pytest.mark.parametrize(("elements", "across", "pressure"), [(10, 3, 8.0), (14, 10, 30.0), (30, 22, 8.0)])
+def test_a_force_beside_an_infinite_pressure_alone_is_told(elements: int, across: int, pressure: float):
+    """Contact of one or two elements at a corner, and nothing away from it."""
+    result = solve(tip(elements, across, pressure))
+    bar = result.accuracy.bar_of("force", "tip")
+    assert bar.value == pytest.approx(result.footprint.forces["tip"][1], rel=1e-9)
+    assert bar.value > 0
+
+
+@pytest.mark.parametrize(("elements", "across"), [(9, 1), (5, 1), (1, 24)])
+def test_without_contact_a_coarse_mesh_is_compared(elements: int, across: int):
+    """Elements longer than the body is thick: by beam theory the tip moves by F L³ / 3EI."""
+    strip = tip(elements, across, 0.01)
+    bar = solve(strip).accuracy.bar_of("displacement")
+    fine = solve(strip.to_be_meshed(1e-3)).accuracy.bar_of("displacement")
+    assert fine.value == pytest.approx(0.01 * 4 * 60**3 / (3 * 210e3 / (1 - 0.3**2) * 4**3 / 12), rel=0.02)
+    assert bar.bar is None or abs(bar.value - fine.value) <= bar.bar * bar.value + fine.bar * fine.value
